@@ -19,6 +19,7 @@ from sceneql.grids.maps.sheets import Sheet, contour, kept, lattice
 from sceneql.grids.medium import FieldLayout
 from sceneql.mesh.measures import area, pieces, volume
 from sceneql.pipeline import frame_of, load
+from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.explain import explain
 from sceneql.run.run import Run
 from sceneql.shapes.color import linear
@@ -407,3 +408,19 @@ def test_a_range_that_takes_a_run_ahead_is_told(tmp_path):
         (tmp_path / "scene.yaml").write_text(HEAT.replace("INITIAL", initial))
         told[initial] = explain(load(tmp_path / "scene.yaml"))["ranges"]
     assert told == {"initial: 0": ["map"], "initial: x": []}
+
+
+def test_a_field_of_temperature_is_called_so(tmp_path):
+    script = """
+models: {plate: {diffusion: {of: temperature, size: 1 1 m, cell: 0.25 m, coefficient: 1 m^2/s, initial: 20 °C}}}
+objects: {map: {field_map: {of: plate.NAME}}}
+expect: {start: {of: initial(plate.max), value: 293.15, tolerance: 1e-9, because: given}}
+"""
+    path = tmp_path / "scene.yaml"
+    path.write_text(script.replace("NAME", "temperature"))
+    assert load(path).tasks["map"].kind.of.links[0].output == "temperature"
+    path.write_text(script.replace("NAME", "concentration"))
+    with pytest.raises(ScriptError) as caught:
+        load(path)
+    (told,) = caught.value.diagnostics
+    assert (told.message, told.help) == ("'plate' gives no 'concentration'", "did you mean 'temperature'?")

@@ -122,6 +122,10 @@ def test_it_refuses_what_is_misspelt(script):
         "outputs: {film: {video: {size: 360p, camera: {turntable: {}}}}}",
         "outputs: {film: {video: {show: [a, b]}}}",
         "outputs: {film: {video: {size: [640, 360], fps: 24}}}",
+        "models: {swing: {equations: {start: {a: 1}, rate: {a: -a}, gives: {bob: [cos(a), sin(a), 0]}}}}",
+        "models: {net: {mass_spring: {masses: {bead: {repeat: {count: 3, as: i}, position: 0 0 0 m, mass: 1 kg}}}}}",
+        "objects: {skin: {blobby: {skeleton: [{repeat: {leg: [a, b]}, point: leg.hip, radius: 1 m}]}}}",
+        "objects:\ndefine:\noverlays: {told: {caption: {text: 5}}}",
         "define: {k: 1 N/m}\nvariants: {soft: {define.k: 2 N/m}}\ndefaults: {sphere: {radius: 1 m}}",
     ],
 )

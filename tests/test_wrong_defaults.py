@@ -44,14 +44,13 @@ outputs: {data: {record: {of: [ball.a.position]}}}
     ("given", "told"),
     [
         (
-            {"OFTEN": '"300 /s^2"'},
+            {"OFTEN": '"300 /q^2"'},
             """\
-error[unknown-name]: nothing is called 's'
+error[unknown-name]: nothing is called 'q'
   --> FILE:15:50
    |
-15 |     often: FixedTime = field("How often.", "300 /s^2", above=0)
+15 |     often: FixedTime = field("How often.", "300 /q^2", above=0)
    |                                                  ^
-help: write `300 1/s^2`
 
 1 error
 """,

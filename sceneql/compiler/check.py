@@ -5,7 +5,7 @@ Unused parts are checked too, since an error in an unused part is still an error
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,11 +16,12 @@ from pydantic import BaseModel
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
-from sceneql.compiler.read import Reader, Unreadable, report_unknown
+from sceneql.compiler.read import Reader, Unreadable
+from sceneql.compiler.unknown import report_unknown
 from sceneql.compiler.values import read_expr
 from sceneql.graph import Task
 from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, Text, Value, written_name
-from sceneql.language.scope import Entry
+from sceneql.language.scope import Entry, Scope
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure, whole, written
@@ -199,7 +200,7 @@ class _Checker:
             elif self.catalogue.load(family, entry.name) is not None:
                 hint = f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
             else:
-                hint = suggestion(entry.word, words)
+                hint = self.field_of(entry, words) or suggestion(entry.word, words)
             self.found.error(
                 "unknown-word",
                 f"'{entry.word}' is no word of {family}",
@@ -207,6 +208,20 @@ class _Checker:
                 help=hint or "the words are " + ", ".join(words),
             )
         return cls
+
+    def field_of(self, entry: Entry, words: Sequence[str]) -> str | None:
+        """The help where a field stands in place of the word that has it."""
+        if entry.fields is None:
+            return None
+        having: list[tuple[int, str]] = []
+        for word in words:
+            cls = self.catalogue.load(self.family_of[entry.name], word)
+            if cls is not None and entry.word in map(written_name, cls.model_fields):
+                having.append((len(cls.model_fields), word))
+        if not having or nearest(entry.word, words) is not None:
+            return None
+        text = f"`{{{min(having)[1]}: {{{entry.word}: {entry.fields.span.text}}}}}`"
+        return f"it is a field of {', '.join(word for _, word in having)}: write {text}"
 
     def family(self, name: str) -> str:
         """The family of an entry's word (of the section, where the word is unknown)."""
@@ -300,7 +315,8 @@ class _Checker:
             return None
         if isinstance(node, MappingNode) and len(node.entries) == 1:
             (word, fields), (key,) = next(iter(node.entries.items())), node.keys.values()
-            return self._in_place(Entry(anonymous, word, fields, node.span, key.span, entry.scope), mark.family)
+            scope = entry.scope if node.index is None else Scope({}, dict([node.index]), entry.scope)
+            return self._in_place(Entry(anonymous, word, fields, node.span, key.span, scope), mark.family)
         if unsure(node):
             return None
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
@@ -326,7 +342,13 @@ class _Checker:
         if name in self.script.broken:
             return  # reported where it stands
         choices = [n for n in self.entries if self.family(n) in (mark.family, mark.also)]
-        hint = suggestion(name, [*choices, *self.catalogue.words(mark.family)])
+        words = self.catalogue.words(mark.family)
+        section, _, inside = name.partition(".")
+        hint = suggestion(name, [*choices, *words])
+        if section in self.script.sections and inside in self.entries:
+            hint = f"a part is named without its section: write `{inside}`"
+        elif hint is None and words:
+            hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
         self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)
 
 

@@ -10,7 +10,7 @@ from sceneql.compiler.over_time import momentary
 from sceneql.compiler.values import origin, parsed_text
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.bind import bind
-from sceneql.quantities.diagnostic import Diagnostics, ScriptError, suggestion
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, suggestion
 from sceneql.quantities.dimension import ANGLE, PERCENTAGE, PLAIN, Dimension
 from sceneql.quantities.expression import Expr, Link, Symbol, Type, Vector, walk
 from sceneql.quantities.operations import CONSTANTS
@@ -62,20 +62,15 @@ def read_formula(
         return None
     free = set(symbols)
 
-    def lookup(parts: tuple[str, ...], span: Span) -> Expr | None:
+    def lookup(parts: tuple[str, ...], span: Span) -> Expr | Diagnostic | None:
         if len(parts) == 1 and parts[0] in free:
             return Symbol("time" if parts[0] == "t" else parts[0], Type((), PLAIN), span)
         lost = parts[0] in names.broken
         if parts[0] not in names.defines and parts[0] not in CONSTANTS and len(parts) == 1 and not lost:
-            found.error(
-                "unknown-name",
-                f"nothing is called '{parts[0]}'",
-                span,
-                help=suggestion(parts[0], [*free, *names.defines]) or "free here are " + ", ".join(sorted(free)),
-            )
-            return None
+            help = suggestion(parts[0], [*free, *names.defines]) or "free here are " + ", ".join(sorted(free))
+            return Diagnostic("unknown-name", f"nothing is called '{parts[0]}'", span, help)
         expr = names.lookup(parts, span)
-        return None if expr is None else names.plain(expr)
+        return expr if expr is None or isinstance(expr, Diagnostic) else names.plain(expr)
 
     try:
         expr = bind(parse_expression(parsed_text(node), node.content), lookup, found)

@@ -15,9 +15,11 @@ from sceneql.quantities.dimension import PLAIN, TIME
 from sceneql.quantities.expression import Expr, Link, Name, Symbol, Type, each_once, rebuilt
 from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
+from sceneql.quantities.other_words import instead
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Span
-from sceneql.quantities.units import below_hint, continues_unit, in_words, unit_hint
+from sceneql.quantities.unit_table import UNITS
+from sceneql.quantities.units import continues_unit, in_words, unit_hint
 
 WORDS = re.compile(WORD)
 DEEPEST = 40
@@ -105,8 +107,8 @@ class Names:
             scope = scope.outer
         return None
 
-    def lookup(self, parts: tuple[str, ...], span: Span) -> Expr | None:
-        """What a dotted name means, or None after reporting that it means nothing."""
+    def lookup(self, parts: tuple[str, ...], span: Span) -> Expr | Diagnostic | None:
+        """What a dotted name means, why it means nothing, or None after reporting what is wrong with it."""
         head = parts[0]
         if parts == ("time",):
             return Symbol("time", Type((), TIME), span)
@@ -131,9 +133,7 @@ class Names:
                 return None  # it is reported there
         if self._is_reported(parts):
             return None
-        if head not in CONSTANTS or len(parts) > 1:
-            self._unknown(parts, span)
-        return None
+        return self._unknown(parts, span)
 
     def _once(self, node: Node, names: Names) -> Expr | None:
         """The tree of a node in a scope, read where it is first asked for: all that use it share one tree."""
@@ -191,25 +191,37 @@ class Names:
             whole = part
         return whole
 
-    def _unknown(self, parts: tuple[str, ...], span: Span) -> None:
+    def _unknown(self, parts: tuple[str, ...], span: Span) -> Diagnostic:
         wanted = ".".join(parts)
         if continues_unit(span.source.text, span.start):
             message = f"there is no unit '{wanted}', and nothing is called so"
-            help = unit_hint(wanted) or suggestion(wanted, self.defines) or "units are such as m, s, kg, N or deg"
-            self.found.error("unknown-unit", message, span, help=help)
-            return
+            constant = parts[-1].lower() if parts[-1].lower() in CONSTANTS else None
+            help = f"did you mean '{constant}'?" if constant else unit_hint(wanted) or suggestion(wanted, self.defines)
+            help = help or "units are such as m, s, kg, N or deg: `sceneql words units`"
+            return Diagnostic("unknown-unit", message, span, help)
         message, parts_known = f"nothing is called '{wanted}'", list(self.parts)
-        if parts == ("t",):
-            hint: str | None = "the time is written 'time'"
-        elif wanted in parts_known:
+        if wanted in parts_known:
             message = f"'{wanted}' is a part, not a value"
-            hint = f"write one of its outputs, such as '{self._some_output(wanted)}'"
+            hint: str | None = f"write one of its outputs, such as '{self._some_output(wanted)}'"
         else:
-            hint = suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time"])
-            if hint is None and len(parts) > 1 and (part := nearest(parts[0], parts_known)) is not None:
-                hint = f"did you mean '{'.'.join((part, *parts[1:]))}'?"
-        hint = below_hint(wanted, span.source.text, span.start) or hint
-        self.found.error("unknown-name", message, span, help=hint)
+            hint = instead("name", wanted)
+            hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])
+            if hint is None and len(parts) > 1:
+                hint = self._meant(parts, parts_known)
+            if hint is None and wanted in UNITS:
+                hint = f"a unit stands behind a number: write `(1 {wanted})`"
+            if hint is None and len(parts) == 1:
+                hint = f"names stand under `define`, `define: {{{wanted}: 1 m}}`: `sceneql words define`"
+        return Diagnostic("unknown-name", message, span, hint)
+
+    def _meant(self, parts: tuple[str, ...], known: list[str]) -> str:
+        """The help for a dotted name whose part is not known: its nearest part, or the part without its section."""
+        if parts[1] in known:
+            return f"a part is named without its section: write `{'.'.join(parts[1:])}`"
+        part = nearest(parts[0], known)
+        if part is None:
+            return "a link is a part's name, a dot and its value's, `ball.position`: `sceneql words links`"
+        return f"did you mean '{'.'.join((part, *parts[1:]))}'?"
 
     def _inside(self) -> list[str]:
         """The names that a template or a copy has of its own."""

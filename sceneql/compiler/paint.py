@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
+
 from sceneql.compiler.css_colors import NAMED, css_color
 from sceneql.compiler.keyframes import read_keys
 from sceneql.compiler.names import Names
@@ -11,11 +14,14 @@ from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import ANGLE, PLAIN
+from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Number, Type, Vector
 
 RGB = Type((3,), PLAIN)
 QUATERNION = Type((4,), PLAIN)
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+_HEX = re.compile(r"0[xX]([0-9a-fA-F]{6})")
+_DIGITS = re.compile(r"\d+\.?\d*|\.\d+")
 ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
 
 
@@ -32,15 +38,48 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
         return None if expr is None else Value(expr, node.span)
     if isinstance(node, Scalar):
         text = node.text.strip()
-        called = text.startswith(("rgb(", "rgba(", "hsl(", "hsla("))  # as CSS writes them
-        if called or text.startswith("#") or (text.isidentifier() and text not in names.defines):
+        if _is_name(text) and text not in names.defines:
             components = css_color(text)
             if components is None:
-                hint = suggestion(text, NAMED) or 'write a CSS name, "#rrggbb" or three numbers from 0 to 1'
-                found.error("unknown-color", f"'{text}' is no color", node.span, help=hint)
+                found.error("unknown-color", f"'{text}' is no color", node.span, help=_meant(text))
                 return None
             return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
-    return read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
+    value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
+    numbers = evaluate(value.expr, {}) if value is not None and value.constant else (0.0,)
+    if max(numbers) > 1:
+        found.error("out-of-range", "the numbers of a color are from 0 to 1", node.span, help=_of_bytes(numbers))
+        return None
+    return value
+
+
+def _is_name(text: str) -> bool:
+    """Whether a text stands for a color by a name, or by digits or a call as in CSS and other languages."""
+    called = text.startswith(("rgb(", "rgba(", "hsl(", "hsla("))
+    words = all(word.isalpha() for word in text.split())
+    return called or words or text.isidentifier() or text.startswith("#") or _HEX.fullmatch(text) is not None
+
+
+def _meant(text: str) -> str:
+    """The help for what is no color."""
+    *_, last = text.split() or [""]
+    if (digits := _HEX.fullmatch(text)) is not None:
+        return f'write `"#{digits[1].lower()}"`'
+    if text.startswith(("rgb", "rgba")) and len(numbers := [float(one) for one in _DIGITS.findall(text)]) >= 3:
+        return _of_bytes(numbers[:3])
+    near = suggestion("".join(text.split()), NAMED) if len(text.split()) == 1 else None
+    if "".join(text.split()).lower() in NAMED:
+        near = f"did you mean '{''.join(text.split()).lower()}'?"
+    near = near or suggestion(last, NAMED)
+    return near or 'write a CSS name, "#rrggbb" or three numbers from 0 to 1'
+
+
+def _of_bytes(numbers: Sequence[float]) -> str:
+    """The help for a color whose numbers go from 0 to 255."""
+    if max(numbers) > 255:
+        return "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
+    share = [number / 255 if max(numbers) > 1 else number for number in numbers]
+    digits = "".join(f"{round(255 * number):02x}" for number in share)
+    return f'write `{" ".join(f"{number:.3g}" for number in share)}`, or `"#{digits}"`'
 
 
 def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
@@ -68,7 +107,8 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
             if angles is None:
                 return None
             return Value(Call(f"euler_{order}", (angles.expr,), QUATERNION, node.span), node.span)
-    else:
+    expr = None
+    if not isinstance(node, MappingNode):
         expr = read_expr(node, QUATERNION.shape, PLAIN, "rotation", names, found)
         if expr is None:
             return None
@@ -78,7 +118,7 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
         "rotation-shape",
         "a rotation names its axis or its order",
         node.span,
-        help="write `{about: z, angle: 30 deg}`, `{xyz: 10 20 30 deg}` or a quaternion `[w, x, y, z]`",
+        help=_turned(node, expr),
     )
     return None
 
@@ -90,6 +130,16 @@ def _axis(node: Node, names: Names, found: Diagnostics) -> Expr | None:
         if text.lstrip("-") in AXES:
             return Vector(tuple(Number(sign * c + 0.0) for c in AXES[text.lstrip("-")]), RGB, node.span)
     return _expr(read_value(node, Quantity(PLAIN, (3,)), "about", names, found))
+
+
+def _turned(node: Node, expr: Expr | None) -> str:
+    """The help for a rotation that names neither its axis nor its order."""
+    literal = () if expr is None else expr.items if isinstance(expr, Vector) else (expr,)
+    if isinstance(node, Scalar) and all(isinstance(one, Number) for one in literal) and len(literal) in (1, 3):
+        written = node.text.strip()
+        angle = f"{written} deg" if all(isinstance(one, Number) and one.bare for one in literal) else written
+        return f"write `{{xyz: {angle}}}`" if len(literal) == 3 else f"write `{{about: y, angle: {angle}}}`"
+    return "write `{about: z, angle: 30 deg}`, `{xyz: 10 20 30 deg}` or a quaternion `[w, x, y, z]`"
 
 
 def _expr(value: Value | None) -> Expr | None:

@@ -7,7 +7,7 @@ these. An error is reported where it stands, and reading goes on, so that all er
 from __future__ import annotations
 
 import types
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -21,11 +21,14 @@ from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.names import Names
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.texts import read_text
+from sceneql.compiler.unknown import meant_field, report_unknown
+from sceneql.language.repeat import numbered
+from sceneql.language.scope import Scope
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
 from sceneql.language.within import within
-from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
+from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.span import Span
 
@@ -66,7 +69,8 @@ class Reader:
             raise Unreadable
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
             fields = ", ".join(map(kinds.written_name, cls.model_fields))
-            raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, f"it has {fields}")
+            help = self._meant(node, cls) or f"it has {fields}"
+            raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, help)
         symbols, solved = self.symbols, self.solved
         if isinstance(node, MappingNode) and issubclass(cls, kinds.Kind):
             symbols, solved = cls.formula_symbols(plainly(node)), cls.formula_dimension(plainly(node))
@@ -76,7 +80,7 @@ class Reader:
         if isinstance(node, MappingNode):
             known = [kinds.written_name(name) for name in cls.model_fields]
             ok = report_unknown(node, known, title, self.found) and not node.partial
-            mistaken = {_meant(name, known) for name in node.entries if name not in known}
+            mistaken = {meant_field(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:
@@ -111,6 +115,21 @@ class Reader:
             raise Unreadable
         return result  # the record or word around it may have problems of its own
 
+    def _meant(self, node: Node, cls: type[BaseModel]) -> str | None:
+        """The help for a field without its colon, or for a quantity in place of all fields that suits one of them."""
+        if not isinstance(node, Scalar):
+            return None
+        name, _, rest = node.text.partition(" ")
+        if name in map(kinds.written_name, cls.model_fields):
+            return f"write `{name}: {rest.strip().removeprefix('=').strip()}`"
+        nothing = Diagnostics()
+        names = replace(self.names, found=nothing)
+        marked = [
+            (name, m) for name, i in cls.model_fields.items() for m in i.metadata if isinstance(m, kinds.Quantity)
+        ]
+        found = [name for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None]
+        return f"write `{{{kinds.written_name(found[0])}: {node.span.text}}}`" if len(found) == 1 else None
+
     def field(self, node: Node, info: Any, name: str) -> Any:
         """The value of a field, within its range. Raises Unreadable after reporting."""
         annotation = Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation
@@ -134,6 +153,9 @@ class Reader:
                     raise Unreadable  # a template's field that was not given: reported at the instance
                 return replace(self, names=outer).read(node, annotation, what)
         base, marks = _unwrap(annotation)
+        if isinstance(node, MappingNode) and node.index and not any(isinstance(mark, kinds.Refers) for mark in marks):
+            names = replace(self.names, scope=Scope({}, dict([node.index]), self.names.scope))
+            return replace(self, names=names).read(replace(node, index=None), annotation, what)
         for mark in marks:
             if isinstance(mark, kinds.Quantity):
                 return self._quantity(node, base, mark, what)
@@ -286,6 +308,10 @@ class Reader:
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span)
         named, result, ok = _unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():
+            if (help := numbered(name)) is not None:
+                self.found.error("part-name", f"'{name}' cannot be a name", node.keys[name].span, help=help)
+                ok = False
+                continue
             try:
                 key = self.read(node.keys[name], arms[0], what) if named else name
                 result[key] = replace(self, owner=f"{self.owner}.{name}").read(item, arms[1], f"{what}.{name}")
@@ -299,7 +325,8 @@ class Reader:
         text = node.text.lower() if isinstance(node, Scalar) else ""
         if text in TRUE or text in FALSE:
             return text in TRUE
-        raise self._fail("unknown-choice", f"{what} is yes or no, not '{text}'", node.span)
+        help = f"write `{what}: yes` or `{what}: no`"
+        raise self._fail("unknown-choice", f"{what} is yes or no, not '{text}'", node.span, help)
 
     def _number(self, node: Node, base: Any, what: str) -> Any:
         value = self._some(values.read_value(node, values.PLAIN_NUMBER, what, self.names, self.found))
@@ -320,23 +347,6 @@ class Reader:
     def _fail(self, code: str, message: str, span: Span, help: str | None = None) -> Unreadable:
         self.found.error(code, message, span, help=help)
         return Unreadable()
-
-
-def report_unknown(node: MappingNode, known: Collection[str], title: str, found: Diagnostics) -> bool:
-    """Report the fields of a mapping that are not among the known ones; True if there are none."""
-    unknown = [name for name in node.entries if name not in known]
-    for name in unknown:
-        help = suggestion(name, known) or "it has " + ", ".join(known)
-        if (meant := _meant(name, known)) is not None and name.startswith(f"{meant} "):
-            help = f"write `{meant}: {name.removeprefix(meant).strip()}`"
-        found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
-    return not unknown
-
-
-def _meant(name: str, known: Collection[str]) -> str | None:
-    """The field meant by an unknown name: its first word, if a colon is missing behind that, or the nearest field."""
-    first = name.partition(" ")[0]
-    return first if first in known else nearest(name, known)
 
 
 def _unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:

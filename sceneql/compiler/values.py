@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 from sceneql.compiler.keyframes import ReadTime, read_keys
@@ -12,9 +13,11 @@ from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.diagnostic import Diagnostics, Note, ScriptError, suggestion
-from sceneql.quantities.dimension import ANGLE, PERCENTAGE, PLAIN, TIME, Dimension, common, suits
+from sceneql.quantities.dimension import ANGLE, LENGTH, PERCENTAGE, PLAIN, TIME, Dimension, common, suits
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Keys, Link, Number, Shape, Symbol, Type, Vector, walk
+from sceneql.quantities.literal import vector_meant
+from sceneql.quantities.other_words import time_meant
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import describe, in_words, unit_of
 
@@ -93,10 +96,12 @@ def _vector(items: list[Expr], what: str, span: Span, found: Diagnostics) -> Exp
             found.error("wrong-shape", f"the items of {what} differ in their number of components", item.span or span)
             return None
         if other is not None and other != dimension and not _zero(item):
+            vector = vector_meant(", ".join("" if one.span is None else one.span.text for one in items))
             found.error(
                 "dimension-mismatch",
                 f"the components of {what} differ: {describe(dimension)} and {describe(other)}",
                 item.span or span,
+                help=None if vector is None else f"write `{vector}`",
             )
             return None
     return Vector(tuple(items), Type((len(items), *inner), dimension), span)
@@ -111,7 +116,7 @@ def _by_component(
                 "unknown-field",
                 f"{what} has the components x, y, z, not '{key}'",
                 node.keys[key].span,
-                help=suggestion(key, (*COMPONENTS, "keys")),
+                help=_timed(node) or suggestion(key, (*COMPONENTS, "keys")),
             )
             return None
     quantity = Quantity(dimension or PLAIN)
@@ -125,6 +130,14 @@ def _by_component(
             return None
         items.append(value.expr)
     return Vector(tuple(items), Type((3,), quantity.dimension), node.span)
+
+
+def _timed(node: MappingNode) -> str | None:
+    """The help where the keys of keyframes stand without `keys`."""
+    if not all(key[:1].isdigit() for key in node.entries):
+        return None
+    first = next(iter(node.entries))
+    return f"write `{{keys: {{{first}: {node.entries[first].span.text}, ...}}}}`: `sceneql words keys`"
 
 
 def _keys(
@@ -163,6 +176,7 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
             "wrong-shape",
             f"{what} is {_shape_text(quantity.shape)}, not {_shape_text(expr.type.shape)}",
             span,
+            help=_repeated(expr, quantity.shape),
             notes=origin(expr, span),
         )
         return False
@@ -172,7 +186,7 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
             "dimension-mismatch",
             f"{what} is {in_words(quantity.dimension)}, but this is {in_words(has)}",
             span,
-            help=_counted(expr, quantity.dimension),
+            help=time_meant(span.text) or _counted(expr, quantity.dimension) or _factor(expr, quantity.dimension),
             notes=origin(expr, span),
         )
         return False
@@ -185,6 +199,14 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
     return True
 
 
+def _repeated(expr: Expr, wanted: Shape) -> str | None:
+    """The help where one number stands for a vector of equal components."""
+    if not isinstance(expr, Number) or expr.span is None or len(wanted) != 1 or wanted[0] is None:
+        return None
+    vector = vector_meant(", ".join(wanted[0] * [expr.span.text]))
+    return None if vector is None else f"write `{vector}`, a number for each axis"
+
+
 def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
     """The help where an angle or a percentage stands for another quantity."""
     kind = "" if expr.type.dimension is None else expr.type.dimension.kind
@@ -194,6 +216,19 @@ def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
         return "an angle counts as a number where it is divided by one: `x/(1 rad)`" if wanted.plain else None
     share = expr.span.text if isinstance(expr, Number) and expr.span is not None else "5 %"
     return None if wanted.plain else f"write what it is a part of, such as `{share}*(1 {unit_of(wanted)})`"
+
+
+def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
+    """The help where a formula of names lacks a time or a length as a factor: of the length `1 m*time`, 1/(1 s)."""
+    has = expr.type.dimension
+    if has is None or wanted is None or expr.span is None or not any(isinstance(n, Symbol | Link) for n in walk(expr)):
+        return None
+    text = f"({expr.span.text})" if re.search(r"[-+<>=]", expr.span.text) else expr.span.text
+    for dimension, sign in ((has / wanted, "/"), (wanted / has, "*")):
+        if dimension in (TIME, LENGTH):
+            word = "divide it by" if sign == "/" else "multiply it by"
+            return f"{word} {describe(dimension)}: write `{text}{sign}(1 {unit_of(dimension)})`"
+    return None
 
 
 def origin(expr: Expr, span: Span) -> list[Note]:

@@ -32,7 +32,7 @@ VALUE = Annotated[Formula, Symbols(ANY, dim.PLAIN, of_field=True)]
 START = Annotated[Formula, Symbols(("x", "y", "z"), dim.PLAIN, of_field=True, at_start=True)]
 FLUX = Annotated[Formula, Symbols(ANY, dim.VELOCITY, of_field=True)]
 SOURCE = Annotated[Formula, Symbols(ANY, dim.FREQUENCY, of_field=True)]
-MEASURES = ("field", "concentration", "centers", "mass", "inflow", "max", "min", "mean")
+MEASURES = ("field", "concentration", "temperature", "centers", "mass", "inflow", "max", "min", "mean")
 SHORTEST = 1e-100
 """[m] Least side of a domain: rates of spreading over shorter ones overflow."""
 SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]

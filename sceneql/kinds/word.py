@@ -17,7 +17,6 @@ from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.expression import Shape, Type
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Source, Span
-from sceneql.quantities.units import below_hint
 
 REQUIRED: Any = ...
 LIMITS: Mapping[str, tuple[Callable[[float, float], bool], str]] = {
@@ -54,9 +53,7 @@ def literal(text: str, place: Span | None = None) -> Value:
     """The Value of a text without names, as in a default, of any type. Raises ScriptError at ``place``."""
 
     def unknown(parts: tuple[str, ...], span: Span) -> Diagnostic:
-        name = ".".join(parts)
-        help = below_hint(name, span.source.text, span.start)
-        return Diagnostic("unknown-name", f"nothing is called '{name}'", span, help)
+        return Diagnostic("unknown-name", f"nothing is called '{'.'.join(parts)}'", span)
 
     found = Diagnostics()
     expr = bind(parse_value(text, place or Span(Source("default", text), 0, len(text))), unknown, found)

@@ -220,6 +220,12 @@ class _Scan:
             return close
         end, _ = self.plain(at, nested=depth > 0)
         rest = self.text[at:end]
+        if rest.startswith("//"):
+            caret = Span(self.source, at, end)
+            help = f"a comment begins with `#`: write `#{rest[2:]}`"
+            comment = Diagnostic("yaml-syntax", "nothing can stand behind this bracket", caret, help)
+            self.faults.append(Fault("yaml-syntax", at, end, at, "", comment, " "))
+            return end
         # Faults inside are part of this one, which quotes the whole value or writes it anew.
         self.faults = [fault for fault in self.faults if fault.start < start]
         if self.text[start] == "[" and _UNIT.match(rest) is not None:

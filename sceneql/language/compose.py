@@ -18,6 +18,7 @@ from sceneql.language.repair import blanked, cut_short, joined, repaired
 from sceneql.language.syntax import explain, place, unprintable
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, extent, hole
 from sceneql.quantities.diagnostic import LIMITS, Diagnostic, Diagnostics, Note, ScriptError
+from sceneql.quantities.literal import comma_meant
 from sceneql.quantities.span import Source, Span
 
 MOST_DEPTH: Final = 64
@@ -283,7 +284,7 @@ class _Composer:
             return False
         before = next(reversed(mapping.entries))
         if not broken(mapping.entries[before]):
-            help = "a decimal number has a point, and a vector is `0 1.2 0 m` or `[a, b, c]`"
+            help = comma_meant(self.source.text, mapping.entries[before].start)
             self.error("decimal-comma", "a comma ends the value before this", key.span, help=help)
             mapping.entries[before] = hole(mapping.entries[before].span)
         return True

@@ -12,6 +12,7 @@ from typing import Final
 import yaml
 
 from sceneql.language.broken_values import Fault
+from sceneql.language.repeat import numbered
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.span import Source, Span
@@ -21,6 +22,7 @@ _NAME: Final = r"[^\s:#\[\]{},\"']+"
 _NO_SPACE = re.compile(rf"({_NAME}):(?=[\[{{])")
 _NO_COLON = re.compile(rf"({_NAME})[ ]*(?=[\[{{])")
 _GLUED = re.compile(r"([\w.'-]+):(?=\S)")
+_COMMENT: Final = "a comment begins with `#`: write `#{}`"
 _COLON = re.compile(r":(?=\s|\Z)")
 
 
@@ -52,6 +54,8 @@ def left_out(source: Source, text: str, error: yaml.YAMLError) -> Fault | None:
 
 def unparted(key: Scalar) -> Fault | None:
     """The text to leave out where YAML takes ``name {a: 1}`` up to the colon inside the brackets for a key."""
+    if numbered(key.text) is not None:
+        return None
     number, column = key.source.position(key.start)
     line = key.source.line(number)
     return _bracketed(key.source, number, line) if column == _head(line) + 1 else None
@@ -114,6 +118,11 @@ def _without(source: Source, number: int) -> Fault:
         return _line(source, number, head, glued.end() - 1, glued.end(), message, help)
     written = line[head:].split(" #")[0].rstrip()
     name, _, rest = written.partition(" ")
+    rest = rest.strip().removeprefix("=")
+    if written.startswith("//"):
+        return _line(
+            source, number, head, head, head + len(written), "a line that is no key", _COMMENT.format(written[2:])
+        )
     help = f"write `{name}: {rest.strip()}`" if rest else f"write `{name}:` with what belongs to it below, indented"
     return _line(source, number, head, head, head + len(written), "a key without a colon", help)
 

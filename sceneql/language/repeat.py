@@ -2,40 +2,62 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping as Table
 from dataclasses import dataclass
 from math import inf
 from typing import Final
 
 from sceneql.language.scope import Broken, Scope
-from sceneql.language.tree import Mapping, Node, Scalar, unsure
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, unsure
 from sceneql.quantities.diagnostic import Diagnostics
 
 MOST_COPIES: Final = 10_000
 _MOST_HOPS: Final = 64
+_NUMBERED = re.compile(r"(\w*)\{(\w+)\}\w*")
 
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """``count`` copies; ``symbol`` is the name of a copy's index, from 0, and ``node`` is where that is written."""
+    """``count`` copies; ``symbol`` is the name of a copy's index, from 0, and ``node`` is where that is written.
+
+    Where copies go over ``names``, the symbol stands for one of these.
+    """
 
     count: int
     symbol: str
     node: Node
+    names: tuple[str, ...] = ()
 
     def number(self, copy: int) -> Scalar:
         """The index of a copy as a node."""
         return Scalar(str(copy), "integer", False, self.node.source, self.node.start, self.node.end)
 
 
+def numbered(name: str) -> str | None:
+    """The help for a name that has its copy's number in braces, ``hook_{i}``; None for other names."""
+    found = _NUMBERED.fullmatch(name)
+    if found is None:
+        return None
+    plain, index = found[1].rstrip("_") or "name", found[2]
+    copies = f"the copies are {plain}.0, {plain}.1, ..."
+    return f"write `{plain}: {{repeat: {{count: 5, as: {index}}}, ...}}`, {copies}: `sceneql words repeat`"
+
+
 def read_repeat(
-    node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics
+    node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics, *, names: bool = False
 ) -> Repeat | None:
-    """The value of `repeat`, or None after reporting what is wrong with it."""
+    """The value of `repeat`, or None after reporting what is wrong with it. ``names``: it may go over names."""
     if unsure(node):
         return None
+    if names and isinstance(node, Mapping) and len(node.entries) == 1 and "count" not in node.entries:
+        (symbol, over), (key,) = next(iter(node.entries.items())), node.keys.values()
+        if symbol.isidentifier() and isinstance(over, Sequence) and all(isinstance(one, Scalar) for one in over.items):
+            texts = tuple(one.text for one in over.items if isinstance(one, Scalar))
+            return Repeat(len(texts), symbol, key, texts)
     if not isinstance(node, Mapping) or "count" not in node.entries or node.entries.keys() - {"count", "as"}:
-        help = "write `repeat: {count: 5, as: i}`"
+        given = node.text if isinstance(node, Scalar) and node.kind in ("integer", "text") else "5"
+        help = f"write `repeat: {{count: {given}, as: i}}`"
         found.error("repeat-shape", "`repeat` takes a count, and a name for the number", node.span, help=help)
         return None
     index = node.entries.get("as")

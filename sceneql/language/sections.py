@@ -9,6 +9,7 @@ from typing import Final
 from sceneql.language.scope import Broken
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken
 from sceneql.quantities.diagnostic import Diagnostics, Note, nearest, suggestion
+from sceneql.quantities.other_words import instead
 
 NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect", "studies")
 """Sections beside the families that hold names."""
@@ -38,7 +39,7 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
         if node.kind == "text":
             return Written(node, None, None)
         message = f"{what} has no word" if empty(node) else f"{what} is the {node.kind} {node.text}, not a part"
-        found.error("entry-shape", message, node.span, help=_ENTRY)
+        found.error("entry-shape", message, node.span, help=instead("entry", what.strip("'")) or _ENTRY)
         return None
     if isinstance(node, Sequence):
         found.error("entry-shape", f"{what} is a list, not a part", node.span, help=_ENTRY)
@@ -52,8 +53,14 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
     if len(words) > 1:
         first, second = node.keys[words[0]], node.keys[words[1]]
         message = f"{what} holds '{words[0]}' and '{words[1]}', but a part has one word"
-        help = f"fields stand below the word: {{word: {{{words[0]}: ..., {words[1]}: ...}}}}"
-        if isinstance(node.entries[words[0]], Mapping):
+        help = (
+            f"fields stand below the word: {{word: {{{words[0]}: ..., {words[1]}: ...}}}}: `sceneql words` lists them"
+        )
+        if (other := instead("entry", words[0])) is not None:
+            help = other
+        elif empty(node.entries[words[0]]):
+            help = f"the fields of a word are indented below it: {{{words[0]}: {{{words[1]}: ..., ...}}}}"
+        elif isinstance(node.entries[words[0]], Mapping):
             help = f"if '{words[1]}' is a field, it stands inside: {{{words[0]}: {{{words[1]}: ..., ...}}}}"
         found.error("entry-shape", message, second.span, help=help, notes=[Note("the first stands here", first.span)])
         return None
@@ -71,8 +78,10 @@ def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Br
     for key, value in node.entries.items():
         name = key
         if key not in known:
-            near = nearest(key, known)
-            help = suggestion(key, known) or f"{holder} may have {', '.join(dict.fromkeys(known))}"
+            other = instead("section", key)
+            near = nearest(key, known) if other is None else None
+            every = f"{holder} may have {', '.join(dict.fromkeys(known))}: `sceneql words sections`"
+            help = other or suggestion(key, known) or every
             found.error("unknown-section", f"{holder} has no section '{key}'", node.keys[key].span, help=help)
             taken = node.entries.keys() | result.entries.keys()
             if near is not None and near not in taken and not isinstance(value, Scalar):

@@ -86,6 +86,9 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
 
 def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
     if at < len(source.text) and source.position(at)[0] == source.position(opening)[0]:
+        if source.text[at : at + 1] == ":":
+            help = "a text that holds a colon goes in quotes; items are separated by commas"
+            return _syntax("a second colon in this value, where no key can stand", source, at, help)
         help = "separate the items by commas; an expression with brackets goes in quotes"
         return _syntax("this does not belong here, or a comma is missing before it", source, at, help)
     bracket = source.text[opening : opening + 1]

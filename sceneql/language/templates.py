@@ -10,7 +10,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
-from sceneql.language.repeat import read_repeat
+from sceneql.language.copies import Copies
+from sceneql.language.repeat import numbered, read_repeat
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
 from sceneql.language.sections import Written, duplicate, empty, read_entry, section, with_known_keys
 from sceneql.language.tree import Mapping, Node, Scalar, broken, hole, unsure
@@ -95,6 +96,7 @@ class _Expander:
         self.read: dict[str, _Template | None] = {}
         self.made: set[str] = set()
         self.sections = self.done.sections
+        self.inner = Copies(self.define, self.done.broken, found)
         self.count = 0
 
     def named(self, mapping: Mapping, key: str) -> dict[str, Node]:
@@ -181,7 +183,8 @@ class _Expander:
         key = section.keys[name]
         if not name.split(".")[0].isidentifier() or (key.text == name and "." in name):
             message = f"'{name}' cannot be the name of a part"
-            help = "a name is made of letters, digits and underscores, and begins with a letter"
+            letters = "a name is made of letters, digits and underscores, and begins with a letter"
+            help = numbered(name) or letters
             self.found.error("part-name", message, key.span, help=help)
             for part in (name, *re.split(r"\W+", name)):  # as it may be written in an expression
                 self.done.broken.add(part)
@@ -224,6 +227,7 @@ class _Expander:
         assert isinstance(section, Mapping)
         span, word = section.keys[key].span, written.word.text
         fields = filled(word, written.fields, self.defaults, written.word.span)
+        fields = self.inner.written_out(fields, scope)
         entry = Entry(name, word, fields, span, written.word.span, scope)
         self.sections.setdefault(family, {})[name] = entry
         for front, names in place.around:

@@ -54,7 +54,8 @@ class Sequence:
 class Mapping:
     """Key-value pairs in the order written; ``keys`` holds each key's own node for its span.
 
-    ``partial``: some entries were reported and left out, so that missing ones are no errors.
+    ``partial``: some entries were reported and left out, so that missing ones are no errors. ``index``: of a copy
+    inside a part's fields, the name of its number, and the number.
     """
 
     entries: dict[str, Node]
@@ -64,6 +65,7 @@ class Mapping:
     start: int
     end: int
     partial: bool = False
+    index: tuple[str, Scalar] | None = None
 
     @property
     def span(self) -> Span:
@@ -73,7 +75,7 @@ class Mapping:
     def holding(self, entries: dict[str, Node], keys: dict[str, Scalar] | None = None) -> Mapping:
         """The same mapping with other entries (and other keys)."""
         keys = self.keys if keys is None else keys
-        return Mapping(entries, keys, self.flow, self.source, self.start, self.end, self.partial)
+        return Mapping(entries, keys, self.flow, self.source, self.start, self.end, self.partial, self.index)
 
 
 Node = Scalar | Sequence | Mapping

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -10,15 +11,18 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note
 from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Name, Number, Type, Vector, each_once
+from sceneql.quantities.literal import quantity
 from sceneql.quantities.operations import CONSTANTS, OPERATIONS
+from sceneql.quantities.other_words import time_meant
 from sceneql.quantities.rules import MismatchError, listed, shape_text
 from sceneql.quantities.span import Span
+from sceneql.quantities.units import parse_unit, stands_below
 
 Lookup = Callable[[tuple[str, ...], Span], Expr | Diagnostic | None]
 """What a dotted name means: its typed tree, or the Diagnostic that says why it means nothing.
 
-The Diagnostic is reported only where the name is none of the constants `pi`, `tau`, `e` either. None: the name is one
-of these constants, or its error has been reported already.
+The Diagnostic is reported only where the name is none of the constants `pi`, `tau`, `e` either, and no unit below the
+bar behind a number (``1500 /s``). None: the name is one of these constants, or its error has been reported already.
 """
 
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
@@ -62,6 +66,8 @@ def _meaning(parts: tuple[str, ...], span: Span, lookup: Lookup) -> Expr | Diagn
     expr = lookup(parts, span)
     if (expr is None or isinstance(expr, Diagnostic)) and len(parts) == 1 and parts[0] in CONSTANTS:
         return Number(CONSTANTS[parts[0]], span=span)
+    if isinstance(expr, Diagnostic) and stands_below(".".join(parts), span.source.text, span.start):
+        return quantity("1", parse_unit(parts[0]), span)
     return expr
 
 
@@ -109,4 +115,19 @@ def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, found: Di
     """Point at the arguments as they stand in this expression, not at a define that they name."""
     second = None if error.second is None else parts[error.second].span
     notes = [] if second is None else [Note("the other is here", second)]
-    found.error(error.code, error.message, parts[error.first].span or node.span, help=error.help, notes=notes)
+    written = "" if node.span is None else node.span.text
+    help = time_meant(written) or "; ".join(filter(None, (error.help, _better(node, parts, error))))
+    found.error(error.code, error.message, parts[error.first].span or node.span, help=help or None, notes=notes)
+
+
+def _better(node: Expr, parts: tuple[Expr, ...], error: MismatchError) -> str | None:
+    """What to write in place of the whole, with one argument as it should be."""
+    if error.better is None:
+        return None
+    index, text = error.better
+    whole, part = node.span, parts[index].span
+    if whole is None or part is None or part.source is not whole.source:
+        return f"write `{text}`"
+    written = part.text if re.fullmatch(r"[\w.]+", part.text) else f"({part.text})"
+    before, behind = whole.source.text[whole.start : part.start], whole.source.text[part.end : whole.end]
+    return f"write `{' '.join((before + text.format(written) + behind).split())}`"

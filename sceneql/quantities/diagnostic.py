@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from sceneql.quantities.other_words import LIBRARIES, OURS
 from sceneql.quantities.span import Span
 
 LIMITS = frozenset(
@@ -175,14 +176,19 @@ def _place(diagnostic: Diagnostic) -> tuple[str, int]:
 
 
 def nearest(name: str, choices: Iterable[str]) -> str | None:
-    """The choice that is most like the name, or that it abbreviates (``fov``); None where none is."""
+    """The choice that is most like the name, means the same (``pos``) or is abbreviated by it (``fov``), if any."""
     from difflib import get_close_matches
 
     if len(name) > LONGEST_WORD:
         return None
     choices = list(choices)
-    initials = [choice for choice in choices if name == "".join(part[:1] for part in choice.split("_"))]
-    close = get_close_matches(name, choices, n=1, cutoff=0.6) or (initials if len(name) > 1 else [])
+    name = name.partition(".")[2] if name.partition(".")[0] in LIBRARIES else name
+    close = [choice for choice in choices if choice.lower() == name.lower()]
+    close = close or get_close_matches(name, choices, n=1, cutoff=0.8)
+    close = close or [ours for ours in OURS.get(name.lower(), ()) if ours in choices]
+    close = close or get_close_matches(name, choices, n=1, cutoff=0.6)
+    if not close and len(name) > 1:
+        close = [choice for choice in choices if name == "".join(part[:1] for part in choice.split("_"))]
     return close[0] if close else None
 
 

@@ -19,21 +19,24 @@ WORD = r"[^\W\d]\w*'*(?:\.(?:[^\W\d]\w*'*|\d+))*"
 _PIECE = re.compile(rf"([+-]?{NUMBER})(?:/({NUMBER}))?")
 _WORD = re.compile(WORD)
 _GAP = re.compile(r"\s*")
+_ITEM = re.compile(rf"\s*([+-]?{NUMBER})\s*([^\W\d][\w^*/·-]*|%)?\s*,?\s*")
+_ITEMS = re.compile(rf"(?:{_ITEM.pattern})+")
+_DECIMAL = re.compile(r"(?<![\d,])(\d+),(?=\d+(?![\d,]))")
 EXACT = 40
 """Digits up to which a literal is converted exactly and rounded once: 1.7 mm is the double nearest to 0.0017."""
 
 
-def read_unit(text: str, at: int, span: Span) -> tuple[Unit | None, int]:
+def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[Unit | None, int]:
     """The unit behind a number that ends at ``at`` (None: there is no unit), and where the unit ends.
 
-    A name, ``%`` or ``1/name`` there must be a unit. Raises ScriptError.
+    A name, ``%`` or ``1/name`` there must be a unit, and so must ``/name`` where ``below`` says so. Raises ScriptError.
     """
     start = _skip(text, at)
     word = _WORD.match(text, start)
     if word is not None and word.group() in OPERATIONS and text[_skip(text, word.end()) :][:1] == "(":
         message, help = "two values stand side by side", f"write `*{word.group()}(...)` for a product"
         raise ScriptError([Diagnostic("syntax", message, span.part(*word.span()), help)])
-    if not starts_unit(text, start):
+    if not starts_unit(text, start) and not (below and text.startswith("/", start)):
         return None, at
     try:
         return scan_unit(text, start, span)
@@ -78,7 +81,7 @@ def _exact(number: str) -> Fraction:
 
 
 def whole_value(text: str, span: Span) -> Expr | None:
-    """``1/60 s``, ``-4 0.15 0``, ``0 1.2 0 m``, ``1/s`` after numbers: numbers or fractions with one unit at most.
+    """``1/60 s``, ``-4 0.15 0``, ``0 1.2 0 m``, ``0 1 0 /s``: numbers or fractions with one unit at most.
 
     None where the text is not of this form or is a single number, which are expressions. Raises ScriptError.
     """
@@ -91,13 +94,44 @@ def whole_value(text: str, span: Span) -> Expr | None:
         at = _skip(text, piece.end())
     if not pieces or (len(pieces) == 1 and pieces[0][2] is None):
         return None
-    unit, end = read_unit(text, at, span) if at < len(text) else (None, at)
+    # Behind one number a bar is a division, whose name may be a define.
+    unit, end = read_unit(text, at, span, below=len(pieces) > 1) if at < len(text) else (None, at)
     if _skip(text, end) < len(text) or (len(pieces) == 1 and unit is None):
         return None
     items = [quantity(p[1], unit, span.part(*p.span()), p[2]) for p in pieces]
     if len(items) == 1:
         return Number(items[0].value, items[0].type, items[0].bare, span.part(pieces[0].start(), end))
     return Vector(tuple(items), span=span.part(pieces[0].start(), end))
+
+
+def vector_meant(text: str) -> str | None:
+    """The vector meant by numbers between commas or with a unit each: ``1 2 3 m`` for ``1 m, 2 m, 3 m``, if any."""
+    items: list[tuple[str, str]] = []
+    at = 0
+    while at < len(text) <= EXACT * 3:
+        item = _ITEM.match(text, at)
+        if item is None:
+            return None
+        items.append((item[1], item[2] or ""))
+        at = item.end()
+    units = sorted({unit for _, unit in items if unit})
+    if len(items) < 2 or (len(units) > 1 and not all(unit for _, unit in items)):
+        return None
+    if len(units) > 1:
+        return f"[{', '.join(f'{number} {unit}' for number, unit in items)}]"
+    return " ".join([*(number for number, _ in items), *units])
+
+
+def comma_meant(text: str, at: int = 0) -> str:
+    """The help for a comma that cannot stand in the value at ``text[at]``: a decimal one, or one between components."""
+    point = "a decimal number has a point"
+    if (numbers := _ITEMS.match(text, at, at + 3 * EXACT)) is not None:
+        text = numbers.group().strip(", \t\r\n")
+    decimal = _DECIMAL.sub(r"\1.", text.strip())
+    if ", " not in text and decimal != text.strip():
+        return f"{point}: write `{decimal}`"
+    vector = vector_meant(text)
+    return f"a vector is `0 1.2 0 m` or `[a, b, c]`, and {point}" if vector is None else f"write `{vector}`; {point}"
 
 
 def _skip(text: str, at: int) -> int:

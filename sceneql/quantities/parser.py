@@ -10,9 +10,11 @@ import re
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 from sceneql.quantities.expression import Call, Expr, Name, Number, Vector, children, each_once
-from sceneql.quantities.literal import NUMBER, WORD, quantity, read_unit, whole_value
+from sceneql.quantities.literal import NUMBER, WORD, comma_meant, quantity, read_unit, vector_meant, whole_value
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
+from sceneql.quantities.other_words import instead
 from sceneql.quantities.span import Span
+from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
 
 LONGEST, DEEPEST = 10_000, 100
@@ -24,12 +26,9 @@ BINARY = {
 }  # fmt: skip
 SIGN = 40
 TOKEN = re.compile(
-    rf"\s*(?:(?P<number>{NUMBER})|(?P<name>{WORD})|(?P<sign>\*\*|<=|>=|==|[-+*/^()\[\],<>])|(?P<end>\Z)|(?P<bad>.))",
+    rf"\s*(?:(?P<number>{NUMBER})|(?P<name>{WORD})|(?P<sign>\*\*|//|<=|>=|==|[-+*/^()\[\],<>])|(?P<end>\Z)|(?P<bad>.))",
     re.DOTALL,
 )
-MENDED = {"=": "write `==` to compare", "!": "write `where(a == b, 0, 1)` for a difference", "%": "write `mod(a, b)`",
-          "×": "write `*`", "·": "write `*`", "−": "write `-`", "²": "write `^2`", "³": "write `^3`",
-          "°": "write `deg`", "°C": "write `degC`", "°F": "write `degF`"}  # fmt: skip
 
 
 def parse_value(text: str, span: Span) -> Expr:
@@ -55,6 +54,7 @@ class _Parser:
         self.depth = 0
         self.before = ""
         self.previous = 0
+        self.temperatures = Temperatures()
         self.kind, self.token, self.start, self.end = "", "", 0, 0
         self._read(0)
 
@@ -86,7 +86,9 @@ class _Parser:
             sign = self.start, self.end
             self._advance()
             right = self._expression(SIGN - 1 if op == "pow" else binding)
-            left = Call(op, (left, right), span=self._from(start))
+            whole = Call(op, (left, right), span=self._from(start))
+            self.temperatures.combine(whole, left, right)
+            left = whole
             if binding == 10 and self.kind == "sign" and BINARY.get(self.token, (0, ""))[0] == 10:
                 raise self._fail("syntax", "comparisons do not chain", *sign, help="write `(a < b)*(b < c)`")
         self.depth -= 1
@@ -128,9 +130,11 @@ class _Parser:
         expr = self._expression(SIGN)
         if sign == "+":
             return expr
+        whole = Call("neg", (expr,), span=self._from(start))
+        self.temperatures.combine(whole, expr)
         if isinstance(expr, Number):
-            return Number(-expr.value, expr.type, expr.bare, self._from(start))
-        return Call("neg", (expr,), span=self._from(start))
+            return Number(-expr.value, expr.type, expr.bare, whole.span)
+        return whole
 
     def _raised(self) -> bool:
         """Whether a power follows the number (and its unit): -2^2 is -(2^2)."""
@@ -142,6 +146,8 @@ class _Parser:
         unit, end = read_unit(self.text, self.end, self.span)
         first = self.start if start is None else start
         number = quantity(sign + self.token, unit, self.span.part(first, end))
+        if unit is not None and unit.shift != 0:
+            self.temperatures.add(number, float(sign + self.token) * unit.scale)
         self.before, self.previous = self.text[first:end], end
         self._read(end)
         return number
@@ -151,14 +157,16 @@ class _Parser:
         self._advance()
         args = self._items(")", opening)
         if name not in FUNCTIONS:
-            hint = suggestion(name, FUNCTIONS)
-            raise self._fail("unknown-function", f"there is no function '{name}'", start, start + len(name), help=hint)
+            hint = instead("function", name) or suggestion(name, FUNCTIONS)
+            every = "`sceneql words functions` lists all"
+            help = every if hint is None else f"{hint}{' ' if hint.endswith('?') else '; '}{every}"
+            raise self._fail("unknown-function", f"there is no function '{name}'", start, start + len(name), help=help)
         operation = OPERATIONS[name]
         if not operation.takes(len(args)):
             low, high = operation.least, operation.most
             wanted = f"{low}" if low == high else f"{low} or more" if high == MANY else f"{low} to {high}"
             message = f"{name} takes {wanted} argument{'' if wanted == '1' else 's'}, not {len(args)}"
-            raise self._fail("wrong-arity", message, start, self.previous)
+            raise self._fail("wrong-arity", message, start, self.previous, help=instead("function", name))
         return Call(name, args, span=self._from(start))
 
     def _items(self, closing: str, opening: int) -> tuple[Expr, ...]:
@@ -182,7 +190,7 @@ class _Parser:
         self.token, (self.start, self.end) = found[self.kind], found.span(self.kind)
         if self.kind == "bad":
             message = f"'{self.token}' cannot stand in an expression"
-            help = MENDED.get(self.text[self.start : self.start + 2]) or MENDED.get(self.token)
+            help = instead("sign", self.token)
             component = re.match(r"\.([xyz])\b", self.text[self.start :])
             if component is not None and self.before in (")", "]"):
                 help = f"a component of an expression is written `component(..., {'xyz'.index(component[1])})`"
@@ -196,7 +204,8 @@ class _Parser:
         if self.token == closing:
             self._advance()
         elif self.kind == "end":
-            raise self._fail("syntax", f"'{self.text[opening]}' is not closed", opening, opening + 1)
+            help = f"close it with `{closing}`"
+            raise self._fail("syntax", f"'{self.text[opening]}' is not closed", opening, opening + 1, help=help)
         else:
             raise self._leftover(last)
 
@@ -216,12 +225,18 @@ class _Parser:
 
     def _leftover(self, expr: Expr) -> ScriptError:
         if self.kind == "sign" and self.token not in "([":
-            comma = "a vector is `0 1.2 0 m` or `[a, b, c]`, and a decimal number has a point"
-            return self._fail("syntax", f"'{self.token}' cannot stand here", help=comma if self.token == "," else None)
+            help = comma_meant(self.text) if self.token == "," else instead("sign", self.token)
+            return self._fail("syntax", f"'{self.token}' cannot stand here", help=help)
         if isinstance(expr, Number) and self.kind == "number":
             help = "a vector is numbers alone and one unit, `0 1.2 0 m`, or expressions in brackets, `[a, b, c]`"
+            if (vector := vector_meant(self.text)) is not None:
+                help = f"write `{vector}`"
         elif (meant := self._unit_behind(expr)) is not None:
             help = f"a unit stands directly after a number: write `{meant}`"
+        elif self.before in FUNCTIONS and self.kind != "sign":
+            help = f"write `{self.before}({self.token[:40]})`"
+        elif (other := instead("name", self.token) or instead("name", self.before)) is not None:
+            help = other
         else:
             help = f"write `{self.before[-40:]}*{self.token[:40]}` for a product"
         return self._fail("syntax", "two values stand side by side", help=help)

@@ -12,7 +12,7 @@ from math import prod
 
 from sceneql.quantities.dimension import PLAIN, TIME, Dimension, common
 from sceneql.quantities.expression import Expr, Number, Shape, Type
-from sceneql.quantities.units import describe, format_quantity
+from sceneql.quantities.units import describe, format_quantity, unit_of
 
 Args = tuple[Expr, ...]
 Rule = Callable[[Args], Type]
@@ -22,11 +22,23 @@ MOST_AXES, MOST_NUMBERS = 6, 1_000_000
 
 
 class MismatchError(Exception):
-    """Arguments whose types do not match; ``first`` and ``second`` are their indices."""
+    """Arguments whose types do not match; ``first`` and ``second`` are their indices.
 
-    def __init__(self, code: str, message: str, first: int, second: int | None = None, help: str | None = None) -> None:
+    ``better``: the index of an argument and the text that it should have.
+    """
+
+    def __init__(
+        self,
+        code: str,
+        message: str,
+        first: int,
+        second: int | None = None,
+        help: str | None = None,
+        better: tuple[int, str] | None = None,
+    ) -> None:
         super().__init__(message)
         self.code, self.message, self.first, self.second, self.help = code, message, first, second, help
+        self.better = better
 
 
 def broadcast(shapes: tuple[Shape, ...]) -> Shape:
@@ -68,13 +80,13 @@ def common_dimension(args: Args, indices: tuple[int, ...], sentence: str) -> Dim
 
 def _differ(args: Args, first: int, second: int, sentence: str) -> MismatchError:
     kinds = [args[k].type.dimension for k in (first, second)]
-    help = None
+    better = None
     for index, other in ((first, kinds[1]), (second, kinds[0])):
         arg = args[index]
         if isinstance(arg, Number) and arg.bare and other is not None and not other.plain:
-            help = f"write `{format_quantity(arg.value, other)}`"
+            better = index, format_quantity(arg.value, other)
     message = sentence.format(a=describe(kinds[0]), b=describe(kinds[1]))
-    return MismatchError("dimension-mismatch", message, first, second, help)
+    return MismatchError("dimension-mismatch", message, first, second, better=better)
 
 
 def _shape(args: Args) -> Shape:
@@ -86,7 +98,10 @@ def _plain(args: Args, indices: tuple[int, ...], name: str) -> None:
         dimension = args[index].type.dimension
         if dimension is not None and not dimension.plain:
             message = f"{name} needs a plain number, not {describe(dimension)}"
-            raise MismatchError("dimension-mismatch", message, index, None, "divide it by a quantity of its kind first")
+            help = "divide it by a quantity of its kind first"
+            raise MismatchError(
+                "dimension-mismatch", message, index, None, help, (index, f"{{}}/(1 {unit_of(dimension)})")
+            )
 
 
 def alike(sentence: str, *, result_plain: bool = False) -> Rule:

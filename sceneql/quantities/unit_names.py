@@ -8,6 +8,7 @@ SIGNS = {
     "degree": "deg", "radian": "rad", "percent": "%", "revolution": "turn",
     "newton": "N", "joule": "J", "watt": "W", "pascal": "Pa", "hertz": "Hz", "kelvin": "K", "celsius": "degC",
     "fahrenheit": "degF", "ampere": "A", "amp": "A", "volt": "V", "coulomb": "C", "liter": "L", "litre": "L",
+    "kmh": "km/h", "kph": "km/h", "kmph": "km/h", "mps": "m/s", "revs": "turn", "rev": "turn",
     "foot": "ft", "feet": "ft", "inche": "inch", "yard": "yd", "pound": "lb", "ounce": "oz",
 }  # fmt: skip
 """Names in the singular."""

@@ -97,10 +97,8 @@ def _with_prefixes() -> dict[str, tuple[Fraction, Dimension]]:
 UNITS = _with_prefixes()
 """Every name, prefixes included, with its ratio to SI and its dimension."""
 
-OFFSET_UNITS = {
-    "degC": (Fraction(1), Fraction("273.15")),
-    "degF": (Fraction(5, 9), Fraction("459.67") * Fraction(5, 9)),
-}
+_CELSIUS, _FAHRENHEIT = (Fraction(1), Fraction("273.15")), (Fraction(5, 9), Fraction("459.67") * Fraction(5, 9))
+OFFSET_UNITS = {"degC": _CELSIUS, "°C": _CELSIUS, "degF": _FAHRENHEIT, "°F": _FAHRENHEIT}
 """Temperatures on scales that do not start at absolute zero: ratio to the kelvin, and the zero in kelvin."""
 
 KNOWN_UNITS = (*UNITS, *OFFSET_UNITS)

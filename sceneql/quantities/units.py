@@ -47,15 +47,17 @@ class Unit:
         return float(value * self.ratio + self.shift)
 
 
-_NAME = re.compile(r"%|[^\W\d]\w*'*(?:\.[^\W\d]\w*'*)*")
+_NAME = re.compile(r"%|°[CF]\b|[^\W\d]\w*'*(?:\.[^\W\d]\w*'*)*")
 _EXPONENT = re.compile(r"\s*(?:\^|\*\*)\s*(?:([+-]?\d{1,4})(?![\w.])|\(\s*([+-]?\d{1,4})\s*/\s*(\d{1,4})\s*\))")
 _POWER = re.compile(r"\s*(?:\^|\*\*)")
 _JOIN = re.compile(r"[/·]|\*(?!\*)")
 _SPACED_JOIN = re.compile(r"\s*(?:[/·]|\*(?!\*))\s*")
 _INVERSE = re.compile(r"1/(?=%|[^\W\d])")
 _UNIT_BEFORE = re.compile(r"\d\.?\s*((?:1/)?[^\W\d][^\s()\[\],]*)[*/]\Z")
-_BAR_BEFORE = re.compile(r"(?<![\w.])(\d+\.?\d*(?:[eE][+-]?\d+)?)\s*([^\W\d][^\s()\[\],*/]*)?\s*/\s*\Z")
+_BAR_BEFORE = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*([^\W\d][\w^*/·-]*)?\s*/([\w\s^*/·()-]*)\Z")
+_WORDS = re.compile(r"[^\W\d]\w*")
 LONGEST_BEFORE = 80
+_RAISED = re.compile(r"([^\W\d_]+)(-?[1-9])")
 _SUPERSCRIPTS = str.maketrans({"²": "^2", "³": "^3"})
 
 
@@ -72,13 +74,13 @@ def parse_unit(text: str, span: Span | None = None) -> Unit:
 
 
 def scan_unit(text: str, start: int, span: Span | None, *, spaced: bool = False) -> tuple[Unit, int]:
-    """The unit that starts at ``text[start]``, and where it ends.
+    """The unit that starts at ``text[start]``, and where it ends; it may begin with the bar of a division.
 
     The first name must be a known unit. After a sign the next name belongs to the unit only if it is a known unit,
     not the name of a call, and (unless ``spaced``) touches the sign: ``1 m/dt`` and ``2 m * h`` are arithmetic.
     """
     found = _INVERSE.match(text, start)
-    sign, at = (-1, found.end()) if found else (1, start)
+    sign, at = (-1, found.end()) if found else (-1, start + 1) if text[start : start + 1] == "/" else (1, start)
     ratio, shift, dimension, factors = Fraction(1), Fraction(0), PLAIN, 0
     join = _SPACED_JOIN if spaced else _JOIN
     while True:
@@ -133,13 +135,15 @@ def unit_hint(name: str) -> str | None:
     return found.help
 
 
-def below_hint(name: str, text: str, at: int) -> str | None:
-    """The help for a unit at ``text[at]`` below a bar that stands apart from its number, as s in ``1500 /s``."""
+def stands_below(name: str, text: str, at: int) -> bool:
+    """Whether a unit's name at ``text[at]`` stands below the bar behind a number and its unit if any.
+
+    So stand s in ``1500 /s``, and kg and K in ``4186 J/(kg*K)``.
+    """
     written = _BAR_BEFORE.search(text, max(0, at - LONGEST_BEFORE), at)
     if written is None or name not in UNITS:
-        return None
-    number, over = written.groups()
-    return f"write `{number} {over or 1}/{text[at : scan_unit(text, at, None)[1]]}`"
+        return False
+    return all(word in UNITS for part in written.groups("") for word in _WORDS.findall(part))
 
 
 def _name(text: str, at: int) -> str | None:
@@ -193,12 +197,14 @@ def _alone(
 
 def _unknown(name: str, span: Span | None, at: int) -> ScriptError:
     written = name.translate(_SUPERSCRIPTS)
+    if written == name and (raised := _RAISED.fullmatch(name)) is not None and raised[1] in UNITS:
+        written = f"{raised[1]}^{raised[2]}"
     if written != name:
         hint: str | None = f"write `{written}`"
     else:
         same = [known for known in KNOWN_UNITS if known.lower() == name.lower()]
         meant = sign_of(name) or (same[0] if same else None)
-        hint = f"did you mean '{meant}'?" if meant in KNOWN_UNITS else suggestion(name, KNOWN_UNITS)
+        hint = suggestion(name, KNOWN_UNITS) if meant is None else f"did you mean '{meant}'?"
     return _error("unknown-unit", f"there is no unit '{name}'", span, at, at + max(1, len(name)), hint)
 
 

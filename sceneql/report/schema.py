@@ -9,7 +9,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.kinds import Interpolated, Kind, Refers, SceneFile, Settings, written_name
+from sceneql.compiler.read import FALSE, TRUE
+from sceneql.kinds import Formula, Interpolated, Kind, Refers, SceneFile, Settings, written_name
 from sceneql.report.manual import type_text
 
 TEXT: dict[str, Any] = {"type": ["string", "number", "integer"]}
@@ -32,15 +33,15 @@ def schema(catalogue: Catalogue) -> dict[str, Any]:
     """The schema of a whole script."""
     properties: dict[str, Any] = {
         "sceneql": {"const": 1, "description": "Version of the language."},
-        "define": {"type": "object", "description": "Names for values."},
+        "define": {"type": ["object", "null"], "description": "Names for values."},
         "include": {
             "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
             "description": "Scripts of this folder to add.",
         },
-        "templates": {"type": "object", "description": "Parts with fields, to be used under `parts`."},
-        "parts": {"type": "object", "description": "Instances of templates."},
-        "defaults": {"type": "object", "description": "Fields by word, for all entries that leave them out."},
-        "variants": {"type": "object", "description": "Patches: dotted paths with values."},
+        "templates": {"type": ["object", "null"], "description": "Parts with fields, to be used under `parts`."},
+        "parts": {"type": ["object", "null"], "description": "Instances of templates."},
+        "defaults": {"type": ["object", "null"], "description": "Fields by word, for all entries that leave them out."},
+        "variants": {"type": ["object", "null"], "description": "Patches: dotted paths with values."},
     }
     properties |= _record(Settings, catalogue)["properties"]
     definitions = {}
@@ -61,7 +62,7 @@ def schema(catalogue: Catalogue) -> dict[str, Any]:
         }
         entry = {"$ref": f"#/$defs/{family}"}
         properties[family] = {
-            "anyOf": [{"type": "object", "additionalProperties": entry}, {"type": "array", "items": entry}]
+            "anyOf": [{"type": ["object", "null"], "additionalProperties": entry}, {"type": "array", "items": entry}]
         }
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -98,7 +99,7 @@ def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
         base, *marks = get_args(annotation)
         for mark in marks:
             if isinstance(mark, SceneFile | Interpolated):
-                return {"type": "string"}
+                return TEXT
             if isinstance(mark, Refers) and not mark.family:
                 return {"type": "string"}
             if isinstance(mark, Refers):
@@ -110,13 +111,25 @@ def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
     if origin is Literal:
         return {"enum": list(arms)}
     if origin in (list, tuple):
-        return {"anyOf": [{"type": "array", "items": _type(arms[0], catalogue)}, TEXT, {"type": "object"}]}
+        return {"anyOf": [{"type": "array", "items": _copied(arms[0], catalogue)}, TEXT, {"type": "object"}]}
     if origin is dict:
-        return {"type": "object", "additionalProperties": _type(arms[1], catalogue)}
+        return {"type": "object", "additionalProperties": _copied(arms[1], catalogue)}
     if isinstance(base, type) and issubclass(base, BaseModel):
         return _record(base, catalogue)
     if base is Any:
         return {}
+    if base is Formula:
+        return {"type": [*TEXT["type"], "array"]}
     if base is bool:
-        return {"enum": [True, False, "yes", "no", "on", "off"]}
+        said = [written for word in (*TRUE, *FALSE) for written in (word, word.capitalize(), word.upper())]
+        return {"enum": [True, False, *said]}
     return TEXT
+
+
+def _copied(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
+    """A value of a map or list: a group of fields there may be repeated."""
+    rule = _type(annotation, catalogue)
+    if "properties" not in rule:
+        return rule
+    repeat = {"anyOf": [REPEAT, {"type": "object", "additionalProperties": {"type": "array"}}]}
+    return {**rule, "properties": {**rule["properties"], "repeat": repeat}}

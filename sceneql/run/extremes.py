@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from sceneql.quantities.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.kinds import Model
     from sceneql.run.run import IslandRun
     from sceneql.system import Grid
 
@@ -45,7 +46,8 @@ class Extremes:
         if self.beyond == 0.0:
             return
         low, high = self.grid.keeps
-        name = self.model if self.output == "concentration" else f"{self.model}.{self.output}"
+        model = cast("Model", island.graph.tasks[self.model].kind)
+        name = self.model if model.is_one_field else f"{self.model}.{self.output}"
         span = island.graph.tasks[self.model].span
         if math.isinf(high):
             text = f"'{name}' has fallen to {self.value:.3g} at {self.time:.4g} s, and nothing can be less than none"

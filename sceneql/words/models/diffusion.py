@@ -31,6 +31,11 @@ if TYPE_CHECKING:
 UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
 
 
+def _called(what: str) -> str:
+    """The name of the field among the model's values."""
+    return "temperature" if what == "temperature" else "concentration"
+
+
 class Diffusion(Medium):
     """Diffusion dc/dt = div(D grad c) + source by finite volumes on a grid of cells, which conserve what there is.
 
@@ -44,7 +49,7 @@ class Diffusion(Medium):
     is_one_field = True
 
     of: Literal["concentration", "temperature", "number"] = field(
-        "What spreads, which gives its unit.", "concentration"
+        "What spreads, which gives its unit, and a temperature's output its name.", "concentration"
     )
     coefficient: COEFFICIENT = field("The coefficient D [m^2/s].")
     initial: START | Picture | None = field("The field at the start, a formula or a picture; by default 0.", None)
@@ -59,9 +64,9 @@ class Diffusion(Medium):
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
         """In the unit of what spreads."""
-        unit = UNITS.get(str(written.get("of", "concentration")), dim.PLAIN)
-        found = dict(gives_of("The field in every cell of the domain.", unit, written))
-        return {"concentration": found.pop("field"), **found}
+        what = str(written.get("of", "concentration"))
+        found = dict(gives_of("The field in every cell of the domain.", UNITS.get(what, dim.PLAIN), written))
+        return {_called(what): found.pop("field"), **found}
 
     @classmethod
     def formula_dimension(cls, written: Mapping[str, Any]) -> Dimension | None:
@@ -100,7 +105,7 @@ class Diffusion(Medium):
         ground = Ground(cells_of(self, assembly), assembly)
         grid = add_field(self, self.boundary, self.drift, ground, assembly)
         assembly.grid(grid)
-        assembly.offer("concentration", grid)
+        assembly.offer(_called(self.of), grid)
         assembly.remember(grid.at, *ground.memory)
         self.must_hold_probes(layout_of(grid.at, ground.memory, assembly.numbers()), assembly)
 
@@ -110,12 +115,12 @@ class Diffusion(Medium):
 
     def shows(self, name: str) -> Value | None:
         """The field."""
-        return Value(Link(name, "concentration", Type((None,), UNITS[self.of])))
+        return Value(Link(name, _called(self.of), Type((None,), UNITS[self.of])))
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells of the domain,), (cells, 3) or float."""
-        return self.measure("field" if output == "concentration" else output, self.layout(state), state)
+        return self.measure("field" if output == _called(self.of) else output, self.layout(state), state)
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Of the cells, of probes, and of what has come in."""
-        return self.places_of("field" if output == "concentration" else output, self.layout(state), state)
+        return self.places_of("field" if output == _called(self.of) else output, self.layout(state), state)

@@ -1,0 +1,107 @@
+"""`repeat` inside the fields of a part: entries of a map by name, or items of a list, written out as copies.
+
+A copy's number is known where its values are read (`Mapping.index`); in braces it stands in names: ``bead.{i + 1}``.
+Where copies go over names, ``repeat: {leg: [left, right]}``, the word stands for one of them, alone or before a dot.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from collections.abc import Mapping as Table
+from dataclasses import dataclass, replace
+from typing import Final
+
+from sceneql.language.repeat import MOST_COPIES, Repeat, read_repeat
+from sceneql.language.scope import Broken, Scope
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
+from sceneql.quantities.bind import bind
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
+from sceneql.quantities.expression import Expr, Number
+from sceneql.quantities.parser import parse_expression
+from sceneql.quantities.span import Source, Span
+
+KEY: Final = "repeat"
+_BRACES = re.compile(r"\{([\w\s+*/()-]+)\}")
+
+
+@dataclass(slots=True)
+class Copies:
+    """Writes out what is repeated inside the fields of parts. ``define``, ``lost``: as for `read_repeat`."""
+
+    define: Table[str, Node]
+    lost: Broken
+    found: Diagnostics
+    count: int = 0
+
+    def written_out(self, fields: Node | None, scope: Scope | None) -> Node | None:
+        """The fields of a part with all copies in them; the same node where none are."""
+        if fields is None or KEY not in fields.source.text:
+            return fields
+        return self._walked(fields, scope)
+
+    def _walked(self, node: Node, scope: Scope | None) -> Node:
+        if isinstance(node, Sequence):
+            items = [made for item in node.items for _, made in self._made("", item, scope)]
+            return replace(node, items=items)
+        if not isinstance(node, Mapping):
+            return node
+        entries: dict[str, Node] = {}
+        keys: dict[str, Scalar] = {}
+        for name, item in node.entries.items():
+            for full, made in self._made(name, item, scope):
+                entries[full], keys[full] = made, node.keys[name]
+        return node.holding(entries, keys)
+
+    def _made(self, name: str, item: Node, scope: Scope | None) -> Iterator[tuple[str, Node]]:
+        """An entry or item with its name, or its copies with theirs."""
+        if not (isinstance(item, Mapping) and KEY in item.entries and len(item.entries) > 1):
+            yield name, self._walked(item, scope)
+            return
+        times = read_repeat(item.entries[KEY], scope, self.define, self.lost, self.found, names=True)
+        if times is None:
+            yield name, hole(item.span)
+            return
+        self.count += times.count
+        if self.count > MOST_COPIES:
+            message = f"copies inside fields are more than {MOST_COPIES:,}"
+            help = "a net such as `lattice`, `cloth` or `rope`, or points in a list hold more"
+            self.found.error("limit-refused", message, item.entries[KEY].span, help=help)
+            yield name, hole(item.span)
+            return
+        rest = {key: value for key, value in item.entries.items() if key != KEY}
+        for number in range(times.count):
+            index = None if times.names else (times.symbol, times.number(number))
+            inner = self._walked(item.holding(rest), scope if index is None else Scope({}, dict([index]), scope))
+            copy = _numbered(inner, times, number)
+            assert isinstance(copy, Mapping)
+            copy.index = index
+            yield f"{name}.{number}", copy
+
+
+def _numbered(node: Node, times: Repeat, number: int) -> Node:
+    """A copy's node with its name in place of the symbol, or its number in place of what stands in braces."""
+    if isinstance(node, Scalar):
+        if times.names:
+            word = rf"(?<![\w.'\"]){re.escape(times.symbol)}(?![\w'])"
+            text = re.sub(word, lambda _: times.names[number], node.text)
+        else:
+            text = _BRACES.sub(lambda found: _value(found, times.symbol, number), node.text)
+        return node if text == node.text else replace(node, text=text)
+    if isinstance(node, Sequence):
+        return replace(node, items=[_numbered(item, times, number) for item in node.items])
+    return node.holding({key: _numbered(item, times, number) for key, item in node.entries.items()})
+
+
+def _value(braces: re.Match[str], symbol: str, number: int) -> str:
+    """The whole number of an expression in braces; the braces themselves where it is of other names."""
+
+    def meaning(parts: tuple[str, ...], span: Span) -> Expr | Diagnostic:
+        return Number(float(number)) if parts == (symbol,) else Diagnostic("unknown-name", "another name", span)
+
+    text = braces[1]
+    try:
+        value = bind(parse_expression(text, Span(Source("braces", text), 0, len(text))), meaning, Diagnostics())
+    except ScriptError:
+        return braces[0]
+    return f"{value.value:.0f}" if isinstance(value, Number) and value.value.is_integer() else braces[0]

@@ -1,0 +1,250 @@
+"""Words of other programs and of everyday speech, and what a script writes in their place: for messages alone.
+
+``OURS`` has words that a name of the language means as well; ``INSTEAD`` has, by what was written, the sentence for
+those that no single name means.
+"""
+
+from __future__ import annotations
+
+import re
+
+LIBRARIES = ("math", "Math", "np", "numpy", "random", "glm", "torch", "scipy")
+"""What stands before the dot of a function or constant elsewhere: ``Math.sin``."""
+
+_LISTS = (
+    # functions and constants
+    ("random", "rand rnd rng uniform random_uniform rand01 random01 frand drand noise1d"),
+    ("mix", "lerp interp interpolate blend linear"),
+    ("log", "ln loge"),
+    ("log10", "lg"),
+    ("mod", "modulo fmod rem remainder"),
+    ("sign", "sgn signum"),
+    ("abs", "fabs absolute"),
+    ("where", "iff ifelse iif cond choose ifthenelse"),
+    ("sqrt", "root squareroot"),
+    ("floor", "int trunc truncate"),
+    ("ceil", "ceiling"),
+    ("asin", "arcsin"),
+    ("acos", "arccos"),
+    ("atan", "arctan"),
+    ("atan2", "arctan2"),
+    ("clamp", "clip saturate limit constrain"),
+    ("length", "magnitude mag len norm2 modulus"),
+    ("distance", "dist"),
+    ("normalize", "normalise normalized unit_vector"),
+    ("mean", "average avg"),
+    ("sum", "total"),
+    ("count", "len"),
+    ("item", "get element index nth"),
+    ("pi", "π"),
+    ("tau", "two_pi twopi"),
+    ("time", "t seconds elapsed elapsed_time now frame frames itime"),
+    # fields
+    ("position", "pos location loc center centre translate translation origin xyz offset move place"),
+    ("rotation", "rotate rot orientation orient euler angles quaternion"),
+    ("look_at", "target lookat look aim focus point_at center centre to"),
+    ("field_of_view", "angle fov_angle view_angle"),
+    ("color", "colour rgb fill tint albedo diffuse base_color basecolor"),
+    ("material", "shader surface finish appearance"),
+    ("size", "dimensions dims dimension extent extents resolution res width height length sides"),
+    ("radius", "r rad"),
+    ("height", "y level elevation altitude length h"),
+    ("normal", "up direction"),
+    ("stiffness", "k spring_constant constant elasticity springiness"),
+    ("damping", "c drag friction viscosity"),
+    ("rest", "length rest_length natural_length l0"),
+    ("between", "from to ends nodes bodies connect connects pair a b"),
+    ("mass", "m weight"),
+    ("masses", "nodes points particles bodies"),
+    ("velocity", "vel v speed initial_velocity"),
+    ("strength", "g value magnitude gravity acceleration amount"),
+    ("restitution", "bounce bounciness elasticity bouncy cor"),
+    ("friction", "mu roughness"),
+    ("power", "intensity brightness energy strength watts watt luminosity"),
+    ("fps", "framerate frame_rate frames_per_second rate"),
+    ("end", "duration length stop until t_end tmax end_time seconds time"),
+    ("step", "dt timestep time_step stepsize step_size h"),
+    ("tolerance", "tol rtol atol accuracy precision eps"),
+    ("text", "message string label content caption value"),
+    ("file", "path filename src source url"),
+    ("fixed", "pinned static anchored locked frozen immovable"),
+    ("temperature", "concentration heat temp"),
+    ("concentration", "temperature density c"),
+    ("count", "n number num amount times copies"),
+    ("coefficient", "diffusivity d alpha conductivity"),
+    ("cell", "resolution grid grid_size dx spacing"),
+    ("initial", "start initial_value u0"),
+    ("children", "of parts objects members items"),
+    ("of", "body object objects target source model particles"),
+    # words
+    ("sphere", "ball orb"),
+    ("box", "cube cuboid block brick"),
+    ("tube", "rope pipe wire line curve path spline capsule polyline"),
+    ("coil", "helix spiral"),
+    ("torus", "donut doughnut ring"),
+    ("plane", "floor terrain"),
+    ("mesh", "obj stl ply gltf model"),
+    ("blobby", "metaball metaballs blob blobs"),
+    ("arrow", "vector"),
+    ("union", "join combine merge"),
+    ("difference", "subtract minus subtraction"),
+    ("intersection", "intersect"),
+    ("trail", "trace tail"),
+    ("particles", "particle body rigid_body rigidbody point_mass bodies"),
+    ("mass_spring", "springs spring_system mass_springs"),
+    ("diffusion", "heat heat_equation"),
+    ("equations", "ode system odes equation"),
+    ("gravity", "weight g"),
+    ("drag", "air air_resistance"),
+    ("collision", "collide collisions bounce contact"),
+    ("point", "bulb lamp spot pointlight spotlight light omni"),
+    ("sun", "directional directional_light"),
+    ("sky", "ambient environment hdri skybox"),
+    ("perspective", "camera pinhole"),
+    ("orthographic", "ortho flat"),
+    ("turntable", "orbit"),
+    ("video", "mp4 mov gif movie animation film webm avi"),
+    ("image", "png jpg jpeg picture still screenshot photo"),
+    ("record", "csv data table log npz"),
+    ("caption", "text title label annotation"),
+    ("graph", "plot chart figure"),
+    ("legend", "colorbar"),
+    ("dopri5", "rk45 ode45"),
+    ("rk4", "runge_kutta4 rungekutta"),
+    ("semi_implicit_euler", "symplectic_euler leapfrog"),
+    ("implicit_euler", "backward_euler"),
+    ("matte", "diffuse plain lambert lambertian"),
+    ("glossy", "plastic phong pbr principled standard shiny"),
+    ("metal", "metallic chrome steel iron gold silver"),
+    ("glow", "emission emissive neon light"),
+    ("glass", "transparent dielectric refractive"),
+    ("mirror", "reflective"),
+    # sections
+    ("define", "variables vars constants parameters params let definitions macros set"),
+    ("objects", "shapes geometry meshes primitives bodies entities"),
+    ("models", "physics simulation simulations systems dynamics"),
+    ("contacts", "collisions"),
+    ("clock", "timing animation timeline"),
+    ("overlays", "labels hud annotations text"),
+    ("outputs", "render video film export files"),
+    ("solvers", "integrator integrators integration"),
+    ("expect", "tests checks asserts"),
+    ("studies", "experiments sweeps"),
+    ("include", "import imports includes"),
+    ("background", "backdrop"),
+)  # fmt: skip
+
+
+def _by_word() -> dict[str, tuple[str, ...]]:
+    found: dict[str, tuple[str, ...]] = {}
+    for ours, others in _LISTS:
+        for other in others.split():
+            found[other] = (*found.get(other, ()), ours)
+    return found
+
+
+OURS = _by_word()
+"""Other programs' words, with the names of the language that mean the same; that stands which is known at the place."""
+
+_COLOR = 'write three numbers from 0 to 1, `[1, 0.5, 0]`, a CSS name, `tomato`, or `"#ff8000"`'
+_AND = "for 'and' multiply: `(a > b)*(c > d)`"
+_OR = "for 'or' write `max(a > b, c > d)`"
+_IF = "write `where(condition, a, b)`"
+_WORD = "the word stands around its fields: `{sphere: {radius: 1 m}}`: `sceneql words sections`"
+_REPEAT = "write `repeat: {count: 5, as: i}` beside the word, `{repeat: {...}, sphere: {...}}`: `sceneql words repeat`"
+
+_SENTENCES = (
+    ("function", "if switch select", _IF),
+    (
+        "function",
+        "vec vec2 vec3 vec4 vector vector3 point float3 array tuple xyz",
+        "write `[x, y, z]`, or numbers with one unit behind them, `0 1.2 0 m`",
+    ),
+    ("function", "rgb rgba color colour", _COLOR),
+    ("function", "hsv hsl hsva hsv2rgb", f"write `hue(h)`, h from 0 to 1, for a full color; else {_COLOR}"),
+    (
+        "function",
+        "deg degrees rad radians deg2rad rad2deg",
+        "an angle has its unit: write `30 deg`, or `x*(1 deg)`",
+    ),
+    ("function", "pow power", "write `a^b`"),
+    ("function", "sqr square", "write `x^2`"),
+    ("function", "frac fract", "write `mod(x, 1)`"),
+    ("function", "cbrt", "write `x^(1/3)`"),
+    ("function", "log2", "write `log(x)/log(2)`"),
+    ("function", "log", "write `log(x)/log(b)` for another base"),
+    ("function", "atan", "write `atan2(y, x)`"),
+    (
+        "function",
+        "random",
+        "write `random(1)`, `random(2)`, ...: each is a number from 0 to 1, the same in every run",
+    ),
+    ("function name", "and", _AND),
+    ("function name", "or", _OR),
+    ("function name", "not", "write `1 - (a > b)`"),
+    ("sign", "&", _AND),
+    ("sign", "|", _OR),
+    ("sign", "?", _IF),
+    ("sign", "=", "write `==` to compare"),
+    ("sign", "!", "write `where(a == b, 0, 1)` for a difference, `1 - (a > b)` for 'not'"),
+    ("sign", "%", "write `mod(a, b)`"),
+    ("sign", "//", "a comment begins with `#`, behind a space; a whole quotient is `floor(a/b)`"),
+    ("sign", "× ·", "write `*`"),
+    ("sign", "−", "write `-`"),
+    ("sign", "²", "write `^2`"),
+    ("sign", "³", "write `^3`"),
+    ("sign", "°", "write `deg`"),
+    ("name", "t", "the time is written 'time'"),
+    ("name", "if then else elif when", f"{_IF}: `sceneql words functions`"),
+    ("name", "true yes", "in a formula write `1`"),
+    ("name", "false no", "in a formula write `0`"),
+    (
+        "name",
+        "i index id",
+        "copies have numbers, where `repeat: {count: 5, as: i}` makes them: `sceneql words repeat`",
+    ),
+    ("field entry", "repeat", _REPEAT),
+    ("field entry", "type kind shape", _WORD),
+    ("field", "scale", "no part is scaled: write its sizes as they shall be"),
+    ("field", "diameter", "write half of it as `radius`"),
+    (
+        "field",
+        "velocity speed mass acceleration weight",
+        "an object moves by a model, `models: {fall: {particles: {of: NAME, mass: 1 kg, velocity: 1 0 0 m/s}}}`:"
+        " `sceneql words particles`",
+    ),
+    (
+        "field",
+        "animate animation keyframes keyframe key",
+        "a value that changes is given by keys, `position: {keys: {0 s: 0 0 0 m, 1 s: 0 1 0 m}}`: `sceneql words keys`",
+    ),
+    ("field", "opacity alpha transparency transparent", "write `material: glass`: `sceneql words glass`"),
+    ("field", "visible show enabled", "write `hidden: yes` for a part that is not drawn"),
+    ("field", "parent", "a part moves with others in a group, `{group: {children: [a, b]}}`: `sceneql words group`"),
+    ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
+    ("section", "collision contact", "write `forces: [gravity, collision]`"),
+    ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),
+    ("section", "fps framerate frame_rate", "write `clock: {fps: 30}`: `sceneql words clock`"),
+    ("section", "resolution size width height", "write `outputs: {film: {video: {size: 720p}}}`"),
+    ("section", "scene world root project", "the sections stand by themselves, with no key around them"),
+    ("section", "floor", "write `objects: {floor: plane}`"),
+    ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
+    ("entry", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
+)
+"""What a word is taken for, the words, and the sentence."""
+
+INSTEAD = {(what, word): text for kinds, words, text in _SENTENCES for what in kinds.split() for word in words.split()}
+"""The sentence of what to write in place of a called `function`, a `sign` or `name` of a formula, the `field` of a
+part, a `section` of the script, or the key of an `entry`."""
+
+_TON = re.compile(r"\d\s*[^\s()\[\],]*[*/]t(?!\w)")
+
+
+def time_meant(text: str) -> str | None:
+    """The help for a quantity in which ``t`` is read as a unit, though most likely the time was meant: ``2 m/s*t``."""
+    return "the time is `time`: `t` behind a unit is 1000 kg" if _TON.search(text) is not None else None
+
+
+def instead(what: str, word: str) -> str | None:
+    """The help for a word of another program that is taken for ``what`` (see `INSTEAD`), if it is known."""
+    return INSTEAD.get((what, word)) or INSTEAD.get((what, word.lower()))

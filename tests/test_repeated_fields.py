@@ -1,0 +1,94 @@
+"""`repeat` inside the fields of a part: masses, springs, joints of a skeleton, children, counted or over names."""
+
+import pytest
+
+from sceneql import pipeline
+from sceneql.quantities.diagnostic import ScriptError
+
+CHAIN = """
+define: {n: 3}
+models:
+  chain:
+    mass_spring:
+      masses:
+        hook: {position: 0 2 0 m, fixed: yes}
+        bead: {repeat: {count: n, as: i}, position: [0.2 m*(i + 1), 2 m, 0 m], mass: 0.1 kg*(1 + i)}
+      springs:
+        - {between: [hook, bead.0], stiffness: 100 N/m}
+        - {repeat: {count: 2, as: k}, between: ["bead.{k}", "bead.{k + 1}"], stiffness: 50 N/m*(1 + k)}
+objects: {last: {sphere: {position: chain.bead.2.position}}}
+"""
+PLAIN = """
+models:
+  chain:
+    mass_spring:
+      masses:
+        hook: {position: 0 2 0 m, fixed: yes}
+        bead.0: {position: 0.2 2 0 m, mass: 0.1 kg}
+        bead.1: {position: 0.4 2 0 m, mass: 0.2 kg}
+        bead.2: {position: 0.6 2 0 m, mass: 0.3 kg}
+      springs:
+        - {between: [hook, bead.0], stiffness: 100 N/m}
+        - {between: [bead.0, bead.1], stiffness: 50 N/m}
+        - {between: [bead.1, bead.2], stiffness: 100 N/m}
+objects: {last: {sphere: {position: chain.bead.2.position}}}
+"""
+
+
+def load(folder, text):
+    (folder / "scene.yaml").write_text(text)
+    return pipeline.load(folder / "scene.yaml")
+
+
+def told(folder, text):
+    with pytest.raises(ScriptError) as caught:
+        load(folder, text)
+    return [(one.message, one.span.text, one.help) for one in caught.value.diagnostics]
+
+
+def numbers(net):
+    masses = {name: (one.position, one.mass) for name, one in net.masses.items()}
+    return masses, [(spring.between, spring.stiffness) for spring in net.springs]
+
+
+def test_masses_and_springs_are_those_that_one_would_write_out(tmp_path):
+    repeated, plain = (load(tmp_path, text).tasks["chain"].kind for text in (CHAIN, PLAIN))
+    masses, springs = numbers(repeated)
+    wanted, between = numbers(plain)
+    assert masses.keys() == wanted.keys()
+    for name, (position, mass) in masses.items():
+        assert position == pytest.approx(wanted[name][0])
+        assert mass == wanted[name][1] or mass == pytest.approx(wanted[name][1])
+    assert [pair for pair, _ in springs] == [pair for pair, _ in between]
+
+
+def test_a_skeleton_goes_over_names_and_children_are_counted(tmp_path):
+    graph = load(
+        tmp_path,
+        """
+templates: {leg: {fields: {at: }, objects: {hip: {group: {position: at}}}}}
+parts: {left: {leg: {at: -0.3 1 0 m}}, right: {leg: {at: 0.3 1 0 m}}}
+objects:
+  skin: {blobby: {skeleton: [{repeat: {leg: [left, right]}, point: leg.hip.position, radius: 0.4 m}]}}
+  row: {group: {children: [{repeat: {count: 3, as: j}, sphere: {radius: 5 cm, position: [0.2 m*j, 0 m, 0 m]}}]}}
+""",
+    )
+    links = [part.point.links[0].task for part in graph.tasks["skin"].kind.skeleton]
+    assert links == ["left.hip", "right.hip"]
+    assert len(graph.tasks["row"].kind.children) == 3
+
+
+def test_what_is_wrong_in_a_copy_is_told_once_where_it_stands(tmp_path):
+    assert told(tmp_path, CHAIN.replace("0.1 kg*", "0.1 s*")) == [
+        ("mass is a mass (kg), but this is a time (s)", "0.1 s*(1 + i)", None)
+    ]
+    seven, eight = told(tmp_path, CHAIN.replace("{k + 1}", "{k + 7}"))
+    assert seven[0].startswith("no mass is called 'bead.7'")
+    assert eight[0].startswith("no mass is called 'bead.8'")
+    assert told(tmp_path, CHAIN.replace("count: n", "count: 20000"))[0][0] == "20,000 copies are more than 10,000"
+
+
+def test_a_number_in_the_name_of_a_mass_is_told_with_repeat(tmp_path):
+    ((message, span, help),) = told(tmp_path, PLAIN.replace("bead.0: {", "'bead_{i}': {"))
+    assert (message, span) == ("'bead_{i}' cannot be a name", "'bead_{i}'")
+    assert help.startswith("write `bead: {repeat: {count: 5, as: i}, ...}`")
