@@ -20,6 +20,7 @@ from sceneql.grids.medium import FieldLayout
 from sceneql.mesh.measures import area, pieces, volume
 from sceneql.pipeline import frame_of, load
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.quantities.dimension import TEMPERATURE
 from sceneql.report.explain import explain
 from sceneql.run.run import Run
 from sceneql.shapes.color import linear
@@ -417,10 +418,11 @@ objects: {map: {field_map: {of: plate.NAME}}}
 expect: {start: {of: initial(plate.max), value: 293.15, tolerance: 1e-9, because: given}}
 """
     path = tmp_path / "scene.yaml"
-    path.write_text(script.replace("NAME", "temperature"))
+    path.write_text(script.replace("plate.NAME", "plate.temperature"))
     assert load(path).tasks["map"].kind.of.links[0].output == "temperature"
-    path.write_text(script.replace("NAME", "concentration"))
-    with pytest.raises(ScriptError) as caught:
+    path.write_text(script.replace("plate.NAME", "plate.heat"))
+    with pytest.raises(ScriptError, match="'plate' gives no 'heat'"):
         load(path)
-    (told,) = caught.value.diagnostics
-    assert (told.message, told.help) == ("'plate' gives no 'concentration'", "did you mean 'temperature'?")
+    path.write_text(script.replace("plate.NAME", "plate.concentration"))  # its name before
+    (link,) = load(path).tasks["map"].kind.of.links
+    assert (link.output, link.type.dimension) == ("concentration", TEMPERATURE)

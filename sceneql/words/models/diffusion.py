@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
 
 
-def _called(what: str) -> str:
-    """The name of the field among the model's values."""
-    return "temperature" if what == "temperature" else "concentration"
+def _names(what: str) -> tuple[str, ...]:
+    """The names of the field among the model's values: a temperature is still read by the one that all once had."""
+    return ("temperature", "concentration") if what == "temperature" else ("concentration",)
 
 
 class Diffusion(Medium):
@@ -66,7 +66,8 @@ class Diffusion(Medium):
         """In the unit of what spreads."""
         what = str(written.get("of", "concentration"))
         found = dict(gives_of("The field in every cell of the domain.", UNITS.get(what, dim.PLAIN), written))
-        return {_called(what): found.pop("field"), **found}
+        own = found.pop("field")
+        return {**dict.fromkeys(_names(what), own), **found}
 
     @classmethod
     def formula_dimension(cls, written: Mapping[str, Any]) -> Dimension | None:
@@ -105,7 +106,8 @@ class Diffusion(Medium):
         ground = Ground(cells_of(self, assembly), assembly)
         grid = add_field(self, self.boundary, self.drift, ground, assembly)
         assembly.grid(grid)
-        assembly.offer(_called(self.of), grid)
+        for called in _names(self.of):
+            assembly.offer(called, grid)
         assembly.remember(grid.at, *ground.memory)
         self.must_hold_probes(layout_of(grid.at, ground.memory, assembly.numbers()), assembly)
 
@@ -115,12 +117,12 @@ class Diffusion(Medium):
 
     def shows(self, name: str) -> Value | None:
         """The field."""
-        return Value(Link(name, _called(self.of), Type((None,), UNITS[self.of])))
+        return Value(Link(name, _names(self.of)[0], Type((None,), UNITS[self.of])))
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells of the domain,), (cells, 3) or float."""
-        return self.measure("field" if output == _called(self.of) else output, self.layout(state), state)
+        return self.measure("field" if output in _names(self.of) else output, self.layout(state), state)
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Of the cells, of probes, and of what has come in."""
-        return self.places_of("field" if output == _called(self.of) else output, self.layout(state), state)
+        return self.places_of("field" if output in _names(self.of) else output, self.layout(state), state)
