@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from sceneql import __version__
 from sceneql.compiler.catalogue import Catalogue
@@ -14,10 +14,11 @@ from sceneql.doing import doing
 from sceneql.failure import Unsuitable, failing_as
 from sceneql.files import NUMBERS, refuse_unwritable
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Camera, Clock, Light, Object, Overlay, Picture, Renderer
+from sceneql.kinds import Camera, Clock, EachVariant, Light, Object, Overlay, Picture, Renderer
 
 if TYPE_CHECKING:
     from sceneql.frame import Frame, LightSource, SeenFrame, View
+    from sceneql.pictures.arrangement import Arrangement
     from sceneql.pictures.layout import Panel
     from sceneql.quantities.diagnostic import Diagnostic
     from sceneql.run.instant import Instant
@@ -43,6 +44,18 @@ class Report:
     """For each island that tells an energy, how far it drifted; momentum where it is conserved."""
 
 
+class Part(NamedTuple):
+    """A panel of a picture."""
+
+    scale: float
+    """How many times as high the picture is."""
+    taken: Sequence[tuple[int, int, int, int]] = ()
+    """Left, top, right, bottom [pixels] of what is written on the panel besides overlays."""
+
+
+WHOLE = Part(1.0)
+
+
 class Tools:
     """What the pipeline lends to an output (kinds.Tools)."""
 
@@ -53,6 +66,7 @@ class Tools:
         self._frames, self._light = 0, cast(Any, None)
         self._framed: float | None = None
         self._fit: set[Path] = set()
+        self._arranged: dict[tuple[str | None, tuple[int, int]], Arrangement] = {}
 
     @property
     def clock(self) -> Clock:
@@ -84,15 +98,25 @@ class Tools:
         self.report.frames += part == parts - 1
         return picture
 
-    def _seen(self, output: Picture, moment: Any, camera: str | None = None, part: int = 0, parts: int = 1) -> Any:
+    def _seen(
+        self,
+        output: Picture,
+        moment: Any,
+        camera: str | None = None,
+        part: int = 0,
+        parts: int = 1,
+        panel: Part = WHOLE,
+    ) -> Any:
         """The scene from a camera, by default the output's own; None before the last part of an exposure."""
         from renderers.develop import develop
         from sceneql.run.never_drawn import look, solids
 
-        shot = output.seen_from(moment.time)
-        eye = camera if camera is not None or shot is None else shot.name
-        frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, eye)
         renderer = self._renderer(output)
+        arrangement = None if renderer.data else self._arrangement(output, moment, camera, panel)
+        if arrangement is not None:
+            moment = replace(moment, room=arrangement.room)
+        eye = self._eye(output, moment.time, camera)
+        frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, eye)
         self.prepare(output)()
         drawn_by = self.graph.tasks[self.name if output.renderer is None else output.renderer.name]
         with failing_as(drawn_by.name, moment.time, drawn_by.span), doing("drawing"):
@@ -109,15 +133,42 @@ class Tools:
         if part < parts - 1:
             return None
         pixels = develop(linear, exposure=output.exposure, data=renderer.data)
-        if not renderer.data:
-            without = {ref.name for ref in output.laid_out}
-            self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure), without)
+        if arrangement is not None:
+            self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure), arrangement, panel)
         return pixels
+
+    def _eye(self, output: Picture, time: float, camera: str | None) -> str:
+        """The camera of an instant [s]: that of the panel, of the shot, or the output's own."""
+        shot = output.seen_from(time) if camera is None else None
+        return camera or (self.graph.cameras[self.name] if shot is None else shot.name)
+
+    def _arrangement(self, output: Picture, moment: Instant, camera: str | None, panel: Part) -> Arrangement:
+        """Where the overlays of a picture stand, found at its first instant and kept."""
+        from sceneql.pictures.arrangement import Sight, arranged
+
+        key = camera, output.pixels
+        if key not in self._arranged:
+
+            def look(then: Instant) -> View:
+                eye = self.graph.tasks[self._eye(output, then.time, camera)]
+                with failing_as(eye.name, then.now, eye.span):
+                    return cast(Camera, eye.kind).view(output.pixels, then)
+
+            without = {ref.name for ref in output.laid_out}
+            over = {name: task for name, task in self.graph.tasks.items() if isinstance(task.kind, Overlay)}
+            yields = cast(Camera, self.graph.tasks[self._eye(output, moment.time, camera)].kind).yields
+            sight = Sight(output.pixels, panel.scale, moment, look, yields, self.graph.drawn[self.name])
+            self._arranged[key] = arranged(
+                sight, {name: task for name, task in over.items() if name not in without}, panel.taken
+            )
+        return self._arranged[key]
 
     def _composed(self, output: Picture, moment: Any) -> Any:
         """The panels of a layout."""
-        from sceneql.pictures.layout import boxes, page
+        from sceneql.pictures.layout import Panel, boxes, page
 
+        if not self.panels and any(isinstance(row, EachVariant) for row in output.layout):
+            self.panels = {name: Panel(self.graph.variant(name)) for name in self.graph.variants.names}
         pixels = page(output.pixels)
         for item, (left, top, wide, high) in boxes(output.layout, self.graph.variants.names, output.pixels):
             block, scale = pixels[top : top + high, left : left + wide], len(pixels) / high
@@ -129,37 +180,42 @@ class Tools:
                 if isinstance(task.kind, Overlay):
                     task.kind.fill(block, moment, scale)
                 else:
-                    block[:] = self._seen(output.model_copy(update={"size": (wide, high)}), moment, item.name)
+                    part = output.model_copy(update={"size": (wide, high)})
+                    block[:] = self._seen(part, moment, item.name, panel=Part(scale))
         return pixels
 
     def _variant(self, name: str, size: tuple[int, int], time: float, scale: float) -> Any:
         """The panel (h, w, 3) of a variant; one whose run has failed stays as it was, under the message."""
-        from sceneql.pictures.layout import Panel, label
+        from sceneql.pictures.layout import label, label_box
 
-        if name not in self.panels:
-            panel = self.panels[name] = Panel(self.graph.variant(name))
-            panel.tools = Tools(panel.graph, self.name, self.report, self.target)
         panel = self.panels[name]
+        if panel.tools is None:
+            panel.tools = Tools(panel.graph, self.name, self.report, self.target)
         if panel.failure is None or panel.picture is None:
-            moment = panel.at(time)
+            others = tuple(other for other in self.panels.values() if other is not panel)
+            moment = replace(panel.at(time), beside=others)
             kind = cast(Picture, panel.graph.tasks[self.name].kind).model_copy(update={"size": size})
-            panel.picture = panel.tools._seen(kind, moment)
+            panel.picture = panel.tools._seen(kind, moment, panel=Part(scale, (label_box(size, name, scale),)))
             panel.tools._frames += 1
             label(panel.picture, name, panel.failure, scale)
         return panel.picture
 
     def _draw_over(
-        self, pixels: Any, view: View, moment: Any, develop: Callable[[Any], Any], without: set[str]
+        self, pixels: Any, view: View, moment: Any, develop: Callable[[Any], Any], arrangement: Arrangement, panel: Part
     ) -> None:
         """What is drawn on a developed picture: labels of objects, and overlays but those of the layout."""
+        from sceneql.pictures.fading import strength
         from sceneql.words.overlays.labels import draw_labels
 
-        draw_labels(pixels, view, self.graph.tasks, self.graph.drawn[self.name], moment)
-        for task in self.graph.tasks.values():
-            if isinstance(task.kind, Overlay) and task.name not in without:
-                with failing_as(task.name, moment.time, task.span):
-                    if task.kind.show is None or moment.at(task.kind.show) != 0:
-                        task.kind.draw(pixels, view, moment, develop)
+        draw_labels(pixels, view, self.graph.tasks, self.graph.drawn[self.name], moment, panel.scale)
+        for name, kind in arrangement.overlays.items():
+            with failing_as(name, moment.time, self.graph.tasks[name].span):
+                part = strength(kind, moment)
+                if part > 0:
+                    under = None if part == 1 else pixels.astype("float32")
+                    kind.draw(pixels, view, moment, develop, panel.scale)
+                    if under is not None:
+                        pixels[:] = (under + part * (pixels - under) + 0.5).astype("uint8")
 
     def frame(self, moment: Any, *, fields: bool = False) -> Frame:
         """The shapes that the output draws now. Raises Unsuitable for one that does not draw, and RunFailure."""

@@ -43,6 +43,7 @@ class FakeMoment:
     parts: Mapping[str, Any] = field(default_factory=dict)
     given: Mapping[tuple[str, str], Any] = field(default_factory=dict)
     box: tuple[Any, Any] = ((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
+    room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
     def at(self, value: Value) -> Any:
         return evaluate(value.expr, self._look_up, arrays=True)

@@ -79,7 +79,8 @@ class Reader:
         mistaken: set[str | None] = set()
         if isinstance(node, MappingNode):
             known = [kinds.written_name(name) for name in cls.model_fields]
-            ok = report_unknown(node, known, title, self.found) and not node.partial
+            said_by = cls.said_by if issubclass(cls, kinds.Record) else {}
+            ok = report_unknown(node, known, title, self.found, said_by) and not node.partial
             mistaken = {meant_field(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from collections.abc import Mapping as Naming
 
 from sceneql.language.tree import Mapping
 from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
 from sceneql.quantities.other_words import instead
 
 
-def report_unknown(node: Mapping, known: Collection[str], title: str, found: Diagnostics) -> bool:
-    """Report the fields of a mapping that are not among the known ones; True if there are none."""
+def report_unknown(
+    node: Mapping, known: Collection[str], title: str, found: Diagnostics, said_by: Naming[str, str] | None = None
+) -> bool:
+    """Report the fields of a mapping that are not among the known ones; True if there are none.
+
+    ``said_by``: what says it instead, for names that are likely to be tried.
+    """
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        help = suggestion(name, known) or instead("field", name) or "it has " + ", ".join(known)
+        help = (said_by or {}).get(name) or suggestion(name, known)
+        help = help or instead("field", name) or "it has " + ", ".join(known)
         if (meant := meant_field(name, known)) is not None and name.startswith(f"{meant} "):
             help = f"write `{meant}: {name.removeprefix(meant).strip()}`"
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)

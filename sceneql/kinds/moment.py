@@ -77,6 +77,10 @@ class Moment(Protocol):
         """When the run ends [s]."""
 
     @property
+    def room(self) -> tuple[float, float, float, float]:
+        """What overlays take of the picture's left, top, right and bottom, in parts of its width and height."""
+
+    @property
     def variants(self) -> tuple[str, ...]:
         """The names of the script's variants."""
 

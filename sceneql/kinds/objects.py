@@ -101,8 +101,8 @@ class Object(Kind):
         """The members whose insides make up its own."""
         return ()
 
-    def labels(self, name: str, moment: Moment) -> Iterable[tuple[Any, str]]:
-        """Points (3,) in the world [m] and the labels that stand over them in the picture."""
+    def labels(self, name: str, moment: Moment) -> Iterable[tuple[Any, Any, str]]:
+        """Labels, each with points (n, 3) in the world [m] that it stands beside, and the direction (3,) it lies in."""
         return ()
 
     def remembers(self) -> Iterable[tuple[Value, float, float]]:

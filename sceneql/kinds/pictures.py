@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from sceneql.kinds.types import Scalar
+from sceneql.kinds.types import FixedTime, Scalar
 from sceneql.kinds.word import Kind, field
 
 if TYPE_CHECKING:
@@ -21,6 +21,8 @@ class Camera(Kind):
     """Where the film is seen from."""
 
     family: ClassVar[str] = "cameras"
+    yields: ClassVar[bool] = False
+    """Whether it leaves the room to overlays that they take of the picture (`Moment.room`)."""
 
     def looks_ahead(self) -> bool:
         """Whether it frames all that the whole film draws, so that the physics runs once before the pictures."""
@@ -80,13 +82,38 @@ class Overlay(Kind):
 
     fills: ClassVar[bool] = False
     """Whether it can fill a panel of a layout."""
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("from", "until", "to", "start", "end", "begin", "time", "times"),
+        "from when to when it is there is said by `show`: `show: (time > 1 s)*(time < 3 s)`",
+    )
 
     show: Scalar | None = field("It is there only while this is not 0, as `time > 2 s`; by default always.", None)
+    fade: FixedTime = field(
+        "How long it takes to come once `show` begins, and to go before it ends.", "0 s", at_least=0
+    )
     dark: bool = field("Light letters on a dark panel.", False)
 
     def courses(self) -> Iterable[Value]:
         """Values that it needs over the whole run (`Moment.course`), so that the physics runs once before it."""
         return ()
+
+    def places(self) -> tuple[str, ...]:
+        """The places in the picture that it may take (`place`), best first; the one that the script names, if it does.
+
+        Of several it is given the one where it hides least of the scene. Nothing for what follows the scene.
+        """
+        return ()
+
+    def box(self, place: str, size: tuple[int, int], moment: Moment, scale: float) -> tuple[int, int, int, int] | None:
+        """Left, top, right, bottom [pixels] of what it covers at a place; the whole picture is ``scale`` times as high.
+
+        None where it is not drawn.
+        """
+        return None
+
+    def fades(self) -> Iterable[Value]:
+        """What it needs over the whole run to come and go softly: when it is there."""
+        return () if self.show is None or self.fade == 0 else (self.show,)
 
     def variants(self) -> bool:
         """Whether it shows the script's variants."""
@@ -97,7 +124,15 @@ class Overlay(Kind):
         raise NotImplementedError
 
     def draw(
-        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
+        self,
+        pixels: NDArray[uint8],
+        view: View,
+        moment: Moment,
+        develop: Callable[[Any], NDArray[uint8]],
+        scale: float = 1.0,
     ) -> None:
-        """Draw on a developed picture (h, w, 3); ``develop`` brings linear RGB (h, w, 3) to its display pixels."""
+        """Draw on a developed picture (h, w, 3); ``develop`` brings linear RGB (h, w, 3) to its display pixels.
+
+        The whole picture, of which this may be a panel, is ``scale`` times as high.
+        """
         raise NotImplementedError

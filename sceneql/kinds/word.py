@@ -146,6 +146,9 @@ def read_default(info: Any) -> Any:
 class Record(BaseModel):
     """A group of fields inside a word (a mass, a spring, a clock): the same types, no methods of a family."""
 
+    said_by: ClassVar[Mapping[str, str]] = {}
+    """What says it instead, for fields that it has not and that are likely to be tried: the help of the message."""
+
     # Schemas are built when a word is first used: most words of the vocabulary never are.
     model_config = ConfigDict(frozen=True, strict=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
 

@@ -7,8 +7,22 @@ from typing import TYPE_CHECKING, Any, Literal
 if TYPE_CHECKING:
     from sceneql.frame import View
 
-Place = Literal["top left", "top", "top right", "left", "right", "bottom left", "bottom", "bottom right"]
-
+Place = Literal["top left", "top", "top right", "left", "center", "right", "bottom left", "bottom", "bottom right"]
+Box = tuple[int, int, int, int]
+"""Left, top, right, bottom [pixels]."""
+EDGES: tuple[Place, ...] = (
+    "top left",
+    "top",
+    "top right",
+    "bottom left",
+    "bottom",
+    "bottom right",
+    "left",
+    "right",
+)
+"""The places where words look for room, best first."""
+CORNERS: tuple[Place, ...] = ("bottom left", "bottom right", "top left", "top right", "bottom", "top")
+"""The places where panels look for it."""
 
 MARGIN = 0.025
 """Free space at the edges in parts of the picture's height."""
@@ -21,6 +35,20 @@ def corner(place: str, block: tuple[int, int], picture: tuple[int, int]) -> tupl
     left = margin if "left" in place else picture[0] - margin - block[0] if "right" in place else left
     top = margin if "top" in place else picture[1] - margin - block[1] if "bottom" in place else top
     return left, top
+
+
+def box_at(place: str, block: tuple[int, int], picture: tuple[int, int]) -> Box:
+    """The box of a block (width, height) at a named place of a picture (width, height)."""
+    left, top = corner(place, block, picture)
+    return left, top, left + block[0], top + block[1]
+
+
+def outline(points: Any, view: View) -> tuple[float, float, float, float] | None:
+    """Left, top, right, bottom [pixels] of points (n, 3) that are before the camera; None where none is."""
+    seen = [place for point in points if (place := projected(point, view)) is not None]
+    if not seen:
+        return None
+    return min(x for x, _ in seen), min(y for _, y in seen), max(x for x, _ in seen), max(y for _, y in seen)
 
 
 def projected(point: Any, view: View) -> tuple[float, float] | None:

@@ -57,13 +57,16 @@ def bounds(moment: Moment, refs: Iterable[Ref] | None) -> tuple[Floats, Floats]:
     return moment.bounds([ref.name for ref in refs or ()])
 
 
-def fitted(points: Floats, axes: Floats, slopes: tuple[float, float], aim: Any = None) -> tuple[Floats, float]:
+def fitted(
+    points: Floats, axes: Floats, slopes: tuple[float, float], aim: Any = None, middle: tuple[float, float] = (0.0, 0.0)
+) -> tuple[Floats, float]:
     """Position (3,) and distance of the nearest camera that sees all points; exact, without iteration.
 
-    ``slopes``: half the picture's width and height at the distance 1, margins taken off. With ``aim`` (3,) the camera
-    looks at that point; else it moves sideways until the picture is filled best. For a coordinate p across, a depth b
-    towards the camera and a slope k, a point is seen from the distance D at the place s across if
-    |p - s| <= k (D - b): so D >= (max(p + k b) - min(p - k b))/(2 k), and s is the middle of what is left.
+    ``slopes``: half the width and height, at the distance 1, of the picture's part where the points shall be, whose
+    center stands at ``middle``, to the right and up. With ``aim`` (3,) the camera looks at that point; else it moves
+    sideways until that part is filled best. For a coordinate p across, a depth b towards the camera, a slope k and a
+    middle m, a point is seen from the distance D at the place s across if |p - s - m (D - b)| <= k (D - b): so
+    D >= (max(p + (k + m) b) - min(p - (k - m) b))/(2 k), and s is the middle of what is left.
     """
     import numpy as np
 
@@ -72,16 +75,16 @@ def fitted(points: Floats, axes: Floats, slopes: tuple[float, float], aim: Any =
     depth = (points - center) @ back
     distance, shift = float(depth.max()) + NEAREST, np.zeros(3)
     sides = []
-    for axis, slope in ((right, slopes[0]), (up, slopes[1])):
-        p = (points - center) @ axis
+    for axis, slope, off in ((right, slopes[0], middle[0]), (up, slopes[1], middle[1])):
+        p = (points - center) @ axis + off * depth
         if aim is not None:
             distance = max(distance, float((depth + np.abs(p) / slope).max()))
         else:
             above, below = float((p + slope * depth).max()), float((p - slope * depth).min())
             distance = max(distance, (above - below) / (2 * slope))
-            sides.append((axis, slope, above, below))
-    for axis, _, above, below in sides:
-        shift += (above + below) / 2 * axis
+            sides.append((axis, off, above, below))
+    for axis, off, above, below in sides:
+        shift += ((above + below) / 2 - off * distance) * axis
     return center + shift + distance * back, distance
 
 
@@ -134,6 +137,18 @@ def seen_slopes(half_height: float, size: tuple[int, int], margin: float) -> tup
     """Half width and half height of the picture's inner part, at the distance 1."""
     inner = half_height * (1 - margin)
     return inner * size[0] / size[1], inner
+
+
+def inner(
+    half_height: float, size: tuple[int, int], margin: float, room: tuple[float, float, float, float]
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Half width and height of what overlays leave of the picture, less the margin, and its middle, at the distance 1.
+
+    ``room``: what they take at the left, top, right and bottom, in parts of the picture's width and height.
+    """
+    (wide, high), (left, top, right, bottom) = seen_slopes(half_height, size, margin), room
+    full = half_height * size[0] / size[1]
+    return (wide * (1 - left - right), high * (1 - top - bottom)), (full * (left - right), half_height * (bottom - top))
 
 
 def view(origin: Any, axes: Floats, size: tuple[int, int], half_height: float, *, orthographic: bool = False) -> View:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +14,10 @@ if TYPE_CHECKING:
     from numpy import uint8
     from numpy.typing import NDArray
 
+    from sceneql.frame import Floats
     from sceneql.graph import SimulationGraph
     from sceneql.kinds.outputs import Row
+    from sceneql.pictures.anchors import Box as AnchorBox
     from sceneql.run.instant import Instant
 
 GAP = 0.008
@@ -32,20 +34,20 @@ Box = tuple[int, int, int, int]
 
 def boxes(rows: Sequence[Row], variants: Sequence[str], size: tuple[int, int]) -> list[tuple[Any, Box]]:
     """The content of each panel (a variant's name, or the reference of a row) with its box."""
-    lines: list[tuple[Sequence[Any], float, int]] = []
+    lines: list[tuple[Sequence[Any], float, int, bool]] = []
     for row in rows:
         if isinstance(row, EachVariant):
             columns = row.columns or _columns(len(variants))
             for k in range(0, len(variants), columns):
-                lines.append((variants[k : k + columns], row.share, columns))
+                lines.append((variants[k : k + columns], row.share, columns, True))
         else:
-            lines.append((row, 1.0, len(row)))
+            lines.append((row, 1.0, len(row), False))
     gap = max(2, round(GAP * size[1]))
     room = size[1] - gap * (len(lines) - 1)
-    total = sum(share for _, share, _ in lines)
+    total = sum(share for _, share, *_ in lines)
     found: list[tuple[Any, Box]] = []
     done = 0.0
-    for k, (line, share, columns) in enumerate(lines):
+    for k, (line, share, columns, compared) in enumerate(lines):
         top, bottom = (round(room * part / total) + k * gap for part in (done, done + share))
         done += share
         across = size[0] - gap * (columns - 1)
@@ -54,7 +56,10 @@ def boxes(rows: Sequence[Row], variants: Sequence[str], size: tuple[int, int]) -
         )  # the last line of a grid stands in its middle
         for j, item in enumerate(line):
             left, right = (round(across * part / columns) + j * gap for part in (j, j + 1))
-            found.append((item, (start + left, top, right - left, bottom - top)))
+            wide, high = right - left, bottom - top
+            if compared:  # all of one size
+                wide, high = int(across / columns), int(room * share / total)
+            found.append((item, (start + left, top, wide, high)))
     return found
 
 
@@ -76,15 +81,23 @@ def label(pixels: NDArray[uint8], name: str, failure: RunFailure | None, scale: 
     """Write a variant's name on its panel (h, w, 3), and how it failed; the picture is ``scale`` times as high."""
     from sceneql.pictures.lettering import Letterer
 
-    letters = Letterer(pixels, NAME * scale)
+    letters = Letterer(pixels, NAME * scale, scale=scale)
     room = letters.em // 2
     letters.line((room, room), name, 0.8)
     letters.done()
     if failure is not None:
-        letters = Letterer(pixels, TOLD * scale)
+        letters = Letterer(pixels, TOLD * scale, scale=scale)
         told = fitted(letters, f"failed at {failure.time:.3g} s: {failure.message}", letters.width - 3 * letters.em)
         letters.line((room, letters.height), told, 0.9, WARNING)
         letters.done()
+
+
+def label_box(size: tuple[int, int], name: str, scale: float) -> AnchorBox:
+    """Left, top, right, bottom [pixels] of a variant's name on its panel."""
+    from sceneql.pictures.lettering import Letterer
+
+    letters = Letterer(page(size), NAME * scale, scale=scale)
+    return letters.line_box((letters.em // 2, letters.em // 2), name)
 
 
 def fitted(letters: Any, text: str, room: float) -> str:
@@ -109,6 +122,20 @@ class Panel:
         """Its latest picture (h, w, 3) uint8."""
         self.failure: RunFailure | None = None
         self._last: Instant | None = None
+        self._whole = self.run
+
+    def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
+        """Low and high corner (3,) of each part over the whole run; nothing of one that may fail, and cannot start."""
+        try:
+            return self._whole.boxes()
+        except RunFailure:
+            if not self.graph.variants.may_fail:
+                raise
+            return {}
+
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats] | None:
+        """Low and high corner (3,) of what the parts draw over the whole run (run.Run)."""
+        return self._whole.bounds(names) if self.boxes() else None
 
     def at(self, time: float) -> Instant:
         """The moment [s], or the last one before the failure. Raises RunFailure where the script does not allow it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -35,17 +36,31 @@ LIGHT = Look((250, 250, 250), (28, 28, 32), (96, 96, 104), (0, 0, 0, 38), (0, 0,
 DARK = Look((24, 25, 32), (238, 238, 242), (164, 166, 178), (255, 255, 255, 50), (255, 255, 255, 20))
 
 
+LEAST, SMALLEST = 11, 0.025
+"""Least height of letters: pixels, and part of the whole picture's height."""
+
+
+def least_letters(height: int) -> int:
+    """The least height of letters in a picture of some height [pixels]."""
+    return max(LEAST, math.ceil(SMALLEST * height))
+
+
 class Letterer:
     """Draws on a picture (h, w, 3) uint8, in place once it is done."""
 
-    def __init__(self, pixels: NDArray[uint8], text_height: float, look: Look = LIGHT) -> None:
-        """``text_height`` in parts of the picture's height; letters are never smaller than 9 pixels."""
+    def __init__(self, pixels: NDArray[uint8], text_height: float, look: Look = LIGHT, scale: float = 1.0) -> None:
+        """``text_height`` in parts of the height of ``pixels``.
+
+        The whole picture, of which this may be a panel, is ``scale`` times as high: letters are never smaller than
+        SMALLEST of it, nor than LEAST pixels.
+        """
         from PIL import Image, ImageDraw
 
         self._pixels = pixels
         self.look = look
         self.height, self.width = pixels.shape[:2]
-        self.em = max(9, round(text_height * self.height))
+        self.least = least_letters(round(scale * self.height))
+        self.em: int = max(self.least, round(text_height * self.height))
         self.font = font(self.em)
         self._image = Image.fromarray(pixels)
         self.draw: Any = ImageDraw.Draw(self._image, "RGBA")
@@ -64,26 +79,38 @@ class Letterer:
 
     def edged(self, seen: tuple[float, float], text: str) -> None:
         """A text centered on a point, without a panel: an outline in the paper's color keeps it legible."""
-        ink, paper, edge = self.look.ink, self.look.paper, max(1, round(self.em / 10))
+        ink, paper, edge = self.look.ink, self.look.paper, self.edge
         self.draw.text(seen, drawable(text), ink, font=self.font, anchor="mm", stroke_width=edge, stroke_fill=paper)
+
+    @property
+    def edge(self) -> int:
+        """Width of the outline of letters without a panel [pixels]."""
+        return max(1, round(self.em / 10))
+
+    def letter_box(self, text: str) -> tuple[int, int]:
+        """Width and height [pixels] of what a text without a panel covers, outline included."""
+        left, top, right, bottom = self.draw.textbbox((0, 0), drawable(text), self.font, "mm", stroke_width=self.edge)
+        return 2 * math.ceil(max(-left, right)), 2 * math.ceil(max(-top, bottom))
+
+    def block(self, text: str) -> tuple[int, int]:
+        """Width and height [pixels] of a text on a panel of its own."""
+        (wide, high), room = self.extent(text), round(0.4 * self.em)
+        return wide + 2 * room, high + 2 * room
+
+    def line_box(self, corner: tuple[int, int], text: str) -> tuple[int, int, int, int]:
+        """Left, top, right, bottom of a text's panel with its left and top at the corner, or as near as there is room.
+
+        [pixels]
+        """
+        wide, high = self.block(text)
+        left, top = max(min(corner[0], self.width - wide - 1), 0), max(min(corner[1], self.height - high - 1), 0)
+        return left, top, left + wide, top + high
 
     def line(self, corner: tuple[int, int], text: str, opacity: float, ink: Ink = None) -> None:
         """A text on a panel of its own, its left and top at the corner [pixels] or as near as the picture holds it."""
-        (wide, high), room = self.extent(text), round(0.4 * self.em)
-        left = max(min(corner[0], self.width - wide - 2 * room - 1), 0)
-        top = max(min(corner[1], self.height - high - 2 * room - 1), 0)
-        self.panel((left, top, left + wide + 2 * room, top + high + 2 * room), opacity)
-        self.text((left + room, top + room + 0.5 * high), text, ink=ink)
-
-    def over(self, seen: tuple[float, float], text: str, opacity: float) -> None:
-        """A text on a panel over a point [pixels]."""
-        (wide, high), room = self.extent(text), round(0.4 * self.em)
-        self.line((round(seen[0] - 0.5 * wide) - room, round(seen[1] - high) - 2 * room), text, opacity)
-
-    def under(self, seen: tuple[float, float], text: str, opacity: float) -> None:
-        """A text on a panel under a point [pixels]."""
-        wide, _ = self.extent(text)
-        self.line((round(seen[0] - 0.5 * wide) - round(0.4 * self.em), round(seen[1])), text, opacity)
+        box = self.line_box(corner, text)
+        self.panel(box, opacity)
+        self.text((box[0] + round(0.4 * self.em), 0.5 * (box[1] + box[3])), text, ink=ink)
 
     def paste(self, block: NDArray[uint8], left: int, top: int) -> None:
         """Pixels (h, w, 3) over the picture."""
@@ -122,10 +149,18 @@ def font(size: int) -> Any:
     return ImageFont.truetype(str(path), size, layout_engine=ImageFont.Layout.BASIC)
 
 
+FEWEST, MORE = 3, 8
+"""Numbers that an axis has at least; asked for so many more, every axis has them."""
+
+
+def marked_numbers(low: float, high: float, count: int) -> list[float]:
+    """As `round_numbers`, but at least FEWEST, where fewer are not asked for."""
+    rows = (round_numbers(low, high, more) for more in range(count, count + MORE))
+    return next((row for row in rows if len(row) >= min(FEWEST, count)), round_numbers(low, high, count + MORE))
+
+
 def round_numbers(low: float, high: float, count: int) -> list[float]:
     """About ``count`` numbers from low to high in steps of 1, 2 or 5 times a power of ten."""
-    import math
-
     rough = (high - low) / max(count, 1)
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(power * factor for factor in (1.0, 2.0, 5.0, 10.0) if power * factor >= rough * (1.0 - 1e-9))

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds.texts import SUPERSCRIPTS, shown_unit
-from sceneql.pictures.lettering import Letterer, Look, font
+from sceneql.pictures.lettering import FEWEST, Letterer, Look, font
 from sceneql.pictures.plotting import Scale, scale_for, stroke, thousands
 from sceneql.quantities.units import parse_unit
 
@@ -21,6 +22,8 @@ Color = tuple[int, int, int]
 
 FEW = 12
 """Most curves that end in dots."""
+MOST_TICKS = 5
+"""About how many numbers an axis has at most."""
 SHARE = 0.3
 """A title below that is longer than this share of the panel has a line of its own."""
 
@@ -82,32 +85,45 @@ def draw_plot(
     across: Axis,
     opacity: float,
     text: float,
+    scale: float,
     look: Look,
     named: bool,
 ) -> None:
     """Draw over the whole of a part (h, w, 3) of a picture; ``named``: with the curves' names.
 
-    ``text``: height of letters in parts of the part's height. Without room for letters there are curves alone.
+    ``text``: height of letters in parts of the part's height; the whole picture is ``scale`` times as high. Without
+    room for letters there are curves alone.
     """
-    letters = Letterer(pixels, text, look)
+    letters = Letterer(pixels, text, look, scale)
     em, wide, high = letters.em, letters.width, letters.height
-    small = font(max(9, round(0.82 * em)))
+    small = font(max(letters.least, round(0.82 * em)))
     pad = round(0.7 * em)
     letters.panel((0, 0, wide - 1, high - 1), opacity)
     y_scale, x_scale = up.scale([c.values for c in curves]), across.scale([c.across for c in curves])
     y_power, x_power = thousands(y_scale), thousands(x_scale)
-    head, words = _head(letters, wide - 2 * pad, up.words(y_power), curves if named else ())
+    shown = [curve for curve in curves if _within(up, y_scale, curve)] if named else []
+    head, words = _head(letters, wide - 2 * pad, up.words(y_power), shown)
     title = across.words(x_power)
     length = letters.draw.textlength(title, font=small)
-    apart = length > SHARE * wide  # it has a line of its own
-    y0, y1 = pad + round(head), high - pad - round((2.35 if apart else 1.35) * em)
-    bare = y1 - y0 < 2 * em or wide < 8 * em
-    if bare:
-        y0, y1 = pad, max(high - pad, pad + 1)
-    marks = [] if bare else _scaled(y_scale, y_power).ticks(max(2, round((y1 - y0) / (2.2 * em))))
-    widest = max((letters.draw.textlength(word, font=small) for _, word in marks), default=0.0)
-    x0, x1 = pad + round(widest + 0.5 * em), wide - 1 - round(1.2 * em)
-    area = _Area(x0, y0, max(x1, x0 + 1), y1, x_scale, y_scale)
+    x1, low = wide - 1 - round(1.2 * em), high - pad
+    tries: list[tuple[_Area, list[tuple[float, str]], list[tuple[float, str]], bool]] = []
+    for apart in (length > SHARE * wide, True):  # the title below has a line of its own
+        y0, y1 = pad + round(head), low - round((2.35 if apart else 1.35) * em)
+        if y1 - y0 < 2 * em or wide < 8 * em:
+            break
+        marks = _scaled(y_scale, y_power).ticks(min(max(FEWEST, round((y1 - y0) / (2.2 * em))), MOST_TICKS))
+        widest = max((letters.draw.textlength(word, font=small) for _, word in marks), default=0.0)
+        x0 = pad + round(widest + 0.5 * em)
+        area = _Area(x0, y0, max(x1, x0 + 1), y1, x_scale, y_scale)
+        columns = _columns(letters, small, area, x_power, wide if apart else x1 - length - 0.3 * em)
+        tries.append((area, marks, columns, apart))
+        if sum(word != "" for _, word in columns) >= FEWEST:
+            break
+    bare = not tries
+    area, marks, columns, apart = (
+        tries[-1] if tries else (_Area(pad, pad, max(x1, pad + 1), max(low, pad + 1), x_scale, y_scale), [], [], False)
+    )
+    x0, y0, x1, y1 = area.x0, area.y0, area.x1, area.y1
 
     thin = max(1, round(em / 22))
     if not bare:
@@ -126,12 +142,9 @@ def draw_plot(
             letters.draw.text((x0 - 0.45 * em, y), word, look.quiet, font=small, anchor="rm")
         below, end = y1 + round(0.95 * em), x1 + 0.5 * em
         letters.draw.text((end, below + (round(1.05 * em) if apart else 0)), title, look.ink, font=small, anchor="rm")
-        room = wide if apart else end - length - 0.8 * em
-        for value, word in _scaled(x_scale, x_power).ticks(max(2, round((x1 - x0) / (6 * em)))):
-            x = float(area.x(value * 10.0**x_power))
+        for x, word in columns:
             letters.draw.line((x, y0, x, y1), look.fine, thin)
-            if x + 0.5 * letters.draw.textlength(word, font=small) < room:
-                letters.draw.text((x, below), word, look.quiet, font=small, anchor="mm")
+            letters.draw.text((x, below), word, look.quiet, font=small, anchor="mm")
     letters.draw.line((x0, y1, x1, y1), look.quiet, thin)
     for curve in curves:
         along, values = curve.drawn()
@@ -183,19 +196,69 @@ def _scaled(scale: Scale, power: int) -> Scale:
     return scale if power == 0 else Scale(scale.low / 10.0**power, scale.high / 10.0**power)
 
 
+def _columns(letters: Letterer, small: Any, area: _Area, power: int, room: float) -> list[tuple[float, str]]:
+    """Columns of ticks and their texts, of which at least three stand left of ``room`` [pixels], if they can.
+
+    A text without room is empty.
+    """
+    scale = _scaled(area.across, power)
+    wanted = min(max(FEWEST, round((area.x1 - area.x0) / (6 * letters.em))), MOST_TICKS)
+    found: list[list[tuple[float, str]]] = []
+    for count in range(wanted, wanted + FEWEST + 1):
+        ticks: list[tuple[float, str]] = []
+        end = -math.inf
+        for value, word in scale.ticks(count):
+            x, half = float(area.x(value * 10.0**power)), 0.5 * letters.draw.textlength(word, font=small)
+            fits = x - half > end + 0.4 * letters.em and x + half < room
+            ticks.append((x, word if fits else ""))
+            end = x + half if fits else end
+        found.append(ticks)
+        if sum(word != "" for _, word in ticks) >= FEWEST:
+            return ticks
+    return found[0]
+
+
+def _within(up: Axis, scale: Scale, curve: Curve) -> bool:
+    """Whether something of a curve lies between the ends of the upright axis at any time of the run."""
+    import numpy as np
+
+    values = np.asarray(up.told(curve.values), dtype=float)
+    return bool(((values >= scale.low) & (values <= scale.high)).any())
+
+
 def _head(
     letters: Letterer, wide: int, title: str, curves: Sequence[Curve]
 ) -> tuple[float, list[tuple[float, float, Curve | None, str]]]:
-    """Height of title and names, and for each the column and row of its left end, its curve, its text."""
-    em, at, row = letters.em, 0.0, 0.5 * letters.em
-    found: list[tuple[float, float, Curve | None, str]] = []
+    """Height of title and names, and for each the column and row of its left end, its curve, its text.
+
+    Names that need several lines are spread over them evenly: none stands alone that need not.
+    """
+    lines = len(_lines(letters, wide, title, curves))
+    while wide > 0 and len(_lines(letters, wide - letters.em, title, curves)) == lines:
+        wide -= letters.em
+    em = letters.em
+    found = [
+        (at, (0.5 + 1.3 * k) * em, curve, text)
+        for k, line in enumerate(_lines(letters, wide, title, curves))
+        for at, curve, text in line
+    ]
+    return (found[-1][1] + 1.15 * em if found else 0.7 * em), found
+
+
+def _lines(
+    letters: Letterer, wide: int, title: str, curves: Sequence[Curve]
+) -> list[list[tuple[float, Curve | None, str]]]:
+    """Title and names in lines of a width [pixels]: the column of each text's left end, its curve, the text."""
+    em, at = letters.em, 0.0
+    lines: list[list[tuple[float, Curve | None, str]]] = [[]]
     if title:
-        found.append((at, row, None, title))
+        lines[0].append((at, None, title))
         at += letters.extent(title)[0] + 1.4 * em
     for curve in curves:
         length = 1.4 * em + letters.extent(curve.name)[0]
         if at + length > wide and at > 0:
-            at, row = 0.0, row + 1.3 * em
-        found.append((at + 1.4 * em, row, curve, curve.name))
+            at = 0.0
+            lines.append([])
+        lines[-1].append((at + 1.4 * em, curve, curve.name))
         at += length + 1.2 * em
-    return row + (1.15 if found else 0.2) * em, found
+    return lines

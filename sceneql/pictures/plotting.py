@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds.texts import SUPERSCRIPTS
-from sceneql.pictures.lettering import round_numbers
+from sceneql.pictures.lettering import FEWEST, marked_numbers
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -17,8 +17,6 @@ FINE = 4
 """Strokes are drawn this many times larger, and averaged down."""
 SMALLEST = 1e-200
 """The smallest number that a logarithmic axis is stretched for."""
-MORE = 4
-"""Ticks asked for beyond those that fit well, to have three."""
 FEW_DECADES = 3
 """Most decades that have ticks between their powers."""
 
@@ -44,18 +42,20 @@ class Scale:
         return np.asarray((logs - low) / (high - low))
 
     def ticks(self, count: int) -> list[tuple[float, str]]:
-        """About so many round numbers with their texts."""
+        """About so many round numbers with their texts; at least three where three are asked for."""
         if not self.log:
-            rows = (round_numbers(self.low, self.high, more) for more in range(count, count + MORE))
-            values = next((row for row in rows if len(row) > 2), round_numbers(self.low, self.high, count + MORE))
+            values = marked_numbers(self.low, self.high, count)
             step = values[1] - values[0] if len(values) > 1 else abs(self.high - self.low)
             digits = max(0, -math.floor(math.log10(step) + 1e-9))
             return [(value, f"{value + 0.0:.{digits}f}".replace("-", "\u2212")) for value in values]
         first, last = math.ceil(math.log10(self.low) - 1e-9), math.floor(math.log10(self.high) + 1e-9)
         if last - first < 2:  # powers of ten alone would be too few
             values = [m * 10.0**k for k in range(first - 1, last + 1) for m in (1, 2, 5)]
-            return [(v, f"{v:.6g}") for v in values if self.low * (1 - 1e-9) <= v <= self.high * (1 + 1e-9)]
-        every = math.ceil((last - first + 1) / count)
+            values = [v for v in values if self.low * (1 - 1e-9) <= v <= self.high * (1 + 1e-9)]
+            if len(values) < min(FEWEST, count):
+                values = marked_numbers(self.low, self.high, count)
+            return [(v, f"{v:.6g}") for v in values]
+        every = min(math.ceil((last - first + 1) / count), (last - first) // 2)
         powers = range(last - (last - first) // every * every, last + 1, every)
         return [(10.0**k, "10" + str(k).translate(SUPERSCRIPTS) if k not in (0, 1) else str(10**k)) for k in powers]
 

@@ -83,7 +83,7 @@ def pieces(expr: Expr) -> Iterator[Expr]:
 def asked(graph: SimulationGraph) -> dict[tuple[str, int], Value]:
     """The values whose course overlays ask for, by the overlay's name and the value's index."""
     overlays = [(name, task.kind) for name, task in graph.tasks.items() if isinstance(task.kind, Overlay)]
-    return {(name, k): value for name, kind in overlays for k, value in enumerate(kind.courses())}
+    return {(name, k): value for name, kind in overlays for k, value in enumerate((*kind.courses(), *kind.fades()))}
 
 
 def asked_by_objects(start: Instant) -> dict[str, list[Value]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
@@ -29,7 +29,20 @@ IDENTITY = np.eye(3, 4)
 T = TypeVar("T")
 
 
-class Running(Protocol):
+class Framed(Protocol):
+    """A run as cameras see it: the boxes of its parts over the film."""
+
+    def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
+        """Low and high corner (3,) of each part over the whole run."""
+
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats] | None:
+        """Low and high corner (3,) of what the parts draw over the whole run; for no names of all that stays.
+
+        None where nothing is drawn.
+        """
+
+
+class Running(Framed, Protocol):
     """What instants need of their run, and a run ahead of it (run.Run)."""
 
     graph: SimulationGraph
@@ -51,9 +64,6 @@ class Running(Protocol):
     def state(self, name: str) -> ModelState:
         """The latest state of a model that is solved, or of a contact."""
 
-    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of what the parts draw over the whole run; for no names of all that stays."""
-
     def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
         """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""
 
@@ -67,6 +77,10 @@ class Instant:
     """[s]"""
     asked: bool = False
     """Whether it was asked for what may be otherwise at another instant."""
+    beside: tuple[Framed, ...] = ()
+    """The runs of variants that are seen in panels beside this one: one framing serves all."""
+    room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    """What overlays take of the picture's left, top, right and bottom, in parts of its width and height."""
     _states: dict[str, ModelState] = field(default_factory=dict)
     _values: dict[tuple[str, str], tuple[Any, bool]] = field(default_factory=dict)
     """Formulas of other parts that values read, by part and output, and whether each varies: worked out once."""
@@ -157,9 +171,13 @@ class Instant:
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole film; for no names of all that stays."""
-        if self.run.ahead:
+        asked = list(names)
+        runs = () if self.run.ahead else (self.run, *self.beside)
+        boxes = [box for run in runs if (box := run.bounds(asked)) is not None]
+        if not boxes:
             return np.full(3, -1.0), np.full(3, 1.0)
-        return self.run.bounds(names)
+        lows, highs = np.array([low for low, _ in boxes]), np.array([high for _, high in boxes])
+        return lows.min(axis=0), highs.max(axis=0)
 
     def place(self, name: str) -> Floats:
         """(3, 4) map to the world from the coordinates that an object's position is told in."""

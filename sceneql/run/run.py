@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -76,20 +76,22 @@ class Run:
         """The latest state of a model that is solved, or of a contact."""
         return self.island_of[name].state(name)
 
-    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of what the parts draw over the whole run, found by a run ahead of its own.
+    def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
+        """Low and high corner (3,) of each part over the whole run."""
+        return self._bounded().bounds or {}
 
-        For no names all that is drawn, but for what leaves for good.
+    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats] | None:
+        """Low and high corner (3,) of what the parts draw over the whole run; None where nothing is drawn.
+
+        For no names of all that is drawn, but for what leaves for good.
         """
-        if None not in self._dry_runs or self._dry_runs[None].bounds is None:
-            self._dry_runs[None] = dry_run(Run(self.graph, ahead=True))
-        named, seen = list(names), self._dry_runs[None]
+        named, seen = list(names), self._bounded()
         if not named and seen.staying is not None:
             return seen.staying
         known = seen.bounds or {}
         corners = [known[name] for name in named or self.orders if name in known]
         if not corners:
-            return np.full(3, -1.0), np.full(3, 1.0)
+            return None
         lows, highs = np.array([low for low, _ in corners]), np.array([high for _, high in corners])
         return lows.min(axis=0), highs.max(axis=0)
 
@@ -97,6 +99,12 @@ class Run:
         """A warning for what leaves for good, of a run whose camera looked ahead."""
         seen = self._dry_runs.get(None)
         return () if seen is None else tuple(warning(one, self.graph.tasks) for one in seen.leaving)
+
+    def _bounded(self) -> DryRun:
+        """What a run ahead of this one sees, bounds among it."""
+        if None not in self._dry_runs or self._dry_runs[None].bounds is None:
+            self._dry_runs[None] = dry_run(Run(self.graph, ahead=True))
+        return self._dry_runs[None]
 
     def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
         """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""

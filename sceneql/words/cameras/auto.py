@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Angle, Camera, FixedScalar, Moment, field
 from sceneql.pictures import framing
@@ -20,8 +20,11 @@ FLAT = 0.2
 class Auto(Camera):
     """A three-quarter view of all that is drawn, from the right front and above, that holds still over the whole film.
 
-    A scene that is flat in z is seen from the front. The few of many things that leave for good are let go.
+    A scene that is flat in z is seen from the front. The few of many things that leave for good are let go. Panels of
+    variants share one view, and overlays are left room.
     """
+
+    yields: ClassVar[bool] = True
 
     field_of_view: Angle = field("Vertical field of view.", "30 deg", above=0, below=math.pi)
     margin: FixedScalar = field("Part of half the picture that is left free.", "0.12", at_least=0, below=1)
@@ -32,6 +35,6 @@ class Auto(Camera):
         low, high = framing.bounds(moment, None)
         width, height, depth = high - low
         axes = framing.axes_towards(FRONT if depth < FLAT * min(width, height) else THREE_QUARTER)
-        slopes = framing.seen_slopes(half, size, self.margin)
-        origin, _ = framing.fitted(framing.corners(low, high), axes, slopes)
+        slopes, middle = framing.inner(half, size, self.margin, moment.room)
+        origin, _ = framing.fitted(framing.corners(low, high), axes, slopes, middle=middle)
         return framing.view(origin, axes, size, half)

@@ -18,9 +18,6 @@ SIDES = 24
 HEAD, WIDE = 5.0, 2.4
 """Length and radius of the head, in radii of the shaft."""
 
-BEYOND = 2.0
-"""How far beyond the tip its label stands, in radii of the shaft."""
-
 Vector = Annotated[Value, Quantity(None, (3,))]
 
 
@@ -36,17 +33,30 @@ class Arrow(Object):
     vector: Vector = field("What it shows.")
     scale: FixedScalar = field("Meters for a unit of the vector, in SI.", "1", above=0)
     radius: Length = field("Radius of its shaft.", "15 mm", above=0)
-    label: Words | None = field("What stands at its tip.", None)
+    label: Words | None = field("What stands beyond its head.", None)
 
-    def labels(self, name: str, moment: Moment) -> Iterable[tuple[Any, str]]:
-        """Its label, a little beyond its tip."""
+    def labels(self, name: str, moment: Moment) -> Iterable[tuple[Any, Any, str]]:
+        """Its label, beyond its head."""
         import numpy as np
 
-        if self.label is not None:
-            along = self.scale * np.asarray(moment.at(self.vector))
-            beyond = 1.0 + BEYOND * positive(moment, self.radius, "radius") / max(float(np.linalg.norm(along)), 1e-300)
-            if np.any(along):
-                yield apply(moment.place(name), np.asarray(moment.at(self.at)) + beyond * along), self.label.at(moment)
+        start, vector = np.asarray(moment.at(self.at)), self.scale * np.asarray(moment.at(self.vector))
+        length = float(np.linalg.norm(vector))
+        if self.label is not None and 0.0 < length < math.inf:
+            radius, axis, around = self._head(moment, vector, length)
+            head = np.vstack([vector[None], (length - HEAD * radius) * axis + WIDE * radius * around])
+            place = moment.place(name)
+            yield apply(place, start + head), place[:, :3] @ vector, self.label.at(moment)
+
+    def _head(self, moment: Moment, vector: Any, length: float) -> tuple[float, Floats, Floats]:
+        """Radius of the shaft, the axis (3,), and directions (SIDES, 3) around it."""
+        import numpy as np
+
+        radius = min(positive(moment, self.radius, "radius"), length / (1.5 * HEAD))
+        axis = vector / length
+        across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+        across /= np.linalg.norm(across)
+        angles = 2 * np.pi * np.arange(SIDES) / SIDES
+        return radius, axis, np.cos(angles)[:, None] * across + np.sin(angles)[:, None] * np.cross(axis, across)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A mesh of revolution: shaft, collar and head."""
@@ -58,14 +68,9 @@ class Arrow(Object):
         length = float(np.linalg.norm(vector))
         if length == 0.0 or not math.isfinite(length):
             return
-        radius = min(positive(moment, self.radius, "radius"), length / (1.5 * HEAD))
+        radius, axis, around = self._head(moment, vector, length)
         neck = length - HEAD * radius
         profile = [(0.0, 0.0), (0.0, radius), (neck, radius), (neck, WIDE * radius), (length, 0.0)]
-        axis = vector / length
-        across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-        across /= np.linalg.norm(across)
-        angles = 2 * np.pi * np.arange(SIDES) / SIDES
-        around = np.cos(angles)[:, None] * across + np.sin(angles)[:, None] * np.cross(axis, across)
         vertices: list[Floats] = []
         normals: list[Floats] = []
         triangles: list[Floats] = []

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, Moment, Overlay, Position, Problem, field
 from sceneql.kinds.texts import overlong
-from sceneql.pictures.anchors import Place, corner, projected
+from sceneql.pictures.anchors import EDGES, Box, Place, box_at, projected
+from sceneql.pictures.callouts import UP, lead, stand
 
 if TYPE_CHECKING:
     from numpy import uint8
@@ -23,7 +24,7 @@ class Formula(Overlay):
     """
 
     tex: str = field("The formula, without dollar signs.")
-    place: Place = field("Where it stands in the picture.", "top left")
+    place: Place | None = field("Where it stands in the picture; by default at an edge that is free.", None)
     at: Position | None = field("The point that it stands over, in place of that.", None)
     size: FixedScalar = field("Height of its letters in parts of the picture's.", "0.05", above=0, at_most=0.3)
     panel: FixedScalar = field("Opacity of the panel that it stands on.", "0.7", at_least=0, at_most=1)
@@ -39,26 +40,49 @@ class Formula(Overlay):
             said, start, end = found
             yield Problem(said, ("tex",), code="not-tex", part=(self.tex, start, end))
 
+    def places(self) -> tuple[str, ...]:
+        """Edges and corners, for one that stands over no point."""
+        return () if self.at is not None else EDGES if self.place is None else (self.place,)
+
+    def box(self, place: str, size: tuple[int, int], moment: Moment, scale: float) -> Box | None:
+        """The box of its panel."""
+        from sceneql.pictures.layout import page
+        from sceneql.pictures.lettering import Letterer
+
+        return box_at(place, self._printed(Letterer(page(size), self.size, scale=scale).em)[1], size)
+
+    def _printed(self, em: int) -> tuple[Any, tuple[int, int]]:
+        """The formula, and width and height of its panel. Raises ValueError for what is too large to draw."""
+        from sceneql.pictures.mathematics import printed
+
+        mask, room = printed(self.tex, em), round(0.45 * em)
+        return mask, (mask.shape[1] + 2 * room, mask.shape[0] + 2 * room)
+
     def draw(
-        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
+        self,
+        pixels: NDArray[uint8],
+        view: View,
+        moment: Moment,
+        develop: Callable[[Any], NDArray[uint8]],
+        scale: float = 1.0,
     ) -> None:
         """Draw it. Raises ValueError for what is too large to draw."""
         from PIL import Image
 
         from sceneql.pictures.lettering import DARK, LIGHT, Letterer
-        from sceneql.pictures.mathematics import printed
 
-        letters = Letterer(pixels, self.size, DARK if self.dark else LIGHT)
-        mask = Image.fromarray(printed(self.tex, letters.em))
-        room = round(0.45 * letters.em)
-        block = (mask.width + 2 * room, mask.height + 2 * room)
+        letters = Letterer(pixels, self.size, DARK if self.dark else LIGHT, scale)
+        mask, block = self._printed(letters.em)
+        room, picture = round(0.45 * letters.em), (letters.width, letters.height)
         if self.at is None:
-            left, top = corner(self.place, block, (letters.width, letters.height))
+            box = box_at(self.place or EDGES[0], block, picture)
         else:
             seen = projected(moment.at(self.at), view)
             if seen is None:
                 return
-            left, top = round(seen[0] - 0.5 * block[0]), round(seen[1] - block[1])
-        letters.panel((left, top, left + block[0], top + block[1]), self.panel)
-        letters.stamp(letters.look.ink, mask, (left + room, top + room))
+            thing = (*seen, *seen)
+            box = stand(thing, UP, block, picture, 0.0, letters.em, ())
+            lead(letters, thing, box)
+        letters.panel(box, self.panel)
+        letters.stamp(letters.look.ink, Image.fromarray(mask), (box[0] + room, box[1] + room))
         letters.done()

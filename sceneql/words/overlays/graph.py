@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql.kinds import Color, Expected, FixedScalar, Moment, Overlay, Problem, Quantity, Value, field
 from sceneql.kinds.texts import overlong
-from sceneql.pictures.anchors import MARGIN, Place, corner
+from sceneql.pictures.anchors import CORNERS, MARGIN, Box, Place, box_at
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.dimension import Dimension
@@ -25,6 +25,8 @@ Limits = Annotated[tuple[float, float], Quantity(None, (2,))]
 Shares = Annotated[tuple[float, float], Quantity(dim.PLAIN, (2,))]
 
 
+ROOM = 14, 9
+"""Least width and height of its panel, in heights of its letters."""
 MOST_NAMED = 12
 """More curves are a bundle without names."""
 
@@ -49,7 +51,9 @@ class Graph(Overlay):
     x_unit: str | None = field("The unit of the numbers below.", None)
     title: str | None = field("What is said above; by default the expression.", None)
     colors: tuple[Color, ...] = field("Colors of the curves in their order; by default of a row of their own.", ())
-    place: Place = field("Where it stands in the picture.", "bottom left")
+    place: Place | None = field(
+        "Where it stands in the picture; by default in a corner that what is shown leaves free.", None
+    )
     size: Shares = field("Its width and height in parts of the picture's.", (0.36, 0.3), at_least=0.05, at_most=1)
     text: FixedScalar = field("Height of its letters in parts of the picture's.", "0.027", above=0, at_most=0.2)
     panel: FixedScalar = field("Opacity of the panel that it stands on.", "0.85", at_least=0, at_most=1)
@@ -91,24 +95,49 @@ class Graph(Overlay):
         """Whether it asks for those of the script."""
         return self.each is not None
 
+    def places(self) -> tuple[str, ...]:
+        """Corners, and edges between them."""
+        return CORNERS if self.place is None else (self.place,)
+
+    def box(self, place: str, size: tuple[int, int], moment: Moment, scale: float) -> Box | None:
+        """The box of its panel."""
+        return box_at(place, self._block(size, scale), size)
+
+    def _block(self, size: tuple[int, int], scale: float) -> tuple[int, int]:
+        """Width and height [pixels] in a picture of a size (width, height): its letters need some."""
+        from sceneql.pictures.lettering import least_letters
+
+        (width, height), most = size, 2 * round(MARGIN * size[1])
+        em = max(least_letters(round(scale * height)), round(self.text * height))
+        wide, high = (
+            max(round(part * side), room * em) for part, side, room in zip(self.size, size, ROOM, strict=True)
+        )
+        return min(wide, width - most), min(high, height - most)
+
     def draw(
-        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
+        self,
+        pixels: NDArray[uint8],
+        view: View,
+        moment: Moment,
+        develop: Callable[[Any], NDArray[uint8]],
+        scale: float = 1.0,
     ) -> None:
         """Draw the panel at its place."""
         height, width = pixels.shape[:2]
-        most = 2 * round(MARGIN * height)
-        wide, high = min(round(self.size[0] * width), width - most), min(round(self.size[1] * height), height - most)
-        left, top = corner(self.place, (wide, high), (width, height))
-        self._draw(pixels[top : top + high, left : left + wide], moment, self.panel, height / high)
+        left, top, right, bottom = box_at(
+            self.place or CORNERS[0], self._block((width, height), scale), (width, height)
+        )
+        within = height / (bottom - top)
+        self._draw(pixels[top:bottom, left:right], moment, self.panel, self.text * within, scale * within)
 
     def fill(self, pixels: NDArray[uint8], moment: Moment, scale: float) -> None:
         """Draw it over all of the pixels."""
         from sceneql.pictures.lettering import DARK, LIGHT
 
         pixels[:] = (DARK if self.dark else LIGHT).paper
-        self._draw(pixels, moment, 1.0, scale)
+        self._draw(pixels, moment, 1.0, self.text * scale, scale)
 
-    def _draw(self, pixels: NDArray[uint8], moment: Moment, opacity: float, scale: float) -> None:
+    def _draw(self, pixels: NDArray[uint8], moment: Moment, opacity: float, text: float, scale: float) -> None:
         from sceneql.pictures.lettering import DARK, LIGHT
         from sceneql.pictures.plot import Axis, draw_plot
 
@@ -131,7 +160,8 @@ class Graph(Overlay):
                 (0.0, moment.end) if over_time and "x" not in log else None,
             ),
             opacity,
-            self.text * scale,
+            text,
+            scale,
             DARK if self.dark else LIGHT,
             named and len(curves) <= MOST_NAMED,
         )

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.kinds import DrawnRef, FixedScalar, Moment, Object, Overlay, Ref, Value, WordsOverTime, field
-from sceneql.pictures.anchors import projected
+from sceneql.pictures.anchors import Box, outline
+from sceneql.pictures.callouts import DOWN, UP, Thing, Way, lead, stand
 from sceneql.pictures.framing import corners, whereabouts
 
 if TYPE_CHECKING:
@@ -15,7 +17,10 @@ if TYPE_CHECKING:
 
     from sceneql.frame import View
     from sceneql.graph import Task
+    from sceneql.pictures.lettering import Letterer
 
+GAP = 0.35
+"""Between a label and what it names, in heights of letters."""
 TEXT = 0.035
 """Height of the letters of objects' own labels in parts of the picture's."""
 
@@ -33,21 +38,27 @@ class Labels(Overlay):
         return [value for text in self.of.values() for value in text.courses]
 
     def draw(
-        self, pixels: NDArray[uint8], view: View, moment: Moment, develop: Callable[[Any], NDArray[uint8]]
+        self,
+        pixels: NDArray[uint8],
+        view: View,
+        moment: Moment,
+        develop: Callable[[Any], NDArray[uint8]],
+        scale: float = 1.0,
     ) -> None:
         """Draw those that are before the camera."""
         from sceneql.pictures.lettering import DARK, LIGHT, Letterer
 
-        letters = Letterer(pixels, self.size, DARK if self.dark else LIGHT)
+        letters = Letterer(pixels, self.size, DARK if self.dark else LIGHT, scale)
+        taken: list[Box] = []
         for ref, text in self.of.items():
-            seen = [place for point in _around(ref, moment) if (place := projected(point, view)) is not None]
-            if seen:
-                x = 0.5 * (min(x for x, _ in seen) + max(x for x, _ in seen))
-                gap = 0.35 * letters.em
-                if self.place == "above":
-                    letters.over((x, min(y for _, y in seen) - gap), text.at(moment), self.panel)
-                else:
-                    letters.under((x, max(y for _, y in seen) + gap), text.at(moment), self.panel)
+            thing = outline(_around(ref, moment), view)
+            if thing is not None:
+                said, way = text.at(moment), UP if self.place == "above" else DOWN
+                picture, gap = (letters.width, letters.height), GAP * letters.em
+                box = stand(thing, way, letters.block(said), picture, gap, letters.em, taken)
+                taken.append(box)
+                lead(letters, thing, box)
+                letters.line(box[:2], said, self.panel)
         letters.done()
 
 
@@ -67,22 +78,46 @@ def _around(ref: Ref, moment: Moment) -> Any:
 
 
 def draw_labels(
-    pixels: NDArray[uint8], view: View, tasks: Mapping[str, Task], names: Iterable[str], moment: Moment
+    pixels: NDArray[uint8], view: View, tasks: Mapping[str, Task], names: Iterable[str], moment: Moment, scale: float
 ) -> None:
-    """The labels that objects have of their own, and those of their members."""
+    """The labels that objects have of their own, and those of their members, beside what they name."""
     from sceneql.pictures.lettering import Letterer
 
     found = [label for name in names for label in _own(tasks, name, moment)]
     if found:
-        letters = Letterer(pixels, TEXT)
-        for point, text in found:
-            seen = projected(point, view)
-            if seen is not None:
-                letters.edged(seen, text)
+        letters = Letterer(pixels, TEXT, scale=scale)
+        placed = label_boxes(letters, view, found)
+        for thing, box, text in placed:
+            lead(letters, thing, box)
+            letters.edged((0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])), text)
         letters.done()
 
 
-def _own(tasks: Mapping[str, Task], name: str, moment: Moment) -> Iterable[tuple[Any, str]]:
+def label_boxes(
+    letters: Letterer, view: View, labels: Iterable[tuple[Any, Any, str]]
+) -> list[tuple[tuple[float, float, float, float], Box, str]]:
+    """For each label (Object.labels) that is seen the box of what it names [pixels], its own, and its text."""
+    seen: list[tuple[Thing, Way, str]] = []
+    for points, direction, text in labels:
+        thing, ahead = outline(points, view), outline(points + direction, view)
+        if thing is not None and ahead is not None:
+            way = (ahead[0] + ahead[2] - thing[0] - thing[2], ahead[1] + ahead[3] - thing[1] - thing[3])
+            seen.append((thing, way if math.hypot(*way) > 1.0 else UP, text))
+    placed: list[tuple[Thing, Box, str]] = []
+    for thing, way, text in seen:
+        wide, high = letters.letter_box(text)
+        taken = [*(box for _, box, _ in placed), *(_whole(other) for other, *_ in seen if other is not thing)]
+        picture, gap = (letters.width, letters.height), letters.edge + 1.0
+        placed.append((thing, stand(thing, way, (wide, high), picture, gap, letters.em, taken), text))
+    return placed
+
+
+def _whole(thing: Thing) -> Box:
+    """The pixels that a thing touches."""
+    return math.floor(thing[0]), math.floor(thing[1]), math.ceil(thing[2]), math.ceil(thing[3])
+
+
+def _own(tasks: Mapping[str, Task], name: str, moment: Moment) -> Iterable[tuple[Any, Any, str]]:
     kind = tasks[name].kind
     if isinstance(kind, Object):
         yield from kind.labels(name, moment)

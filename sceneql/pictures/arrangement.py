@@ -1,0 +1,248 @@
+"""Where the overlays of a picture stand: each keeps one place over the film, which the subject leaves free."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import TYPE_CHECKING, Any, cast
+
+from sceneql.failure import RunFailure, failing_as
+from sceneql.pictures.anchors import Box, projected
+from sceneql.pictures.framing import corners
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, View
+    from sceneql.graph import Task
+    from sceneql.kinds import Overlay
+    from sceneql.run.instant import Instant
+
+    Mask = Any
+    """(h, w) bool, cells of the picture."""
+
+Room = tuple[float, float, float, float]
+"""What is kept free at the left, top, right and bottom, in parts of the picture's width and height."""
+NO_ROOM: Room = (0.0, 0.0, 0.0, 0.0)
+
+CELLS = 90
+"""Cells in the picture's height, by which is told what the subject covers."""
+INSTANTS = 8
+"""Instants besides the first at which a camera that moves is looked through."""
+MOST = 0.75
+"""Most of the picture's width or height that overlays may keep free."""
+WAYS = 64
+"""Most ways to keep overlays free that are tried."""
+APART = 10.0
+"""Weight of one overlay over another, where a part of the scene that is wholly covered has 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Arrangement:
+    """The overlays of a picture, each with its place, and the room that they take of it."""
+
+    overlays: Mapping[str, Overlay]
+    room: Room = NO_ROOM
+
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """A picture to be arranged."""
+
+    size: tuple[int, int]
+    """[pixels]"""
+    scale: float
+    """How many times as high the whole picture is, of which this is a panel."""
+    moment: Instant
+    """The instant of the first picture."""
+    look: Callable[[Instant], View]
+    yields: bool
+    """Whether the camera leaves room for overlays."""
+    drawn: Sequence[str]
+    """The parts that it shows."""
+
+    def parts(self) -> list[tuple[Floats, Floats]]:
+        """Low and high corner (3,) over the film of each part, in all variants that are seen beside one another.
+
+        What leaves for good is left out.
+        """
+        import numpy as np
+
+        stays = self.moment.bounds(())
+        known = [run.boxes() for run in (self.moment.run, *self.moment.beside)]
+        found = [boxes[name] for boxes in known for name in self.drawn if name in boxes]
+        kept = [(np.maximum(low, stays[0]), np.minimum(high, stays[1])) for low, high in found]
+        return [(low, high) for low, high in kept if (low <= high).all()]
+
+
+def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> Arrangement:
+    """The Arrangement of overlays in a picture where ``fixed`` boxes are taken by other letters.
+
+    An overlay takes the first of its places (`Overlay.places`) where it hides the least; large ones choose first. For
+    what then still lies on the subject a camera that yields leaves room. Raises RunFailure.
+    """
+    overlays = {name: cast("Overlay", task.kind) for name, task in tasks.items()}
+    seekers = [name for name, kind in overlays.items() if len(kind.places()) > 1]
+    if not seekers and not (sight.yields and (fixed or overlays)):
+        return Arrangement(overlays)
+    parts = sight.parts()
+    stand = {name: _boxes(sight, task) for name, task in tasks.items()}
+    taken = [*fixed, *(box for name, boxes in stand.items() if name not in seekers for box in boxes.values())]
+    masks = covered(parts, list(_views(sight)), sight.size)
+    for name in sorted(seekers, key=lambda name: -max(map(_area, stand[name].values()), default=0)):
+        costs = {place: _hidden(box, masks, sight.size) + _clash(box, taken) for place, box in stand[name].items()}
+        if costs:
+            place = min(costs, key=lambda place: costs[place])
+            overlays[name] = overlays[name].model_copy(update={"place": place})
+            taken.append(stand[name][place])
+    return Arrangement(overlays, _room(sight, parts, taken) if sight.yields else NO_ROOM)
+
+
+def _boxes(sight: Sight, task: Task) -> dict[str, Box]:
+    """The boxes of an overlay at its places. What is not shown yet, and cannot be told before it is, has none."""
+    kind, moment = cast("Overlay", task.kind), sight.moment
+    with failing_as(task.name, moment.now, task.span):
+        hidden = kind.show is not None and moment.at(kind.show) == 0
+    with suppress(*((RunFailure,) if hidden else ())), failing_as(task.name, moment.now, task.span):
+        boxes = {place: kind.box(place, sight.size, moment, sight.scale) for place in kind.places()}
+        return {place: box for place, box in boxes.items() if box is not None}
+    return {}
+
+
+def covered(parts: Iterable[tuple[Floats, Floats]], views: Sequence[View], size: tuple[int, int]) -> list[Mask]:
+    """For each part that is seen the cells that its box covers in any of the views.
+
+    What reaches behind the camera is the scene's surroundings, which may be covered.
+    """
+    import numpy as np
+    from PIL import Image, ImageDraw
+
+    wide, high = _cells(size)
+    found: list[Mask] = []
+    for low, high_corner in parts:
+        canvas = Image.new("1", (wide, high))
+        draw = ImageDraw.Draw(canvas)
+        for view in views:
+            seen = [projected(corner, view) for corner in corners(low, high_corner)]
+            if all(place is not None for place in seen):
+                across = np.clip(np.array(seen, dtype=float) * high / size[1], -2.0 * wide, 3.0 * wide)
+                draw.polygon([(x, y) for x, y in _hull(across)], fill=1, outline=1)
+        mask = np.asarray(canvas)
+        if mask.any():
+            found.append(mask)
+    return found
+
+
+def _cells(size: tuple[int, int]) -> tuple[int, int]:
+    """Columns and rows of cells."""
+    high = min(CELLS, size[1])
+    return max(1, math.ceil(size[0] * high / size[1])), high
+
+
+def _hull(points: Floats) -> list[tuple[float, float]]:
+    """The convex hull of points (n, 2), in order (Andrew 1979)."""
+    rows = sorted({(float(x), float(y)) for x, y in points})
+    if len(rows) < 3:
+        return [*rows, *rows][:2]
+
+    def half(order: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
+        chain: list[tuple[float, float]] = []
+        for x, y in order:
+            while len(chain) > 1:
+                (ax, ay), (bx, by) = chain[-2:]
+                if (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0:
+                    break
+                chain.pop()
+            chain.append((x, y))
+        return chain[:-1]
+
+    return half(rows) + half(reversed(rows))
+
+
+def _views(seen: Sight) -> Iterator[View]:
+    """The different views of the film; of a camera that reads what is solved the one that is known, the first."""
+    first = replace(seen.moment, _states={}, _values={})
+    view = seen.look(first)
+    yield view
+    if first._states or not first.end:
+        return
+    for k in range(INSTANTS + 1):
+        with suppress(RunFailure, ValueError):
+            other = seen.look(replace(seen.moment, now=first.end * k / INSTANTS, _states={}, _values={}))
+            if other.origin != view.origin or (other.axes != view.axes).any() or other.half_height != view.half_height:
+                yield other
+
+
+def _hidden(box: Box, masks: Sequence[Mask], size: tuple[int, int]) -> float:
+    """How much of the subject a box hides: the sum over the parts of the share of each."""
+    return float(sum(mask[_slices(box, size)].sum() / mask.sum() for mask in masks))
+
+
+def _slices(box: Box, size: tuple[int, int]) -> tuple[slice, slice]:
+    """The cells that a box touches."""
+    part = _cells(size)[1] / size[1]
+    left, top, right, bottom = (edge * part for edge in box)
+    rows, columns = (max(0, math.floor(top)), math.ceil(bottom)), (max(0, math.floor(left)), math.ceil(right))
+    return slice(*rows), slice(*columns)
+
+
+def _area(box: Box) -> int:
+    return (box[2] - box[0]) * (box[3] - box[1])
+
+
+def _clash(box: Box, taken: Iterable[Box]) -> float:
+    """The share of a box that others cover, by its weight."""
+    total = 0.0
+    for other in taken:
+        wide = min(box[2], other[2]) - max(box[0], other[0])
+        high = min(box[3], other[3]) - max(box[1], other[1])
+        total += max(wide, 0) * max(high, 0) / max(_area(box), 1)
+    return APART * total
+
+
+def _room(seen: Sight, parts: Sequence[tuple[Floats, Floats]], taken: Sequence[Box]) -> Room:
+    """The room at the edges with which no box lies on the subject, and the subject is as large as it can be."""
+    room, kept = NO_ROOM, list[Box]()
+    while True:
+        masks = covered(parts, [seen.look(replace(seen.moment, room=room))], seen.size)
+        met = [box for box in taken if box not in kept and _sides(box, seen.size) and _hidden(box, masks, seen.size)]
+        if not met:
+            return room
+        kept += met
+        ways = list(_ways(kept, seen.size))
+        if not ways:
+            return room
+        room = max(ways, key=lambda way: _largeness(seen, parts, way))
+
+
+def _sides(box: Box, size: tuple[int, int]) -> list[Room]:
+    """The rooms at one edge each that keep a box free."""
+    (wide, high), (left, top, right, bottom) = size, box
+    sides = (right / wide, bottom / high, 1 - left / wide, 1 - top / high)
+    return [
+        (*NO_ROOM[:k], side, *NO_ROOM[k + 1 :])  # type: ignore[misc]
+        for k, side in enumerate(sides)
+        if side < 0.5
+    ]
+
+
+def _ways(kept: Sequence[Box], size: tuple[int, int]) -> Iterator[Room]:
+    """The rooms that keep all boxes free, by the edge for each."""
+    options = [_sides(box, size) for box in kept]
+    if math.prod(map(len, options)) > WAYS:
+        options = [[min(sides, key=max)] for sides in options]
+    for way in dict.fromkeys(product(*options)):
+        left, top, right, bottom = (max(room[k] for room in way) for k in range(4))
+        if left + right <= MOST and top + bottom <= MOST:
+            yield left, top, right, bottom
+
+
+def _largeness(seen: Sight, parts: Sequence[tuple[Floats, Floats]], room: Room) -> float:
+    """How large the subject is with a room: the diagonal of what it covers."""
+    import numpy as np
+
+    view = seen.look(replace(seen.moment, room=room))
+    points = [corner for low, high in parts for corner in corners(low, high)]
+    places = np.array([place for point in points if (place := projected(point, view)) is not None])
+    return float(np.linalg.norm(np.ptp(places, axis=0))) if len(places) else 0.0

@@ -1,0 +1,84 @@
+"""Words beside things: on the side that is wanted, or as near as there is room, with a leader line from afar."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from sceneql.pictures.anchors import Box
+
+if TYPE_CHECKING:
+    from sceneql.pictures.lettering import Letterer
+
+Thing = tuple[float, float, float, float]
+"""Left, top, right, bottom of what is named [pixels]; a point has no extent."""
+Way = tuple[float, float]
+"""To the right and down, of any length but 0."""
+
+UP: Way = (0.0, -1.0)
+DOWN: Way = (0.0, 1.0)
+STEP, FARTHEST = 0.25, 6.0
+"""How a label moves away from what stands in its way, and how far, in heights of letters."""
+AWAY = 0.6
+"""From which distance on a leader line leads to it, in heights of letters."""
+
+
+def stand(
+    thing: Thing, way: Way, block: tuple[int, int], picture: tuple[int, int], gap: float, em: int, taken: Iterable[Box]
+) -> Box:
+    """The box of a label (width, height) outside a thing, on the side that ``way`` points to, inside the picture.
+
+    It meets none of the boxes ``taken`` where that can be: it moves on the same way first, then to the other sides.
+    """
+    others = list(taken)
+    first: Box | None = None
+    for box in _tries(thing, way, block, picture, gap, em):
+        first = first or box
+        if not any(meet(box, other) for other in others) and not _covers(box, thing):
+            return box
+    return first or (0, 0, *block)
+
+
+def _tries(
+    thing: Thing, way: Way, block: tuple[int, int], picture: tuple[int, int], gap: float, em: int
+) -> Iterator[Box]:
+    """Boxes in the order in which they are tried."""
+    x, y = way
+    for one in ((x, y), (-y, x), (y, -x), (-x, -y)):
+        for k in range(math.ceil(FARTHEST / STEP)):
+            left, top = _outside(thing, one, block, gap + k * STEP * em)
+            left = max(min(round(left), picture[0] - block[0] - 1), 0)
+            top = max(min(round(top), picture[1] - block[1] - 1), 0)
+            yield left, top, left + block[0], top + block[1]
+
+
+def _outside(thing: Thing, way: Way, block: tuple[int, int], gap: float) -> tuple[float, float]:
+    """Left and top of a block whose center lies that way from the thing's, outside by a gap."""
+    length = math.hypot(*way)
+    x, y = way[0] / length, way[1] / length
+    half = 0.5 * (thing[2] - thing[0] + block[0]) + gap * abs(x), 0.5 * (thing[3] - thing[1] + block[1]) + gap * abs(y)
+    far = min(reach / abs(part) for part, reach in zip((x, y), half, strict=True) if part)
+    center = 0.5 * (thing[0] + thing[2]) + far * x, 0.5 * (thing[1] + thing[3]) + far * y
+    return center[0] - 0.5 * block[0], center[1] - 0.5 * block[1]
+
+
+def meet(one: Sequence[float], other: Sequence[float]) -> bool:
+    """Whether two boxes have more than an edge in common."""
+    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
+
+
+def _covers(box: Box, thing: Thing) -> bool:
+    """Whether a box lies on a thing, by more than rounding."""
+    return meet((box[0] + 1, box[1] + 1, box[2] - 1, box[3] - 1), thing)
+
+
+def lead(letters: Letterer, thing: Thing, box: Box) -> None:
+    """A line from a thing to its label, where this stands away from it."""
+    x = min(max(0.5 * (box[0] + box[2]), thing[0]), thing[2])
+    y = min(max(0.5 * (box[1] + box[3]), thing[1]), thing[3])
+    to = min(max(x, box[0]), box[2]), min(max(y, box[1]), box[3])
+    if math.hypot(to[0] - x, to[1] - y) > AWAY * letters.em:
+        wide = max(1, round(letters.em / 12))
+        letters.draw.line((x, y, *to), letters.look.paper, 3 * wide)
+        letters.draw.line((x, y, *to), letters.look.ink, wide)

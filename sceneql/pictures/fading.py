@@ -1,0 +1,23 @@
+"""How strongly an overlay is seen: it comes and goes softly where the script says so."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sceneql.kinds import Moment, Overlay
+
+
+def strength(overlay: Overlay, moment: Moment) -> float:
+    """From 0, not there now, to 1: within the time of `fade` from where `show` begins or ends, a part of it."""
+    if overlay.show is None:
+        return 1.0
+    if moment.at(overlay.show) == 0:
+        return 0.0
+    if overlay.fade == 0:
+        return 1.0
+    import numpy as np
+
+    times, shown = moment.course(overlay.show)
+    off = times[np.asarray(shown).reshape(len(times)) == 0]
+    return float(np.clip(np.abs(off - moment.time).min(initial=overlay.fade) / overlay.fade, 0.0, 1.0))
