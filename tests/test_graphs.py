@@ -163,3 +163,11 @@ def test_an_axis_shows_all_that_it_can(values, log):
     shown = [place for place, value in zip(places, values, strict=True) if value >= 1e-200 or not log]
     assert all(0 < place < 1 for place in shown)
     assert scale.low < scale.high
+
+
+@given(st.floats(-1e6, 1e6), st.floats(1e-6, 1e6), st.booleans(), st.integers(3, 6))
+@settings(max_examples=150)
+def test_an_axis_has_at_least_three_ticks(low, span, log, count):
+    low = 10 ** (low / 1e5) if log else low
+    high = low * (1 + span) if log else low + max(span, abs(low) * 1e-6)
+    assert 3 <= len(Scale(low, high, log).ticks(count)) <= 10

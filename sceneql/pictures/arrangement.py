@@ -213,7 +213,7 @@ def _room(seen: Sight, parts: Sequence[tuple[Floats, Floats]], taken: Sequence[B
         ways = list(_ways(kept, seen.size))
         if not ways:
             return room
-        room = max(ways, key=lambda way: _largeness(seen, parts, way))
+        room = max(ways, key=lambda way: (round(_largeness(seen, parts, way)), -sum(way)))
 
 
 def _sides(box: Box, size: tuple[int, int]) -> list[Room]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds.texts import SUPERSCRIPTS
@@ -54,7 +55,9 @@ class Scale:
             values = [v for v in values if self.low * (1 - 1e-9) <= v <= self.high * (1 + 1e-9)]
             if len(values) < min(FEWEST, count):
                 values = marked_numbers(self.low, self.high, count)
-            return [(v, f"{v:.6g}") for v in values]
+            nearest = min((b - a for a, b in pairwise(values)), default=self.high)
+            digits = max(6, math.ceil(math.log10(self.high / nearest)) + 1)
+            return [(v, f"{v:.{digits}g}") for v in values]
         every = min(math.ceil((last - first + 1) / count), (last - first) // 2)
         powers = range(last - (last - first) // every * every, last + 1, every)
         return [(10.0**k, "10" + str(k).translate(SUPERSCRIPTS) if k not in (0, 1) else str(10**k)) for k in powers]

@@ -80,7 +80,7 @@ def let_go(paths: Paths, still: Iterable[tuple[Floats, Floats]]) -> tuple[list[L
         for name, boxes in paths.boxes.items()
         if len(boxes) == len(paths.times) and len({len(low) for low, _ in boxes}) == 1
     }
-    if len(paths.times) < 4 or len(steady) < len(paths.boxes):
+    if len(paths.times) < 4 or not steady or len(steady) < len(paths.boxes):
         return [], None
     lows = np.concatenate([np.stack([low for low, _ in boxes], axis=1) for boxes in steady.values()])
     highs = np.concatenate([np.stack([high for _, high in boxes], axis=1) for boxes in steady.values()])
