@@ -19,6 +19,7 @@ from sceneql.pictures.framing import axes_towards, corners
 from sceneql.pictures.lettering import Letterer
 from sceneql.pictures.plot import Axis, Curve, _head, draw_plot
 from sceneql.pipeline import Report, Tools, load, simulate
+from sceneql.report.explain import explain
 from sceneql.words.objects.arrow import Arrow
 from sceneql.words.overlays.labels import label_boxes
 
@@ -68,7 +69,7 @@ def arranged(folder, text):
     return output.pixels, then, found, graph.tasks[graph.cameras["film"]].kind.view(output.pixels, then)
 
 
-@pytest.mark.parametrize("size", ["480 270", "320 180", "400 400", "1280 720"])
+@pytest.mark.parametrize("size", ["480 270", "320 180", "400 300", "1280 720"])
 @pytest.mark.parametrize(
     ("scene", "overlays"),
     [
@@ -249,3 +250,9 @@ outputs: {{film: {{image: {{size: 240 135, show: [far]}}}}}}
     assert (at(3.0, said) == plain).all()
     for time, part in ((1.4, 0.5), (1.2, 0.25), (2.8, 0.25), (1.9, 1.0)):
         assert np.mean(at(time, said) - plain) == pytest.approx(part * np.mean(full - plain), rel=0.04)
+
+
+def test_explain_tells_which_overlays_look_at_the_whole_run(tmp_path):
+    overlays = "{seeks: {caption: {text: Hi}}, stands: {caption: {text: Hi, place: top}}}"
+    (tmp_path / "scene.yaml").write_text(FALL.format(overlays=overlays, size="480 270"))
+    assert explain(load(tmp_path / "scene.yaml"))["ahead_overlays"] == ["seeks"]

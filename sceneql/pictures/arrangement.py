@@ -35,7 +35,9 @@ MOST = 0.75
 WAYS = 64
 """Most ways to keep overlays free that are tried."""
 APART = 10.0
-"""Weight of one overlay over another, where a part of the scene that is wholly covered has 1."""
+"""Weight of one overlay over another, where a subject that is wholly covered has 1."""
+ALIKE = 0.05
+"""Places that hide something, and no more of it than this beyond the least, are alike: the first of them is taken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +81,10 @@ class Sight:
 def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> Arrangement:
     """The Arrangement of overlays in a picture where ``fixed`` boxes are taken by other letters.
 
-    An overlay takes the first of its places (`Overlay.places`) where it hides the least; large ones choose first. For
-    what then still lies on the subject a camera that yields leaves room. Raises RunFailure.
+    An overlay takes the first of its places (`Overlay.places`) where it hides nothing, else one where it hides little;
+    large ones choose first. For what then still lies on the subject a camera that yields leaves room.
+
+    Raises RunFailure.
     """
     overlays = {name: cast("Overlay", task.kind) for name, task in tasks.items()}
     seekers = [name for name, kind in overlays.items() if len(kind.places()) > 1]
@@ -93,7 +97,8 @@ def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> A
     for name in sorted(seekers, key=lambda name: -max(map(_area, stand[name].values()), default=0)):
         costs = {place: _hidden(box, masks, sight.size) + _clash(box, taken) for place, box in stand[name].items()}
         if costs:
-            place = min(costs, key=lambda place: costs[place])
+            least = min(costs.values())
+            place = next(place for place, cost in costs.items() if cost <= (least and least + ALIKE))
             overlays[name] = overlays[name].model_copy(update={"place": place})
             taken.append(stand[name][place])
     return Arrangement(overlays, _room(sight, parts, taken) if sight.yields else NO_ROOM)
@@ -175,8 +180,8 @@ def _views(seen: Sight) -> Iterator[View]:
 
 
 def _hidden(box: Box, masks: Sequence[Mask], size: tuple[int, int]) -> float:
-    """How much of the subject a box hides: the sum over the parts of the share of each."""
-    return float(sum(mask[_slices(box, size)].sum() / mask.sum() for mask in masks))
+    """How much of the subject a box hides: the mean over the parts of the share of each."""
+    return float(sum(mask[_slices(box, size)].sum() / mask.sum() for mask in masks)) / max(len(masks), 1)
 
 
 def _slices(box: Box, size: tuple[int, int]) -> tuple[slice, slice]:

@@ -87,7 +87,7 @@ def label(pixels: NDArray[uint8], name: str, failure: RunFailure | None, scale: 
     letters.done()
     if failure is not None:
         letters = Letterer(pixels, TOLD * scale, scale=scale)
-        told = fitted(letters, f"failed at {failure.time:.3g} s: {failure.message}", letters.width - 3 * letters.em)
+        told = letters.fitted(f"failed at {failure.time:.3g} s: {failure.message}", letters.width - 3 * letters.em)
         letters.line((room, letters.height), told, 0.9, WARNING)
         letters.done()
 
@@ -98,14 +98,6 @@ def label_box(size: tuple[int, int], name: str, scale: float) -> AnchorBox:
 
     letters = Letterer(page(size), NAME * scale, scale=scale)
     return letters.line_box((letters.em // 2, letters.em // 2), name)
-
-
-def fitted(letters: Any, text: str, room: float) -> str:
-    """The start of a text that fits into ``room`` [pixels]."""
-    short = text
-    while len(short) > 1 and letters.extent(short)[0] > room:
-        short = short[:-2].rstrip() + "…"
-    return short
 
 
 class Panel:

@@ -69,6 +69,13 @@ class Letterer:
         """Width and height of a text [pixels]; all texts of one line are of one height."""
         return int(self.draw.textlength(drawable(text), font=self.font) + 0.5), sum(self.font.getmetrics())
 
+    def fitted(self, text: str, room: float) -> str:
+        """The start of a text that fits into ``room`` [pixels]."""
+        short = text
+        while len(short) > 1 and self.extent(short)[0] > room:
+            short = short[:-2].rstrip() + "…"
+        return short
+
     def panel(self, box: tuple[int, int, int, int], opacity: float) -> None:
         """A panel with round corners: left, top, right, bottom."""
         self.draw.rounded_rectangle(box, self.em // 3, (*self.look.paper, round(255 * opacity)))

@@ -251,6 +251,7 @@ def _lines(
     """Title and names in lines of a width [pixels]: the column of each text's left end, its curve, the text."""
     em, at = letters.em, 0.0
     lines: list[list[tuple[float, Curve | None, str]]] = [[]]
+    title = letters.fitted(title, letters.width - 1.4 * em)
     if title:
         lines[0].append((at, None, title))
         at += letters.extent(title)[0] + 1.4 * em

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sceneql.compiler.catalogue import ROOT, Catalogue
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Camera, Contact, Force, Object, Output
+from sceneql.kinds import Camera, Contact, Force, Object, Output, Overlay, Picture
 
 if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
@@ -42,6 +42,7 @@ def explain(graph: SimulationGraph) -> dict[str, Any]:
         ],
         "ahead": [name for name in dict.fromkeys(graph.cameras.values()) if _looks_ahead(graph, name)],
         "ahead_objects": _objects_ahead(graph),
+        "ahead_overlays": _placed(graph),
         **_solved(graph),
         "left_out": [{"name": part.name, "word": part.word, "why": part.reason} for part in graph.left_out],
         "avoided": {
@@ -62,6 +63,14 @@ def _objects_ahead(graph: SimulationGraph) -> dict[str, str]:
     """What objects take from a dry run of the physics, by their names."""
     objects = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Object)}
     return {name: why for name, kind in objects.items() if graph.islands and (why := kind.looks_ahead())}
+
+
+def _placed(graph: SimulationGraph) -> list[str]:
+    """The overlays that look for a place which the whole run leaves free."""
+    over = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Overlay)}
+    pictures = [task.kind for task in graph.tasks.values() if isinstance(task.kind, Picture)]
+    drawn = {name for kind in pictures for name in over if name not in {ref.name for ref in kind.laid_out}}
+    return [name for name, kind in over.items() if graph.islands and name in drawn and len(kind.places()) > 1]
 
 
 def _kernels(words: set[tuple[str, str]]) -> set[str]:
@@ -196,6 +205,7 @@ def text(plan: dict[str, Any]) -> str:
         lines.append(f"  stability: {island['bound_text']}")
     ahead = [f"{', '.join(plan['ahead'])} frames all of it"] if plan["ahead"] else []
     ahead += [f"{name} {why}" for name, why in plan["ahead_objects"].items()]
+    ahead += [f"{name} stands where it hides none of it" for name in plan["ahead_overlays"]]
     ahead += [f"the range of {', '.join(plan['ranges'])} is all of it"] if plan["ranges"] else []
     lines += ["", f"the physics runs once ahead of the film: {'; '.join(ahead)}"] if ahead else []
     if plan["left_out"]:
