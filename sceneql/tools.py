@@ -112,9 +112,8 @@ class Tools:
         from sceneql.run.never_drawn import look, solids
 
         renderer = self._renderer(output)
-        arrangement = None if renderer.data else self._arrangement(output, moment, camera, panel)
-        if arrangement is not None:
-            moment = replace(moment, room=arrangement.room)
+        arrangement = self._arrangement(output, moment, camera, panel)
+        moment = replace(moment, room=arrangement.room)
         eye = self._eye(output, moment.time, camera)
         frame = frame_of(self.graph, self.name, output.pixels, moment, self._frames, eye)
         self.prepare(output)()
@@ -133,7 +132,7 @@ class Tools:
         if part < parts - 1:
             return None
         pixels = develop(linear, exposure=output.exposure, data=renderer.data)
-        if arrangement is not None:
+        if not renderer.data:
             self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure), arrangement, panel)
         return pixels
 
@@ -195,7 +194,7 @@ class Tools:
             others = tuple(other for other in self.panels.values() if other is not panel)
             moment = replace(panel.at(time), beside=others)
             kind = cast(Picture, panel.graph.tasks[self.name].kind).model_copy(update={"size": size})
-            panel.picture = panel.tools._seen(kind, moment, panel=Part(scale, (label_box(size, name, scale),)))
+            panel.picture = panel.tools._seen(kind, moment, panel=Part(scale, (label_box(size, self.panels, scale),)))
             panel.tools._frames += 1
             label(panel.picture, name, panel.failure, scale)
         return panel.picture

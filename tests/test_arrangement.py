@@ -16,6 +16,7 @@ from sceneql.kinds.texts import Text
 from sceneql.pictures.anchors import outline
 from sceneql.pictures.callouts import UP, lead, meet, stand
 from sceneql.pictures.framing import axes_towards, corners
+from sceneql.pictures.layout import Panel
 from sceneql.pictures.lettering import Letterer
 from sceneql.pictures.plot import Axis, Curve, _head, draw_plot
 from sceneql.pipeline import Report, Tools, load, simulate
@@ -256,3 +257,17 @@ def test_explain_tells_which_overlays_look_at_the_whole_run(tmp_path):
     overlays = "{seeks: {caption: {text: Hi}}, stands: {caption: {text: Hi, place: top}}}"
     (tmp_path / "scene.yaml").write_text(FALL.format(overlays=overlays, size="480 270"))
     assert explain(load(tmp_path / "scene.yaml"))["ahead_overlays"] == ["seeks"]
+
+
+def test_labels_of_neighbors_spare_one_another_and_what_they_name():
+    near = (180.0, 110.0, 200.0, 130.0)
+    box = stand((150.0, 130.0, 170.0, 150.0), UP, (80, 20), (320, 180), 4.0, 14, [], [near])
+    assert not meet(box, near)
+
+
+def test_a_variant_that_bursts_does_not_make_the_others_vanish(tmp_path):
+    (tmp_path / "scene.yaml").write_text(VARIANTS.format(fails="").replace("far: 4 m", "far: 4 km"))
+    graph = load(tmp_path / "scene.yaml")
+    near, far, middle = (Panel(graph.variant(name)) for name in ("near", "far", "middle"))
+    moment = replace(near.at(0.0), beside=(far, middle))
+    assert moment.bounds(())[1][0] == pytest.approx(2.1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from sceneql.pictures.anchors import Box
@@ -25,19 +25,26 @@ AWAY = 0.6
 
 
 def stand(
-    thing: Thing, way: Way, block: tuple[int, int], picture: tuple[int, int], gap: float, em: int, taken: Iterable[Box]
+    thing: Thing,
+    way: Way,
+    block: tuple[int, int],
+    picture: tuple[int, int],
+    gap: float,
+    em: int,
+    taken: Sequence[Thing] = (),
+    spared: Sequence[Thing] = (),
 ) -> Box:
     """The box of a label (width, height) outside a thing, on the side that ``way`` points to, inside the picture.
 
-    It meets none of the boxes ``taken`` where that can be: it moves on the same way first, then to the other sides.
+    It meets none of the boxes ``taken`` where that can be, nor of those to be ``spared`` if that can be, too: it moves
+    on the same way first, then to the other sides.
     """
-    others = list(taken)
-    first: Box | None = None
-    for box in _tries(thing, way, block, picture, gap, em):
-        first = first or box
-        if not any(meet(box, other) for other in others) and not _covers(box, thing):
-            return box
-    return first or (0, 0, *block)
+    boxes = list(dict.fromkeys(_tries(thing, way, block, picture, gap, em)))
+    for others in ((*taken, *spared), taken):
+        for box in boxes:
+            if not any(meet(box, other) for other in others) and not _covers(box, thing):
+                return box
+    return boxes[0]
 
 
 def _tries(

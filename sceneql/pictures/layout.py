@@ -92,12 +92,13 @@ def label(pixels: NDArray[uint8], name: str, failure: RunFailure | None, scale: 
         letters.done()
 
 
-def label_box(size: tuple[int, int], name: str, scale: float) -> AnchorBox:
-    """Left, top, right, bottom [pixels] of a variant's name on its panel."""
+def label_box(size: tuple[int, int], names: Iterable[str], scale: float) -> AnchorBox:
+    """Left, top, right, bottom [pixels] of the longest of the variants' names on its panel."""
     from sceneql.pictures.lettering import Letterer
 
     letters = Letterer(page(size), NAME * scale, scale=scale)
-    return letters.line_box((letters.em // 2, letters.em // 2), name)
+    boxes = [letters.line_box((letters.em // 2, letters.em // 2), name) for name in names]
+    return max(boxes, key=lambda box: box[2])
 
 
 class Panel:

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from sceneql.system import ModelState
 
 IDENTITY = np.eye(3, 4)
+BURST = 100.0
+"""A variant that comes to be so many times as large as another has burst: the framing of all does without it."""
 T = TypeVar("T")
 
 
@@ -177,7 +179,9 @@ class Instant:
         if not boxes:
             return np.full(3, -1.0), np.full(3, 1.0)
         lows, highs = np.array([low for low, _ in boxes]), np.array([high for _, high in boxes])
-        return lows.min(axis=0), highs.max(axis=0)
+        sizes = np.linalg.norm(highs - lows, axis=1)
+        kept = sizes <= (BURST * sizes.min() or np.inf)
+        return lows[kept].min(axis=0), highs[kept].max(axis=0)
 
     def place(self, name: str) -> Floats:
         """(3, 4) map to the world from the coordinates that an object's position is told in."""

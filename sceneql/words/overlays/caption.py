@@ -65,7 +65,7 @@ class Caption(Overlay):
             letters.line(corner(self.place or EDGES[0], block, picture), text, self.panel)
         elif (seen := projected(moment.at(self.at), view)) is not None:
             thing = (*seen, *seen)
-            box = stand(thing, UP, block, picture, 0.0, letters.em, ())
+            box = stand(thing, UP, block, picture, 0.0, letters.em)
             lead(letters, thing, box)
             letters.line(box[:2], text, self.panel)
         letters.done()

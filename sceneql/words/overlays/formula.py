@@ -81,7 +81,7 @@ class Formula(Overlay):
             if seen is None:
                 return
             thing = (*seen, *seen)
-            box = stand(thing, UP, block, picture, 0.0, letters.em, ())
+            box = stand(thing, UP, block, picture, 0.0, letters.em)
             lead(letters, thing, box)
         letters.panel(box, self.panel)
         letters.stamp(letters.look.ink, Image.fromarray(mask), (box[0] + room, box[1] + room))

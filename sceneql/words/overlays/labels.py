@@ -49,16 +49,16 @@ class Labels(Overlay):
         from sceneql.pictures.lettering import DARK, LIGHT, Letterer
 
         letters = Letterer(pixels, self.size, DARK if self.dark else LIGHT, scale)
-        taken: list[Box] = []
-        for ref, text in self.of.items():
-            thing = outline(_around(ref, moment), view)
-            if thing is not None:
-                said, way = text.at(moment), UP if self.place == "above" else DOWN
-                picture, gap = (letters.width, letters.height), GAP * letters.em
-                box = stand(thing, way, letters.block(said), picture, gap, letters.em, taken)
-                taken.append(box)
-                lead(letters, thing, box)
-                letters.line(box[:2], said, self.panel)
+        picture, gap, way = (letters.width, letters.height), GAP * letters.em, UP if self.place == "above" else DOWN
+        things = {ref: outline(_around(ref, moment), view) for ref in self.of}
+        seen = {ref: thing for ref, thing in things.items() if thing is not None}
+        taken: dict[Ref, Box] = {}
+        for ref, thing in seen.items():
+            block, others = letters.block(self.of[ref].at(moment)), [one for it, one in seen.items() if it != ref]
+            taken[ref] = stand(thing, way, block, picture, gap, letters.em, list(taken.values()), others)
+            lead(letters, thing, taken[ref])
+        for ref, box in taken.items():
+            letters.line(box[:2], self.of[ref].at(moment), self.panel)
         letters.done()
 
 
@@ -106,15 +106,10 @@ def label_boxes(
     placed: list[tuple[Thing, Box, str]] = []
     for thing, way, text in seen:
         wide, high = letters.letter_box(text)
-        taken = [*(box for _, box, _ in placed), *(_whole(other) for other, *_ in seen if other is not thing)]
+        taken, others = [box for _, box, _ in placed], [other for other, *_ in seen if other is not thing]
         picture, gap = (letters.width, letters.height), letters.edge + 1.0
-        placed.append((thing, stand(thing, way, (wide, high), picture, gap, letters.em, taken), text))
+        placed.append((thing, stand(thing, way, (wide, high), picture, gap, letters.em, taken, others), text))
     return placed
-
-
-def _whole(thing: Thing) -> Box:
-    """The pixels that a thing touches."""
-    return math.floor(thing[0]), math.floor(thing[1]), math.ceil(thing[2]), math.ceil(thing[3])
 
 
 def _own(tasks: Mapping[str, Task], name: str, moment: Moment) -> Iterable[tuple[Any, Any, str]]:
