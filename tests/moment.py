@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -68,6 +69,9 @@ class FakeMoment:
 
     def bounds(self, names: Iterable[str]) -> tuple[Any, Any]:
         return np.array(self.box[0], dtype=float), np.array(self.box[1], dtype=float)
+
+    def outline(self) -> Any:
+        return np.array(list(product(*zip(*self.box, strict=True))), dtype=float)
 
 
 def fields_of(thing: Any, moment: FakeMoment, points: Any) -> Any:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from moment import FakeMoment, const, link
 from sceneql.kinds import Ref
 from sceneql.pictures import framing
-from sceneql.words.cameras.auto import Auto
+from sceneql.words.cameras.auto import HEADROOM, Auto
 from sceneql.words.cameras.orthographic import Orthographic
 from sceneql.words.cameras.perspective import Perspective
 from sceneql.words.cameras.turntable import Turntable
@@ -251,7 +251,10 @@ def test_auto_frames_all_and_sees_what_is_flat_from_the_front(sides, front):
     moment, low, high = box_moment((0, 1, 0), sides)
     view = Auto().view((640, 360), moment)
     check_axes(view)
-    check_framed(view, low, high, margin=0.12)
+    places, depth = seen(view, framing.corners(low, high))
+    assert (depth > 0).all()
+    wide, tall = np.abs(places).max(axis=0) / (0.88, 0.88 * HEADROOM)
+    assert max(wide, tall) == pytest.approx(1)
     assert (abs(view.axes[2][0]) < 1e-9) == front
 
 

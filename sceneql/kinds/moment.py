@@ -126,3 +126,6 @@ class Moment(Protocol):
 
         For no names of all that is drawn, but for what leaves for good.
         """
+
+    def outline(self) -> Floats:
+        """Points (n, 3) [m] whose hull holds all that is drawn over the whole film, but for what leaves for good."""

@@ -130,6 +130,12 @@ class Panel:
         """Low and high corner (3,) of what the parts draw over the whole run (run.Run)."""
         return self._whole.bounds(names) if self.boxes() else None
 
+    def outline(self) -> Floats:
+        """Points (n, 3) whose hull holds what stays of all that is drawn, over the whole run."""
+        import numpy as np
+
+        return self._whole.outline() if self.boxes() else np.zeros((0, 3))
+
     def at(self, time: float) -> Instant:
         """The moment [s], or the last one before the failure. Raises RunFailure where the script does not allow it."""
         if self.failure is None and (self._last is None or self._last.now < time):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from sceneql.quantities.expression import Call, Expr, Keys, Link, Symbol, childr
 from sceneql.quantities.operations import OPERATIONS
 from sceneql.run.leaving import Leaving, Paths, let_go
 from sceneql.run.series import course
+from sceneql.shapes.outlines import outermost, outline
 from sceneql.shapes.world_boxes import surface_box
 
 if TYPE_CHECKING:
@@ -44,6 +45,8 @@ class DryRun:
     """What leaves for good."""
     staying: tuple[Floats, Floats] | None = None
     """Low and high corner (3,) of everything else; None where nothing leaves."""
+    outlines: Mapping[str, Floats] = field(default_factory=dict)
+    """Points (n, 3) of each part over the run, whose hull holds it (outlines.outline)."""
 
     def course(self, expr: Expr, until: float) -> tuple[Floats, Floats]:
         """Times (n,) [s] up to ``until``, and values (n, ...) of an expression of `asked`."""
@@ -108,7 +111,9 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     times: list[float] = []
     asked_for: dict[int, Value] = {}
     rows: dict[int, list[Any]] = {}
+    first: dict[str, Floats] = {}
     paths = Paths()
+    outlines: dict[str, Floats] = {}
     every = 1
 
     def instants() -> Iterator[float]:
@@ -130,14 +135,16 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
                     moment.asked = False
                     drawn = moment.lower([name])
                     start = _widened(start, {name: drawn}, ahead.holders)
+                    _outline(outlines, {name: drawn})
                     if moment.asked:
                         changing.append(name)
                         shapes[name] = drawn
-                now = start
+                now, first = start, dict(outlines)
                 paths.see(moment.now, shapes)
             elif bounded and k % every == 0:
                 shapes = {name: moment.lower([name]) for name in changing}
                 now = _widened(now, shapes, ahead.holders)
+                _outline(outlines, shapes)
                 paths.see(moment.now, shapes)
             for key, piece in asked_for.items():
                 rows[key].append(moment.measure(piece))
@@ -147,13 +154,13 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     except RunFailure:
         if not times:
             raise
-        now, paths = start, Paths()
+        now, paths, outlines = start, Paths(), first
     count = len(times)
     values = {key: np.array(row[:count]) for key, row in rows.items()}
     if not bounded:
         return DryRun(None, times, values)
     still = [now[name] for name in ahead.orders if name in now and name not in changing]
-    return DryRun(now, times, values, *let_go(paths, still))
+    return DryRun(now, times, values, *let_go(paths, still), outlines)
 
 
 def _often(clock: Clock) -> int:
@@ -172,6 +179,13 @@ def _widened(bounds: Bounds, shapes: Mapping[str, Sequence[Shape]], holders: Map
                     old = result.get(part, (low, high))
                     result[part] = np.minimum(old[0], low), np.maximum(old[1], high)
     return result
+
+
+def _outline(outlines: dict[str, Floats], shapes: Mapping[str, Sequence[Shape]]) -> None:
+    """Add the shapes of some parts at a moment to their outlines."""
+    for name, drawn in shapes.items():
+        known = [outlines[name]] if name in outlines else []
+        outlines[name] = outermost(np.concatenate([np.zeros((0, 3)), *known, *map(outline, drawn)]))
 
 
 def _around(name: str, holders: Mapping[str, str]) -> Iterator[str]:

@@ -43,6 +43,9 @@ class Framed(Protocol):
         None where nothing is drawn.
         """
 
+    def outline(self) -> Floats:
+        """Points (n, 3) whose hull holds what stays of all that is drawn, over the whole run."""
+
 
 class Running(Framed, Protocol):
     """What instants need of their run, and a run ahead of it (run.Run)."""
@@ -182,6 +185,12 @@ class Instant:
         sizes = np.linalg.norm(highs - lows, axis=1)
         kept = sizes <= (BURST * sizes.min() or np.inf)
         return lows[kept].min(axis=0), highs[kept].max(axis=0)
+
+    def outline(self) -> Floats:
+        """Points (n, 3) whose hull holds all that stays over the whole film, in all panels."""
+        points = [] if self.run.ahead else [one.outline() for one in (self.run, *self.beside)]
+        found = np.concatenate([np.zeros((0, 3)), *points])
+        return found if len(found) else np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
 
     def place(self, name: str) -> Floats:
         """(3, 4) map to the world from the coordinates that an object's position is told in."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from itertools import product
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -94,6 +95,15 @@ class Run:
             return None
         lows, highs = np.array([low for low, _ in corners]), np.array([high for _, high in corners])
         return lows.min(axis=0), highs.max(axis=0)
+
+    def outline(self) -> Floats:
+        """Points (n, 3) whose hull holds what stays of all that is drawn, over the whole run."""
+        seen = self._bounded()
+        if seen.staying is not None:
+            return np.array(list(product(*zip(*seen.staying, strict=True))))
+        return np.concatenate(
+            [np.zeros((0, 3)), *(seen.outlines[name] for name in self.orders if name in seen.outlines)]
+        )
 
     def warnings(self) -> tuple[Diagnostic, ...]:
         """A warning for what leaves for good, of a run whose camera looked ahead."""

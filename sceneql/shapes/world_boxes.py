@@ -35,28 +35,42 @@ def box_of(shape: Shape) -> tuple[Floats, Floats]:
 
 FINE = 32
 """Samples along a side of a field's box, between which a surface is not looked for."""
+MOST_PARTS = 64
+"""Parts of a skeleton up to which its field is sampled."""
 
 
 def surface_box(shape: Shape) -> tuple[Floats, Floats]:
     """Likewise, of a formula's solid as samples see it: the box that a script gives a field may be far larger."""
     low, high = box_of(shape)
-    if (
-        not isinstance(shape, Implicit)
-        or shape.within is not None
-        or len(shape.tape.parts)
-        or not np.isfinite(low).all()
-    ):
+    found = inside_samples(shape)
+    if found is None:
         return low, high
+    met, step = found
+    return np.maximum(low, met.min(axis=0) - step), np.minimum(high, met.max(axis=0) + step)
+
+
+def inside_samples(shape: Shape) -> tuple[Floats, Floats] | None:
+    """Points (n, 3) of a lattice that lie in a formula's solid, and the lattice's steps (3,) [m]; None without any."""
+    if not isinstance(shape, Implicit) or shape.within is not None or len(shape.tape.parts) > MOST_PARTS:
+        return None
+    low, high = box_of(shape)
+    if not np.isfinite(low).all():
+        return None
+    met, step = _sampled(shape, low, high)
+    if len(met) == 0:
+        return None
+    near = np.maximum(low, met.min(axis=0) - step), np.minimum(high, met.max(axis=0) + step)
+    return _sampled(shape, *near) if ((near[1] - near[0]) < 0.5 * (high - low)).any() else (met, step)
+
+
+def _sampled(shape: Implicit, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+    """The points in the solid of a lattice that fills a box, and its steps."""
     from sceneql.field.tape.tape_solid import field_values
 
     step = (high - low) / FINE
     axes = [low[k] + step[k] * np.arange(FINE + 1) for k in range(3)]
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    inside = (field_values(shape.tape, points.reshape(-1, 3)) < 0).reshape(points.shape[:3])
-    if not inside.any():
-        return low, high
-    met = points[inside]
-    return np.maximum(low, met.min(axis=0) - step), np.minimum(high, met.max(axis=0) + step)
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    return points[field_values(shape.tape, points) < 0], step
 
 
 def _around(points: Floats, radii: Floats | float) -> tuple[Floats, Floats]:

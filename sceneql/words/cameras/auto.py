@@ -9,19 +9,22 @@ from sceneql.kinds import Angle, Camera, FixedScalar, Moment, field
 from sceneql.pictures import framing
 
 if TYPE_CHECKING:
-    from sceneql.frame import View
+    from sceneql.frame import Floats, View
 
 THREE_QUARTER = (0.55, 0.38, 1.0)
-FRONT = (0.0, 0.1, 1.0)
+ALONG = ((1.0, 0.1, 0.0), (0.0, 1.0, 0.12), (0.0, 0.1, 1.0))
+"""Towards the camera, for what is flat in x, y or z."""
 FLAT = 0.2
-"""What is shallower in z than this part of its height and width is seen from the front."""
+"""What is shallower along an axis than this part of its size along both others is seen along it."""
+HEADROOM = 0.86
+"""Part of the height between the margins that is filled at most: pictures are wider than what stands in them."""
 
 
 class Auto(Camera):
     """A three-quarter view of all that is drawn, from the right front and above, that holds still over the whole film.
 
-    A scene that is flat in z is seen from the front. The few of many things that leave for good are let go. Panels of
-    variants share one view, and overlays are left room.
+    A scene that is flat along an axis is seen along it. The few of many things that leave for good are let go. Panels
+    of variants share one view, and overlays are left room.
     """
 
     yields: ClassVar[bool] = True
@@ -32,9 +35,16 @@ class Auto(Camera):
     def view(self, size: tuple[int, int], moment: Moment) -> View:
         """The view of the whole film."""
         half = math.tan(0.5 * float(moment.at(self.field_of_view)))
-        low, high = framing.bounds(moment, None)
-        width, height, depth = high - low
-        axes = framing.axes_towards(FRONT if depth < FLAT * min(width, height) else THREE_QUARTER)
-        slopes, middle = framing.inner(half, size, self.margin, moment.room)
-        origin, _ = framing.fitted(framing.corners(low, high), axes, slopes, middle=middle)
+        points = moment.outline()
+        axes = framing.axes_towards(_towards(points))
+        (wide, high), middle = framing.inner(half, size, self.margin, moment.room)
+        origin, _ = framing.fitted(points, axes, (wide, HEADROOM * high), middle=middle)
         return framing.view(origin, axes, size, half)
+
+
+def _towards(points: Floats) -> tuple[float, float, float]:
+    """The direction from the scene to its camera."""
+    sides = points.max(axis=0) - points.min(axis=0)
+    thin = int(sides.argmin())
+    others = [float(side) for k, side in enumerate(sides) if k != thin]
+    return ALONG[thin] if sides[thin] < FLAT * min(others) else THREE_QUARTER

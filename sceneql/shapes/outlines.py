@@ -1,0 +1,83 @@
+"""Outlines: few points whose hull holds a shape, so that a camera can be fitted to what is there, not to a box."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.frame import Mesh, Points, Quadric, Segments
+from sceneql.shapes.placement import apply, inverse
+from sceneql.shapes.world_boxes import box_of, inside_samples
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Shape
+
+COUNT = 96
+"""Directions in which points are looked for."""
+MOST = 20_000
+"""Vertices or spheres that are looked at; of more, an even choice."""
+
+
+def _directions() -> Floats:
+    """(COUNT, 3) unit vectors, evenly spread by the golden angle."""
+    k = np.arange(COUNT) + 0.5
+    up, turn = 1.0 - 2.0 * k / COUNT, np.pi * (1.0 + 5.0**0.5) * k
+    across = np.sqrt(1.0 - up * up)
+    return np.column_stack([across * np.cos(turn), up, across * np.sin(turn)])
+
+
+DIRECTIONS = _directions()
+
+
+def outline(shape: Shape) -> Floats:
+    """Points (n, 3) [m] around a shape, at most some hundred; none for an empty or unbounded one."""
+    match shape:
+        case Mesh(vertices=points):
+            return outermost(_some(points))
+        case Points(centers=points, radii=radii):
+            return _around(_some(points), _some(radii))
+        case Segments(ends=ends, radii=radii):
+            return _around(_some(ends.reshape(-1, 3)), _some(np.repeat(radii, 2)))
+        case Quadric(squares=squares, linear=linear) if min(squares) > 0.0 and not any(linear):
+            return _ellipsoid(shape)
+        case Quadric(low=low, high=high):
+            corners = np.array(list(product(*zip(low, high, strict=True))))
+            return apply(inverse(shape.to_local), corners) if np.isfinite(corners).all() else np.zeros((0, 3))
+    found = inside_samples(shape)
+    if found is not None:
+        points, step = found
+        return _around(points, np.full(len(points), 0.5 * float(np.linalg.norm(step))))
+    corners = np.array(list(product(*zip(*box_of(shape), strict=True))))
+    return corners if np.isfinite(corners).all() else np.zeros((0, 3))
+
+
+def outermost(points: Floats) -> Floats:
+    """Of points (n, 3) those farthest in any of the directions."""
+    if len(points) <= COUNT:
+        return points
+    found: Floats = points[np.unique(np.argmax(points @ DIRECTIONS.T, axis=0))]
+    return found
+
+
+def _around(centers: Floats, radii: Floats) -> Floats:
+    """Points on the spheres that reach farthest."""
+    if len(centers) == 0:
+        return centers.reshape(-1, 3)
+    farthest = np.argmax(centers @ DIRECTIONS.T + radii[:, None], axis=0)
+    found: Floats = centers[farthest] + radii[farthest, None] * DIRECTIONS
+    return found
+
+
+def _ellipsoid(shape: Quadric) -> Floats:
+    """Points on an ellipsoid, cut at its box: where its normals are the directions."""
+    if not shape.constant < 0.0:
+        return np.zeros((0, 3))
+    half = np.sqrt(-shape.constant / np.array(shape.squares))
+    return apply(inverse(shape.to_local), np.clip(DIRECTIONS * half, shape.low, shape.high))
+
+
+def _some(rows: Floats) -> Floats:
+    """At most MOST of them."""
+    return rows[:: 1 + len(rows) // MOST]
