@@ -14,7 +14,7 @@ SHAPES = {
     "sphere: {radius: 0.5 m, position: 1 2 0 m}": 0.5,
     "box: {size: 1 0.5 2 m, rotation: {about: x, angle: 30 deg}}": 1.0,
     "torus: {radius: 0.6 m, tube: 0.2 m, rotation: {about: z, angle: 40 deg}}": 0.8,
-    "implicit: {formula: x^2 + 2*y^2 + 3*z^2 - 0.3, bounds: {box: [-3 -3 -3, 3 3 3]}}": 0.55,
+    "implicit: {field: x^2 + 2*y^2 + 3*z^2 - 0.3, bounds: {box: [-3 -3 -3, 3 3 3]}}": 0.55,
     "blobby: {skeleton: [{point: 0 0 0 m, radius: 0.5 m}, {point: 0.7 0.2 0 m, radius: 0.4 m}]}": 0.9,
 }
 """Objects and about how large each is [m]."""
