@@ -177,20 +177,22 @@ class Instant:
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole film; for no names of all that stays."""
         asked = list(names)
-        runs = () if self.run.ahead else (self.run, *self.beside)
-        boxes = [box for run in runs if (box := run.bounds(asked)) is not None]
-        if not boxes:
-            return np.full(3, -1.0), np.full(3, 1.0)
-        lows, highs = np.array([low for low, _ in boxes]), np.array([high for _, high in boxes])
-        sizes = np.linalg.norm(highs - lows, axis=1)
-        kept = sizes <= (BURST * sizes.min() or np.inf)
-        return lows[kept].min(axis=0), highs[kept].max(axis=0)
+        boxes = self._of_panels(lambda run: None if (box := run.bounds(asked)) is None else np.array(box))
+        return (boxes.min(axis=0), boxes.max(axis=0)) if len(boxes) else (np.full(3, -1.0), np.full(3, 1.0))
 
     def outline(self) -> Floats:
         """Points (n, 3) whose hull holds all that stays over the whole film, in all panels."""
-        points = [] if self.run.ahead else [one.outline() for one in (self.run, *self.beside)]
-        found = np.concatenate([np.zeros((0, 3)), *points])
-        return found if len(found) else np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
+        points = self._of_panels(lambda run: run.outline())
+        return points if len(points) else np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
+
+    def _of_panels(self, points_of: Callable[[Framed], Floats | None]) -> Floats:
+        """Points (n, 3) of this run and of those beside it, but for variants that burst."""
+        runs = () if self.run.ahead else (self.run, *self.beside)
+        found = [points for run in runs if (points := points_of(run)) is not None and len(points)]
+        sizes = [float(np.linalg.norm(points.max(axis=0) - points.min(axis=0))) for points in found]
+        most = BURST * min(sizes, default=0.0) or np.inf
+        kept = [points for points, size in zip(found, sizes, strict=True) if size <= most]
+        return np.concatenate([np.zeros((0, 3)), *kept])
 
     def place(self, name: str) -> Floats:
         """(3, 4) map to the world from the coordinates that an object's position is told in."""
