@@ -7,15 +7,13 @@ tests/bench/bench_shortcuts.py measures what each of them saves.
 
 import operator
 from functools import cache
-from importlib import import_module, metadata
+from importlib import import_module
 from types import BuiltinFunctionType
 
-from llvmlite.ir._utils import DuplicatedNameError, NameScope
 from numba import types
 from numba.core import (
     base,
     cpu,
-    entrypoints,
     errors,
     interpreter,
     ir,
@@ -170,24 +168,6 @@ def look_once():
     postproc.PostProcessor.run = running
 
 
-def name_quickly():
-    """Unique names in LLVM code are found in one function, without a call for each name that is tried."""
-
-    def register(self, name, deduplicate=False):
-        used = self._useset
-        if name in used:
-            if not deduplicate:
-                raise DuplicatedNameError(name)
-            first, counts = name, self._basenamemap
-            while name in used:
-                counts[first] += 1
-                name = f"{first}.{counts[first]}"
-        used.add(name)
-        return name
-
-    NameScope.register = register
-
-
 def pass_over():
     """Kernels have no ``with`` and no dict displays, whose bytecode patterns numba looks for in every statement."""
     slowly = interpreter.Interpreter.post_process
@@ -220,26 +200,6 @@ def believe_in_scipy():
     linalg.ensure_blas = look
 
 
-def look_for_extensions():
-    """numba's extensions are loaded only where an installed package names one: numba itself parses all entry points."""
-    initialize = entrypoints.init_all
-
-    def look():
-        if entrypoints._already_initialized:
-            return
-        told = (one.read_text("entry_points.txt") for one in metadata.distributions())
-        if any("numba_extensions" in text for text in told if text):
-            initialize()
-        entrypoints._already_initialized = True
-
-    entrypoints.init_all = look
-
-
-def remember_places():
-    """Which kinds of errors have a location is looked up once."""
-    base._has_loc = cache(base._has_loc)
-
-
 def _say_nothing(*_, **__):
     pass
 
@@ -254,11 +214,8 @@ SHORTCUTS = (
     propagate_quickly,
     refresh_rarely,
     look_once,
-    name_quickly,
     pass_over,
     remember_sizes,
-    remember_places,
     believe_in_scipy,
-    look_for_extensions,
 )
 """All of them, in the order in which they are taken."""
