@@ -6,6 +6,7 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.scene_kernels import ASKED, RAY, SCENE, SCRATCH, crossing_at, part
 from renderers.tracing.solids.solids_kernels import NONE, half_space, inverse, quadric, round_solid, triangle
+from renderers.tracing.solids.thin_capsules_kernels import thin_round
 from sceneql.compiled.kernels import kernel
 
 
@@ -22,6 +23,8 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
         return round_solid(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     if kind == layout.QUADRIC:
         return quadric(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
+    if kind == layout.THIN:
+        return thin_round(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far)
     last = scratch.shape[0] - 1
     if scratch[last, layout.TOLD] >= layout.PROBING:
         scratch[last, layout.TOLD] = layout.REACHED
