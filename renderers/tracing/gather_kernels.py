@@ -13,7 +13,7 @@ from renderers.tracing.light.lamps_kernels import mirrored_lamps
 from renderers.tracing.light.light_kernels import backdrop, dielectric, polish, sharpness, sky_radiance, smoothstep
 from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, shade
 from renderers.tracing.light.visibility_kernels import look_around
-from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
+from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted, refracted_spread
 from renderers.tracing.record_kernels import IMAGED, TINT, TRACED, WEIGHT, copy_record, erase, start_of
 from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
@@ -42,10 +42,10 @@ RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIV
     11,
     *range(14, 21),
 )
-"""Offsets in a path, after its ray: the ray's cone; weight and sum of its light (3 each); whether it was only
-refracted, so that it sees the backdrop; whether its second record is still to be found; surfaces so far; whether the
-camera is a perspective one; whether it goes on; whether a root was undecided; whether its last surface is still to be
-lit."""
+"""Offsets in a path, after its ray: the ray's cone, whose radius is below 0 behind a focus; weight and sum of its light
+(3 each); whether it was only refracted, so that it sees the backdrop; whether its second record is still to be found;
+surfaces so far; whether the camera is a perspective one; whether it goes on; whether a root was undecided; whether its
+last surface is still to be lit."""
 WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PAST, LINES, SAMPLE, PATH = (
     21,
     22,
@@ -117,7 +117,7 @@ def advance(scene, scratch, path, first, second, spare):
         cr, cg, cb = cr + wr * r, cg + wg * g, cb + wb * b
     else:
         radius += spread * t
-        outside = describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, spare)
+        outside = describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, abs(radius), spare)
         fade = faded(scene, item, spare) if perspective or bounce > 0 else 1.0
         if fade < 1.0:
             r, g, b = backdrop(scene.reals, max(dy, 0.0)) if straight else sky_radiance(scene.reals, max(dy, 0.0))
@@ -175,14 +175,14 @@ def advance(scene, scratch, path, first, second, spare):
                     wr, wg, wb = wr * spare[TINT], wg * spare[TINT + 1], wb * spare[TINT + 2]
                 ox, oy, oz = behind(spare)
                 dx, dy, dz = refracted(spare, ratio)
-                spread += turn * abs(1.0 - ratio)
+                spread = refracted_spread(scene, scratch, spare, ratio, radius, spread)
             else:
                 straight = False
                 path[LAMPS] = lamps
                 wr, wg, wb = traced * sr * wr, traced * sg * wg, traced * sb * wb
                 ox, oy, oz = start_of(spare)
                 dx, dy, dz = mirrored(spare)
-                spread += 2.0 * turn
+                radius, spread = abs(radius), abs(spread) + 2.0 * turn
             bounce += 1
     if scratch[counter, 0] > 0.0:
         path[DOUBTED] = 1.0
