@@ -12,9 +12,10 @@ class Trace(Renderer):
     """Ray-traces a frame: solids exactly, meshes by a bounding hierarchy, implicit surfaces by certified first roots.
 
     Soft shadows, light of the sky with occlusion, light that surfaces reflect onto one another, reflection and
-    refraction; microfacet highlights (Walter, Marschner, Li and Torrance 2007; Turquin 2019). Shadows and light from
-    around are sampled by a net and averaged over the surface around a pixel, so that a film has no grain; the bytes are
-    the same from run to run and for any number of threads.
+    refraction; light and shadows go straight through glass: there are no caustics. Microfacet highlights (Walter,
+    Marschner, Li and Torrance 2007; Turquin 2019). Shadows and light from around are sampled by a net and averaged over
+    the surface around a pixel, so that a film has no grain; the bytes are the same from run to run and for any number
+    of threads.
     """
 
     tolerance: FixedScalar = field(

@@ -46,6 +46,15 @@ def test_no_crossing_of_any_tape_is_missed_in_packets(tape, ray, spread, seed):
     assert ((status == ops.HIT) == ((certified == ops.HIT) | (certified == ops.INSIDE)))[settled].all()
 
 
+@pytest.mark.parametrize("count", [100, 150, 180, 205, 250])
+def test_all_columns_of_a_bundle_are_searched_where_the_shortened_tape_holds(count):
+    # Two bores, 0 < x < 3 and 2 < x < 6, in a slab: near the first root, x = 6, the first bore does not count.
+    tape = tape_of("max(max(abs(x - 5) - 10, 1.5 - abs(x - 1.5)), 2 - abs(x - 4))")
+    origins = np.column_stack([np.full(count, 0.5), np.linspace(-0.1, 0.1, count), np.zeros(count)])
+    directions = np.tile([1.0, 0, 0], (count, 1))
+    agree_with_the_certified(tape, origins, directions, np.zeros(count), np.full(count, 14.0), 1e-6)
+
+
 def test_parts_about_a_place_that_is_not_everywhere_a_number_are_kept():
     # The density of (x, x, sqrt(1 - x^(2x))): the bundle's beam has places where that is enclosed by no numbers.
     code = [[ops.X, 0, 0, 0], [ops.POW, 0, 0, 0], [ops.CONSTANT, 0, 0, 0], [ops.SQUARE, 1, 1, 0]]

@@ -13,10 +13,11 @@ from renderers.tracing.light.lamps_kernels import mirrored_lamps
 from renderers.tracing.light.light_kernels import backdrop, dielectric, polish, sharpness, sky_radiance, smoothstep
 from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, shade
 from renderers.tracing.light.visibility_kernels import look_around
-from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted
+from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted, refracted_spread
 from renderers.tracing.record_kernels import IMAGED, TINT, TRACED, WEIGHT, copy_record, erase, start_of
 from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
+from renderers.tracing.solids.thin_capsules_kernels import coverage
 from sceneql.compiled.kernels import kernel
 
 PLACES = types.float64[::1]
@@ -24,6 +25,12 @@ BOUNCES = 8
 """Most surfaces that a ray meets behind the first one."""
 FAINT = 0.025
 """Weight of a mirrored ray below which the sky's reflection replaces it; from twice that on it counts in full."""
+MOST_LINES, AT_A_LINE = 6, 2
+"""Most capsules thinner than a pixel that a path goes through; samples of light and sky at each."""
+FAINT_LINE = 2.0
+"""Of a path that is DARK at such a capsule, in place of 1."""
+FAINTLY = -1.0
+"""In place of doubt about a root: the path goes through a capsule thinner than a pixel."""
 WIDEST = 0.02
 """Spread of a ray's cone after several mirrors from which on they show no lamps: images would be smeared over it."""
 QUICK = 8
@@ -35,18 +42,23 @@ RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIV
     11,
     *range(14, 21),
 )
-"""Offsets in a path, after its ray: the ray's cone; weight and sum of its light (3 each); whether it was only
-refracted, so that it sees the backdrop; whether its second record is still to be found; surfaces so far; whether the
-camera is a perspective one; whether it goes on; whether a root was undecided; whether its last surface is still to be
-lit."""
-WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PATH = 21, 22, *range(28, 34)
+"""Offsets in a path, after its ray: the ray's cone, whose radius is below 0 behind a focus; weight and sum of its light
+(3 each); whether it was only refracted, so that it sees the backdrop; whether its second record is still to be found;
+surfaces so far; whether the camera is a perspective one; whether it goes on; whether a root was undecided; whether its
+last surface is still to be lit."""
+WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PAST, LINES, SAMPLE, PATH = (
+    21,
+    22,
+    *range(28, 37),
+)
 """Glass splits a ray: whether the mirrored one waits, and its begin. Share of the lamps that a ray sees: none unless it
-is mirrored. Numbers of a path."""
+is mirrored. Distance up to which a camera's ray is through with thin capsules, and how many it has met; number of the
+path's sample in its pixel. Numbers of a path."""
 
 
 @part
-def begin(reals, px, py, path, first, second):
-    """Start a path (PATH,) at the camera, through the picture's point (px, py); erase its records."""
+def begin(reals, px, py, path, first, second, sample):
+    """Start a path (PATH,) at the camera, through point number ``sample`` of a pixel, (px, py); erase its records."""
     ox, oy, oz, dx, dy, dz, radius, spread = camera_ray(reals, px, py)
     path[0], path[1], path[2], path[3], path[4], path[5] = ox, oy, oz, dx, dy, dz
     path[RADIUS], path[SPREAD] = radius, spread
@@ -55,7 +67,8 @@ def begin(reals, px, py, path, first, second):
         path[GATHERED + c] = 0.0
     path[STRAIGHT], path[KEEP], path[BOUNCE], path[LIVE] = 1.0, 1.0, 0.0, 1.0
     path[PERSPECTIVE] = 1.0 if spread > 0.0 else 0.0
-    path[WAITING] = path[DOUBTED] = path[DARK] = path[LAMPS] = 0.0
+    path[WAITING] = path[DOUBTED] = path[DARK] = path[LAMPS] = path[PAST] = path[LINES] = 0.0
+    path[SAMPLE] = sample
     erase(first)
     erase(second)
 
@@ -75,8 +88,25 @@ def advance(scene, scratch, path, first, second, spare):
     bounce = int(path[BOUNCE])
     counter = scratch.shape[0] - 1
     scratch[counter, 0] = 0.0
+    widens = bounce == 0 and scene.ints[layout.HAS_THIN] != 0 and path[LINES] < MOST_LINES
+    if widens:
+        scratch[counter, layout.WIDE_RADIUS], scratch[counter, layout.WIDE_SPREAD] = radius, spread
+        scratch[counter, layout.WIDE_FROM] = path[PAST]
     t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
     scratch[counter, layout.TOLD] = 0.0
+    if widens:
+        scratch[counter, layout.WIDE_RADIUS] = scratch[counter, layout.WIDE_SPREAD] = 0.0
+        if item >= 0:
+            share, past = coverage(scene, item, radius, spread, ox, oy, oz, dx, dy, dz)
+            if share < 1.0:
+                describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius + spread * t, spare)
+                for c in range(3):
+                    spare[WEIGHT + c] = share * path[LIGHT_WEIGHT + c]
+                    path[LIGHT_WEIGHT + c] *= 1.0 - share
+                path[PAST], path[DARK] = past, FAINT_LINE
+                path[LINES] += 1.0
+                path[DOUBTED] = 1.0 if scratch[counter, 0] > 0.0 or path[DOUBTED] > 0.0 else FAINTLY
+                return
     goes_on = False
     if path[LAMPS] > 0.0:
         r, g, b = mirrored_lamps(scene, ox, oy, oz, dx, dy, dz, radius, spread, t)
@@ -87,7 +117,7 @@ def advance(scene, scratch, path, first, second, spare):
         cr, cg, cb = cr + wr * r, cg + wg * g, cb + wb * b
     else:
         radius += spread * t
-        outside = describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, spare)
+        outside = describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, abs(radius), spare)
         fade = faded(scene, item, spare) if perspective or bounce > 0 else 1.0
         if fade < 1.0:
             r, g, b = backdrop(scene.reals, max(dy, 0.0)) if straight else sky_radiance(scene.reals, max(dy, 0.0))
@@ -145,14 +175,14 @@ def advance(scene, scratch, path, first, second, spare):
                     wr, wg, wb = wr * spare[TINT], wg * spare[TINT + 1], wb * spare[TINT + 2]
                 ox, oy, oz = behind(spare)
                 dx, dy, dz = refracted(spare, ratio)
-                spread += turn * abs(1.0 - ratio)
+                spread = refracted_spread(scene, scratch, spare, ratio, radius, spread)
             else:
                 straight = False
                 path[LAMPS] = lamps
                 wr, wg, wb = traced * sr * wr, traced * sg * wg, traced * sb * wb
                 ox, oy, oz = start_of(spare)
                 dx, dy, dz = mirrored(spare)
-                spread += 2.0 * turn
+                radius, spread = abs(radius), abs(spread) + 2.0 * turn
             bounce += 1
     if scratch[counter, 0] > 0.0:
         path[DOUBTED] = 1.0
@@ -175,11 +205,13 @@ def advance(scene, scratch, path, first, second, spare):
 
 @part
 def light_behind(scene, scratch, asked, path, record, visibility):
-    """Add the light of a surface beyond a path's records to what it has GATHERED, by QUICK samples.
+    """Add the light of a surface beyond a path's records to what it has GATHERED, by QUICK samples, or fewer at lines.
 
     Returns False where the sampled rays have no answers yet.
     """
-    if not look_around(scene, scratch, asked, record, 0, QUICK, QUICK, visibility):
+    line = path[DARK] == FAINT_LINE  # each of a pixel's samples lights it by others
+    number, some = (int(path[SAMPLE]), AT_A_LINE) if line else (0, QUICK)
+    if not look_around(scene, scratch, asked, record, number, some, some, visibility):
         return False
     r, g, b = shade(scene, record, visibility)
     path[GATHERED] += r

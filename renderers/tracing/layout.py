@@ -1,18 +1,21 @@
 """Layout of the tracer's scene (two arrays), of its scratch and of its lists of rays."""
 
 NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT = range(7)
-"""The header. The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""
+HAS_THIN, SWARMS_AT, SWARM_COUNT = range(7, 10)
+"""The header; HAS_THIN: whether there are THIN items. The first ENDLESS_COUNT items have no bounds; they stand in the
+first node, which has none either."""
 
-ITEMS = 8
+ITEMS = 10
 """Offset of the items, by leaf: kind, place of the reals, place of the surface, index of the shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
-TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID = range(7)
+TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID, THIN = range(8)
 """Kinds. Their reals:
 TRIANGLE: corner, edge, edge; normals at the corners, colors at the corners (a NaN first: there are none): 27.
 ROUND (sphere or capsule): end, axis to the other end, radius, color (NaN: the surface's): 10.
 QUADRIC: map to local (3, 4), squares, linear, constant, low, high: 25.
 HALF_SPACE (a quadric that is nothing else): unit normal, height of its face along that: 4.
 GRID: as grid_kernels says.
+THIN: as ROUND, of a capsule that the camera may see thinner than a pixel (thin_capsules_kernels).
 IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the
 constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
 sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.tape.plans), its length."""
@@ -21,6 +24,8 @@ CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
 CELLS = 32
 """Occupancy cells along each axis of an implicit object's box, through which single rays walk."""
 
+SWARM = 7
+"""Reals of a swarm of glowing spheres: mean place, mean squared distance from it, radiant intensity (3)."""
 LINK = 3
 """Integers of a node: its skip link (the next node after a miss), first item, number of items (0: an inner node)."""
 
@@ -50,6 +55,9 @@ EMPTY, MIXED, FULL = range(3)
 TOLD = 1
 KNOWN, PROBING, REACHED = 1.0, 2.0, 3.0
 """In the last row of a thread's scratch (scene_kernels.SCRATCH): a column, and its values."""
+WIDE_RADIUS, WIDE_SPREAD, WIDE_FROM = 2, 3, 4
+"""In the same row: the cone of a camera's ray, and the distance up to which it is through with thin capsules; the first
+two are 0 for all other rays."""
 FAR, WANT, ANSWERS = 6, 7, 8
 FIRST, ANYWHERE, NOTHING = range(3)
 """Want of a ray: the first hit, any hit, or none, for a ray that misses all boxes."""

@@ -9,8 +9,10 @@ import numpy as np
 
 from renderers.tracing import layout
 from renderers.tracing.certified import TOLERANCE
+from renderers.tracing.light.swarms import swarms_of
 from renderers.tracing.scene_kernels import Scene
 from renderers.tracing.solids.hierarchy import hierarchy
+from renderers.tracing.solids.thin_capsules_kernels import TENT
 from renderers.tracing.solids.triangles import LARGE, Packed, boxes_of, corners_of, rows_of, still_mesh
 from sceneql import frame as seen
 from sceneql.field.tape.plans import ray_plan
@@ -19,7 +21,7 @@ from sceneql.field.tape.tape_ops import scratch_rows
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Ints, LightSource, SeenFrame, Tape
+    from sceneql.frame import Floats, Ints, LightSource, SeenFrame, Tape, View
 
 
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
@@ -31,7 +33,7 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     With ``samples`` implicit objects are sampled at so many places of a ray instead of searched for roots; with
     ``certain`` they are searched by certified intervals alone. ValueError names a shape outside of the closed set.
     """
-    tables = Rows()
+    tables = Rows(frame.view)
     for index, shape in enumerate(frame.shapes):
         tables.add(index, shape)
     boxes = np.concatenate([np.empty((0, 6)), *tables.boxes])
@@ -56,8 +58,11 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     items[:, layout.SURFACE_AT] = surfaces_at + layout.SURFACE_SIZE * items[:, layout.SHAPE]
     links_at = layout.ITEMS + items.size
     ranges_at = links_at + links.size
-    reals = np.concatenate([head, lights.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
-    header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), 0]
+    swarms = swarms_of(frame.shapes)
+    swarms_at = reals_at + sum(map(len, tables.reals))
+    reals = np.concatenate([head, lights.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals, swarms.ravel()])
+    header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), tables.thin]
+    header += [swarms_at, len(swarms)]
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
         place = ranges_at + layout.RANGES * k
@@ -84,7 +89,10 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
 class Rows:
     """A Scene in the making; places count from the items' first real, and from the first integer of code."""
 
-    def __init__(self) -> None:
+    def __init__(self, view: View) -> None:
+        self.view = view
+        self.thin = False
+        """Whether there are capsules that the view may show thinner than a pixel."""
         self.boxes: list[Floats] = []
         self.items: list[NDArray[np.int64]] = []
         self.surfaces: list[Floats] = []
@@ -119,7 +127,14 @@ class Rows:
             zero = np.zeros((len(shape.centers), 3))
             self._rounds(index, shape.centers, zero, shape.radii, shape.colors)
         elif isinstance(shape, seen.Segments):
-            self._rounds(index, shape.ends[:, 0], shape.ends[:, 1] - shape.ends[:, 0], shape.radii, shape.colors)
+            pixels = half_pixels(shape, self.view)
+            thin = pixels > shape.radii
+            self.thin |= bool(thin.any())
+            for kind, some in ((layout.ROUND, ~thin), (layout.THIN, thin)):
+                if some.any():
+                    ends, colors = shape.ends[some], None if shape.colors is None else shape.colors[some]
+                    axes = ends[:, 1] - ends[:, 0]
+                    self._rounds(index, ends[:, 0], axes, shape.radii[some], colors, kind, TENT * pixels[some])
         else:
             raise ValueError(f"shape {index} is a {type(shape).__name__}, which is none of the closed set")
 
@@ -152,12 +167,16 @@ class Rows:
             corners = corners_of(mesh)
             self._items(index, layout.TRIANGLE, boxes_of(corners), rows_of(mesh, corners))
 
-    def _rounds(self, index: int, ends: Floats, axes: Floats, radii: Floats, colors: Floats | None) -> None:
+    def _rounds(
+        self, index: int, ends: Floats, axes: Floats, radii: Floats, colors: Floats | None, kind: int = layout.ROUND,
+        blur: Floats | None = None,
+    ) -> None:  # fmt: skip
         shades = np.full((len(ends), 3), np.nan) if colors is None else colors
         radii = np.asarray(radii, dtype=np.float64)[:, None]
-        low, high = np.minimum(ends, ends + axes) - radii, np.maximum(ends, ends + axes) + radii
+        around = radii if kind == layout.ROUND or blur is None else radii + blur[:, None]
+        low, high = np.minimum(ends, ends + axes) - around, np.maximum(ends, ends + axes) + around
         rows = np.concatenate([ends, axes, radii, shades], axis=1)
-        self._items(index, layout.ROUND, np.concatenate([low, high], axis=1), rows)
+        self._items(index, kind, np.concatenate([low, high], axis=1), rows)
 
     def _implicit(self, index: int, shape: seen.Implicit) -> None:
         box = np.array([[*shape.low, *shape.high, 0.0]], dtype=np.float64)
@@ -206,6 +225,16 @@ def quadric_box(shape: seen.Quadric) -> Floats:
     middle = matrix @ (0.5 * (low + high) - np.asarray(shape.to_local)[:, 3])
     reach = np.abs(matrix) @ (0.5 * (high - low)) * (1 + 1e-9) + 1e-12
     return np.concatenate([middle - reach, middle + reach])
+
+
+def half_pixels(shape: seen.Segments, view: View) -> Floats:
+    """(n,) half of a pixel's width [m] where it is largest on capsules: at their farther ends."""
+    pixel = view.half_height / view.size[1]
+    if view.orthographic:
+        return np.full(len(shape.radii), pixel)
+    depth = (np.asarray(view.origin) - shape.ends) @ np.asarray(view.axes)[2]
+    farthest: Floats = pixel * depth.max(axis=1)
+    return farthest
 
 
 def _half_space(shape: seen.Quadric) -> Floats | None:

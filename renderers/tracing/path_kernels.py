@@ -5,6 +5,7 @@ import numpy as np
 
 from renderers.tracing import layout
 from renderers.tracing import record_kernels as records
+from renderers.tracing.light.sampling_kernels import across
 from renderers.tracing.light.shade_kernels import facing_ratio
 from renderers.tracing.record_kernels import NORMAL, PLACE, VIEW, start_of
 from renderers.tracing.scene_kernels import part
@@ -78,6 +79,33 @@ def bend(scene, scratch, record):
     # Of the difference: the cosine of a record's normal, in single precision, would turn flat surfaces by 3e-4.
     mx, my, mz = side * mx - nx, side * my - ny, side * mz - nz
     return np.sqrt(mx * mx + my * my + mz * mz) / max(nv, 0.1)
+
+
+@part
+def refracted_spread(scene, scratch, record, ratio, radius, spread):
+    """Spread of a refracted ray's cone: the change of the ray's direction by its place (Igehy 1999, eq. 12 to 19).
+
+    Of the directions across the ray, that across the plane of incidence, in which the footprint is neither stretched
+    by the surface's slant nor by the refraction's: what is finer in the other is left to the rays of a pixel.
+    """
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+    vx, vy, vz = float(record[VIEW]), float(record[VIEW + 1]), float(record[VIEW + 2])
+    ex, ey, ez = ny * vz - nz * vy, nz * vx - nx * vz, nx * vy - ny * vx
+    length = np.sqrt(ex * ex + ey * ey + ez * ez)
+    if length < 1e-3:
+        ex, ey, ez, _, _, _ = across(nx, ny, nz)
+        length = 1.0
+    step = record[records.RADIUS]
+    if step == 0.0:
+        return ratio * spread
+    ex, ey, ez = ex / length, ey / length, ez / length
+    x, y, z = record[PLACE] + step * ex, record[PLACE + 1] + step * ey, record[PLACE + 2] + step * ez
+    mx, my, mz, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[records.ITEM]), x, y, z)
+    side = 1.0 if mx * nx + my * ny + mz * nz >= 0.0 else -1.0
+    turn = ((side * mx - nx) * ex + (side * my - ny) * ey + (side * mz - nz) * ez) / step
+    cosine = facing_ratio(record)
+    after = np.sqrt(max(1.0 - ratio * ratio * (1.0 - cosine * cosine), 0.0))
+    return ratio * spread - (after - ratio * cosine) * turn * radius
 
 
 @part

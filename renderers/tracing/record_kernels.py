@@ -11,8 +11,8 @@ PLACE, NORMAL, VIEW, TINT, WEIGHT, SURFACE, OWNER, RADIUS, LIFT, TRACED, ITEM = 
 UNSURE, IMAGED = 21, 22
 """Columns: point, shading normal, direction to the viewer, color, weight in the pixel, place of the surface, shape
 index + 1 (0: no record), radius of the pixel's cone there, lift of shadow rays, share of the reflection that is traced,
-item; whether a root on the pixel's path is undecided (in the first record only, even if it is empty);
-share of the lamps that the traced reflection shows."""
+item; whether a root on the pixel's path is undecided, or below 0 the path passes a thin capsule (in the first record
+only, even if it is empty); share of the lamps that the traced reflection shows."""
 COLUMNS = 23
 FLATTEST = 0.9
 """Cosine between normals from which on two records may lie on one smooth surface."""

@@ -88,9 +88,11 @@ class Waves:
         visibility: Array, picture: Array,
     ) -> None:  # fmt: skip
         """Fill rows start..stop of ``picture`` (n, 3): ``radiance``, but edges by rays through ``points`` (s, 2)."""
-        width, size = int(self.scene.reals[layout.WIDTH]), KEYS + visibility.shape[2] * WIDE
+        scene = self.scene
+        width, size = int(scene.reals[layout.WIDTH]), KEYS + visibility.shape[2] * WIDE
         light, own = (records, radiance), (self.marks, self.same, self.edges)
-        count = list_edges(start, stop, width, size, undecided, planes, *light, picture, *own)
+        doubted = undecided + int(scene.ints[layout.HAS_THIN])
+        count = list_edges(start, stop, width, size, doubted, planes, *light, picture, *own)
         some = len(self.paths) // TRIAL
         for first in range(0, count, some):
             edges = self.edges[first : min(first + some, count)]

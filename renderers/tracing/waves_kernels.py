@@ -33,7 +33,7 @@ def begin_paths(scene, start, stop, first, records, paths, at):
         x, y = place_of(i)
         if x < width and start + y < stop:
             k = (start + y) * width + x
-            begin(scene.reals, x + 0.5, start + y + 0.5, paths[n], records[0, k], records[1, k])
+            begin(scene.reals, x + 0.5, start + y + 0.5, paths[n], records[0, k], records[1, k], 0)
             at[n] = k
             n += 1
     return n

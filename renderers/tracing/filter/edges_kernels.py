@@ -81,7 +81,7 @@ def mark_edges(y, planes, size, chunk, same, marks):
 
 @part
 def unlike(records, radiance, k, x, y, width, height):
-    """Whether a pixel's neighborhood has an undecided root or, if the pixel is a mirror, another radiance."""
+    """Whether a pixel's neighborhood has an undecided root, a thin capsule or, if it is a mirror, another radiance."""
     glossy = records[0, k, TRACED] > 0.0
     for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
         for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
@@ -115,8 +115,8 @@ def borrow(records, visibility, record, x, y, width, height, found):
 def list_edges(start, stop, width, size, undecided, planes, records, radiance, picture, marks, same, edges):
     """List the pixels of rows start..stop, at most TILE, that are to be drawn anew; write the others to the picture.
 
-    ``size`` of a chunk of ``planes``, those of the first records; ``undecided`` roots in the picture: pixels with one
-    are drawn anew as well. ``marks`` (TILE, chunks LANES) and ``same`` (LANES,) are working memory.
+    ``size`` of a chunk of ``planes``, those of the first records; ``undecided`` roots in the picture, or thin capsules:
+    pixels with one are drawn anew as well. ``marks`` (TILE, chunks LANES) and ``same`` (LANES,) are working memory.
     """
     for y in range(start, stop):
         for chunk in range(planes.shape[1] // size):
@@ -148,7 +148,7 @@ def begin_samples(scene, points, edges, paths, own):
     for i in range(each * len(edges)):
         k, s = edges[i // each], i % each
         px, py = k % width + points[s, 0], k // width + points[s, 1]
-        begin(scene.reals, px, py, paths[i], own[0, i], own[1, i])
+        begin(scene.reals, px, py, paths[i], own[0, i], own[1, i], s)
 
 
 @kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _i, _many, _stack, _stack, _stack, _stack), _nrt=False)

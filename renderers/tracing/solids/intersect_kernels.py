@@ -6,6 +6,7 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.scene_kernels import ASKED, RAY, SCENE, SCRATCH, crossing_at, part
 from renderers.tracing.solids.solids_kernels import NONE, half_space, inverse, quadric, round_solid, triangle
+from renderers.tracing.solids.thin_capsules_kernels import thin_round
 from sceneql.compiled.kernels import kernel
 
 
@@ -22,6 +23,8 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
         return round_solid(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     if kind == layout.QUADRIC:
         return quadric(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
+    if kind == layout.THIN:
+        return thin_round(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far)
     last = scratch.shape[0] - 1
     if scratch[last, layout.TOLD] >= layout.PROBING:
         scratch[last, layout.TOLD] = layout.REACHED
@@ -60,7 +63,7 @@ def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """(t, item, light) of the ray inside (near, far): its first hit, or (inf, -1, 1) for a miss.
 
     With ``anywhere``, for shadow rays, the walk ends at any hit of an opaque item; ``light`` is the share that comes
-    through: clear glass dims it, but does not stop it.
+    through, straight: clear glass dims it, and its color, by the mean of its channels, but throws no caustics.
     """
     ix = inverse(dx)
     iy = inverse(dy)
@@ -87,9 +90,11 @@ def walk(scene, scratch, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             if not anywhere:
                 best = t
                 continue
-            light *= 0.95 * scene.reals[scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT] + layout.TRANSMISSION]
+            s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
+            light *= 0.95 * scene.reals[s + layout.TRANSMISSION]
             if light == 0.0:
                 return where, found, light
+            light *= (scene.reals[s] + scene.reals[s + 1] + scene.reals[s + 2]) / 3.0
         n += 1
     return where, found, light
 

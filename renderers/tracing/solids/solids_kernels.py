@@ -96,11 +96,17 @@ def half_space(h, k, ox, oy, oz, dx, dy, dz, near, far):
 
 @part
 def round_solid(r, k, ox, oy, oz, dx, dy, dz, near, far):
-    """Crossing of a capsule (or sphere, where its axis is zero): the hull of two balls and the tube between them."""
+    """Crossing of a capsule (or sphere, where its axis is zero)."""
+    enter, leave = round_span(r, k, r[k + 6] * r[k + 6], ox, oy, oz, dx, dy, dz)
+    return crossing(enter, leave, near, far)
+
+
+@part
+def round_span(r, k, radius2, ox, oy, oz, dx, dy, dz):
+    """Interval in a capsule of a squared radius, the hull of two balls and the tube between them; or leave < enter."""
     ux = r[k + 3]
     uy = r[k + 4]
     uz = r[k + 5]
-    radius2 = r[k + 6] * r[k + 6]
     px = ox - r[k]
     py = oy - r[k + 1]
     pz = oz - r[k + 2]
@@ -128,7 +134,7 @@ def round_solid(r, k, ox, oy, oz, dx, dy, dz, near, far):
             if 0.0 <= pu + f * du <= 1.0:
                 enter = min(enter, f)
                 leave = max(leave, f)
-    return crossing(enter, leave, near, far)
+    return enter, leave
 
 
 @part

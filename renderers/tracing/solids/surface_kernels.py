@@ -122,7 +122,7 @@ def normal_at(scene, scratch, item, x, y, z):
         nx, ny, nz, fx, fy, fz, lift = triangle_normal(scene, k, x, y, z)
         return nx, ny, nz, fx, fy, fz, lift, np.nan, np.nan, np.nan
     r, g, b = np.nan, np.nan, np.nan
-    if kind == layout.ROUND:
+    if kind == layout.ROUND or kind == layout.THIN:
         nx, ny, nz = round_normal(scene.reals, k, x, y, z)
     elif kind == layout.QUADRIC:
         nx, ny, nz = quadric_normal(scene.reals, k, x, y, z)
@@ -172,7 +172,7 @@ def color_at(scene, item, paint, x, y, z, nx, ny, nz, dx, dy, dz, radius):
         r = (1.0 - v - w) * u[c] + v * u[c + 3] + w * u[c + 6]
         g = (1.0 - v - w) * u[c + 1] + v * u[c + 4] + w * u[c + 7]
         b = (1.0 - v - w) * u[c + 2] + v * u[c + 5] + w * u[c + 8]
-    elif kind == layout.ROUND and u[c] == u[c]:
+    elif (kind == layout.ROUND or kind == layout.THIN) and u[c] == u[c]:
         r, g, b = u[c], u[c + 1], u[c + 2]
     size = u[s + layout.CHECKER]
     if size > 0.0:

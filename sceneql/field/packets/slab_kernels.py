@@ -183,7 +183,8 @@ def ask(rays, count, groups, beams, anywhere, safe, unsafe, asked):
     """
     t0, t1 = rays[6], rays[7]
     nears, fars, runs, states = asked[ray_rows.NEAR], asked[ray_rows.FAR], asked[ray_rows.RUN], asked[ray_rows.SURE]
-    for g in range(0, groups, OCTET):
+    # Backwards: lanes beyond the last group write to rays of the first ones, in the next row, which come after.
+    for g in range((groups - 1) // OCTET * OCTET, -1, -OCTET):
         begin, end = load(beams[FROM], g), load(beams[TO], g)
         run, inside = load(beams[RUN_TO], g), load(beams[INSIDE], g)
         known = below(safe, inside, below(inside, unsafe, SETTLED, ENDS_INSIDE), ENDS_INSIDE)
