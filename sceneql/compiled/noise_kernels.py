@@ -14,7 +14,7 @@ FADE = (0.0, 0.0, 0.0, 10.0, -15.0, 6.0, 0.0)
 
 @lean_inlined
 def weights(f, order):
-    """(a, u, b, v): derivatives of the weight and of the weight by the way to it, at the corners 0 and 1."""
+    """(a, u, b, v): derivatives of the weight and of the weight times the way from there, of the corners at 0 and 1."""
     fade, faded = 0.0, 0.0
     for power in range(6, order - 1, -1):
         steep = 1.0

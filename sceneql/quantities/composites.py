@@ -40,7 +40,7 @@ def smoothstep(o: Any, low: Any, high: Any, x: Any) -> Any:
 
 
 def noise(o: Any, p: Any) -> Any:
-    """Gradient noise (quantities.noise) of a number or of a vector of 2 or 3; in a plane it is that of space at z = 0."""
+    """Gradient noise (quantities.noise) of a number or a vector of 2 or 3; in a plane it is that of space at z = 0."""
     if not isinstance(p, tuple):
         return o.noise_line(p, 0.0)
     x, y, z = (*p, 0.0)[:3]
