@@ -46,10 +46,19 @@ class Report:
 class Tools:
     """What the pipeline lends to an output (kinds.Tools)."""
 
-    def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path, named: bool = False) -> None:
-        """``named``: the user gave the target, else it is a path without extension."""
+    def __init__(
+        self,
+        graph: SimulationGraph,
+        name: str,
+        report: Report,
+        target: Path,
+        named: bool = False,
+        draft: bool = False,
+    ) -> None:
+        """``named``: the user gave the target, else it is a path without extension; ``draft``: draw coarsely."""
         self.graph, self.name, self.report, self.target, self.named = graph, name, report, target, named
         self.panels: dict[str, Panel] = {}
+        self.draft = draft
         self._frames, self._light = 0, cast(Any, None)
         self._framed: float | None = None
         self._fit: set[Path] = set()
@@ -87,6 +96,7 @@ class Tools:
     def _seen(self, output: Picture, moment: Any, camera: str | None = None, part: int = 0, parts: int = 1) -> Any:
         """The scene from a camera, by default the output's own; None before the last part of an exposure."""
         from renderers.develop import develop
+        from renderers.drafts import coarser, enlarged
         from sceneql.run.never_drawn import look, solids
 
         shot = output.seen_from(moment.time)
@@ -96,7 +106,7 @@ class Tools:
         self.prepare(output)()
         drawn_by = self.graph.tasks[self.name if output.renderer is None else output.renderer.name]
         with failing_as(drawn_by.name, moment.time, drawn_by.span), doing("drawing"):
-            picture = renderer.draw(frame)
+            picture = renderer.draw(replace(frame, view=coarser(frame.view)) if self.draft else frame)
         asked = solids(self.graph.drawn[self.name], self.graph.tasks)
         look(frame.shapes, asked, self.graph.tasks, self.report.present)
         if picture.undecided:
@@ -109,6 +119,8 @@ class Tools:
         if part < parts - 1:
             return None
         pixels = develop(linear, exposure=output.exposure, data=renderer.data)
+        if self.draft:
+            pixels = enlarged(pixels, frame.view.size)
         if not renderer.data:
             without = {ref.name for ref in output.laid_out}
             self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure), without)
@@ -138,7 +150,7 @@ class Tools:
 
         if name not in self.panels:
             panel = self.panels[name] = Panel(self.graph.variant(name))
-            panel.tools = Tools(panel.graph, self.name, self.report, self.target)
+            panel.tools = Tools(panel.graph, self.name, self.report, self.target, draft=self.draft)
         panel = self.panels[name]
         if panel.failure is None or panel.picture is None:
             moment = panel.at(time)
@@ -196,12 +208,18 @@ class Tools:
         return {kind.traced for kind in kinds if kind.traced}.union(*within)
 
     def _renderer(self, output: Picture) -> Renderer:
-        if output.renderer is not None:
-            return cast(Renderer, self.graph.tasks[output.renderer.name].kind)
+        task = None if output.renderer is None else self.graph.tasks[output.renderer.name]
         cls = Catalogue().load("renderers", "trace")
         if cls is None:
             raise LookupError("the default renderer is missing")
-        return cast(Renderer, cls())
+        renderer = cast(Renderer, cls() if task is None else task.kind)
+        if not self.draft:
+            return renderer
+        draft = renderer.draft()
+        if draft is None:
+            told = f"'{self.name}' is drawn by '{task.word if task else 'trace'}', of which there is no draft"
+            raise Unsuitable(f"{told}: leave out --draft, or --set outputs.{self.name}.renderer=trace")
+        return draft
 
 
 @cache
