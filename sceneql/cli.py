@@ -118,9 +118,8 @@ def _say_kept(error: BaseException | None) -> None:
 @options
 @click.option("-o", "--output", callback=as_path, help="File to make, for a script with one output.")
 @click.option("--report", "account", is_flag=True, help="Tell how far energy and momentum drifted.")
-def render(
-    scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None, account: bool
-) -> None:
+@click.option("--draft", is_flag=True, help="Pictures of `trace` less sharp, in a sixth of the time.")
+def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, **how: Any) -> None:
     """Make the outputs of a scene."""
     from sceneql import pipeline
     from sceneql.report.progress import bar
@@ -129,7 +128,7 @@ def render(
         graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     _warn(graph)
     with bar(graph.name) as progress:
-        report = pipeline.render(graph, output=output, account=account, progress=progress)
+        report = pipeline.render(graph, progress=progress, **how)
     _warn(report)
     for path in report.files:
         click.echo(f"made {path}")
@@ -140,7 +139,7 @@ def render(
         line += f", {report.steps} steps"
     line += f"; compile {report.compile_seconds:.2f} s"
     click.echo(line + (f" ({report.compilations} functions)" if report.compilations else ""))
-    for found in report.conserved if account else ():
+    for found in report.conserved if how["account"] else ():
         click.echo(found)
     for name, frames in report.undecided.items():
         worst = max(frames, key=lambda index: frames[index])

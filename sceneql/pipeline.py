@@ -70,13 +70,15 @@ def render(
     output: Path | None = None,
     folder: Path | None = None,
     account: bool = False,
+    draft: bool = False,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Report:
     """Run a graph and make its outputs, in one pass over the union of their times.
 
-    ``output`` overrides the file of a single output; with ``account`` energies are looked at in every frame. On a
-    failure what was made is kept beside the final names, in ``error.kept`` of the exception that goes on. Raises
-    RunFailure, LimitRefused, OSError, and Unsuitable for one file with several outputs.
+    ``output`` overrides the file of a single output; with ``account`` energies are looked at in every frame, with
+    ``draft`` pictures are drawn coarsely. On a failure what was made is kept beside the final names, in ``error.kept``
+    of the exception that goes on. Raises RunFailure, LimitRefused, OSError, and Unsuitable for one file with several
+    outputs and for drafts of a renderer that has none.
     """
     started, compiled = time.perf_counter(), _compiled()
     report = Report()
@@ -91,7 +93,7 @@ def render(
     instants = sorted(set().union(*times.values()))
     tools = {
         name: Tools(
-            graph, name, report, _target(graph, name, len(outputs), output, folder or Path()), output is not None
+            graph, name, report, _target(graph, name, len(outputs), output, folder or Path()), output is not None, draft
         )
         for name in outputs
     }

@@ -59,10 +59,19 @@ WHOLE = Part(1.0)
 class Tools:
     """What the pipeline lends to an output (kinds.Tools)."""
 
-    def __init__(self, graph: SimulationGraph, name: str, report: Report, target: Path, named: bool = False) -> None:
-        """``named``: the user gave the target, else it is a path without extension."""
+    def __init__(
+        self,
+        graph: SimulationGraph,
+        name: str,
+        report: Report,
+        target: Path,
+        named: bool = False,
+        draft: bool = False,
+    ) -> None:
+        """``named``: the user gave the target, else it is a path without extension; ``draft``: draw coarsely."""
         self.graph, self.name, self.report, self.target, self.named = graph, name, report, target, named
         self.panels: dict[str, Panel] = {}
+        self.draft = draft
         self._frames, self._light = 0, cast(Any, None)
         self._framed: float | None = None
         self._fit: set[Path] = set()
@@ -109,6 +118,7 @@ class Tools:
     ) -> Any:
         """The scene from a camera, by default the output's own; None before the last part of an exposure."""
         from renderers.develop import develop
+        from renderers.drafts import coarser, enlarged
         from sceneql.run.never_drawn import look, solids
 
         renderer = self._renderer(output)
@@ -119,7 +129,7 @@ class Tools:
         self.prepare(output)()
         drawn_by = self.graph.tasks[self.name if output.renderer is None else output.renderer.name]
         with failing_as(drawn_by.name, moment.time, drawn_by.span), doing("drawing"):
-            picture = renderer.draw(frame)
+            picture = renderer.draw(replace(frame, view=coarser(frame.view)) if self.draft else frame)
         asked = solids(self.graph.drawn[self.name], self.graph.tasks)
         look(frame.shapes, asked, self.graph.tasks, self.report.present)
         if picture.undecided:
@@ -132,6 +142,8 @@ class Tools:
         if part < parts - 1:
             return None
         pixels = develop(linear, exposure=output.exposure, data=renderer.data)
+        if self.draft:
+            pixels = enlarged(pixels, frame.view.size)
         if not renderer.data:
             self._draw_over(pixels, frame.view, moment, partial(develop, exposure=output.exposure), arrangement, panel)
         return pixels
@@ -189,7 +201,7 @@ class Tools:
 
         panel = self.panels[name]
         if panel.tools is None:
-            panel.tools = Tools(panel.graph, self.name, self.report, self.target)
+            panel.tools = Tools(panel.graph, self.name, self.report, self.target, draft=self.draft)
         if panel.failure is None or panel.picture is None:
             others = tuple(other for other in self.panels.values() if other is not panel)
             moment = replace(panel.at(time), beside=others)
@@ -251,12 +263,18 @@ class Tools:
         return {kind.traced for kind in kinds if kind.traced}.union(*within)
 
     def _renderer(self, output: Picture) -> Renderer:
-        if output.renderer is not None:
-            return cast(Renderer, self.graph.tasks[output.renderer.name].kind)
+        task = None if output.renderer is None else self.graph.tasks[output.renderer.name]
         cls = Catalogue().load("renderers", "trace")
         if cls is None:
             raise LookupError("the default renderer is missing")
-        return cast(Renderer, cls())
+        renderer = cast(Renderer, cls() if task is None else task.kind)
+        if not self.draft:
+            return renderer
+        draft = renderer.draft()
+        if draft is None:
+            told = f"'{self.name}' is drawn by '{task.word if task else 'trace'}', of which there is no draft"
+            raise Unsuitable(f"{told}: leave out --draft, or --set outputs.{self.name}.renderer=trace")
+        return draft
 
 
 @cache

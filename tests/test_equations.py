@@ -190,7 +190,13 @@ def test_a_rate_may_read_another_part():
 LEAVES = st.sampled_from(["p", "q", "r", "w", "u", "0.7", "2", "t"])
 PLAIN = ["({} + {})", "({} - {})", "({} * {})", "({} / (3 + {}^2))", "(sin({}) * cos({}))"]
 # Fourth powers are of what is bounded: seven of them in one another would be infinite at the start.
-OTHERS = ["atan2({}, 2 + {}^2)", "exp(-({})^2 - ({})^2)", "hypot({}, 1 + sin({})^4)", "mix({}, {}, 0.3)"]
+OTHERS = [
+    "atan2({}, 2 + {}^2)",
+    "exp(-({})^2 - ({})^2)",
+    "hypot({}, 1 + sin({})^4)",
+    "mix({}, {}, 0.3)",
+    "noise([{}, {}])",
+]
 SMOOTH = st.sampled_from([*PLAIN, *OTHERS])
 FORMULAS = st.recursive(LEAVES, lambda inner: st.builds(str.format, SMOOTH, inner, inner), max_leaves=8)
 
@@ -223,6 +229,8 @@ def test_every_operation_of_a_kernel_is_the_operation_of_the_table():
             texts[op] = f"p {signs[op]} q"
         elif op == "neg":
             texts[op] = "-p"
+        elif op in ("noise_line", "noise_space"):
+            texts[op] = "noise(p)" if op == "noise_line" else "noise([p, q, r])"
         else:
             texts[op] = f"{op}({', '.join(args)})"
     rows = [bound(text, symbols).expr for text in texts.values()]

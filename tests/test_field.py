@@ -155,7 +155,7 @@ def _of_numbers(name, operation):
     """Whether an operation takes and gives single numbers, and a field can have it."""
     vectors = any(operation.vector_args) or operation.vector_result or name in ("component", "item")
     reduces = operation.reduces and name not in ("min", "max")
-    return not (vectors or reduces or operation.series or name == "random")
+    return not (vectors or reduces or operation.series or operation.part_of or name in ("random", "noise"))
 
 
 @pytest.mark.parametrize("name", [name for name, operation in OPERATIONS.items() if _of_numbers(name, operation)])

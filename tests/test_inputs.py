@@ -66,7 +66,7 @@ def test_operations_on_two_numbers_agree(name, t, other):
 @pytest.mark.parametrize(
     ("name", "more"),
     [("clamp", (1.0, 2.0)), ("mix", (3.0, 0.25)), ("smoothstep", (1.0, 0.5)), ("ease", ()), ("step", (0.5,)),
-     ("hypot", (2.0,)), ("where", (1.0, 2.0)), ("min", (2.0, 1.0)), ("max", (-1.0, 0.0, 1.0))],
+     ("hypot", (2.0,)), ("noise", ()), ("where", (1.0, 2.0)), ("min", (2.0, 1.0)), ("max", (-1.0, 0.0, 1.0))],
 )  # fmt: skip
 @given(t=st.floats(-3, 3))
 def test_derived_operations_agree(name, more, t):
@@ -90,6 +90,8 @@ def test_vectors_and_rotations_agree(t):
         ("mean", (moving,), SCALAR),
         ("max", (moving,), SCALAR),
         ("component", (moving, Number(2.0)), SCALAR),
+        ("noise", (moving,), SCALAR),
+        ("noise", (Vector(moving.items[1:], Type((2,))),), SCALAR),
         ("about", (other, TIME), turn),
         ("euler_xyz", (moving,), turn),
         ("turn", (Call("about", (other, TIME), turn), Call("euler_zyx", (moving,), turn)), turn),

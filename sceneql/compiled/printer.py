@@ -38,10 +38,9 @@ TERM_HEAD = (
     "from sceneql.compiled.printer_kernels import ease, smoothstep, truth",
     "from sceneql.compiled.kernels import kernel",
     "from sceneql.system.signatures_kernels import TERM",
-    "",
-    "",
-    "@kernel(TERM)",
 )
+NOISE_HEAD = ("from sceneql.compiled.noise_kernels import noise_line, noise_space",)
+"""Of kernels with noise alone: others need not have it compiled."""
 
 TEXTS: Mapping[str, str] = {
     "add": "{0} + {1}",
@@ -73,6 +72,8 @@ TEXTS: Mapping[str, str] = {
     "ge": "truth({0} >= {1})",
     "eq": "truth({0} == {1})",
     "where": "{1} if {0} else {2}",
+    "noise_line": "noise_line({0}, {1})",
+    "noise_space": "noise_space({0}, {1}, {2}, {3})",
 }
 """The operations that a kernel may use, by the names of the one table; {0}, {1}, ... are names of floats."""
 
@@ -201,6 +202,8 @@ def write_term(function: str, constants: Constants, first: int, lines: Sequence[
     """
     text = [
         *TERM_HEAD,
+        *(NOISE_HEAD if any("= noise_" in line for line in lines) else ()),
+        *("", "", "@kernel(TERM)"),
         f"def {function}(t, y, out, floats, ints):",
         *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),
         *(f"    u{k} = floats[ints[{first + k}]]" for k in range(len(constants.inputs))),

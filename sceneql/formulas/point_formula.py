@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from sceneql.kinds import Value
 from sceneql.quantities.derivative import components
-from sceneql.quantities.expression import Call, Expr, Number, Symbol, holders, rebuilt, walk
+from sceneql.quantities.expression import Call, Expr, Number, Symbol, each_once, holders, rebuilt, walk
+from sceneql.quantities.operations import OPERATIONS
 
 if TYPE_CHECKING:
     from sceneql.kinds import Moment
@@ -26,11 +27,18 @@ def _is_coordinate(node: Expr) -> bool:
 
 def in_coordinates(expr: Expr) -> None:
     """Check that a formula is one number at every point. Raises ValueError where it cannot be computed as a tape."""
-    from sceneql.field.tape.builder import TapeBuilder
+    from sceneql.field.tape.builder import TapeBuilder, computes
 
+    formula = _scalars(expr, lambda part: Number(1.0, part.type))
+    unbounded = next((n.op for n in each_once(formula) if isinstance(n, Call) and not computes(n.op)), None)
+    if unbounded is not None:
+        name = OPERATIONS[unbounded].part_of or unbounded
+        raise ValueError(
+            f"an implicit surface's formula cannot have '{name}' of x, y or z: rays need its least and largest value in"
+            " a box, which are not known; of t alone it can"
+        )
     build = TapeBuilder()
-    registers = dict(zip(COORDINATES, (build.x, build.y, build.z), strict=True))
-    build.expression(_scalars(expr, lambda part: Number(1.0, part.type)), registers)
+    build.expression(formula, dict(zip(COORDINATES, (build.x, build.y, build.z), strict=True)))
 
 
 def written_out(expr: Expr, moment: Moment) -> Expr:

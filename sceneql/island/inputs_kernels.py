@@ -10,6 +10,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.noise_kernels import noise_line, noise_space
 from sceneql.system.signatures_kernels import A, F, I, N
 
 WIDTH = 7
@@ -20,13 +21,13 @@ TIME, STATE, KEYS, COPY = range(4)
 UNARY = ("neg", "sqrt", "abs", "sign", "floor", "ceil", "round", "exp", "log", "log10", "sin", "cos", "tan", "asin",
          "acos", "atan", "sinh", "cosh", "tanh")  # fmt: skip
 BINARY = ("add", "sub", "mul", "div", "pow", "mod", "atan2", "min", "max", "lt", "le", "gt", "ge", "eq")
-CODES = {name: 4 + k for k, name in enumerate((*UNARY, *BINARY, "where"))}
+CODES = {name: 4 + k for k, name in enumerate((*UNARY, *BINARY, "where", "noise_line", "noise_space"))}
 """Codes of operations by their names in quantities.operations; the others are lowered to these."""
 
 NEG, SQRT, ABS, SIGN, FLOOR, CEIL, ROUND, EXP, LOG, LOG10, SIN, COS, TAN, ASIN, ACOS, ATAN, SINH, COSH, TANH = range(
     4, 23
 )
-ADD, SUB, MUL, DIV, POW, MOD, ATAN2, MIN, MAX, LT, LE, GT, GE, EQ, WHERE = range(23, 38)
+ADD, SUB, MUL, DIV, POW, MOD, ATAN2, MIN, MAX, LT, LE, GT, GE, EQ, WHERE, NOISE_LINE, NOISE_SPACE = range(23, 40)
 
 STEP_CURVE, LINEAR, SMOOTH, CUBIC = range(4)
 """Indices into quantities.curves.CURVES."""
@@ -184,6 +185,10 @@ def refresh(t, y, floats, program):
             floats[out] = floats[a]
         elif code == WHERE:
             floats[out] = floats[b] if floats[a] != 0.0 else floats[program[row + 4]]
+        elif code == NOISE_LINE:
+            floats[out] = noise_line(floats[a], floats[b])
+        elif code == NOISE_SPACE:
+            floats[out] = noise_space(floats[a], floats[b], floats[program[row + 4]], floats[program[row + 5]])
         elif code >= ADD:
             floats[out] = binary(code, floats[a], floats[b])
         else:

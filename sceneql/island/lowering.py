@@ -99,11 +99,18 @@ def euler(order: str, do: Do, angles: list[Any]) -> Any:
     return turn(do, turn(do, first, second), third)
 
 
+def noise(do: Do, p: Any) -> Any:
+    """Gradient noise of a number, of a vector of 2 or 3, or of each of a list of these."""
+    if not isinstance(p, list):
+        return do("noise_line", p, 0.0)
+    return [noise(do, each) for each in p] if isinstance(p[0], list) else do("noise_space", *[*p, 0.0][:3], 0.0)
+
+
 LOWERINGS: Mapping[str, Callable[..., Any]] = {
     "sum": total,
     "norm": length,
     **{f.__name__: f for f in (mean, dot, length, distance, hypot, normalize, cross, about, turn)},
-    **{f.__name__: f for f in (step, clamp, mix, smoothstep, ease)},
+    **{f.__name__: f for f in (step, clamp, mix, smoothstep, ease, noise)},
     **{f"euler_{order}": partial(euler, order) for order in ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")},
 }
 """By the operations' names in quantities.operations."""

@@ -74,6 +74,10 @@ class Renderer(Kind):
         """The Picture of a frame."""
         raise NotImplementedError
 
+    def draft(self) -> Renderer | None:
+        """What draws the coarser frames of `render --draft`; None where that is refused."""
+        return None
+
 
 class Overlay(Kind):
     """Something that is drawn over a finished picture: a legend, a caption."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, reduce
+from functools import cache, partial, reduce
 from types import SimpleNamespace
 from typing import Any
 
-from sceneql.quantities import chance
+from sceneql.quantities import chance, noise
 from sceneql.quantities.curves import interpolate, table_of
 from sceneql.quantities.expression import Call, Expr, Keys, Link, Number, Shape, Symbol, Vector, children, each_once
 from sceneql.quantities.key_tables import known_table, value_at
@@ -51,9 +51,15 @@ def numpy_arithmetic() -> SimpleNamespace:
     def counted(function: Any) -> Callable[..., Any]:
         return lambda a, b: function(a, b).astype(np.float64)
 
+    own = {
+        "where": lambda condition, a, b: np.where(condition != 0.0, a, b),
+        "random": _random,
+        "noise_line": partial(_noise, noise.line),
+        "noise_space": partial(_noise, noise.space),
+    }
     functions: dict[str, Any] = {}
     for operation in OPERATIONS.values():
-        if operation.primitive and operation.name not in ("where", "random"):
+        if operation.primitive and operation.name not in own:
             function = getattr(np, str(operation.numpy))
             if operation.name in ("min", "max"):
                 function = folded(function)
@@ -62,7 +68,7 @@ def numpy_arithmetic() -> SimpleNamespace:
             elif operation.name in ("lt", "le", "gt", "ge", "eq"):
                 function = counted(function)
             functions[operation.name] = function
-    return SimpleNamespace(**functions, where=lambda condition, a, b: np.where(condition != 0.0, a, b), random=_random)
+    return SimpleNamespace(**functions, **own)
 
 
 def _power(a: Any, b: Any) -> Any:
@@ -82,6 +88,17 @@ def _random(*counters: Any) -> Any:
     return np.where(finite, chance.unit(*chance.philox(first, second, key)), np.nan)
 
 
+def _noise(formula: Callable[..., Any], *args: Any) -> Any:
+    """A formula of quantities.noise at numbers and of an order, the last argument."""
+    import numpy as np
+
+    *numbers, order = args
+    known = np.broadcast_arrays(*numbers)
+    finite = np.all([np.isfinite(x) for x in known], axis=0)
+    m = SimpleNamespace(floor=np.floor, where=np.where, word=lambda x: np.mod(x, 2.0**32).astype(np.uint64))
+    return np.where(finite, formula(m, *(np.where(finite, x, 0.0) for x in known), int(order)), np.nan)
+
+
 def _apply(call: Call, args: list[Any]) -> Any:
     import numpy as np
 
@@ -97,7 +114,7 @@ def _apply(call: Call, args: list[Any]) -> Any:
         return np.take(args[0], item_of(call, args[0].shape[axis]), axis=axis)
     if operation.reduces and len(args) == 1:
         return _reduce(call.op, args[0], call.args[0].type.shape)
-    vectors = operation.vector_args or (False,) * len(args)
+    vectors = operation.vectors(call.args)
     ranks = [len(arg.type.shape) - vector for arg, vector in zip(call.args, vectors, strict=True)]
     parts = zip(args, ranks, vectors, strict=True)
     args = [_aligned(arg, rank, max(ranks) - rank, int(vector)) for arg, rank, vector in parts]

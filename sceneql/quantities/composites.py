@@ -39,6 +39,14 @@ def smoothstep(o: Any, low: Any, high: Any, x: Any) -> Any:
     return ease(o, o.div(o.sub(x, low), o.sub(high, low)))
 
 
+def noise(o: Any, p: Any) -> Any:
+    """Gradient noise (quantities.noise) of a number or a vector of 2 or 3; in a plane it is that of space at z = 0."""
+    if not isinstance(p, tuple):
+        return o.noise_line(p, 0.0)
+    x, y, z = (*p, 0.0)[:3]
+    return o.noise_space(x, y, z, 0.0)
+
+
 def dot(o: Any, a: Components, b: Components) -> Any:
     """Sum of the products of the components."""
     return total(o, [o.mul(p, q) for p, q in zip(a, b, strict=True)])

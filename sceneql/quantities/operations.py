@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
-from sceneql.quantities import chance, composites, partials, real, rules
+from sceneql.quantities import chance, composites, noise, partials, real, rules
 from sceneql.quantities.expression import Expr, Type
 
 MANY = 10_000
@@ -34,6 +34,7 @@ class Operation:
     what a composite means. ``vector_args`` says which arguments of a composite are vectors; a vector is a tuple of its
     components there. ``numpy`` names numpy's function. ``series``: asks for values over time. ``reduces``: with one
     argument it is a reduction. ``infix``: written as a sign, not called by its name. ``angle``: gives radians.
+    ``part_of``: the function whose formula has it, which a script calls instead.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Operation:
     reduces: bool = False
     infix: str | None = None
     angle: bool = False
+    part_of: str | None = None
 
     @property
     def primitive(self) -> bool:
@@ -59,6 +61,11 @@ class Operation:
     def takes(self, count: int) -> bool:
         """Whether it can have this many arguments."""
         return self.least <= count <= self.most
+
+    def vectors(self, args: tuple[Expr, ...]) -> tuple[bool, ...]:
+        """Which of the arguments are vectors; a plain number may stand for one where the rule allows it."""
+        flags = self.vector_args or (False,) * len(args)
+        return tuple(flag and bool(arg.type.shape) for flag, arg in zip(flags, args, strict=True))
 
 
 def _infix(name: str, sign: str, rule: rules.Rule, python: Any, numpy: str, derivative: Any) -> Operation:
@@ -78,6 +85,10 @@ def _plain(name: str, python: Any, numpy: str, derivative: Any, *, angle: bool =
 def _two_alike(name: str, python: Any, numpy: str, derivative: Any, *, angle: bool = False) -> Operation:
     rule = rules.some_alike(name, (0, 1), (), result_plain=angle)
     return Operation(name, 2, 2, rule, python, numpy, derivative, angle=angle)
+
+
+def _of_noise(name: str, python: Any, derivative: Any, count: int) -> Operation:
+    return Operation(name, count, count, rules.plain(name), python, partials=derivative, part_of="noise")
 
 
 def _scalar(name: str, rule: rules.Rule, formula: Any, count: int) -> Operation:
@@ -153,6 +164,9 @@ _TABLE = (
     _plain("round", real.nearest, "rint", partials.flat),
     Operation("where", 3, 3, rules.some_alike("where", (1, 2), (0,)), real.where, "where", partials.where),
     Operation("random", 1, 3, rules.plain("random"), chance.random, "random", partials.flat),
+    Operation("noise", 1, 1, rules.noise, formula=composites.noise, vector_args=(True,)),
+    _of_noise("noise_line", noise.noise_line, partials.noise_line, 2),
+    _of_noise("noise_space", noise.noise_space, partials.noise_space, 4),
     _scalar("step", rules.some_alike("step", (0, 1), (), result_plain=True), composites.step, 2),
     _scalar("clamp", rules.some_alike("clamp", (0, 1, 2), ()), composites.clamp, 3),
     _scalar("mix", rules.some_alike("mix", (0, 1), (2,)), composites.mix, 3),
@@ -185,7 +199,7 @@ _TABLE = (
 OPERATIONS = {operation.name: operation for operation in _TABLE}
 """Every operation by its name."""
 
-FUNCTIONS = tuple(sorted(operation.name for operation in _TABLE if operation.infix is None))
+FUNCTIONS = tuple(sorted(operation.name for operation in _TABLE if not (operation.infix or operation.part_of)))
 """The names that a script may call."""
 
 FLOATS = SimpleNamespace(**{operation.name: operation.python for operation in _TABLE if operation.primitive})

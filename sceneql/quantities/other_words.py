@@ -14,6 +14,7 @@ LIBRARIES = ("math", "Math", "np", "numpy", "random", "glm", "torch", "scipy")
 _LISTS = (
     # functions and constants
     ("random", "rand rnd rng uniform random_uniform rand01 random01 frand drand noise1d"),
+    ("noise", "perlin simplex snoise"),
     ("mix", "lerp interp interpolate blend linear"),
     ("log", "ln loge"),
     ("log10", "lg"),
@@ -174,6 +175,7 @@ _SENTENCES = (
     ("function", "log2", "write `log(x)/log(2)`"),
     ("function", "log", "write `log(x)/log(b)` for another base"),
     ("function", "atan", "write `atan2(y, x)`"),
+    ("function", "noise", "write `noise([x, y])`, `noise([x, y, z])`"),
     (
         "function",
         "random",

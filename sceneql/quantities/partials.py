@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from sceneql.quantities.noise import BY_X, BY_Y, BY_Z
+
 Partials = tuple[Any, ...]
 
 
@@ -146,3 +148,13 @@ def mod(o: Any, a: Any, b: Any) -> Partials:
 def flat(o: Any, *args: Any) -> Partials:
     """0 for each: constant but for jumps."""
     return (0.0,) * len(args)
+
+
+def noise_line(o: Any, x: Any, order: Any) -> Partials:
+    """Itself, of the next order; by the order, which is part of the form, nothing."""
+    return o.noise_line(x, o.add(order, BY_X)), 0.0
+
+
+def noise_space(o: Any, x: Any, y: Any, z: Any, order: Any) -> Partials:
+    """Itself, of the next order along an axis; by the order, which is part of the form, nothing."""
+    return *(o.noise_space(x, y, z, o.add(order, by)) for by in (BY_X, BY_Y, BY_Z)), 0.0

@@ -190,6 +190,16 @@ def _limited(result: Type) -> Type:
     return result
 
 
+def noise(args: Args) -> Type:
+    """A plain number, or a vector of 2 or 3 plain numbers, whose outer axes are kept."""
+    _plain(args, (0,), "noise")
+    shape = args[0].type.shape
+    if shape and shape[-1] not in (2, 3):
+        message = f"noise needs a plain number or a vector of 2 or 3, not {shape_text(shape)}"
+        raise MismatchError("shape-mismatch", message, 0)
+    return Type(shape[:-1], PLAIN)
+
+
 def chosen(args: Args) -> Type:
     """``component``: the index is a constant."""
     value, index = args

@@ -75,7 +75,7 @@ def apply(o: Any, call: Call, args: list[Any]) -> Any:
         return args[0][item_of(call, len(args[0]))]
     if operation.reduces and len(args) == 1:
         return _reduce(o, operation, args[0], call.args[0].type.shape)
-    vectors = operation.vector_args or (False,) * len(args)
+    vectors = operation.vectors(call.args)
     function = getattr(o, operation.name) if operation.primitive else partial(formula_of(operation), o)
     ranks = [len(arg.type.shape) - vector for arg, vector in zip(call.args, vectors, strict=True)]
     return _each(function, args, ranks)

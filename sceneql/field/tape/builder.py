@@ -25,6 +25,11 @@ FEW = 128
 """Up to this number plain parts are evaluated one by one; more go into a hierarchy of boxes."""
 
 
+def computes(name: str) -> bool:
+    """Whether a tape can compute a scalar operation."""
+    return name in LOWERED or name in ops.UNARY or name in ops.BINARY
+
+
 class TapeBuilder:
     """A tape in the making. Registers are integers; ``x``, ``y``, ``z`` hold the point where f is asked."""
 
