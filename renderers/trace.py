@@ -14,19 +14,13 @@ class Trace(Renderer):
     """Ray-traces a frame: solids exactly, meshes by a bounding hierarchy, implicit surfaces by certified first roots.
 
     Soft shadows, light of the sky with occlusion, light that surfaces reflect onto one another, reflection and
-<<<<<<< HEAD
     refraction; light and shadows go straight through glass: there are no caustics. Microfacet highlights (Walter,
     Marschner, Li and Torrance 2007; Turquin 2019). Shadows and light from around are sampled by a net and averaged over
     the surface around a pixel, so that a film has no grain; the bytes are the same from run to run and for any number
     of threads.
-=======
-    refraction; microfacet highlights (Walter, Marschner, Li and Torrance 2007; Turquin 2019). Shadows and light from
-    around are sampled by a net and averaged over the surface around a pixel, so that a film has no grain; the bytes are
-    the same from run to run and for any number of threads.
 
     `sceneql render --draft` draws a third of the pixels along each side, with at most 4 samples, and enlarges them: its
     light and shadows, less sharp, in about a sixth of the time, for trying things out. Letters stay sharp.
->>>>>>> noise
     """
 
     tolerance: FixedScalar = field(
