@@ -7,6 +7,7 @@ from runs import watch
 from sceneql.failure import RunFailure
 from sceneql.frame import Mesh, Points, Segments
 from sceneql.pipeline import load
+from sceneql.run.history import MOST
 from sceneql.run.run import Run
 
 SCENE = """
@@ -92,3 +93,10 @@ objects: {linen: {surface: {of: sheet, thickness: 2 cm, color: red}}}
     assert len(watch(tmp_path, script, [0], "sheet.triangles")[0][0]) == 32
     with pytest.raises(RunFailure, match="has no surface"):
         shapes(tmp_path, script.replace("cloth: {cells: 4 4}", "particles: {positions: [[0, 0, 0]]}"), [0.0], ["linen"])
+
+
+@pytest.mark.parametrize("every", ["1e-320 ms", "1 ns"])
+def test_of_corners_closer_than_can_be_kept_there_are_fewer(tmp_path, every):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE.replace("keep: 0.5 s", f"keep: 0.5 s, every: {every}"))
+    assert 1000 < sum(1 for _ in Run(load(path)).history.due(0.5)) <= MOST + 1

@@ -141,6 +141,8 @@ class Filling(Record):
             raise inside.refusal("no tetrahedron lies in it; make the spacing smaller")
         pairs, edge = edges(tetrahedra)
         held = volumes(points, tetrahedra)
+        if not (held > 0.0).all():
+            raise inside.refusal("so far from the origin its tetrahedra have no volume in double precision")
         masses = springs = None
         if self.density is not None:
             masses = np.zeros(len(points))

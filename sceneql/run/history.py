@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from sceneql.kinds.moment import Remembered
 
 SLACK = 1e-9
+MOST, SHORTEST = 20_000, 1e-12
+"""Most instants that are kept of a value, and their least distance [s]: where more are asked for, they are coarser."""
 
 
 class History:
@@ -24,7 +26,8 @@ class History:
         kinds = [task.kind for task in tasks if isinstance(task.kind, Object | Camera)]
         asked = [one for kind in kinds for one in kind.remembers()]
         self._kept: dict[int, tuple[Remembered, float, float, deque[tuple[float, Any]]]] = {
-            id(value): (value, keep, every, deque()) for value, keep, every in asked
+            id(value): (value, keep, max(every, min(keep, 1e300) / MOST, SHORTEST), deque())
+            for value, keep, every in asked
         }
         self._seen = dict.fromkeys(self._kept, -1)
 
