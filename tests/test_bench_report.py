@@ -17,7 +17,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
 from sceneql.report import work_precision
 from sceneql.report.bench import bench, cheapest
-from sceneql.report.curves import GAP, spread
+from sceneql.report.curve_ends import GAP, spread
 from sceneql.report.order import observed_order
 from sceneql.report.page import Table, write_page
 from sceneql.report.work_precision import Measurement

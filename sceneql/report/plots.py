@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sceneql.files import whole
-from sceneql.report.curves import band, label_ends
+from sceneql.report.curve_ends import band, label_ends
 
 if TYPE_CHECKING:
     from sceneql.report.energy_drift import Drift

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sceneql.report.bench_schemes import front
-from sceneql.report.curves import label_ends
+from sceneql.report.curve_ends import label_ends
 from sceneql.report.plots import MARKS, SMALLEST, figure_at, panel
 
 if TYPE_CHECKING:
