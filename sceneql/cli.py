@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sceneql import __version__, interrupts
-from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, options
+from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, as_words, options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -206,13 +206,9 @@ def explain(
 @options
 @click.option("-o", "--output", callback=as_path, help="Folder for the files, or their path without extension.")
 @click.option("--error", type=ABOVE_ZERO, help="Name the cheapest solver for this relative error.")
+@click.option("--solvers", callback=as_words, metavar="A,B", help="Measure these solvers alone.")
 def bench(
-    scene: Path,
-    variant: str | None,
-    sets: tuple[str, ...],
-    words: Path | None,
-    output: Path | None,
-    error: float | None,
+    scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, output: Path | None, **how: Any
 ) -> None:
     """Measure error against run time: physics by every solver that applies, implicit surfaces by rays and meshes."""
     from sceneql import pipeline
@@ -221,7 +217,7 @@ def bench(
 
     graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
     with bar(graph.name) as progress:
-        report = measure(graph, output, words, error, progress)
+        report = measure(graph, output, words, how["error"], progress, how["solvers"])
     click.echo(report)
 
 

@@ -41,6 +41,11 @@ def as_path(context: click.Context, parameter: click.Parameter, value: Any) -> A
     return None if value is None else Path(value)
 
 
+def as_words(context: click.Context, parameter: click.Parameter, value: Any) -> tuple[str, ...]:
+    """``a, b`` to ``("a", "b")``."""
+    return tuple(word.strip() for word in (value or "").split(",") if word.strip())
+
+
 SCENE = click.argument("scene", callback=as_path)
 
 

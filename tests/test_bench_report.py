@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 import xml.etree.ElementTree as ET
 
 import pytest
@@ -13,8 +14,10 @@ from hypothesis import strategies as st
 
 from sceneql import pipeline
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.failure import Unsuitable
 from sceneql.report import work_precision
 from sceneql.report.bench import bench, cheapest
+from sceneql.report.curve_ends import GAP, spread
 from sceneql.report.order import observed_order
 from sceneql.report.page import Table, write_page
 from sceneql.report.work_precision import Measurement
@@ -215,3 +218,50 @@ def test_errors_that_bend_at_the_smallest_steps_have_no_order(slopes):
     for exponent in exponents:
         errors.append(errors[-1] * 2.0**-exponent)
     assert observed_order([2.0**-k for k in range(len(errors))], errors, 0.0) is None
+
+
+PAIR = """\
+clock: {end: 1 s}
+models:
+  bob:
+    mass_spring:
+      masses: {a: {position: 0 0 0 m}, b: {position: 1.5 0 0 m, mass: 2 kg}}
+      springs: [{between: [a, b], stiffness: 100 N/m, rest: 1 m}]
+solvers: {main: {rk4: {step: 1 ms}}}
+outputs: {table: {record: {of: [bob.a.position]}}}
+"""
+
+
+def test_chosen_solvers_alone_run_with_drifts_in_a_table_and_labels_at_the_ends_of_curves(tmp_path, quick):
+    path = tmp_path / "scene.yaml"
+    path.write_text(PAIR)
+    text = bench(pipeline.load(path), tmp_path, chosen=("rk4", "semi_implicit_euler"))
+    with (tmp_path / "scene.bench.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["solver"] for row in rows} == {"rk4", "semi_implicit_euler"}
+    assert all(float(row["seconds"]) <= float(row["median"]) for row in rows if row["outcome"] == "ok")
+    assert re.search(r"bob by rk4 at 0.001: energy drifts by \S+ at most, momentum by \d", text)
+    page = (tmp_path / "scene.bench.html").read_text()
+    table = page.partition("Drifts, relative")[2].partition("</table>")[0]
+    assert "momentum at most" in table
+    assert re.search(r"<td>bob</td><td>rk4</td><td>0.001</td>(<td>-?\d\.\d\de[-+]\d+</td>){3}", table)
+    for name in ("scene.bench", "scene.bench.step", "scene.bench.drift"):
+        assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+        assert f"{name}.png" in text
+    drawn = ET.parse(tmp_path / "scene.bench.svg").getroot()
+    assert not drawn.findall(".//*[@id='legend_1']")
+    assert any("rk4, order " in (part.text or "") for part in drawn.iter())
+    with pytest.raises(Unsuitable, match="there is no solver 'rk5': did you mean 'rk4'"):
+        bench(pipeline.load(path), tmp_path, chosen=("rk5",))
+
+
+def test_labels_move_apart_as_little_as_they_need():
+    assert spread([]) == []
+    assert spread([0.2, 0.6]) == [0.2, 0.6]
+    low, middle, high = spread([0.5, 0.5, 0.51])
+    assert (middle - low, high - middle) == pytest.approx((GAP, GAP))
+    for heights in ([1.0, 1.0, 1.0], [0.0] * 30, [0.5] * 22):
+        found = spread(heights)
+        assert found == sorted(found)
+        assert found[0] + 1e-12 >= 0.0
+        assert found[-1] <= 1.0

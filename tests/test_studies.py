@@ -84,6 +84,9 @@ def test_a_report_has_every_run(scene, tmp_path):
     assert "euler  . ~ ~" in told
     with (tmp_path / "scene.steps.csv").open() as file:
         rows = list(csv.DictReader(file))
+    assert all(0.0 < float(row["seconds"]) <= float(row["median"]) for row in rows)
+    for name in ("scene.steps.png", "scene.steps.map.png"):
+        assert (tmp_path / name).read_bytes().startswith(b"\x89PNG")
     runs = json.loads((tmp_path / "scene.steps.json").read_text())["runs"]
     assert len(rows) == len(runs) == 6
     assert [float(row["error"]) for row in rows] == [run["error"] for run in runs]

@@ -23,10 +23,10 @@ from sceneql.report.bench_surfaces import Section, surface_section
 from sceneql.report.energy_drift import Drift, drift
 from sceneql.report.order import observed_order
 from sceneql.report.page import Table, beside, file_names, write_page
-from sceneql.report.plots import drift_against_time, error_against_step, error_against_time, legend
+from sceneql.report.plots import both, drift_against_time, error_against_step, error_against_time, legend
 from sceneql.report.reference import reference
 from sceneql.report.surface_measures import pictured
-from sceneql.report.work_precision import Measurement, Reference, measurements, solvers, warm
+from sceneql.report.work_precision import Measurement, Reference, among, known, measurements, solvers, warm
 
 CLEAR = 10.0
 """An error counts for the order if it is this many times the reference's own."""
@@ -42,16 +42,18 @@ def bench(
     words: Path | None = None,
     asked: float | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
+    chosen: Sequence[str] = (),
 ) -> str:
     """Run every island by every solver that applies, and measure implicit surfaces by rays and meshes; returns text.
 
     ``output`` is a folder, or the files' path without extension: CSV and JSON with all runs, SVGs of the error against
-    run time and step and of the drift of energy, HTML with all of it. Fields are run on several grids (``grids``), on
-    these by all schemes (``schemes``), their systems solved by every linear solver (``linear``). Implicit surfaces,
-    those of the first picture at its start in several sizes, have files of their own (``rays``, ``meshes``,
-    ``surfaces``). ``words`` is a folder of the user's own words; ``asked`` the relative error for which the cheapest
-    solver is named. Raises Unsuitable for a scene without islands and implicit surfaces, RunFailure where no reference
-    reaches the end.
+    run time and step and of the drift of energy, PNGs beside them, HTML with all of it. Fields are run on several grids
+    (``grids``), on these by all schemes (``schemes``), their systems solved by every linear solver (``linear``).
+    Implicit surfaces, those of the first picture at its start in several sizes, have files of their own (``rays``,
+    ``meshes``, ``surfaces``). ``words`` is a folder of the user's own words; ``asked`` the relative error for which the
+    cheapest solver is named; ``chosen`` the words of the solvers to run, where not all. Raises Unsuitable for a scene
+    without islands and implicit surfaces and for solvers that do not apply, RunFailure where no reference reaches the
+    end.
     """
     frames = pictured(graph)
     if not graph.islands and not frames:
@@ -60,6 +62,7 @@ def bench(
         )
     stem = file_names(graph, "bench", output)
     catalogue = Catalogue(words)
+    known(chosen, catalogue)
     rows: list[Measurement] = []
     drifts: list[Drift] = []
     orders: Orders = {}
@@ -72,7 +75,7 @@ def bench(
         truth = reference(graph, island, catalogue)
         lines.append(f"{title}: errors against {truth.because} (itself good to {truth.uncertainty:.0e})")
         summary.append(lines[-1])
-        applying = schemes[title] = solvers(graph, island, catalogue)
+        applying = schemes[title] = among(chosen, solvers(graph, island, catalogue), title)
         for done, (word, solver) in enumerate(applying.items()):
             progress(done, len(applying))
             try:
@@ -158,6 +161,7 @@ def _account(runs: Sequence[Measurement], heading: str) -> list[str]:
 def _drift_lines(drifts: Sequence[Drift]) -> list[str]:
     return [
         f"{one.island} by {one.solver} at {one.setting:.3g}: energy drifts by {max(map(abs, one.changes)):.1e} at most"
+        + ("" if math.isnan(one.momentum) else f", momentum by {one.momentum:.1e}")
         for one in drifts
         if one.changes
     ]
@@ -195,7 +199,8 @@ def _write(
     if drifts:
         drift_against_time(moved, graph.name, drifts)
         plots.append(("Drift of energy", moved))
-    files += [data, *(path for _, path in plots)]
+        tables.append(_drift_table(drifts))
+    files += [data, *both(plots)]
     if section is not None:
         plots += section.plots
         tables += section.tables
@@ -206,15 +211,40 @@ def _write(
 
 
 def _table(rows: Sequence[Measurement]) -> Table:
-    head = ("solver", "step or tolerance", "error", "run time [ms]", "steps", "evaluations", "outcome")
+    head = (
+        "solver", "step or tolerance", "error", "run time [ms]", "median [ms]", "steps", "evaluations",
+        "outcome",
+    )  # fmt: skip
     cells = [
-        (row.solver, f"{row.setting:.3g}", f"{row.error:.2e}", f"{row.seconds * 1e3:.3f}", *_counts(row), row.outcome)
-        for row in rows
+        (row.solver, f"{row.setting:.3g}", f"{row.error:.2e}", *_times(row), *_counts(row), row.outcome) for row in rows
     ]
     styles = ["" if row.ok else "failed" for row in rows]
     return Table(
         "All runs", head, [[(text, style) for text in line] for line, style in zip(cells, styles, strict=True)]
     )
+
+
+def _times(row: Measurement) -> tuple[str, str]:
+    return f"{row.seconds * 1e3:.3f}", f"{row.median * 1e3:.3f}"
+
+
+def _drift_table(drifts: Sequence[Drift]) -> Table:
+    """Relative changes of energy, at the end and at most, and of momentum where it is conserved."""
+    head = ("island", "solver", "step or tolerance", "energy at the end", "energy at most", "momentum at most", "")
+    rows = [
+        (
+            one.island,
+            one.solver,
+            f"{one.setting:.3g}",
+            f"{one.changes[-1]:.2e}",
+            f"{max(one.changes, key=abs):.2e}",
+            "not conserved" if math.isnan(one.momentum) else f"{one.momentum:.2e}",
+            "driven" if one.driven else "",
+        )
+        for one in drifts
+        if one.changes
+    ]
+    return Table("Drifts, relative", head, [[(text, "") for text in row] for row in rows])
 
 
 def _counts(row: Measurement) -> tuple[str, str]:

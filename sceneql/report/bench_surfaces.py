@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from sceneql.files import whole
 from sceneql.frame import Implicit
 from sceneql.report.page import Table, beside
-from sceneql.report.plots import surface_errors
+from sceneql.report.plots import as_png, surface_errors
 from sceneql.report.surface_measures import MeshRun, RayRun, mesh_runs, ray_runs
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def surface_section(frames: Sequence[SeenFrame], title: str, stem: Path) -> Sect
     surface_errors(plot, title, rays, meshes)
     tables = [_table("Rays", RayRun, rays), *([_table("Meshes", MeshRun, meshes)] if meshes else [])]
     data = {"rays": [asdict(run) for run in rays], "meshes": [asdict(run) for run in meshes]}
-    return Section(lines, tables, [("Implicit surfaces", plot)], [*files, plot], data)
+    return Section(lines, tables, [("Implicit surfaces", plot)], [*files, plot, as_png(plot)], data)
 
 
 def size_line(run: RayRun) -> str:

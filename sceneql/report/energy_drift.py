@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -28,6 +29,10 @@ class Drift:
     times: tuple[float, ...]
     changes: tuple[float, ...]
     """(E(t) - E(0)) / scale."""
+    momentum: float = math.nan
+    """Largest change of momentum, relative to the sum of the masses' own; NaN where it is not conserved."""
+    driven: bool = False
+    """Whether what varies in time drives it, so that its energy changes in truth."""
 
 
 def drift(graph: SimulationGraph, island: Island, word: str, solver: Solver) -> Drift | None:
@@ -49,4 +54,14 @@ def drift(graph: SimulationGraph, island: Island, word: str, solver: Solver) -> 
     except RunFailure:
         pass
     first = conserved[0]
-    return Drift(", ".join(island.models), word, setting_of(solver), tuple(first.times), tuple(first.drifts))
+    balance = watch.balances[0] if watch.balances else None
+    told = balance is not None and balance.isolated and balance.impulse > 0.0
+    return Drift(
+        ", ".join(island.models),
+        word,
+        setting_of(solver),
+        tuple(first.times),
+        tuple(first.drifts),
+        balance.momentum / balance.impulse if balance is not None and told else math.nan,
+        balance is not None and not balance.closed,
+    )

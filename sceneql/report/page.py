@@ -10,7 +10,7 @@ from pathlib import Path
 from sceneql.files import refuse_unwritable, try_folder, whole
 from sceneql.graph import SimulationGraph
 
-EXTENSIONS = ("csv", "html", "json", "svg")
+EXTENSIONS = ("csv", "html", "json", "png", "svg")
 """Formats of all files of reports."""
 
 TEMPLATE = """\

@@ -1,4 +1,4 @@
-"""Plots of benchmarks and of stability as SVG."""
+"""Plots of benchmarks and of stability as SVG, with a PNG beside each."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sceneql.files import whole
+from sceneql.report.curve_ends import band, label_ends
 
 if TYPE_CHECKING:
     from sceneql.report.energy_drift import Drift
@@ -20,13 +21,15 @@ if TYPE_CHECKING:
 MARKS = "osD^vP*X<>"
 COLORS = {"stable": "#8fd0a8", "inaccurate": "#f3d06b", "failed": "#c8553d", "skipped": "#e4e4e4"}
 """Colors of the classes of runs, which differ in lightness, too."""
+DOTS = 150
+"""Pixels of a PNG along an inch."""
 SMALLEST = 1e-17
 """Smallest change that is drawn."""
 
 
 @contextmanager
 def figure_at(path: Path, size: tuple[float, float]) -> Iterator[Any]:
-    """A figure that is written as SVG when the block ends."""
+    """A figure that is written as SVG, and as PNG beside it, when the block ends."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
@@ -36,16 +39,28 @@ def figure_at(path: Path, size: tuple[float, float]) -> Iterator[Any]:
         yield figure
         with whole(path) as file:
             figure.savefig(file, format="svg", metadata={"Date": None})
+        with whole(as_png(path)) as file:
+            figure.savefig(file, format="png", metadata={"Software": None}, dpi=DOTS)
+
+
+def as_png(svg: Path) -> Path:
+    """The PNG beside an SVG."""
+    return svg.with_suffix(".png")
+
+
+def both(plots: Sequence[tuple[str, Path]]) -> list[Path]:
+    """The files of plots by caption: of each its SVG and its PNG."""
+    return [path for _, svg in plots for path in (svg, as_png(svg))]
 
 
 def error_against_time(
     path: Path, title: str, rows: Sequence[Measurement], orders: Mapping[tuple[str, str], float | None]
 ) -> None:
-    """Write an SVG with a panel an island: relative error over run time [s], a line a solver, its order in the legend.
+    """Write an SVG with a panel an island: relative error over run time [s], a line a solver, its order at its end.
 
-    ``orders`` by (island, solver); failed runs are counted in the legend.
+    ``orders`` by (island, solver); failed runs are counted there. Bands reach to the median of repeated runs.
     """
-    _errors(path, title, rows, orders, "run time [s]", lambda row: row.seconds)
+    _errors(path, title, rows, orders, "run time [s]", lambda row: row.seconds, lambda row: row.median)
 
 
 def error_against_step(
@@ -62,6 +77,7 @@ def _errors(
     orders: Mapping[tuple[str, str], float | None],
     label: str,
     place: Callable[[Measurement], float],
+    farthest: Callable[[Measurement], float] | None = None,
 ) -> None:
     islands = list(dict.fromkeys(row.island for row in rows))
     with figure_at(path, (9.0, 4.8 * len(islands))) as figure:
@@ -74,8 +90,11 @@ def _errors(
                 runs = [row for row in mine if row.solver == solver]
                 done = [row for row in runs if row.ok and row.error > 0.0]
                 text = legend(solver, orders[island, solver], sum(not row.ok for row in runs))
-                axes.plot([place(row) for row in done], [row.error for row in done], marker=mark, ms=4, label=text)
-            explain(axes)
+                places, errors = [place(row) for row in done], [row.error for row in done]
+                (line,) = axes.plot(places, errors, marker=mark, ms=4, label=text)
+                if farthest is not None:
+                    band(axes, line, [farthest(row) for row in done])
+            label_ends(axes)
 
 
 def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Sequence[MeshRun]) -> None:
@@ -94,7 +113,7 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
                 axes.plot(
                     [run.seconds for run in mine], errors, marker=mark, ms=4, label=f"{renderer}, {width} x {height}"
                 )
-            explain(axes)
+            label_ends(axes)
         for k, name in enumerate(named):
             axes = figure.add_subplot(2 + len(named), 1, 3 + k)
             logarithmic(axes)
@@ -104,27 +123,31 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
             axes.plot(cells, [mesh.hausdorff for mesh in own], marker="o", ms=4, label="Hausdorff distance [m]")
             axes.plot(cells, [mesh.volume_error for mesh in own], marker="s", ms=4, label="volume, relative")
             axes.plot(cells, [mesh.area_error for mesh in own], marker="D", ms=4, label="area, relative")
-            explain(axes)
+            label_ends(axes)
 
 
-def study_errors(path: Path, title: str, label: str, rows: Mapping[str, Sequence[tuple[float, float, float]]]) -> None:
+def study_errors(
+    path: Path, title: str, label: str, rows: Mapping[str, Sequence[tuple[float, float, float, float]]]
+) -> None:
     """Write an SVG of a study: errors over run time [s], and over the number that is swept, if any.
 
-    ``rows``: by the other values, (number, error, seconds) of each run that reached its end; ``label``: the number's.
+    ``rows``: by the other values, (number, error, seconds, median of repeats) of each run that reached its end;
+    ``label``: the number's.
     """
-    numbered = any(math.isfinite(number) for runs in rows.values() for number, _, _ in runs)
+    numbered = any(math.isfinite(number) for runs in rows.values() for number, *_ in runs)
     with figure_at(path, (9.0, 9.6 if numbered else 4.8)) as figure:
         for k, (column, text) in enumerate([(2, "run time [s]"), (0, label)][: 2 if numbered else 1]):
             axes = panel(figure, 2 if numbered else 1, k)
             logarithmic(axes)
             axes.set(xlabel=text, ylabel="relative error", title=title)
             for (name, runs), mark in zip(rows.items(), cycle(MARKS), strict=False):
-                done = [(run[column], max(run[1], SMALLEST)) for run in runs if math.isfinite(run[1])]
-                line = "-" if column == 0 else "none"  # points of harder and harder problems are no line over run time
-                axes.plot(
-                    *(zip(*done, strict=True) if done else ([], [])), linestyle=line, marker=mark, ms=4, label=name
-                )
-            explain(axes)
+                done = [run for run in runs if math.isfinite(run[1])]
+                style = "-" if column == 0 else "none"  # points of harder and harder problems are no line over run time
+                places, errors = [run[column] for run in done], [max(run[1], SMALLEST) for run in done]
+                (line,) = axes.plot(places, errors, linestyle=style, marker=mark, ms=4, label=name)
+                if column == 2:
+                    axes.hlines(errors, places, [run[3] for run in done], color=line.get_color(), alpha=0.4, lw=3)
+            label_ends(axes)
 
 
 def panel(figure: Any, count: int, k: int) -> Any:
@@ -132,7 +155,7 @@ def panel(figure: Any, count: int, k: int) -> Any:
     from matplotlib import colormaps
 
     axes = figure.add_subplot(count, 1, k + 1)
-    axes.set_prop_cycle(color=[colormaps["tab20"](k) for k in range(20)])
+    axes.set_prop_cycle(color=[colormaps["tab20"](2 * k % 20 + k // 10) for k in range(20)])  # the dark ones first
     return axes
 
 
@@ -144,11 +167,6 @@ def logarithmic(axes: Any) -> None:
     axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
     axes.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(2.0, 2.0)))
     axes.grid(True, which="major", alpha=0.3)
-
-
-def explain(axes: Any) -> None:
-    """Draw the legend beside the panel: there may be many solvers."""
-    axes.legend(fontsize="small", loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
 
 
 def legend(solver: str, order: float | None, failed: int) -> str:
@@ -170,7 +188,7 @@ def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
                 if drift.island == island:
                     changes = [max(abs(change), SMALLEST) for change in drift.changes[1:]]
                     axes.plot(drift.times[1:], changes, lw=1, label=f"{drift.solver}, {drift.setting:.3g}")
-            explain(axes)
+            label_ends(axes)
 
 
 def stability_map(path: Path, title: str, label: str, cells: Sequence[Cell]) -> None:

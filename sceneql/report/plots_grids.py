@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sceneql.report.bench_schemes import front
-from sceneql.report.plots import MARKS, SMALLEST, explain, figure_at, panel
+from sceneql.report.curve_ends import label_ends
+from sceneql.report.plots import MARKS, SMALLEST, figure_at, panel
 
 if TYPE_CHECKING:
     from sceneql.report.bench_schemes import SchemeRun
@@ -48,7 +49,7 @@ def schemes_against_time(path: Path, title: str, runs: Sequence[SchemeRun]) -> N
                     s=[12 + 14 * cells.index(run.cell) for run in own],
                     marker=mark, color=line.get_color(), alpha=0.6, linewidths=0,
                 )  # fmt: skip
-            explain(axes)
+            label_ends(axes)
 
 
 def error_against_cell(path: Path, title: str, runs: Sequence[GridRun], orders: Mapping[str, float | None]) -> None:
@@ -59,7 +60,7 @@ def error_against_cell(path: Path, title: str, runs: Sequence[GridRun], orders: 
             order = orders[mine[0].island]
             text = "no order seen" if order is None else f"order {order:.2f}"
             axes.plot([run.cell for run in mine], [max(run.error, SMALLEST) for run in mine], "o-", ms=4, label=text)
-            explain(axes)
+            label_ends(axes)
 
 
 def residuals(path: Path, title: str, runs: Sequence[LinearRun]) -> None:
@@ -76,4 +77,4 @@ def residuals(path: Path, title: str, runs: Sequence[LinearRun]) -> None:
                     axes.plot([k * each for k in range(len(shares))], shares, ".-", lw=1.2, label=text)
                 else:
                     axes.plot([], [], " ", label=f"{run.linear}, at once, {run.seconds * 1e3:.3g} ms")
-            explain(axes)
+            label_ends(axes)

@@ -14,7 +14,7 @@ from sceneql.failure import Unsuitable
 from sceneql.files import whole
 from sceneql.report.bench import write_json
 from sceneql.report.page import Table, beside, file_names, write_page
-from sceneql.report.plots import stability_map
+from sceneql.report.plots import as_png, stability_map
 from sceneql.report.stability_map import Cell, Load, cells, default_sweep
 from sceneql.report.stability_sweep import Sweep, parse_sweep
 
@@ -55,7 +55,7 @@ def stability(
     write_page(
         page, f"{graph.name}: stability", [*about, LEGEND.format(largest_error)], [(caption, picture)], _tables(found)
     )
-    return "\n".join([*lines, f"wrote {table}, {data}, {picture} and {page}"])
+    return "\n".join([*lines, f"wrote {table}, {data}, {picture}, {as_png(picture)} and {page}"])
 
 
 LEGEND = (

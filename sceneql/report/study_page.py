@@ -13,7 +13,7 @@ from sceneql.files import whole
 from sceneql.quantities.diagnostic import suggestion
 from sceneql.report.bench import write_json
 from sceneql.report.page import Table, beside, file_names, write_page
-from sceneql.report.plots import stability_map, study_errors
+from sceneql.report.plots import both, stability_map, study_errors
 from sceneql.report.stability import LETTERS
 from sceneql.report.stability_map import Cell
 from sceneql.report.study import Load, Trial, trials
@@ -58,7 +58,7 @@ def study(
     write_page(
         page, f"{graph.name}: {name}", [*lines, LEGEND.format(known[name].accuracy)], plots, [_table(paths, found)]
     )
-    made = ", ".join(map(str, (table, data, *(path for _, path in plots))))
+    made = ", ".join(map(str, (table, data, *both(plots))))
     return "\n".join([*_lines(found, numbered, label, known[name].accuracy), f"wrote {made} and {page}"])
 
 
@@ -74,11 +74,11 @@ def _rest(trial: Trial, numbered: int | None) -> str:
     return ", ".join(value.label for k, value in enumerate(trial.values) if k != numbered) or "script"
 
 
-def _by_rest(found: Sequence[Trial], numbered: int | None) -> dict[str, list[tuple[float, float, float]]]:
-    rows: dict[str, list[tuple[float, float, float]]] = {}
+def _by_rest(found: Sequence[Trial], numbered: int | None) -> dict[str, list[tuple[float, float, float, float]]]:
+    rows: dict[str, list[tuple[float, float, float, float]]] = {}
     for trial in found:
         number = math.nan if numbered is None else trial.values[numbered].number
-        rows.setdefault(_rest(trial, numbered), []).append((number, trial.error, trial.seconds))
+        rows.setdefault(_rest(trial, numbered), []).append((number, trial.error, trial.seconds, trial.median))
     return rows
 
 
@@ -113,7 +113,7 @@ def _told(trial: Trial) -> str:
 
 def _table(paths: Sequence[str], found: Sequence[Trial]) -> Table:
     more = list(dict.fromkeys(name for trial in found for name in trial.measured))
-    head = (*paths, "outcome", "error", "run time [ms]", "steps", "evaluations", *more, "why")
+    head = (*paths, "outcome", "error", "run time [ms]", "median [ms]", "steps", "evaluations", *more, "why")
     rows = [
         [
             (text, trial.outcome)
@@ -122,6 +122,7 @@ def _table(paths: Sequence[str], found: Sequence[Trial]) -> Table:
                 trial.outcome,
                 f"{trial.error:.2e}",
                 f"{trial.seconds * 1e3:.3f}",
+                f"{trial.median * 1e3:.3f}",
                 str(trial.steps),
                 str(trial.evaluations),
                 *(f"{trial.measured.get(name, math.nan):.6g}" for name in more),
@@ -137,7 +138,10 @@ def _plain(found: Sequence[Trial]) -> list[dict[str, object]]:
     return [
         {
             "values": {value.patch[0]: value.label for value in trial.values},
-            **{name: getattr(trial, name) for name in ("outcome", "why", "error", "seconds", "steps", "evaluations")},
+            **{
+                name: getattr(trial, name)
+                for name in ("outcome", "why", "error", "seconds", "median", "steps", "evaluations")
+            },
             "measured": trial.measured,
         }
         for trial in found
@@ -148,10 +152,10 @@ def _write_csv(path: Path, paths: Sequence[str], found: Sequence[Trial]) -> None
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     more = list(dict.fromkeys(name for trial in found for name in trial.measured))
-    writer.writerow([*paths, "outcome", "error", "seconds", "steps", "evaluations", *more, "why"])
+    writer.writerow([*paths, "outcome", "error", "seconds", "median", "steps", "evaluations", *more, "why"])
     for trial in found:
         told = [value.label if math.isnan(value.number) else repr(value.number) for value in trial.values]
-        costs = [trial.outcome, trial.error, trial.seconds, trial.steps, trial.evaluations]
+        costs = [trial.outcome, trial.error, trial.seconds, trial.median, trial.steps, trial.evaluations]
         writer.writerow([*told, *costs, *(trial.measured.get(name, math.nan) for name in more), trial.why])
     with whole(path) as file:
         file.write(text.getvalue().encode())

@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.failure import RunFailure
+from sceneql.failure import RunFailure, Unsuitable
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Model, Solver
+from sceneql.quantities.diagnostic import suggestion
 from sceneql.system import IslandFacts
 
 if TYPE_CHECKING:
@@ -50,12 +51,14 @@ class Measurement:
     error: float
     """Relative error at the end; NaN where the run failed."""
     seconds: float
-    """Median run time of the compiled steps, compilation left out; NaN where the run failed."""
+    """Least run time of the compiled steps of all repeats, compilation left out; NaN where the run failed."""
     steps: int
     evaluations: int
     """Evaluations of dy/dt."""
     worst: str = ""
     """The quantity with that error."""
+    median: float = math.nan
+    """Median run time of the repeats [s]."""
 
     @property
     def ok(self) -> bool:
@@ -106,6 +109,23 @@ def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dic
         methods = at(found[word], 1e-3).choose(IslandFacts())
         if all(methods != at(other, 1e-3).choose(IslandFacts()) for other in kept.values()):
             kept[word] = found[word]
+    return kept
+
+
+def known(chosen: Sequence[str], catalogue: Catalogue) -> None:
+    """Raises Unsuitable for a word that is no solver."""
+    words = catalogue.words("solvers")
+    for word in chosen:
+        if word not in words:
+            hint = suggestion(word, words) or f"there are {', '.join(words)}"
+            raise Unsuitable(f"there is no solver '{word}': {hint}")
+
+
+def among(chosen: Sequence[str], applying: dict[str, Solver], title: str) -> dict[str, Solver]:
+    """Those that are chosen, or all where none is. Raises Unsuitable where none of these applies to an island."""
+    kept = {word: solver for word, solver in applying.items() if word in chosen or not chosen}
+    if not kept:
+        raise Unsuitable(f"none of {', '.join(chosen)} is measured for {title}: there {', '.join(applying)} are")
     return kept
 
 
@@ -190,7 +210,7 @@ def measurements(
 def measure(
     graph: SimulationGraph, island: Island, word: str, solver: Solver, reference: Reference, repeats: int = 1
 ) -> Measurement:
-    """One setting of one solver: its error, and the median time of its runs."""
+    """One setting of one solver: its error, and the least and the median time of its runs."""
     title, setting = ", ".join(island.models), setting_of(solver)
     times: list[float] = []
     try:
@@ -211,10 +231,11 @@ def measure(
         setting,
         "ok",
         reference.error(moment, march),
-        statistics.median(times),
+        min(times),
         done.steps,
         done.evaluations,
         reference.worst(moment, march),
+        statistics.median(times),
     )
 
 
