@@ -149,7 +149,8 @@ class _Checker:
         before = dict(self.tasks), dict(self.family_of), dict(self.entries)
         part = Entry(f"defaults.{word}", word, None, fields.span, fields.span, None)
         for cls in kinds:
-            symbols, solved = cls.formula_symbols(written(fields)), cls.formula_dimension(written(fields))
+            symbols = cls.formula_symbols(written(fields))
+            solved = None if fields.partial else cls.formula_dimension(written(fields))
             reader = Reader(
                 self.names,
                 self.found,

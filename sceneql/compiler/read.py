@@ -73,7 +73,8 @@ class Reader:
             raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, help)
         symbols, solved = self.symbols, self.solved
         if isinstance(node, MappingNode) and issubclass(cls, kinds.Kind):
-            symbols, solved = cls.formula_symbols(plainly(node)), cls.formula_dimension(plainly(node))
+            symbols = cls.formula_symbols(plainly(node))
+            solved = None if node.partial else cls.formula_dimension(plainly(node))
         ok = True
         got: dict[str, Any] = {}
         mistaken: set[str | None] = set()
