@@ -1,11 +1,10 @@
 """Layout of the tracer's scene (two arrays), of its scratch and of its lists of rays."""
 
-NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT = range(7)
-HAS_THIN, SWARMS_AT, SWARM_COUNT = range(7, 10)
-"""The header; HAS_THIN: whether there are THIN items. The first ENDLESS_COUNT items have no bounds; they stand in the
-first node, which has none either."""
+NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT, HAS_THIN = range(8)
+"""The header; the last tells whether there are THIN items.
+The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""
 
-ITEMS = 10
+ITEMS = 8
 """Offset of the items, by leaf: kind, place of the reals, place of the surface, index of the shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
 TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID, THIN = range(8)
@@ -24,8 +23,6 @@ CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
 CELLS = 32
 """Occupancy cells along each axis of an implicit object's box, through which single rays walk."""
 
-SWARM = 7
-"""Reals of a swarm of glowing spheres: mean place, mean squared distance from it, radiant intensity (3)."""
 LINK = 3
 """Integers of a node: its skip link (the next node after a miss), first item, number of items (0: an inner node)."""
 

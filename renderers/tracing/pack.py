@@ -9,7 +9,6 @@ import numpy as np
 
 from renderers.tracing import layout
 from renderers.tracing.certified import TOLERANCE
-from renderers.tracing.light.swarms import swarms_of
 from renderers.tracing.scene_kernels import Scene
 from renderers.tracing.solids.hierarchy import hierarchy
 from renderers.tracing.solids.thin_capsules_kernels import TENT
@@ -58,11 +57,8 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     items[:, layout.SURFACE_AT] = surfaces_at + layout.SURFACE_SIZE * items[:, layout.SHAPE]
     links_at = layout.ITEMS + items.size
     ranges_at = links_at + links.size
-    swarms = swarms_of(frame.shapes)
-    swarms_at = reals_at + sum(map(len, tables.reals))
-    reals = np.concatenate([head, lights.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals, swarms.ravel()])
+    reals = np.concatenate([head, lights.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), tables.thin]
-    header += [swarms_at, len(swarms)]
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
         place = ranges_at + layout.RANGES * k

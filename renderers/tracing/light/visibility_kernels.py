@@ -7,8 +7,7 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.light.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, NEXT_DISK, SKY_COUNT, SKY_DISK, across
-from renderers.tracing.light.swarms_kernels import told
-from renderers.tracing.light.through_kernels import PASSED, clearness, go_through
+from renderers.tracing.light.through_kernels import clearness, go_through
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
 from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import ask, walk
@@ -106,14 +105,13 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
     u = scene.reals
     red, green, blue = 0.0, 0.0, 0.0
     wr, wg, wb = 1.0, 1.0, 1.0
-    shown = 1.0
     for met in range(SURFACES):
         nx, ny, nz, fx, fy, fz, lift, pr, pg, pb = normal_at(scene, scratch, item, x, y, z)
         if dx * fx + dy * fy + dz * fz > 0.0:
             nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
         s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT] + layout.EMISSION
         if max(u[s], max(u[s + 1], u[s + 2])) > 0.0 and not in_a_lamp(scene, x, y, z):
-            red, green, blue = red + shown * wr * u[s], green + shown * wg * u[s + 1], blue + shown * wb * u[s + 2]
+            red, green, blue = red + wr * u[s], green + wg * u[s + 1], blue + wb * u[s + 2]
         r, g, b = color_at(scene, item, (pr, pg, pb), x, y, z, nx, ny, nz, dx, dy, dz, radius)
         wr, wg, wb = wr * r, wg * g, wb * b
         off = 0.05 * radius + 1e-6 * (abs(x) + abs(y) + abs(z)) + lift
@@ -154,7 +152,6 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
                 er, eg, eb = er + way[3], eg + way[4], eb + way[5]
                 vr, vg, vb = way[0], way[1], way[2]
             ended = item < 0
-            shown = 1.0 if ended else told(scene, item, t)
             if ended:
                 hr, hg, hb = sky_radiance(u, dy)
                 er, eg, eb = er + vr * hr, eg + vg * hg, eb + vb * hb
@@ -193,15 +190,8 @@ def sky_loss(scene, scratch, asked, record, sample):
     if glass:
         t, item, way = go_through(scene, scratch, x, y, z, dx, dy, dz, t, radius, item)
     r, g, b = hr, hg, hb
-    share = told(scene, item, t) if item >= 0 else 1.0
-    passed = 0
-    while share == 0.0 and passed < PASSED:
-        t, item, _ = walk(scene, scratch, x, y, z, dx, dy, dz, t * (1.0 + 1e-9), np.inf, False)
-        share = told(scene, item, t) if item >= 0 else 1.0
-        passed += 1
     if item >= 0:
         r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius, sample)
-    r, g, b = hr + share * (r - hr), hg + share * (g - hg), hb + share * (b - hb)
     if glass:
         r, g, b = way[3] + way[0] * r, way[4] + way[1] * g, way[5] + way[2] * b
     return hr - r, hg - g, hb - b
