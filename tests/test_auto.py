@@ -8,7 +8,10 @@ import pytest
 from sceneql.march.march import March
 from sceneql.march.spectrum import spectrum
 from sceneql.pipeline import load
+from sceneql.report.explain import explain
+from sceneql.report.work_precision import at, setting_of
 from sceneql.run.run import IslandRun
+from sceneql.words.solvers.auto import Auto
 
 
 def equations(start: str, rate: str) -> str:
@@ -92,3 +95,21 @@ def test_a_look_at_modes_that_are_slow_asks_for_no_eigenvalues(monkeypatch):
     assert not len(spectrum(rate, partner, 0.0, y, negligible=120.0))
     assert not asked
     assert len(spectrum(rate, partner, 0.0, y, negligible=90.0)) == len(asked[0]) == 2
+
+
+def test_the_stable_step_of_auto_is_that_of_the_method_that_it_begins_with(tmp_path):
+    script = """
+models: {a: {particles: {list: {p: {position: 0 1 0 m, mass: 1 kg}}, radius: 0.1 m}}}
+forces: [{spring: {from: a.p.position, to: 0 2 0 m, stiffness: 1000 N/m, rest: 1 m}}]
+contacts: [collision]
+outputs: {table: {record: {of: [a.energy]}}}
+solvers: {main: {SOLVER}}
+"""
+    steps = []
+    for solver in ("auto: {tolerance: 1e-5}", "dopri5: {tolerance: 1e-5}"):
+        path = tmp_path / "scene.yaml"
+        path.write_text(script.replace("SOLVER", solver))
+        (island,) = explain(load(path))["islands"]
+        steps.append(island["step_bound"])
+    assert steps[0] == pytest.approx(steps[1], rel=1e-9)
+    assert setting_of(at(Auto(), 1e-4)) == 1e-4

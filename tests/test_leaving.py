@@ -54,8 +54,12 @@ def test_the_default_camera_lets_go_what_falls_off_the_table(tmp_path):
             STAYING + ", lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}",
             "cameras: {c: {perspective: {position: 0 1 5 m, look_at: 0 0 0 m}}}\n",
         ),
+        (
+            STAYING + ", lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}",
+            "cameras: {c: {turntable: {fit: [balls, table]}}}\n",
+        ),
     ],
-    ids=["all stay", "all leave", "half leaves", "a camera of its own"],
+    ids=["all stay", "all leave", "half leaves", "a camera of its own", "a camera that fits all"],
 )
 def test_what_the_film_is_about_is_not_let_go(tmp_path, balls, camera):
     graph = graph_of(tmp_path, balls, camera)

@@ -47,6 +47,12 @@ def test_the_outermost_of_many_points_are_few_and_lose_little():
     assert (outermost(few[:5]) == few[:5]).all()
 
 
+def test_of_very_many_points_the_farthest_is_among_the_outermost():
+    points = np.random.default_rng(4).standard_normal((120_001, 3))
+    points[60_001] = [0.0, 100.0, 0.0]
+    assert outermost(points)[:, 1].max() == 100.0
+
+
 FLAT = {"x": "0.02 2 2 m", "y": "2 0.02 2 m", "z": "2 2 0.02 m"}
 
 

@@ -92,3 +92,13 @@ def test_a_number_in_the_name_of_a_mass_is_told_with_repeat(tmp_path):
     ((message, span, help),) = told(tmp_path, PLAIN.replace("bead.0: {", "'bead_{i}': {"))
     assert (message, span) == ("'bead_{i}' cannot be a name", "'bead_{i}'")
     assert help.startswith("write `bead: {repeat: {count: 5, as: i}, ...}`")
+
+
+@pytest.mark.parametrize("where", ["before", "behind"])
+def test_a_copy_does_not_take_the_place_of_an_entry_of_its_name(tmp_path, where):
+    other, copies = "b.1: {position: 0 1 0 m, mass: 3 kg}", "b: {repeat: {count: 2}, position: 1 1 0 m}"
+    masses = ", ".join([other, copies] if where == "before" else [copies, other])
+    text = f"models: {{n: {{mass_spring: {{masses: {{{masses}}}, springs: [{{between: [b.0, b.1]}}]}}}}}}"
+    assert ("a copy of 'b' is called 'b.1', and so is another entry", "b", "give one another name") in told(
+        tmp_path, text
+    )

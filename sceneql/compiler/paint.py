@@ -46,8 +46,9 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
             return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
     numbers = evaluate(value.expr, {}) if value is not None and value.constant else (0.0,)
-    if max(numbers) > 1:
-        found.error("out-of-range", "the numbers of a color are from 0 to 1", node.span, help=_of_bytes(numbers))
+    if not 0 <= min(numbers) <= max(numbers) <= 1:
+        help = None if min(numbers) < 0 else _of_bytes(numbers)
+        found.error("out-of-range", "the numbers of a color are from 0 to 1", node.span, help=help)
         return None
     return value
 

@@ -209,7 +209,7 @@ class Methods:
     """What marches an island: a method to begin with, and those that may take its place during the run."""
 
     solver: Solver = dataclasses.field(compare=False)
-    """The word whose methods these are, and whose `growth` tells their stability."""
+    """The word whose methods these are, and, without ``bounded_by``, whose `growth` tells their stability."""
     first: Stepper
     stiff: Stepper | None = None
     """What the march goes to, and back from, where stability holds the steps of ``first`` (Method.stability)."""
@@ -217,6 +217,8 @@ class Methods:
     """What takes over for good from the first step of a given length on that ``first`` finds no solution of."""
     remark: str = ""
     """When it takes over, for `explain`."""
+    bounded_by: Solver | None = dataclasses.field(default=None, compare=False)
+    """The word whose `growth` tells the stability of ``first``, where that is not ``solver``'s."""
 
 
 class Solver(Kind):

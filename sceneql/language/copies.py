@@ -50,6 +50,10 @@ class Copies:
         keys: dict[str, Scalar] = {}
         for name, item in node.entries.items():
             for full, made in self._made(name, item, scope):
+                if full != name and (full in entries or full in node.entries):
+                    message = f"a copy of '{name}' is called '{full}', and so is another entry"
+                    self.found.error("duplicate-key", message, node.keys[name].span, help="give one another name")
+                    continue
                 entries[full], keys[full] = made, node.keys[name]
         return node.holding(entries, keys)
 

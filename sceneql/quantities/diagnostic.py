@@ -182,7 +182,8 @@ def nearest(name: str, choices: Iterable[str]) -> str | None:
     if len(name) > LONGEST_WORD:
         return None
     choices = list(choices)
-    name = name.partition(".")[2] if name.partition(".")[0] in LIBRARIES else name
+    library, _, inside = name.partition(".")
+    name = inside if inside and library in LIBRARIES else name
     close = [choice for choice in choices if choice.lower() == name.lower()]
     close = close or get_close_matches(name, choices, n=1, cutoff=0.8)
     close = close or [ours for ours in OURS.get(name.lower(), ()) if ours in choices]

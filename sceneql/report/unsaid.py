@@ -10,12 +10,21 @@ from sceneql.kinds.word import written_name
 
 
 def unsaid(graph: SimulationGraph) -> str:
-    """The parts that the defaults added, as YAML by family; empty where the script says all."""
+    """The parts that the defaults added, as YAML by family; empty where the script says all.
+
+    A family that the script has already stands in comments, to be put into its own: a key cannot be given twice.
+    """
     families: dict[str, list[str]] = {}
     for task in _settled(graph).tasks.values():
         if task.span is None:
             families.setdefault(task.family, []).append(f"  {task.name}: {{{task.word}: {{{_fields(task)}}}}}")
-    return "\n".join(line for family, entries in families.items() for line in (f"{family}:", *entries))
+    own = {task.family for task in graph.tasks.values() if task.span is not None}
+    lines = [
+        ("# " if family in own else "") + line
+        for family, entries in families.items()
+        for line in (f"{family}:", *entries)
+    ]
+    return "\n".join(lines)
 
 
 def _settled(graph: SimulationGraph) -> SimulationGraph:
@@ -46,5 +55,5 @@ def _written(kind: Kind, name: str) -> str | None:
     if default in (None, "", (), {}) or isinstance(default, bool) or not isinstance(default, str):
         return None
     if isinstance(value, Value) and value != type(kind).model_validate({}).__dict__.get(name) and value.constant:
-        return f"{value.number():.9g} m"
+        return f"{float(value.number())!r} m"
     return default

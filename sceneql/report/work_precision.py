@@ -131,10 +131,10 @@ def among(chosen: Sequence[str], applying: dict[str, Solver], title: str) -> dic
 
 def settings(graph: SimulationGraph, island: Island) -> tuple[float, float]:
     """Step [s] and tolerance of the script's own solver; where it has none, a frame and TOLERANCE."""
-    control = cast(Solver, graph.tasks[island.solver].kind).stepper().control
-    if control.adaptive:
-        return graph.settings.clock.speed / graph.settings.clock.fps, control.tolerance
-    return control.first_step, TOLERANCE
+    solver = cast(Solver, graph.tasks[island.solver].kind)
+    if adaptive(solver):
+        return graph.settings.clock.speed / graph.settings.clock.fps, setting_of(solver)
+    return setting_of(solver), TOLERANCE
 
 
 def at(solver: Solver, setting: float) -> Solver:
@@ -143,9 +143,12 @@ def at(solver: Solver, setting: float) -> Solver:
 
 
 def setting_of(solver: Solver) -> float:
-    """Its step [s] or tolerance."""
+    """Its step [s] or tolerance, as it is asked for: a method may be given a part of the latter."""
     control = solver.stepper().control
-    return control.tolerance if control.adaptive else control.first_step
+    if not control.adaptive:
+        return control.first_step
+    asked: float = getattr(solver, "tolerance", control.tolerance)
+    return asked
 
 
 def adaptive(solver: Solver) -> bool:

@@ -18,7 +18,7 @@ from sceneql.run.dry_run import DryRun, asked, dry_run
 from sceneql.run.grounded import grounded
 from sceneql.run.history import History
 from sceneql.run.instant import Instant
-from sceneql.run.leaving import warning
+from sceneql.run.leaving import Leaving, warning
 from sceneql.run.ranges import ranged
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ class Run:
         self.holders = _holders(graph)
         self.history = History(graph.tasks.values() if marching else ())
         self._ranged = ranged(graph, islands)
+        self._let_go: Sequence[Leaving] = ()
         self._dry_runs: dict[str | None, DryRun] = {}
         self.kept: dict[str, tuple[Hashable, Any]] = {}
         """By part the last that was made for it (Instant.kept), and of what."""
@@ -99,6 +100,7 @@ class Run:
     def outline(self) -> Floats:
         """Points (n, 3) whose hull holds what stays of all that is drawn, over the whole run."""
         seen = self._bounded()
+        self._let_go = seen.leaving
         if seen.staying is not None:
             return np.array(list(product(*zip(*seen.staying, strict=True))))
         return np.concatenate(
@@ -106,9 +108,8 @@ class Run:
         )
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """A warning for what leaves for good, of a run whose camera looked ahead."""
-        seen = self._dry_runs.get(None)
-        return () if seen is None else tuple(warning(one, self.graph.tasks) for one in seen.leaving)
+        """A warning for what leaves for good, where a camera let it go."""
+        return tuple(warning(one, self.graph.tasks) for one in self._let_go)
 
     def _bounded(self) -> DryRun:
         """What a run ahead of this one sees, bounds among it."""

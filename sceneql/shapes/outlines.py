@@ -12,12 +12,15 @@ from sceneql.shapes.placement import apply, inverse
 from sceneql.shapes.world_boxes import box_of, inside_samples
 
 if TYPE_CHECKING:
+    from numpy import intp
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats, Shape
 
 COUNT = 96
 """Directions in which points are looked for."""
-MOST = 20_000
-"""Vertices or spheres that are looked at; of more, an even choice."""
+AT_ONCE = 50_000
+"""Vertices or spheres that are looked at together."""
 
 
 def _directions() -> Floats:
@@ -35,11 +38,11 @@ def outline(shape: Shape) -> Floats:
     """Points (n, 3) [m] around a shape, at most some hundred; none for an empty or unbounded one."""
     match shape:
         case Mesh(vertices=points):
-            return outermost(_some(points))
+            return outermost(points)
         case Points(centers=points, radii=radii):
-            return _around(_some(points), _some(radii))
+            return _around(points, radii)
         case Segments(ends=ends, radii=radii):
-            return _around(_some(ends.reshape(-1, 3)), _some(np.repeat(radii, 2)))
+            return _around(ends.reshape(-1, 3), np.repeat(radii, 2))
         case Quadric(squares=squares, linear=linear) if min(squares) > 0.0 and not any(linear):
             return _ellipsoid(shape)
         case Quadric(low=low, high=high):
@@ -57,7 +60,7 @@ def outermost(points: Floats) -> Floats:
     """Of points (n, 3) those farthest in any of the directions."""
     if len(points) <= COUNT:
         return points
-    found: Floats = points[np.unique(np.argmax(points @ DIRECTIONS.T, axis=0))]
+    found: Floats = points[np.unique(_farthest(points, 0.0))]
     return found
 
 
@@ -65,7 +68,7 @@ def _around(centers: Floats, radii: Floats) -> Floats:
     """Points on the spheres that reach farthest."""
     if len(centers) == 0:
         return centers.reshape(-1, 3)
-    farthest = np.argmax(centers @ DIRECTIONS.T + radii[:, None], axis=0)
+    farthest = _farthest(centers, radii[:, None])
     found: Floats = centers[farthest] + radii[farthest, None] * DIRECTIONS
     return found
 
@@ -78,6 +81,13 @@ def _ellipsoid(shape: Quadric) -> Floats:
     return apply(inverse(shape.to_local), np.clip(DIRECTIONS * half, shape.low, shape.high))
 
 
-def _some(rows: Floats) -> Floats:
-    """At most MOST of them."""
-    return rows[:: 1 + len(rows) // MOST]
+def _farthest(points: Floats, reach: Floats | float) -> NDArray[intp]:
+    """Indices (COUNT,) of the points (n, 3), each with a reach (n, 1) [m], that are farthest in each direction."""
+    best, far = np.zeros(COUNT, dtype=np.intp), np.full(COUNT, -np.inf)
+    for start in range(0, len(points), AT_ONCE):
+        some = slice(start, start + AT_ONCE)
+        along = points[some] @ DIRECTIONS.T + (reach if isinstance(reach, float) else reach[some])
+        last = np.argmax(along, axis=0)
+        there = along[last, np.arange(COUNT)]
+        best, far = np.where(there > far, start + last, best), np.maximum(there, far)
+    return best

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from sceneql.kinds import FixedScalar, Methods, Solver, field
 from sceneql.stepping.tableau import DORMAND_PRINCE
 from sceneql.words.solvers.dop853 import Dop853
+from sceneql.words.solvers.dopri5 import Dopri5
 from sceneql.words.solvers.exact import Exact
 from sceneql.words.solvers.gauss_radau15 import GaussRadau15
 from sceneql.words.solvers.radau import Radau
@@ -34,12 +35,11 @@ class Auto(Solver):
     of the tolerance, with which it errs less than dopri5. Stiff is where stability rather than the tolerance would hold
     the steps of the explicit method. That choice is made at the start, by the fastest mode of the island, the step that
     the tolerance allows, the length of the run and what a step of radau costs with so many unknowns, and looked at
-    again as long as enough of the run is left;
-    `explain` says the first and why. Few masses that nothing
-    but forces at a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less.
-    (On large nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some
-    sixty masses keep it with dopri5. A field on a grid is marched by tr_bdf2, and on a box whose coefficient and
-    boundary do not vary by exact. Errors are measured as those of `radau` are. Sources: see these words; the sign of
+    again as long as enough of the run is left; `explain` says the first and why. Few masses that nothing but forces at
+    a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less. (On large
+    nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty
+    masses keep it with dopri5. A field on a grid is marched by tr_bdf2, and on a box whose coefficient and boundary
+    do not vary by exact. Errors are measured as those of `radau` are. Sources: see these words; the sign of
     stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """
 
@@ -61,7 +61,10 @@ class Auto(Solver):
             return f"dopri5, as its tolerance is above {TIGHT:g}, and radau where the scene is stiff"
         if self.tolerance < IN_CONTACT:
             return f"dop853, as its tolerance is below {IN_CONTACT:g}, and radau where the scene is stiff"
-        return "dop853, or dopri5 where contacts, tears or births act, and radau where the scene is stiff"
+        part = f"dop853 with a tenth of its tolerance {self.tolerance:g} (at least {HOPEFUL:g})"
+        return (
+            f"{part}, or dopri5 with all of it where contacts, tears or births act, and radau where the scene is stiff"
+        )
 
     def stepper(self) -> Stepper:
         """That of its explicit method."""
@@ -81,13 +84,18 @@ class Auto(Solver):
             return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1), absolute=self.absolute).choose(island)
         few = island.entries <= BY_DIFFERENCES
         if island.local_contacts and few:
-            return Methods(self, self._order_5())
+            return Methods(self, self._order_5(), bounded_by=Dopri5(tolerance=self.tolerance))
         if island.orbits and few and self.tolerance <= ORBITS:
             there = "for few masses that attract each other, at so small a tolerance"
             return replace(GaussRadau15(tolerance=IN_ORBITS).choose(island), remark=there)
         stiff = Radau(tolerance=self.tolerance, absolute=self.absolute).stepper()
-        first = self._order_5() if island.impacts and self.tolerance >= IN_CONTACT else self.stepper()
-        return Methods(self, first, stiff=replace(stiff, method=replace(stiff.method, name="radau")))
+        of_order_5 = island.impacts and self.tolerance >= IN_CONTACT
+        return Methods(
+            self,
+            self._order_5() if of_order_5 else self.stepper(),
+            stiff=replace(stiff, method=replace(stiff.method, name="radau")),
+            bounded_by=Dopri5(tolerance=self.tolerance) if of_order_5 else None,
+        )
 
     def measure(self) -> str:
         """As its methods do."""
