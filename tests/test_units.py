@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.dimension import FORCE, LENGTH, PLAIN, STIFFNESS, TIME, Dimension
 from sceneql.quantities.unit_table import KNOWN_UNITS, OFFSET_UNITS, QUANTITIES, SINGLE, UNITS
@@ -146,3 +147,11 @@ def test_a_decimal_in_a_metric_unit_is_the_nearest_double(number: object) -> Non
         assert parse_unit(name).to_si(exact) == float(exact * UNITS[name][0])
     assert math.isfinite(parse_unit("mm").to_si(exact))
     assert set(OFFSET_UNITS) <= set(KNOWN_UNITS)
+
+
+@pytest.mark.parametrize("text", ["1 m/(2*h)", "1 m/(1 - s)", "3 kg/(2 + s)"])
+def test_below_a_bar_beside_a_number_a_name_is_no_unit(tmp_path, text):
+    (tmp_path / "scene.yaml").write_text(f'define: {{a: "{text}"}}\nobjects: {{b: {{sphere: {{radius: a}}}}}}\n')
+    with pytest.raises(ScriptError) as caught:
+        load(tmp_path / "scene.yaml")
+    assert caught.value.diagnostics[0].code == "unknown-name"

@@ -54,7 +54,8 @@ _JOIN = re.compile(r"[/·]|\*(?!\*)")
 _SPACED_JOIN = re.compile(r"\s*(?:[/·]|\*(?!\*))\s*")
 _INVERSE = re.compile(r"1/(?=%|[^\W\d])")
 _UNIT_BEFORE = re.compile(r"\d\.?\s*((?:1/)?[^\W\d][^\s()\[\],]*)[*/]\Z")
-_BAR_BEFORE = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*([^\W\d][\w^*/·-]*)?\s*/([\w\s^*/·()-]*)\Z")
+_BELOW = r"(?:[\s(*/·]|[^\W\d]\w*(?:\^-?\d+)?)*"  # of names alone: a number there makes it a quotient, not a unit
+_BAR_BEFORE = re.compile(rf"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*([^\W\d][\w^*/·-]*)?\s*/({_BELOW})\Z")
 _WORDS = re.compile(r"[^\W\d]\w*")
 LONGEST_BEFORE = 80
 _RAISED = re.compile(r"([^\W\d_]+)(-?[1-9])")
