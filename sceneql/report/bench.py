@@ -16,7 +16,6 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import LimitRefused, RunFailure, Unsuitable
 from sceneql.files import whole
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Solver
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.bench_grids import GridSection, grid_section
 from sceneql.report.bench_surfaces import Section, surface_section
@@ -66,16 +65,19 @@ def bench(
     rows: list[Measurement] = []
     drifts: list[Drift] = []
     orders: Orders = {}
-    schemes: dict[str, dict[str, Solver]] = {}
+    schemes = among(chosen, {", ".join(one.models): solvers(graph, one, catalogue) for one in graph.islands})
     lines: list[str] = []
     summary: list[str] = []
     compile_seconds = 0.0
     for island in graph.islands:
         title = ", ".join(island.models)
+        applying = schemes[title]
+        if not applying:
+            lines.append(f"{title}: none of {', '.join(chosen)} applies")
+            continue
         truth = reference(graph, island, catalogue)
         lines.append(f"{title}: errors against {truth.because} (itself good to {truth.uncertainty:.0e})")
         summary.append(lines[-1])
-        applying = schemes[title] = among(chosen, solvers(graph, island, catalogue), title)
         for done, (word, solver) in enumerate(applying.items()):
             progress(done, len(applying))
             try:

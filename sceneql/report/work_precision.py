@@ -121,11 +121,15 @@ def known(chosen: Sequence[str], catalogue: Catalogue) -> None:
             raise Unsuitable(f"there is no solver '{word}': {hint}")
 
 
-def among(chosen: Sequence[str], applying: dict[str, Solver], title: str) -> dict[str, Solver]:
-    """Those that are chosen, or all where none is. Raises Unsuitable where none of these applies to an island."""
-    kept = {word: solver for word, solver in applying.items() if word in chosen or not chosen}
-    if not kept:
-        raise Unsuitable(f"none of {', '.join(chosen)} is measured for {title}: there {', '.join(applying)} are")
+def among(chosen: Sequence[str], applying: dict[str, dict[str, Solver]]) -> dict[str, dict[str, Solver]]:
+    """Those that are chosen, or all where none is, by the islands' titles. Raises Unsuitable where none applies."""
+    kept = {
+        title: {word: solver for word, solver in found.items() if word in chosen or not chosen}
+        for title, found in applying.items()
+    }
+    if not any(kept.values()):
+        there = "; ".join(f"{title}: {', '.join(found)}" for title, found in applying.items())
+        raise Unsuitable(f"none of {', '.join(chosen)} is measured here ({there})")
     return kept
 
 
