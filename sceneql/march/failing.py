@@ -62,7 +62,7 @@ def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure
     """The failure of a march that has stopped with a status; ``ahead``: the step that comes next [s]."""
     control = march.control
     if status == kernels.STUCK:
-        return blamed(march, -1, MESSAGES[status])
+        return blamed(march, 0, MESSAGES[status])
     if status == kernels.STEP_TOO_SMALL:
         return _without_step(march, entry)
     if status == kernels.NOT_FINITE:
