@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from renderers.trace import Trace
+from renderers.tracing.solids.lines import line_lengths
 from sceneql.frame import Segments
 from stage import GLOW, WHITE, box, floor, frame, sun, view
 
@@ -61,3 +62,30 @@ def test_what_is_behind_a_thin_line_is_lit_as_without_it():
         Trace().draw(frame(floor(WHITE), *more, lights=lights, seen=seen)).linear for more in ([], [line])
     )
     assert crossed == pytest.approx(plain, abs=2e-3)
+
+
+def area(start, end, width=WIDTH):
+    """Area [square pixels] that a line between two places [pixels] covers, in the mean over its places in a pixel."""
+    seen, radii = view(size=(24, 24), half_height=1.0), np.array([0.5 * width / 12])
+    sums = []
+    for off in ((0.0, 0.0, 0.0), (0.25, 0.4, 0.0), (0.7, 0.1, 0.0), (0.45, 0.8, 0.0)):
+        ends = (np.array([[start, end]], dtype=float) + off) / 12
+        picture = Trace().draw(frame(Segments("line", GLOW, ends, radii), seen=seen)).linear[..., 0]
+        sums.append(picture.sum(dtype=float))
+    return np.mean(sums)
+
+
+@pytest.mark.parametrize("length", [0.0, 0.1, 0.3, 1.0, 2.0, 4.0])
+@pytest.mark.parametrize("width", [0.05, WIDTH, 0.7])
+def test_a_short_line_covers_its_own_area(length, width):
+    exact = width * length + 0.25 * np.pi * width**2
+    assert area((0, 0, 0), (0.8 * length, 0.6 * length, 0), width) == pytest.approx(exact, rel=0.04)
+
+
+def test_a_line_towards_the_camera_covers_its_own_area():
+    assert area((0, 0, -9), (0, 0, 9)) == pytest.approx(0.25 * np.pi * WIDTH**2, rel=0.04)
+
+
+def test_dashes_apart_are_as_bright_as_they_are_long_and_joined_ones_as_their_line():
+    ends = np.array([[[0.0, 0, 0], [1, 0, 0]], [[3, 0, 0], [4, 0, 0]], [[1, 0, 0], [1, 2, 0]]])
+    assert line_lengths(ends, 1e-3) == pytest.approx([3, 1, 3])

@@ -14,7 +14,8 @@ ROUND (sphere or capsule): end, axis to the other end, radius, color (NaN: the s
 QUADRIC: map to local (3, 4), squares, linear, constant, low, high: 25.
 HALF_SPACE (a quadric that is nothing else): unit normal, height of its face along that: 4.
 GRID: as grid_kernels says.
-THIN: as ROUND, of a capsule that the camera may see thinner than a pixel (thin_capsules_kernels).
+THIN: as ROUND, of a capsule that the camera may see thinner than a pixel (thin_capsules_kernels), and the length of the
+line that it is a piece of: 11.
 IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the
 constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
 sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.tape.plans), its length."""

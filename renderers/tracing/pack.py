@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
+SAME = 1e-3
+"""Half pixels below which two ends of thin capsules are one place."""
 
 
 def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certain: bool = False) -> tuple[Scene, int]:
@@ -130,7 +132,12 @@ class Rows:
                 if some.any():
                     ends, colors = shape.ends[some], None if shape.colors is None else shape.colors[some]
                     axes = ends[:, 1] - ends[:, 0]
-                    self._rounds(index, ends[:, 0], axes, shape.radii[some], colors, kind, TENT * pixels[some])
+                    blurred = None
+                    if kind == layout.THIN:
+                        from renderers.tracing.solids.lines import line_lengths
+
+                        blurred = TENT * pixels[some], line_lengths(shape.ends, SAME * float(pixels[some].min()))[some]
+                    self._rounds(index, ends[:, 0], axes, shape.radii[some], colors, kind, blurred)
         else:
             raise ValueError(f"shape {index} is a {type(shape).__name__}, which is none of the closed set")
 
@@ -165,13 +172,15 @@ class Rows:
 
     def _rounds(
         self, index: int, ends: Floats, axes: Floats, radii: Floats, colors: Floats | None, kind: int = layout.ROUND,
-        blur: Floats | None = None,
+        blurred: tuple[Floats, Floats] | None = None,
     ) -> None:  # fmt: skip
+        """Balls and capsules; THIN ones are ``blurred`` by so much [m], and pieces of lines of such lengths [m]."""
         shades = np.full((len(ends), 3), np.nan) if colors is None else colors
         radii = np.asarray(radii, dtype=np.float64)[:, None]
-        around = radii if kind == layout.ROUND or blur is None else radii + blur[:, None]
+        around = radii if blurred is None else radii + blurred[0][:, None]
         low, high = np.minimum(ends, ends + axes) - around, np.maximum(ends, ends + axes) + around
-        rows = np.concatenate([ends, axes, radii, shades], axis=1)
+        lengths = np.empty((len(ends), 0)) if blurred is None else blurred[1][:, None]
+        rows = np.concatenate([ends, axes, radii, shades, lengths], axis=1)
         self._items(index, kind, np.concatenate([low, high], axis=1), rows)
 
     def _implicit(self, index: int, shape: seen.Implicit) -> None:

@@ -3,6 +3,8 @@
 
 Most rays a pixel apart would miss such a line, and a film of it would crawl and break. Across it, its coverage is that
 of its own width under a tent filter; the integral over the line is the same, and smooth enough for few rays a pixel.
+Its ends are round and blurred as well: the whole line is dimmed by the light that they would add, which is little of a
+long line, and most of one that is short or points to the camera.
 """
 
 import numpy as np
@@ -17,6 +19,9 @@ the integral; of narrower filters and of wider ones they are farther."""
 APART = 4.0
 """Drawn radii behind a line within which another is taken for its continuation: pieces of a trail overlap, and those
 shorter than a pixel would be counted several times."""
+
+LINE = 10
+"""Place in a THIN item's reals of the length [m] of the line that it is a piece of."""
 
 
 @part
@@ -38,6 +43,15 @@ def passes(r, k, radius, spread, ox, oy, oz, dx, dy, dz):
 
 
 @part
+def slant(r, k, dx, dy, dz):
+    """Sine of the angle between a ray and a capsule's axis, 1 of a ball."""
+    ux, uy, uz = r[k + 3], r[k + 4], r[k + 5]
+    uu = ux * ux + uy * uy + uz * uz
+    du = dx * ux + dy * uy + dz * uz
+    return np.sqrt(max(1.0 - du * du / uu, 0.0)) if uu > 0.0 else 1.0
+
+
+@part
 def blur(own, pixel):
     """Half of the tent's width by a capsule's radius and half a pixel's width: 0 from a pixel's width on."""
     return TENT * np.sqrt(max(pixel * pixel - own * own, 0.0))
@@ -48,6 +62,20 @@ def below_tent(x):
     """Part of a tent of half width 1 that is below x."""
     rest = max(1.0 - abs(x), 0.0)
     return 0.5 * rest * rest if x < 0.0 else 1.0 - 0.5 * rest * rest
+
+
+@part
+def blurred_end(own, tent):
+    """Length [m] of a capsule's blurred middle that covers as much as its blurred ends, without blur 0.5 pi ``own``.
+
+    It is pi times the mean of |u + v|, u even over +-``own``, v of a tent of half width ``tent``: the ends together
+    are the round figure with that profile.
+    """
+    if own < tent:
+        mean = tent / 3.0 + own * own / (3.0 * tent) - own * own * own / (12.0 * tent * tent)
+    else:
+        mean = (tent * tent / 12.0 + 0.5 * own * own) / own
+    return np.pi * mean
 
 
 @part
@@ -79,4 +107,6 @@ def coverage(scene, item, radius, spread, ox, oy, oz, dx, dy, dz):
         return 1.0, 0.0
     wide = own + tent
     _, leave = round_span(scene.reals, k, wide * wide, ox, oy, oz, dx, dy, dz)
-    return below_tent((off + own) / tent) - below_tent((off - own) / tent), leave + APART * wide
+    across = below_tent((off + own) / tent) - below_tent((off - own) / tent)
+    length = scene.reals[k + LINE] * slant(scene.reals, k, dx, dy, dz)
+    return across * (length + 0.5 * np.pi * own) / (length + blurred_end(own, tent)), leave + APART * wide
