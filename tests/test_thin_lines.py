@@ -7,7 +7,7 @@ import pytest
 
 from renderers.trace import Trace
 from renderers.tracing.solids.lines import line_lengths
-from sceneql.frame import Segments
+from sceneql.frame import Segments, Surface
 from stage import GLOW, WHITE, box, floor, frame, sun, view
 
 HEIGHT, LENGTH, WIDTH = 60, 1.4, 0.3
@@ -89,3 +89,16 @@ def test_a_line_towards_the_camera_covers_its_own_area():
 def test_dashes_apart_are_as_bright_as_they_are_long_and_joined_ones_as_their_line():
     ends = np.array([[[0.0, 0, 0], [1, 0, 0]], [[3, 0, 0], [4, 0, 0]], [[1, 0, 0], [1, 2, 0]]])
     assert line_lengths(ends, 1e-3) == pytest.approx([3, 1, 3])
+
+
+def test_many_lines_one_behind_another_hide_each_other_by_chance():
+    random = np.random.default_rng(4)
+    seen, dark = view(size=(80, HEIGHT), half_height=1.0), Surface(color=(0.0,) * 3, specular=0.0)
+    heights, depths = random.uniform(-10, 10, 200) * PIXEL, np.linspace(-20, 20, 200)
+    ends = np.array([[[-0.7, y, z], [0.7, y, z]] for y, z in zip(heights, depths, strict=True)])
+    lines = Segments("lines", GLOW, ends, np.full(200, 0.05 * PIXEL))
+    wall = box(dark, (0, 0, -21), (9, 9, 0.1))
+    band = Trace().draw(frame(lines, wall, seen=seen)).linear[22:38, 20:60, 0]
+    tops = np.linspace(-8, 8, 160_001) * PIXEL
+    covered = (np.abs(tops[:, None] - heights) < 0.05 * PIXEL).any(axis=1).mean()
+    assert band.mean() == pytest.approx(covered, abs=0.03)

@@ -91,9 +91,10 @@ def advance(scene, scratch, path, first, second, spare):
     widens = bounce == 0 and scene.ints[layout.HAS_THIN] != 0 and path[LINES] < MOST_LINES
     if widens:
         scratch[counter, layout.WIDE_RADIUS], scratch[counter, layout.WIDE_SPREAD] = radius, spread
+    if bounce == 0:
         scratch[counter, layout.WIDE_FROM] = path[PAST]
     t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
-    scratch[counter, layout.TOLD] = 0.0
+    scratch[counter, layout.TOLD] = scratch[counter, layout.WIDE_FROM] = 0.0
     if widens:
         scratch[counter, layout.WIDE_RADIUS] = scratch[counter, layout.WIDE_SPREAD] = 0.0
         if item >= 0:

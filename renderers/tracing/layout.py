@@ -54,8 +54,8 @@ TOLD = 1
 KNOWN, PROBING, REACHED = 1.0, 2.0, 3.0
 """In the last row of a thread's scratch (scene_kernels.SCRATCH): a column, and its values."""
 WIDE_RADIUS, WIDE_SPREAD, WIDE_FROM = 2, 3, 4
-"""In the same row: the cone of a camera's ray, and the distance up to which it is through with thin capsules; the first
-two are 0 for all other rays."""
+"""In the same row: the cone of a camera's ray, and the distance up to which it is through with thin capsules; all
+are 0 for other rays, the first two also for one that has met its MOST_LINES capsules as wide as its cone."""
 FAR, WANT, ANSWERS = 6, 7, 8
 FIRST, ANYWHERE, NOTHING = range(3)
 """Want of a ray: the first hit, any hit, or none, for a ray that misses all boxes."""

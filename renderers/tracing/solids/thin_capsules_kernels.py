@@ -83,12 +83,13 @@ def thin_round(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far):
     """Crossing of a THIN capsule: by a camera's ray its entry as it is drawn, by others as of any capsule."""
     last = scratch.shape[0] - 1
     radius, spread = scratch[last, layout.WIDE_RADIUS], scratch[last, layout.WIDE_SPREAD]
+    near = max(near, scratch[last, layout.WIDE_FROM])
     if radius + spread == 0.0:
         return round_solid(scene.reals, k, ox, oy, oz, dx, dy, dz, near, far)
     pixel, _ = passes(scene.reals, k, radius, spread, ox, oy, oz, dx, dy, dz)
     wide = scene.reals[k + 6] + blur(scene.reals[k + 6], pixel)
     enter, leave = round_span(scene.reals, k, wide * wide, ox, oy, oz, dx, dy, dz)
-    return enter if enter < leave and max(near, scratch[last, layout.WIDE_FROM]) < enter < far else NONE
+    return enter if enter < leave and near < enter < far else NONE
 
 
 @part
