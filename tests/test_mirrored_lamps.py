@@ -58,3 +58,18 @@ def test_what_stands_before_a_lamp_hides_its_image():
 def test_the_ball_that_shows_a_lamp_is_its_image():
     assert draw(stage.sphere(GLOW, LAMP.position, 0.2), light=LAMP).max() == pytest.approx(1.0, abs=0.01)
     assert np.abs(draw(stage.sphere(GLOW, LAMP.position, 0.2), light=LAMP)[60:100, 90:110]).max() == 0.0
+
+
+@pytest.mark.parametrize("light", [LAMP, sun((0.15, 0.1, 1.0), (3.0,) * 3, 0.2)], ids=["lamp", "sun"])
+def test_clear_glass_before_a_mirror_hides_no_image(light):
+    clear = Surface(color=(1.0, 1.0, 1.0), roughness=0.0, transmission=1.0)
+    bare, behind = (draw(*more, light=light) for more in ([], [stage.box(clear, (0, 0, 1), (9, 9, 0.1))]))
+    # the pane is passed twice, and adds an image of its own
+    assert 0.96**2 * bare.max() < behind.max() < (0.96**2 + 0.045) * bare.max()
+    assert behind.sum() == pytest.approx((0.96**2 + 0.04) * bare.sum(), rel=0.2)
+
+
+def test_what_stands_before_a_lamp_hides_its_image_through_glass_as_well():
+    pane = stage.box(Surface(color=(1.0,) * 3, roughness=0.0, transmission=1.0), (0, 0, 1), (9, 9, 0.1))
+    around = stage.sphere(Surface((0.0,) * 3, specular=0.0), LAMP.position, 0.4)
+    assert draw(pane, around, light=LAMP).max() < 0.01 * draw(pane, light=LAMP).max()

@@ -32,7 +32,7 @@ FAINT_LINE = 2.0
 FAINTLY = -1.0
 """In place of doubt about a root: the path goes through a capsule thinner than a pixel."""
 WIDEST = 0.02
-"""Spread of a ray's cone after several mirrors from which on they show no lamps: images would be smeared over it."""
+"""Spread of a ray's cone, after several mirrors or glass, from which on it sees no lamps: they would be smeared."""
 QUICK = 8
 """Samples of light and sky on surfaces beyond the second record: seen in a reflection or refraction of another."""
 RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIVE, DOUBTED, DARK = (
@@ -52,8 +52,8 @@ WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PA
     *range(28, 37),
 )
 """Glass splits a ray: whether the mirrored one waits, and its begin. Share of the lamps that a ray sees: none unless it
-is mirrored. Distance up to which a camera's ray is through with thin capsules, and how many it has met; number of the
-path's sample in its pixel. Numbers of a path."""
+was mirrored, and has met nothing but clear glass since then. Distance up to which a camera's ray is through with thin
+capsules, and how many it has met; number of the path's sample in its pixel. Numbers of a path."""
 
 
 @part
@@ -112,7 +112,6 @@ def advance(scene, scratch, path, first, second, spare):
     if path[LAMPS] > 0.0:
         r, g, b = mirrored_lamps(scene, ox, oy, oz, dx, dy, dz, radius, spread, t)
         cr, cg, cb = cr + path[LAMPS] * wr * r, cg + path[LAMPS] * wg * g, cb + path[LAMPS] * wb * b
-        path[LAMPS] = 0.0
     if item < 0:
         r, g, b = backdrop(scene.reals, dy) if straight else sky_radiance(scene.reals, dy)
         cr, cg, cb = cr + wr * r, cg + wg * g, cb + wb * b
@@ -146,7 +145,7 @@ def advance(scene, scratch, path, first, second, spare):
             if outside or not glass:
                 lamps = polish(scene.reals[s + layout.ROUGHNESS])
             if bounce > 0:
-                lamps *= 1.0 - smoothstep(0.5 * WIDEST, WIDEST, spread + 2.0 * turn)
+                lamps *= 1.0 - smoothstep(0.5 * WIDEST, WIDEST, abs(spread) + 2.0 * turn)
         spare[IMAGED] = traced * lamps
         if bounce == 0:
             copy_record(spare, first)
@@ -177,6 +176,7 @@ def advance(scene, scratch, path, first, second, spare):
                 ox, oy, oz = behind(spare)
                 dx, dy, dz = refracted(spare, ratio)
                 spread = refracted_spread(scene, scratch, spare, ratio, radius, spread)
+                path[LAMPS] *= 1.0 - smoothstep(0.5 * WIDEST, WIDEST, abs(spread))
             else:
                 straight = False
                 path[LAMPS] = lamps

@@ -23,11 +23,11 @@ def mirrored_lamps(scene, ox, oy, oz, dx, dy, dz, radius, spread, far):
         k = layout.LIGHTS + layout.LIGHT * l
         cx, cy, cz, t, size = u[k + 1], u[k + 2], u[k + 3], np.inf, u[k + 8]
         along = cx * dx + cy * dy + cz * dz
-        blur = spread
+        blur = abs(spread)
         if u[k] == layout.POINT:
             cx, cy, cz = cx - ox, cy - oy, cz - oz
             along = t = cx * dx + cy * dy + cz * dz
-            blur = radius + spread * t
+            blur = abs(radius + spread * t)
         if along <= 0.0 or (t >= far if t < np.inf else far < np.inf):
             continue
         cx, cy, cz = cx - along * dx, cy - along * dy, cz - along * dz
