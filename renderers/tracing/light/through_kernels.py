@@ -3,7 +3,8 @@
 
 Rays to the sky and to surfaces go on straight through glass, in place of refracted ones: the light that comes through
 is right in sum, but not gathered in caustics. It is dimmed by Fresnel's transmission where it enters and by the glass's
-color; the rest is what the glass mirrors.
+color; the rest is what the glass mirrors: the sky, and where that is hidden what is straight ahead in place of what
+hides it, so that equal light from all around stays equal and none comes into closed rooms.
 """
 
 import numpy as np
@@ -40,17 +41,23 @@ def go_through(scene, scratch, x, y, z, dx, dy, dz, t, radius, item):
     red, green, blue = 0.0, 0.0, 0.0
     for _ in range(PASSED):
         px, py, pz = x + t * dx, y + t * dy, z + t * dz
-        nx, ny, nz, fx, fy, fz, _, pr, pg, pb = normal_at(scene, scratch, item, px, py, pz)
+        nx, ny, nz, fx, fy, fz, lift, pr, pg, pb = normal_at(scene, scratch, item, px, py, pz)
         if dx * fx + dy * fy + dz * fz <= 0.0:  # what would be mirrored within the glass leaves it
-            cosine = min(abs(dx * nx + dy * ny + dz * nz), 1.0)
+            cosine = min(max(-dx * nx - dy * ny - dz * nz, 0.0), 1.0)
             s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
             back = dielectric(cosine, 1.0 / u[s + layout.INDEX])
-            sr, sg, sb = sky_radiance(u, min(max(dy + 2.0 * cosine * ny, -1.0), 1.0))
-            red, green, blue = red + wr * back * sr, green + wg * back * sg, blue + wb * back * sb
+            mx, my, mz = dx + 2.0 * cosine * nx, dy + 2.0 * cosine * ny, dz + 2.0 * cosine * nz
+            off = 0.05 * radius + 1e-6 * (abs(px) + abs(py) + abs(pz)) + lift
+            sx, sy, sz = px + off * fx, py + off * fy, pz + off * fz
+            _, _, free = walk(scene, scratch, sx, sy, sz, mx, my, mz, 0.0, np.inf, True)
+            sr, sg, sb = sky_radiance(u, min(max(my, -1.0), 1.0))
+            free *= back
+            red, green, blue = red + wr * free * sr, green + wg * free * sg, blue + wb * free * sb
+            back -= free
             r, g, b = color_at(scene, item, (pr, pg, pb), px, py, pz, nx, ny, nz, dx, dy, dz, radius)
-            share = clearness(scene, item) * (1.0 - back)
-            wr, wg, wb = wr * share * r, wg * share * g, wb * share * b
-        near = t + 0.05 * radius + 1e-6 * (abs(px) + abs(py) + abs(pz))
+            share = clearness(scene, item) * (1.0 - back - free)
+            wr, wg, wb = wr * (share * r + back), wg * (share * g + back), wb * (share * b + back)
+        near = t + 1e-6 * (abs(px) + abs(py) + abs(pz)) + lift
         t, item, _ = walk(scene, scratch, x, y, z, dx, dy, dz, near, np.inf, False)
         if item < 0 or clearness(scene, item) <= 0.5:
             return t, item, (wr, wg, wb, red, green, blue)
