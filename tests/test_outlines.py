@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import trimesh
 
+from sceneql.frame import Quadric, Surface
 from sceneql.pipeline import Report, Tools, load, simulate
 from sceneql.report.mesh import mesh
-from sceneql.shapes.outlines import COUNT, outermost, outline
+from sceneql.shapes.outlines import COUNT, DIRECTIONS, outermost, outline
 
 SHAPES = {
     "sphere: {radius: 0.5 m, position: 1 2 0 m}": 0.5,
@@ -35,6 +36,17 @@ def test_the_hull_of_an_outline_holds_its_shape_and_little_more(tmp_path, thing,
     beyond = (points @ directions.T).max(axis=0) - (surface @ directions.T).max(axis=0)
     assert beyond.min() > -0.03 * size
     assert beyond.max() < 0.25 * size
+
+
+def test_an_ellipsoid_is_reached_in_each_direction_looked_at():
+    half = np.array([3.0, 1.0, 0.2])
+    to_local = np.eye(3, 4) / half[:, None]
+    stretched = Quadric("a", Surface(), to_local, (1, 1, 1), (0, 0, 0), -1, (-np.inf,) * 3, (np.inf,) * 3)
+    squares = tuple(half**-2.0)
+    by_squares = Quadric("b", Surface(), np.eye(3, 4), squares, (0, 0, 0), -1, (-np.inf,) * 3, (np.inf,) * 3)
+    reach = (outline(by_squares) @ DIRECTIONS.T).max(axis=0)
+    assert reach == pytest.approx(np.linalg.norm(DIRECTIONS * half, axis=1), rel=1e-9)
+    assert (outline(stretched) @ DIRECTIONS.T).max(axis=0) == pytest.approx(reach, rel=1e-9)
 
 
 def test_the_outermost_of_many_points_are_few_and_lose_little():

@@ -12,6 +12,7 @@ from renderers.tracing.camera_kernels import camera_ray
 from renderers.tracing.light.lamps_kernels import mirrored_lamps
 from renderers.tracing.light.light_kernels import backdrop, dielectric, polish, sharpness, sky_radiance, smoothstep
 from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, shade
+from renderers.tracing.light.through_kernels import CLEAR
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted, refracted_spread
 from renderers.tracing.record_kernels import IMAGED, TINT, TRACED, WEIGHT, copy_record, erase, start_of
@@ -126,7 +127,7 @@ def advance(scene, scratch, path, first, second, spare):
         spare[WEIGHT], spare[WEIGHT + 1], spare[WEIGHT + 2] = wr, wg, wb
         s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
         clear = scene.reals[s + layout.TRANSMISSION]
-        glass = clear > (0.0 if bounce == 0 else 0.5)
+        glass = clear > (0.0 if bounce == 0 else CLEAR)
         nv = facing_ratio(spare)
         sr, sg, sb = 0.0, 0.0, 0.0
         traced = 0.0

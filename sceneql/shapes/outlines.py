@@ -1,4 +1,7 @@
-"""Outlines: few points whose hull holds a shape, so that a camera can be fitted to what is there, not to a box."""
+"""Outlines: few points whose hull nearly holds a shape: a camera is fitted to what is there, not to a box.
+
+The hull is inscribed where the shape is round: a unit sphere's comes as near to the center as 0.96.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,7 @@ DIRECTIONS = _directions()
 
 
 def outline(shape: Shape) -> Floats:
-    """Points (n, 3) [m] around a shape, at most some hundred; none for an empty or unbounded one."""
+    """Points (n, 3) [m] whose hull nearly holds a shape, at most some hundred; none for an empty or unbounded one."""
     match shape:
         case Mesh(vertices=points):
             return outermost(points)
@@ -74,11 +77,14 @@ def _around(centers: Floats, radii: Floats) -> Floats:
 
 
 def _ellipsoid(shape: Quadric) -> Floats:
-    """Points on an ellipsoid, cut at its box: where its normals are the directions."""
+    """Points on an ellipsoid, cut at its box: the farthest ones (A A^T d/|A^T d|, A of the unit ball)."""
     if not shape.constant < 0.0:
         return np.zeros((0, 3))
     half = np.sqrt(-shape.constant / np.array(shape.squares))
-    return apply(inverse(shape.to_local), np.clip(DIRECTIONS * half, shape.low, shape.high))
+    to_world = inverse(shape.to_local)
+    from_ball = DIRECTIONS @ (to_world[:, :3] * half)
+    from_ball /= np.linalg.norm(from_ball, axis=1)[:, None]
+    return apply(to_world, np.clip(half * from_ball, shape.low, shape.high))
 
 
 def _farthest(points: Floats, reach: Floats | float) -> NDArray[intp]:

@@ -22,6 +22,10 @@ PASSED = 16
 """Most surfaces of glass on the way of a ray; the next one counts as open."""
 
 
+CLEAR = 0.5
+"""Share of the light into a surface that is not scattered in it, above which rays go on through it."""
+
+
 @part
 def clearness(scene, item):
     """Share of the light into an item that is not scattered in it."""
@@ -59,6 +63,6 @@ def go_through(scene, scratch, x, y, z, dx, dy, dz, t, radius, item):
             wr, wg, wb = wr * (share * r + back), wg * (share * g + back), wb * (share * b + back)
         near = t + 1e-6 * (abs(px) + abs(py) + abs(pz)) + lift
         t, item, _ = walk(scene, scratch, x, y, z, dx, dy, dz, near, np.inf, False)
-        if item < 0 or clearness(scene, item) <= 0.5:
+        if item < 0 or clearness(scene, item) <= CLEAR:
             return t, item, (wr, wg, wb, red, green, blue)
     return np.inf, -1, (wr, wg, wb, red, green, blue)

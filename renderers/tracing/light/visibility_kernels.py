@@ -7,7 +7,7 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.light.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, NEXT_DISK, SKY_COUNT, SKY_DISK, across
-from renderers.tracing.light.through_kernels import clearness, go_through
+from renderers.tracing.light.through_kernels import CLEAR, clearness, go_through
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
 from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import ask, walk
@@ -147,7 +147,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
             up = np.sqrt(max(1.0 - v * v - w * w, 0.0))
             dx, dy, dz = v * ax + w * bx + up * nx, v * ay + w * by + up * ny, v * az + w * bz + up * nz
             t, item, _ = walk(scene, scratch, sx, sy, sz, dx, dy, dz, 0.0, np.inf, False)
-            if item >= 0 and clearness(scene, item) > 0.5:
+            if item >= 0 and clearness(scene, item) > CLEAR:
                 t, item, way = go_through(scene, scratch, sx, sy, sz, dx, dy, dz, t, radius, item)
                 er, eg, eb = er + way[3], eg + way[4], eb + way[5]
                 vr, vg, vb = way[0], way[1], way[2]
@@ -185,7 +185,7 @@ def sky_loss(scene, scratch, asked, record, sample):
         return 0.0, 0.0, 0.0
     radius = record[RADIUS] + 0.05 * t
     hr, hg, hb = sky_radiance(scene.reals, dy)
-    glass = clearness(scene, item) > 0.5
+    glass = clearness(scene, item) > CLEAR
     way = 1.0, 1.0, 1.0, 0.0, 0.0, 0.0
     if glass:
         t, item, way = go_through(scene, scratch, x, y, z, dx, dy, dz, t, radius, item)
