@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from renderers.trace import Trace
-from renderers.tracing.solids.lines import line_lengths
+from renderers.tracing.solids.line_pieces import line_lengths
 from sceneql.frame import Segments, Surface
 from stage import GLOW, WHITE, box, floor, frame, sun, view
 

@@ -134,7 +134,7 @@ class Rows:
                     axes = ends[:, 1] - ends[:, 0]
                     blurred = None
                     if kind == layout.THIN:
-                        from renderers.tracing.solids.lines import line_lengths
+                        from renderers.tracing.solids.line_pieces import line_lengths
 
                         blurred = TENT * pixels[some], line_lengths(shape.ends, SAME * float(pixels[some].min()))[some]
                     self._rounds(index, ends[:, 0], axes, shape.radii[some], colors, kind, blurred)
