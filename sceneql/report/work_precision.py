@@ -127,7 +127,7 @@ def among(chosen: Sequence[str], applying: dict[str, dict[str, Solver]]) -> dict
         title: {word: solver for word, solver in found.items() if word in chosen or not chosen}
         for title, found in applying.items()
     }
-    if not any(kept.values()):
+    if chosen and not any(kept.values()):
         there = "; ".join(f"{title}: {', '.join(found)}" for title, found in applying.items())
         raise Unsuitable(f"none of {', '.join(chosen)} is measured here ({there})")
     return kept
