@@ -35,6 +35,9 @@ MODELS = {
     "particles one": "particles: {list: {a: {mass: 2 kg, position: 0 1 0 m}}}",
     "particles of": "particles: {of: ball}",
     "particles positions": "particles: {positions: [[1 m, 2 m, 3 m], [4 m, 5 m, 6 m]]}",
+    "rigid": "rigid: {mass: 2 kg, inertia: 1 2 3 kg*m^2, spin: 1 2 3 rad/s, points: {hook: 1 0 0 m}}",
+    "rigid several": "rigid: {bodies: {a: {mass: 2 kg, inertia: 1 2 3 kg*m^2, points: {hook: 1 0 0 m}}, "
+    "b: {mass: 1 kg, inertia: 1 1 1 kg*m^2, position: 1 0 0 m}}}",
     "reaction_diffusion": "reaction_diffusion: {size: 1 1 m, cell: 0.25 m, probes: {here: 0.4 0.6 m}, "
     "species: {u: {coefficient: 0.1, initial: x, rate: -u*v}, v: {initial: y}}}",
 }

@@ -1,10 +1,11 @@
-"""Point masses in an island: reserving their state, and the outputs of every model of masses."""
+"""Masses in an island: reserving their state, and the outputs of every model of masses, rigid bodies too."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from sceneql.bodies.rigid.turning import momenta, rotation_energy
 from sceneql.kinds import Gives, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
@@ -164,7 +165,8 @@ def read(output: str, bodies: Bodies, state: ModelState, own_potential: float = 
         case "radii":
             return radii(bodies, state).copy()
         case "kinetic":
-            return 0.5 * float(np.sum(m * np.sum(v * v, axis=1)))
+            turning = 0.0 if bodies.turning is None else rotation_energy(bodies.turning, bodies.count, state)
+            return 0.5 * float(np.sum(m * np.sum(v * v, axis=1))) + turning
         case "potential":
             return own_potential + state.potential
         case "dissipated":
@@ -175,7 +177,8 @@ def read(output: str, bodies: Bodies, state: ModelState, own_potential: float = 
         case "momentum":
             return np.sum(m[:, None] * v, axis=0)
         case "angular_momentum":
-            return np.sum(m[:, None] * np.cross(x, v), axis=0)
+            own = 0.0 if bodies.turning is None else momenta(bodies.turning, bodies.count, state).sum(axis=0)
+            return np.sum(m[:, None] * np.cross(x, v), axis=0) + own
         case "center":
             return np.average(x, axis=0, weights=m) if np.sum(m) > 0 else np.zeros(3)
         case "count":

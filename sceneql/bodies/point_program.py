@@ -1,7 +1,8 @@
 """Forces on a mass by formulas of its place, velocity, mass and charge, printed as a compiled kernel.
 
 Kernels have the signature of a term; ints: constants_at, position_at, velocity_at, count, mass_at, inverse_at,
-work_at, charge_at, charge_step (0: one charge for all), then the offset of every value read from other parts.
+work_at, charge_at, charge_step (0: one charge for all), then the offset of every value read from other parts. Those of
+a force or torque at a place on a body: constants_at, mass_at, the place's, then such offsets.
 """
 
 from __future__ import annotations
@@ -17,12 +18,14 @@ from sceneql.quantities.expression import TIME_SYMBOL, Call, Expr, Link, Number,
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Assembly, Bodies, ModelState
+    from sceneql.system import Assembly, Bodies, ModelState, Place
 
 PLACE = ("x", "y", "z")
 MOTION = (*PLACE, "vx", "vy", "vz")
 CHARGE = Symbol("q")
 HEAD = 9
+AT = 2
+"""First of the integers of a place on a body."""
 ZERO = Number(0.0)
 NAMES = {name: f"own_{name}" for name in (*MOTION, "m", "q")} | {TIME_SYMBOL: "t"}
 """The kernel's names of a mass's own numbers: `y` is the state."""
@@ -87,6 +90,35 @@ def add_force(
 
     name = _kernel("force", printer, outputs)
     assembly.term("force", name, store(constants), slopes if entries else Slopes("", (), ()), apart=charge[1] == 0)
+
+
+def add_force_at(
+    assembly: Assembly, place: Place, rows: Sequence[Expr], *, counted: bool, torque: bool = False
+) -> None:
+    """Add the force [N], or torque [N m], of three scalar rows at a place on a body.
+
+    The formulas' place and velocity are the place's own; ``counted``: its power is added to the work.
+    """
+    for row in rows:
+        assembly.stop_at_breakpoints(row)
+    constants = Constants()
+    printer = Printer(NAMES, {}, constants)
+    forces = ", ".join(printer.name(row) for row in [constants.lift(row) for row in rows])
+    lines = [
+        f"    if floats[ints[{AT + 3}]] == 0.0:",
+        "        return",
+        f"    {', '.join(NAMES[name] for name in MOTION[:3])} = position(y, floats, ints, {AT})",
+        f"    {', '.join(NAMES[name] for name in MOTION[3:])} = velocity(y, floats, ints, {AT})",
+        "    own_m = floats[ints[1]]",
+        *(f"    {line}" for line in printer.lines),
+        f"    power = {'twist' if torque else 'push'}(y, out, floats, ints, {AT}, {forces})",
+        *([f"    out[ints[{AT + 2}]] -= power"] if counted else []),
+    ]
+    imports = ("from sceneql.bodies.rigid.place_kernels import position, push, twist, velocity",)
+    kernel = write_term("force_at", constants, AT + len(place.ints), lines, imports)
+    inputs = [assembly.value(Value(expr)) for expr in constants.inputs]
+    head = (assembly.floats(constants.values), place.bodies.mass_at + place.body)
+    assembly.term("force", kernel, (*head, *place.ints, *inputs))
 
 
 def _slopes(rows: Sequence[Expr]) -> tuple[list[tuple[int, int]], Callable[[], str], Constants]:

@@ -194,15 +194,18 @@ def exponent(expr: Expr) -> float:
     return float("nan")
 
 
-def write_term(function: str, constants: Constants, first: int, lines: Sequence[str]) -> str:
+def write_term(
+    function: str, constants: Constants, first: int, lines: Sequence[str], imports: Sequence[str] = ()
+) -> str:
     """Write a kernel with the signature of a term; returns its ``"module:function"``.
 
-    ``lines``: its body. The constants stand in floats from ints[0] on, each value read from other parts at one of
+    ``lines``: its body; ``imports``: of what it calls besides. The constants stand in floats from ints[0] on, each value read from other parts at one of
     ints[first:].
     """
     text = [
         *TERM_HEAD,
         *(NOISE_HEAD if any("= noise_" in line for line in lines) else ()),
+        *imports,
         *("", "", "@kernel(TERM)"),
         f"def {function}(t, y, out, floats, ints):",
         *(f"    c{k} = floats[ints[0] + {k}]" for k in range(len(constants.values))),

@@ -69,6 +69,8 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Pars
 
 NONE, OPTIONAL = "none", ("floor",)
 """In place of a word: a default of this name that the script does without, and which these are."""
+WORLD = "world"
+"""What does not move, where a field may name it."""
 
 
 class _Checker:
@@ -268,7 +270,7 @@ class _Checker:
 
         def refer(node: Node, mark: Refers, anonymous: str) -> Ref | None:
             ref = self.refer(node, mark, anonymous, entry)
-            if ref is not None:
+            if ref is not None and ref.name:
                 needs.append(ref.name)
             return ref
 
@@ -305,6 +307,11 @@ class _Checker:
         """The part that a field names; an entry written in place becomes a part of its own first."""
         if isinstance(node, Scalar):
             name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
+            if mark.bodies and name == WORLD and name not in self.entries:
+                return Ref("", node.span)
+            model, _, body = name.rpartition(".")
+            if mark.bodies and name not in self.entries and model in self.entries and self.family(model) == mark.family:
+                return Ref(model, node.span, body)
             if name in self.entries and self.catalogue.load(self.family_of[name], self.entries[name].word) is None:
                 return None  # its word is reported there
             if name in self.entries and self.family(name) in (mark.family, mark.also):

@@ -16,7 +16,7 @@ from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
 from sceneql.contacts.back_off_kernels import find_near
 from sceneql.contacts.body_path_kernels import MEAN, NEVER, set_out
-from sceneql.contacts.impulse_kernels import bounce, count_hit, scale_of
+from sceneql.contacts.impact_kernels import bounce, count_hit, scale_of
 from sceneql.contacts.meet_kernels import earliest
 from sceneql.contacts.pair_kernels import ANSWER, BACK_OFF_IN_STAGES, body_of
 from sceneql.contacts.resting_kernels import come_to_rest, set_velocity

@@ -13,7 +13,7 @@ from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import MEAN
-from sceneql.contacts.impulse_kernels import MOST_CUTS
+from sceneql.contacts.impact_kernels import MOST_CUTS
 from sceneql.contacts.pair_kernels import ANSWER, BACK_OFF_IN_STAGES, HOLD, SUPPORT
 from sceneql.contacts.shape_kernels import near_at
 from sceneql.system.signatures_kernels import BACK_OFF, TERM, A, F, I

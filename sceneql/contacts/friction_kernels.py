@@ -6,7 +6,7 @@ import math
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout
-from sceneql.contacts.impulse_kernels import STILL
+from sceneql.contacts.impact_kernels import STILL
 from sceneql.contacts.pair_kernels import BRAKE, OF_BODY, body_of, tightness
 from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
 from sceneql.contacts.shape_kernels import acceleration, surface, velocity

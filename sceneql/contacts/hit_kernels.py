@@ -3,7 +3,7 @@
 
 from sceneql.compiled.kernels import lean
 from sceneql.contacts import layout
-from sceneql.contacts.impulse_kernels import STILL, bounce, count_hit, scale_of
+from sceneql.contacts.impact_kernels import STILL, bounce, count_hit, scale_of
 from sceneql.contacts.pair_kernels import body_of
 from sceneql.contacts.resting_kernels import come_to_rest, set_velocity
 from sceneql.contacts.shape_kernels import surface, velocity

@@ -17,7 +17,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import MOVED, NEVER, moving, place, set_out
-from sceneql.contacts.impulse_kernels import bounce, count_hit, scale_of
+from sceneql.contacts.impact_kernels import bounce, count_hit, scale_of
 from sceneql.contacts.meet_kernels import earliest, seen
 from sceneql.contacts.pair_kernels import ANSWER, BRAKE, is_flat
 from sceneql.contacts.resting_kernels import come_to_rest, keep, lies

@@ -12,7 +12,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout
-from sceneql.contacts.impulse_kernels import STILL, scale_of
+from sceneql.contacts.impact_kernels import STILL, scale_of
 from sceneql.contacts.pair_kernels import KEEP, body_of
 from sceneql.contacts.shape_kernels import surface, velocity
 from sceneql.system.signatures_kernels import A, F, I, N

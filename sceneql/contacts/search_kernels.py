@@ -4,7 +4,7 @@
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import NEVER, SEARCH, clear_piece, place
-from sceneql.contacts.impulse_kernels import STILL
+from sceneql.contacts.impact_kernels import STILL
 from sceneql.contacts.shape_kernels import surface
 
 TOUCH = 1e-12

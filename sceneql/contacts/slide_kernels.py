@@ -4,7 +4,7 @@
 import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.impulse_kernels import STILL
+from sceneql.contacts.impact_kernels import STILL
 from sceneql.system.signatures_kernels import A, F
 
 

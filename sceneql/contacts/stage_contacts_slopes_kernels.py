@@ -6,7 +6,7 @@ import math
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout
-from sceneql.contacts.impulse_kernels import STILL
+from sceneql.contacts.impact_kernels import STILL
 from sceneql.contacts.pair_kernels import body_of, firmness, tightness
 from sceneql.contacts.shape_kernels import surface, velocity
 from sceneql.system.signatures_kernels import TERM

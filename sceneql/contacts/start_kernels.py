@@ -5,7 +5,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.contacts import layout
-from sceneql.contacts.impulse_kernels import scale_of
+from sceneql.contacts.impact_kernels import scale_of
 from sceneql.contacts.shape_kernels import clear, surface
 from sceneql.system.signatures_kernels import A, F, I, N
 

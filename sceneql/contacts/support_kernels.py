@@ -5,7 +5,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts import layout
-from sceneql.contacts.impulse_kernels import STILL
+from sceneql.contacts.impact_kernels import STILL
 from sceneql.contacts.pair_kernels import OF_BODY, OF_PAIR, SUPPORT, away, body_of, is_flat
 from sceneql.contacts.pressing_kernels import pressing
 from sceneql.contacts.shape_kernels import facing, surface, velocity

@@ -44,17 +44,23 @@ def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...
 
 
 def lay_out(
-    triples: list[tuple[int, int, int]], blocks: list[Block], first_blocks: list[int], pairs: list[int]
+    triples: list[tuple[int, int, int]],
+    frees: list[tuple[int, int]],
+    blocks: list[Block],
+    first_blocks: list[int],
+    pairs: list[int],
 ) -> NDArray[int64]:
     """The island's array of integers: see layout.py."""
     triples_at = layout.GROUPS_AT + len(first_blocks)
-    table_at = triples_at + layout.TRIPLE * len(triples)
+    frees_at = triples_at + layout.TRIPLE * len(triples)
+    table_at = frees_at + 2 * len(frees)
     ranges_at = table_at + len(blocks) + 1
     table = list(accumulate((len(block.ints) for block in blocks), initial=ranges_at + len(pairs) + 1))
     parts = [
-        [triples_at, len(triples), table_at, ranges_at, table[-1]],
+        [triples_at, len(triples), frees_at, len(frees), table_at, ranges_at, table[-1]],
         [table_at + block for block in first_blocks],
         [number for triple in triples for number in triple],
+        [number for free in frees for number in free],
         table,
         list(accumulate(pairs, initial=0)),
         *(block.ints for block in blocks),

@@ -28,6 +28,7 @@ from sceneql.island.value_slopes import Layout, own_slopes, value_slopes
 from sceneql.kinds import Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
+from sceneql.system import Place
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -37,9 +38,9 @@ if TYPE_CHECKING:
     from sceneql.island.inputs import Word
     from sceneql.island.setting import Setting
     from sceneql.quantities.span import Span
-    from sceneql.system import Grid, Mode, Slopes, Stage
+    from sceneql.system import Bodies, Grid, Mode, Slopes, Stage, Tied
 
-STAGES: tuple[Stage, ...] = ("internal", "force", "close", "constrain")
+STAGES: tuple[Stage, ...] = ("internal", "force", "tie", "close", "constrain")
 VECTORS = 12
 """Arrays of the state's size that a run keeps: states and rates at a step's ends, and the stages of a solver."""
 
@@ -55,8 +56,12 @@ class IslandAssembly:
     whole: int = 0
     """In a block: the number of bodies of the whole island."""
     places: Callable[[Link], NDArray[int64] | None] = lambda link: None
+    points: Callable[[Link], tuple[Bodies, int, tuple[float, float, float]] | None] = lambda link: None
+    """The masses of a link to a position, which of them, and where on it (Model.point); settable as ``places``."""
     fields: dict[tuple[str, str], Grid] = field(default_factory=dict)
     """The grids by model and output."""
+    ties: list[Tied] = field(default_factory=list)
+    """What its ties hold, for the term that finds all their forces."""
     changes: list[tuple[int, int]] = field(default_factory=list)
     """(offset, count) of floats that change as bodies come and go."""
     _starts: list[Floats] = field(default_factory=list)
@@ -65,6 +70,7 @@ class IslandAssembly:
     _ranges: list[tuple[int, int, str, tuple[Span | None, ...]]] = field(default_factory=list)
     _names: list[tuple[int, int, Callable[[int], str]]] = field(default_factory=list)
     _pairs: list[tuple[int, int, int]] = field(default_factory=list)
+    _alike: list[tuple[int, int]] = field(default_factory=list)
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
     _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(channels.HEAD)])
     _stored: int = channels.HEAD
@@ -72,6 +78,9 @@ class IslandAssembly:
     _exact: list[Block] = field(default_factory=list)
     _local: list[Block] = field(default_factory=list)
     _after: list[Block] = field(default_factory=list)
+    _settling: list[Block] = field(default_factory=list)
+    _free: list[Block] = field(default_factory=list)
+    _frees: list[tuple[int, int]] = field(default_factory=list)
     _varying: list[tuple[int, Value, Word]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _stops: set[Breakpoint] = field(default_factory=set)
@@ -157,6 +166,10 @@ class IslandAssembly:
         self._apart = self._apart and apart
         self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, *self._word))
 
+    def alike(self, at: int, count: int) -> None:
+        """Say that entries share a scale of errors (system.Assembly)."""
+        self._alike.append((at, count))
+
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
         """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
         self._masses.append((velocity_at, inverse_at, count))
@@ -166,10 +179,15 @@ class IslandAssembly:
         self._apart = self._apart and apart and mode == "local"
         (self._exact if mode == "exact" else self._local).append(Block(tuple(kernels), tuple(ints), pairs))
 
-    def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False) -> None:
+    def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False, samples: bool = False) -> None:
         """Add what happens at the end of each step (system.Assembly)."""
         self._apart = self._apart and apart
-        self._after.append(Block((kernel,), tuple(ints)))
+        (self._settling if samples else self._after).append(Block((kernel,), tuple(ints)))
+
+    def free_motion(self, kernel: str, ints: Sequence[int], at: int, count: int) -> None:
+        """Add a motion without forces (system.Assembly)."""
+        self._free.append(Block((kernel,), tuple(ints)))
+        self._frees.append((at, count))
 
     def grid(self, grid: Grid) -> None:
         """Say that part of the state is a field (system.Assembly)."""
@@ -232,6 +250,18 @@ class IslandAssembly:
         """The place in the script of the word that is being assembled."""
         return self._word[1]
 
+    def place(self, link: Link) -> Place | None:
+        """Where a force acts (system.Assembly)."""
+        found = self.points(link)
+        if found is None:
+            return None
+        bodies, body, arm = found
+        return Place(bodies, body, -1 if bodies.turning is None or not any(arm) else self.floats(arm))
+
+    def tie(self, tied: Tied) -> None:
+        """Hold two bodies to conditions (system.Assembly)."""
+        self.ties.append(tied)
+
     def body_count(self) -> int:
         """Number of bodies of the island so far; in a block that of the whole."""
         return max(self._bodies, self.whole)
@@ -276,9 +306,10 @@ class IslandAssembly:
         exact = grouped(self._exact, blocks)
         pairs = [block.pairs for block in blocks[first_exact:]]
         local = grouped(self._local, blocks)
-        after = grouped(self._after, blocks)
-        first_blocks = list(accumulate((count for _, count in (*groups, *exact, *local, *after)), initial=1))
-        ints = lay_out(self._pairs, blocks, first_blocks, pairs)
+        after, settling, free = (grouped(some, blocks) for some in (self._after, self._settling, self._free))
+        counts = (count for _, count in (*groups, *exact, *local, *after, *settling, *free))
+        first_blocks = list(accumulate(counts, initial=1))
+        ints = lay_out(self._pairs, self._frees, blocks, first_blocks, pairs)
         found, derived = full(len(y)) if jacobian else None, None
         if slopes is not None:
             found, derived, more = section(len(ints), len(y), slopes, self._masses, self._pairs)
@@ -286,8 +317,7 @@ class IslandAssembly:
         structure = Structure(
             tuple(kernels[0] for kernels, _ in groups),
             tuple((kernels[0], kernels[1]) for kernels, _ in exact),
-            tuple(kernels[0] for kernels, _ in local),
-            tuple(kernels[0] for kernels, _ in after),
+            *(tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free)),
             bool(self._varying),
             derived,
         )
@@ -313,6 +343,7 @@ class IslandAssembly:
             unsloped=self._unsloped,
             grids=tuple(self.fields.values()),
             masses=tuple(self._masses),
+            alike=tuple(self._alike),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
         )
 

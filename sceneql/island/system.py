@@ -28,6 +28,10 @@ class Structure:
     local: tuple[str, ...]
     after: tuple[str, ...]
     """Kernels that act at the end of steps."""
+    settling: tuple[str, ...]
+    """Those that act on samples, too."""
+    free: tuple[str, ...]
+    """Free motions."""
     varying: bool
     """Whether values vary in time."""
     slopes: tuple[str, ...] | None = None
@@ -71,6 +75,8 @@ class System:
     """The grids of all its fields."""
     masses: tuple[tuple[int, int, int], ...] = ()
     """For each model of masses: offset of velocities in y, offset of inverse masses in floats, number of masses."""
+    alike: tuple[tuple[int, int], ...] = ()
+    """Offset and number of further entries of y that are of one size."""
     terms: tuple[Origin, ...] = ()
     """The origins of the terms of the rate, in the order in which they act."""
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.failure import Unsuitable
 from sceneql.kinds.stable_step import Oscillation, StaticMass
-from sceneql.kinds.types import ModelRef
+from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Ref, Value
 from sceneql.kinds.word import Kind, field
 from sceneql.quantities.expression import Expr
@@ -61,6 +61,17 @@ class Model(Kind):
         """
         return None
 
+    def point(self, output: str, state: ModelState) -> tuple[int, tuple[float, float, float]] | None:
+        """The number of the mass whose position an output is, and where on it, in its own axes from its center [m].
+
+        None: it is not the position of one. ``state`` as in `places`.
+        """
+        found = None if state.bodies is None else self.places(output, state)
+        if state.bodies is None or found is None or found.shape != (3,):
+            return None
+        body, rest = divmod(int(found[0]) - state.bodies.position_at, 3)
+        return None if rest or not 0 <= body < state.bodies.count else (body, (0.0, 0.0, 0.0))
+
     def sums_up(self, output: str) -> bool:
         """Whether an output is a sum over the run that the state holds: values that read it have no slopes."""
         return output in self.gives and self.gives[output].tally
@@ -92,6 +103,10 @@ class Model(Kind):
         """How large the terms are that such an output is a sum of: float or (count,)."""
         raise TypeError(f"{type(self).__name__} conserves no {output}")
 
+    def computed(self, name: str, output: str) -> Expr | None:
+        """An output of a solved model by others of its own that `places` tells, as a place on a body by the body's."""
+        return None
+
     def formula(self, output: str) -> Expr:
         """An output of a kinematic model as an expression of time."""
         raise TypeError(f"{type(self).__name__} is not a function of time")
@@ -120,13 +135,13 @@ class Model(Kind):
         """The field that a `field_map` draws where no object of the script shows any of it."""
         return None
 
-    def drives(self) -> Mapping[str, tuple[str, str]]:
-        """Fields of objects that it sets: ``{object name: (field, output)}``."""
+    def drives(self) -> Mapping[str, Mapping[str, str]]:
+        """Fields of objects that it sets: ``{object name: {field: output}}``."""
         return {}
 
 
-class Force(Kind):
-    """Adds to the rate of models."""
+class Interaction(Kind):
+    """What adds to the rate of models: a force, or a tie between two bodies."""
 
     family: ClassVar[str] = "forces"
 
@@ -135,11 +150,9 @@ class Force(Kind):
     mutual: ClassVar[bool] = False
     """Whether the masses that it acts on act on one another: then their models are solved together."""
 
-    on: tuple[ModelRef, ...] | None = field("The models it acts on; by default all that have masses.", None)
-
     def targets(self) -> tuple[str, ...] | None:
         """Names of the models it acts on; None: all that have masses."""
-        return None if self.on is None else tuple(ref.name for ref in self.on)
+        return None
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add its terms for one model."""
@@ -171,6 +184,39 @@ class Force(Kind):
     def potential(self, bodies: Bodies, state: ModelState) -> float:
         """Potential energy [J] of the model in this force at a state; 0 where there is none."""
         return 0.0
+
+
+class Force(Interaction):
+    """A force on the masses of models."""
+
+    on: tuple[ModelRef, ...] | None = field("The models it acts on; by default all that have masses.", None)
+
+    def targets(self) -> tuple[str, ...] | None:
+        """Names of the models it acts on; None: all that have masses."""
+        return None if self.on is None else tuple(ref.name for ref in self.on)
+
+
+class Tie(Interaction):
+    """Holds two bodies together, or one to the world, so that some motions are left.
+
+    Its forces are those that let the bodies keep to it, found together with those of all ties of the island.
+    """
+
+    family: ClassVar[str] = "ties"
+    mutual: ClassVar[bool] = True
+
+    between: tuple[BodyRef, BodyRef] = field(
+        "Two bodies: `crate`, one of several, `stones.first`, a mass, `net.bob`, an object that moves by itself, or "
+        "`world`."
+    )
+
+    def targets(self) -> tuple[str, ...]:
+        """The parts that it holds; objects are among them."""
+        return tuple(dict.fromkeys(ref.name for ref in self.between if ref.name))
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """An output at a state."""
+        raise TypeError(f"{type(self).__name__} gives no {output}")
 
 
 class Contact(Kind):

@@ -50,6 +50,8 @@ WordsOverTime = Annotated[Text, Interpolated(over_time=True)]
 
 ObjectRef = Annotated[Ref, Refers("objects")]
 ModelRef = Annotated[Ref, Refers("models")]
+BodyRef = Annotated[Ref, Refers("models", also="objects", bodies=True)]
+"""A body: a model of one, one of several by its name there, an object that moves by itself, or the world."""
 CameraRef = Annotated[Ref, Refers("cameras")]
 MaterialRef = Annotated[Ref, Refers("materials")]
 RendererRef = Annotated[Ref, Refers("renderers")]

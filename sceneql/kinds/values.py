@@ -89,6 +89,8 @@ class Refers:
     family: str
     also: str = ""
     """A second family whose parts it may name."""
+    bodies: bool = False
+    """Whether it may name one of several bodies, `stones.first`, or the `world`."""
 
     def __str__(self) -> str:
         return f"{self.family} or {self.also}" if self.also else self.family
@@ -110,7 +112,10 @@ class Ref(Checked):
     """A named part of the script."""
 
     name: str
+    """Empty for the world, where a field may name that."""
     span: Span | None = None
+    within: str = ""
+    """The name of one of its bodies, where a field may name these."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,7 @@ FAMILIES: Final = (
     "objects",
     "models",
     "forces",
+    "ties",
     "contacts",
     "solvers",
     "cameras",

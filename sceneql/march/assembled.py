@@ -11,7 +11,7 @@ from sceneql.doing import doing
 from sceneql.graph import Island, SimulationGraph, Task
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
-from sceneql.kinds import Contact, Force, Model, Object, Ref, Value
+from sceneql.kinds import Contact, Interaction, Model, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
 from sceneql.system import Bodies, IslandFacts, ModelState, Stepper
@@ -34,10 +34,10 @@ class Setting:
         return cast(Object, task.original or task.kind)
 
     def formula(self, link: Link) -> Expr | None:
-        """The output of a kinematic model, or an object's field, as an expression; None for a dynamic model's."""
+        """The output of a kinematic model, or an object's field, as an expression; None for what stands in the state."""
         kind = self.tasks[link.task].kind
         if isinstance(kind, Model):
-            return kind.formula(link.output) if kind.kinematic else None
+            return kind.formula(link.output) if kind.kinematic else kind.computed(link.task, link.output)
         value = getattr(kind, link.output, None)
         return value.expr if isinstance(value, Value) else None
 
@@ -65,7 +65,7 @@ class Assembled:
     def facts(self) -> IslandFacts:
         """The facts by which a solver chooses its methods; call it once forces and contacts are added."""
         made = self.assembly
-        forces = [cast(Force, self.graph.tasks[force].kind) for force, _ in self.island.forces]
+        forces = [cast(Interaction, self.graph.tasks[force].kind) for force, _ in self.island.forces]
         return IslandFacts(
             entries=len(made.start()),
             local_contacts="local" in made.contact_mode,
@@ -80,6 +80,10 @@ class Assembled:
         tasks = self.graph.tasks
         for force in dict.fromkeys(force for force, _ in self.island.forces):
             self._add_force(force)
+        if self.assembly.ties:
+            from sceneql.bodies.rigid.tie_system import add_ties
+
+            add_ties(self.assembly, self.assembly.ties)
         contacts = dict.fromkeys(contact for contact, _, _ in self.island.contacts)
         # Contacts between masses come last: those with objects need the path of the whole step as the solver made it.
         for contact in sorted(contacts, key=lambda name: cast(Contact, tasks[name].kind).mutual):
@@ -88,7 +92,7 @@ class Assembled:
     def _add_force(self, force: str) -> None:
         """Add a force on the masses of all its models."""
         task = self.graph.tasks[force]
-        kind = cast(Force, task.kind)
+        kind = cast(Interaction, task.kind)
         everyone = [self.bodies.get(model) for name, model in self.island.forces if name == force]
         masses = [bodies for bodies in everyone if bodies is not None]
         if kind.mutual and masses:

@@ -29,6 +29,8 @@ class Driver(NamedTuple):
     impact: Any
     back_off: Any
     after_step: Any
+    settle: Any
+    free_motion: Any
 
 
 def driver(structure: Structure) -> Driver:
@@ -45,7 +47,10 @@ def _driver(structure: Structure, code: str) -> Driver:
     else:
         gap, impact = module.no_gap, module.no_impact
     back_off = source.back_off if structure.local else module.no_back_off
-    return Driver(source.rate, gap, impact, back_off, source.after_step if structure.after else module.no_act)
+    after = source.after_step if structure.after else module.no_act
+    settle = source.settle if structure.settling else module.no_act
+    free = source.free_motion if structure.free else module.no_free_motion
+    return Driver(source.rate, gap, impact, back_off, after, settle, free)
 
 
 def jacobian(system: System) -> Any:
@@ -87,7 +92,7 @@ def jacobian_text(structure: Structure) -> str:
 
 def modules(structure: Structure) -> tuple[str, ...]:
     """The modules of an island's kernels; those of contacts, as a rule the largest, first."""
-    after = (*(structure.slopes or ()), *structure.after)
+    after = (*(structure.slopes or ()), *structure.after, *structure.settling, *structure.free)
     names = (*structure.local, *chain(*structure.exact), *after, *structure.terms)
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 
@@ -101,13 +106,14 @@ def lazy_first(structure: Structure) -> list[str]:
 def text(structure: Structure) -> str:
     """The module's text."""
     names: dict[str, str] = {}
-    for name in (*structure.terms, *chain(*structure.exact), *structure.local, *structure.after):
+    between = (*structure.local, *structure.after, *structure.settling, *structure.free)
+    for name in (*structure.terms, *chain(*structure.exact), *between):
         names.setdefault(name, f"kernel_{len(names)}")
     lines = [
         *_imports(names),
         "from sceneql.compiled.kernels import lean",
         *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
-        "from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, GAP, IMPACT, TERM",
+        "from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, FREE_MOTION, GAP, IMPACT, TERM",
     ]
     refresh = [REFRESH] if structure.varying else []
     group = layout.GROUPS_AT
@@ -127,12 +133,18 @@ def text(structure: Structure) -> str:
         for k, name in enumerate(structure.local, group):
             lines += _blocks(k, call.format(names[name]))
     group += len(structure.local)
-    if structure.after:
-        lines += ["", "", "@lean(AFTER_STEP)", "def after_step(t0, t1, y0, rate0, y1, floats, ints):", *at_the_end]
-        lines.append("    changed = False")
-        for k, name in enumerate(structure.after, group):
+    for function, acting in (("after_step", structure.after), ("settle", structure.settling)):
+        if acting:
+            lines += ["", "", "@lean(AFTER_STEP)", f"def {function}(t0, t1, y0, rate0, y1, floats, ints):", *at_the_end]
+            lines.append("    changed = False")
+        for k, name in enumerate(acting, group):
             lines += _blocks(k, f"changed |= {call.format(names[name])}")
-        lines.append("    return changed")
+        group += len(acting)
+        lines += ["    return changed"] if acting else []
+    if structure.free:
+        lines += ["", "", "@lean(FREE_MOTION)", "def free_motion(h, y, floats, ints):"]
+        for k, name in enumerate(structure.free, group):
+            lines += _blocks(k, f"{names[name]}(h, y, floats, ints[ints[b] : ints[b + 1]])")
     return "\n".join(lines) + "\n"
 
 

@@ -85,6 +85,7 @@ class March:
         self._counts = np.zeros(kernels.COUNTS, dtype=np.int64)
         self._counts[kernels.LOCAL] = bool(system.structure.local)
         self._counts[kernels.ACTS] = bool(system.structure.after)
+        self._counts[kernels.SETTLES] = bool(system.structure.settling)
         self._counts[kernels.PENDING] = -1
         self._clock[kernels.ERROR] = 1e-4
         self._clock[kernels.LARGEST] = min(stepper.control.largest_step, system.largest_step)
@@ -222,14 +223,16 @@ class March:
             self._march(t)
         t0, t1 = float(self._clock[kernels.T0]), float(self._clock[kernels.T1])
         if not t < t1:
-            return self._y1, True
+            return self._settled(t, self._y1), True
         h = t1 - t0
         altered = bool(self._counts[kernels.ALTERED]) and not self._mixed
         if self._extend is not None and self._extended != t1 and not altered:
             self._extend_step(t0, h)
             self._extended = t1
         y = np.empty_like(self._y1)
-        steps = (self._y0, self._rate0, self._y1, self._rate1, self._work, self._settings, self._numbers)
+        # What settles the end of a step takes errors away, which dense output has, too.
+        y1 = self._sample if self._counts[kernels.SETTLES] and not altered else self._y1
+        steps = (self._y0, self._rate0, y1, self._rate1, self._work, self._settings, self._numbers)
         dense = kernels.hermite if altered else self._dense
         dense((t - t0) / h, h, *steps, y)
         if self._mixed:
@@ -238,7 +241,14 @@ class March:
                 line = np.empty_like(y)
                 kernels.straightened((t - t0) / h, h, *steps, line)
                 y[changed] = line[changed]
-        return y, False
+        return self._settled(t, y), False
+
+    def _settled(self, t: float, y: Floats) -> Floats:
+        """A state that is read, without what errors have added; one of a step is left as it is."""
+        if self._counts[kernels.SETTLES]:
+            y = y.copy()
+            self.driver.settle(t, t, y, self._rate1, y, self.floats, self.system.ints)
+        return y
 
     def _extend_step(self, t0: float, h: float) -> None:
         """Compute the further stages of the last step's dense output; not counted, as frames must not change costs."""
@@ -254,6 +264,8 @@ class March:
         y = self._y1
         if self.system.pairs:
             self.driver.impact(0.0, y, -1, self.floats, self.system.ints)
+        if self._counts[kernels.SETTLES]:
+            y[:] = self._settled(0.0, y)
         self._rate1[:] = self.rate(0.0, y)
         bad = np.flatnonzero(~(np.maximum(np.abs(y), np.abs(self._rate1)) <= LARGEST))
         if len(bad):

@@ -14,7 +14,7 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled import pointers_kernels as pointers
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, GAP, IMPACT, A, F, I
+from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, FREE_MOTION, GAP, IMPACT, A, F, I
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, LEAST, CLOCKS = range(9)
 """Ends of the last step [s]; the step to try next, or the fixed one [s]; the last error; largest step [s]; largest |y|;
@@ -24,11 +24,13 @@ STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 """Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
 pair whose impact is due (-1: none)."""
 
-ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, ACTS, ALTERED, CRAWLED, COUNTS = range(8, 20)
+ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, ACTS, ALTERED, CRAWLED, SETTLES, COUNTS = range(
+    8, 21
+)
 """Properties of solver and island (system.Stepper); whether a body rests on a local contact (channels.HOLDS); whether
 the arrays of the step's start and end are swapped, for the end of a step is the next one's start; whether there are
 kernels that act after steps (Assembly.after_step), and whether they changed anything after the last one; successive
-steps that have hardly moved time."""
+steps that have hardly moved time; whether there are such kernels that act on samples, too."""
 
 SHORTEST = 1e-3
 """Part of a fixed step below which it is not halved any more."""
@@ -90,6 +92,11 @@ def no_back_off(t0, t1, y0, rate0, y1, floats, ints):
 def no_act(t0, t1, y0, rate0, y1, floats, ints):
     """Stands in on an island without kernels that act after steps."""
     return False
+
+
+@lean(FREE_MOTION, inner=True)
+def no_free_motion(h, y, floats, ints):
+    """Stands in on an island whose motion without forces is x += h v."""
 
 
 @lean_inlined
@@ -176,13 +183,15 @@ def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, f
 
 
 @lean_inlined
-def apply_impact(rate, impact, t, y, slope, floats, ints, leaving, counts):
+def apply_impact(rate, impact, settle, t, y, slope, floats, ints, leaving, counts):
     """Apply the impact that is due. Contacts may read numbers that terms write to floats for the state before it."""
     pair = counts[PENDING]
     counts[PENDING] = -1
     counts[EVENTS] += 1
     rate(t, y, slope, floats, ints)
     impact(t, y, pair, floats, ints)
+    if counts[SETTLES] > 0:
+        settle(t, t, y, slope, y, floats, ints)
     rate(t, y, slope, floats, ints)
     if counts[REPEATS] == 0:
         for k in range(leaving.size):
@@ -216,6 +225,7 @@ def march(
     impact = pointers.impact_at(functions[pointers.AT_IMPACT])
     back_off = pointers.back_off_at(functions[pointers.AT_BACK_OFF])
     after_step = pointers.after_step_at(functions[pointers.AT_AFTER_STEP])
+    settle = pointers.settle_at(functions[pointers.AT_SETTLE])
     n = y0.size
     while clock[T1] < target:
         if counts[LEFT] <= 0:
@@ -226,7 +236,7 @@ def march(
         rate0, rate1 = rate1, rate0
         counts[SWAPPED] = 1 - counts[SWAPPED]
         if counts[PENDING] >= 0:
-            apply_impact(rate, impact, t0, y0, rate0, floats, ints, leaving, counts)
+            apply_impact(rate, impact, settle, t0, y0, rate0, floats, ints, leaving, counts)
         if counts[ADAPTIVE] > 0:
             h = min(clock[STEP], clock[LARGEST])
             grid = end if t0 + 1.01 * h >= end else t0 + h
@@ -281,7 +291,7 @@ def march(
                 if counts[LAST_STAGE] < 0 and counts[HELD] > 0 and counts[ORDER] > 1:
                     rate(t1, y1, rate1, floats, ints)
             floats[channels.STEP_END] = floats[channels.HOLDS] = 0.0
-        if counts[LOCAL] > 0 or counts[ACTS] > 0:
+        if counts[LOCAL] > 0 or counts[ACTS] > 0 or counts[SETTLES] > 0:
             copy(y1, sample)
         if counts[ACTS] > 0:
             counts[ALTERED] = after_step(t0, t1, y0, rate0, y1, floats, ints)
@@ -297,6 +307,8 @@ def march(
             impact(t1, y1, -1, floats, ints)
             if floats[channels.CHANGED] != 0.0:
                 rate(t1, y1, rate1, floats, ints)
+        if counts[SETTLES] > 0 and settle(t0, t1, y0, rate0, y1, floats, ints):
+            rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1
         counts[STEPS] += 1

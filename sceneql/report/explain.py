@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sceneql.compiler.catalogue import ROOT, Catalogue
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Camera, Contact, Force, Object, Output, Overlay, Picture
+from sceneql.kinds import Camera, Contact, Interaction, Object, Output, Overlay, Picture
 
 if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
@@ -146,7 +146,7 @@ def _remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
     march = run.march
     found = {}
     for force in dict.fromkeys(force for force, _ in run.island.forces):
-        kind = cast(Force, graph.tasks[force].kind)
+        kind = cast(Interaction, graph.tasks[force].kind)
         if kind.mutual:
             rate = march.rate(0.0, march.system.y)
             state = ModelState(0.0, march.system.y, rate, march.floats, None, run.assembly.remembered(force))

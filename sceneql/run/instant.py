@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 import numpy as np
 
 from sceneql.failure import RunFailure, failing_as
-from sceneql.kinds import Contact, Material, Model, Object, Ref, Value
+from sceneql.kinds import Contact, Material, Model, Object, Ref, Tie, Value
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Symbol
 from sceneql.shapes.color import default_color, linear
@@ -140,7 +140,7 @@ class Instant:
     def read(self, task: str, output: str) -> Any:
         """An output of a part now."""
         kind = self.run.graph.tasks[task].kind
-        if isinstance(kind, Model | Contact) and not (isinstance(kind, Model) and kind.kinematic):
+        if isinstance(kind, Model | Contact | Tie) and not (isinstance(kind, Model) and kind.kinematic):
             return kind.read(output, self.state(task))
         if isinstance(kind, Object) and output in kind.gives:
             return kind.read(output, self)

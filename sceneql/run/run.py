@@ -11,7 +11,7 @@ import numpy as np
 from sceneql.doing import doing
 from sceneql.failure import LimitRefused
 from sceneql.graph import Island, SimulationGraph
-from sceneql.kinds import Force, Model, Object, Solver, Value
+from sceneql.kinds import Interaction, Model, Object, Solver, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 from sceneql.quantities.expression import Link
 from sceneql.run.dry_run import DryRun, asked, dry_run
@@ -75,7 +75,7 @@ class Run:
         return moment
 
     def state(self, name: str) -> ModelState:
-        """The latest state of a model that is solved, or of a contact."""
+        """The latest state of a model that is solved, of a contact, or of a tie."""
         return self.island_of[name].state(name)
 
     def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
@@ -147,7 +147,7 @@ class IslandRun:
         made = models_of(graph, island)
         self.bodies = made.bodies
         self.assembly = made.assembly
-        self.assembly.places = self._places
+        self.assembly.places, self.assembly.points = self._places, self._points
         if not self.assembly.fields and not island.contacts:  # the solver's step is known before what acts is made
             compile_beside((solver.stepper().method.step.partition(":")[0],))
         made.act()
@@ -161,7 +161,8 @@ class IslandRun:
             self.march = self._marched(system, blocks)
         except LimitRefused as refused:
             raise refused.at(graph.tasks[island.solver].span) from None
-        self.members = {*island.models, *(contact for contact, _, _ in island.contacts)}
+        ties = (name for name, _ in island.forces if isinstance(graph.tasks[name].kind, Tie))
+        self.members = {*island.models, *(contact for contact, _, _ in island.contacts), *ties}
         self._now: tuple[float, Floats, Floats] | None = None
 
     def _compiled(self, stepper: Stepper) -> System:
@@ -216,13 +217,25 @@ class IslandRun:
 
     def _places(self, link: Link) -> Any:
         """Where in the state an output of one of the models stands, for values that read it at stage times."""
+        state = self._at_start(link.task)
+        return None if state is None else cast(Model, self.graph.tasks[link.task].kind).places(link.output, state)
+
+    def _points(self, link: Link) -> Any:
+        """The bodies of a link to a position, which of them, and where on it, for forces that act there."""
+        state = self._at_start(link.task)
+        if state is None or state.bodies is None:
+            return None
+        found = cast(Model, self.graph.tasks[link.task].kind).point(link.output, state)
+        return None if found is None else (state.bodies, *found)
+
+    def _at_start(self, name: str) -> ModelState | None:
+        """The state of one of the models at the start; None of any other part, or of one that is not assembled yet."""
         from sceneql.system import ModelState
 
-        if link.task not in self.bodies:
+        if name not in self.bodies:
             return None
-        start, ints = self.assembly.start(), self.assembly.remembered(link.task)
-        state = ModelState(0.0, start, start, self.assembly.numbers(), self.bodies[link.task], ints)
-        return cast(Model, self.graph.tasks[link.task].kind).places(link.output, state)
+        start, ints = self.assembly.start(), self.assembly.remembered(name)
+        return ModelState(0.0, start, start, self.assembly.numbers(), self.bodies[name], ints)
 
     def advance(self, time: float) -> None:
         """March to an instant [s]."""
@@ -237,7 +250,7 @@ class IslandRun:
         return self._now[1]
 
     def state(self, name: str) -> ModelState:
-        """The view of a model or contact."""
+        """The view of a model, contact or tie."""
         from dataclasses import replace
 
         from sceneql.system import ModelState
@@ -256,7 +269,7 @@ class IslandRun:
         potential = 0.0
         for force, model in self.island.forces:
             if model == name:
-                kind = cast(Force, self.graph.tasks[force].kind)
+                kind = cast(Interaction, self.graph.tasks[force].kind)
                 view = replace(state, ints=self.assembly.remembered(force, None if kind.mutual else model))
                 potential += kind.potential(bodies, view)
         return replace(state, potential=potential)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from sceneql.island.breakpoints import MOST
-from sceneql.kinds import Force, Model
+from sceneql.kinds import Interaction, Model
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.run.extremes import watched
 from sceneql.run.invariants import invariants_of
@@ -74,7 +74,7 @@ class Balance:
             for bodies in self.island.bodies.values()
         )
         tasks = self.island.graph.tasks
-        forces = [cast(Force, tasks[force].kind) for force, _ in island.forces]
+        forces = [cast(Interaction, tasks[force].kind) for force, _ in island.forces]
         within = all(force.internal() and {*(force.targets() or ())} <= {*island.models} for force in forces)
         return free and within and not any(objects for _, _, objects in island.contacts)
 
@@ -184,7 +184,7 @@ class Watch:
 
 def _alone(island: IslandRun) -> bool:
     """Whether observing needs no sum over very many pairs, which takes as long as their forces."""
-    forces = (cast(Force, island.graph.tasks[force].kind) for force, _ in island.island.forces)
+    forces = (cast(Interaction, island.graph.tasks[force].kind) for force, _ in island.island.forces)
     bodies = sum(0 if one is None else one.count for one in island.bodies.values())
     return bodies <= MOST_PAIRED or not any(force.mutual for force in forces)
 

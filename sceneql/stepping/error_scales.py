@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
     """The plan and the scales before the first step.
 
-    Positions of a model's masses share a scale, and so do their velocities, and the cells of a field; other entries
-    have their own. Sums on which nothing depends, such as the energy lost by damping, have a scale of at least 1 in SI.
+    Positions of a model's masses share a scale, and so do their velocities, the cells of a field, and what its words
+    say is alike; other entries have their own. Sums on which nothing depends, such as the energy lost by damping, have a scale of at least 1 in SI.
     """
     group = np.full(len(system.y), -1, dtype=np.int64)
     shared = 0
@@ -30,6 +30,9 @@ def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
         for members in (np.isin(system.partner, velocities), velocities):
             group[members] = shared
             shared += 1
+    for at, count in system.alike:
+        group[at : at + count] = shared
+        shared += 1
     for grid in system.grids:
         group[grid.at : grid.at + int(np.prod(grid.cells.shape))] = shared
         shared += 1

@@ -37,7 +37,7 @@ class Splitting:
                 order=self.order,
                 settings=(*self.kicks, *self.drifts),
                 numbers=(len(self.drifts),),
-                work=2,
+                work=3,
                 last_stage=0,
             ),
             Control(first_step=step),

@@ -1,4 +1,6 @@
-"""The system contract: what models, forces and contacts hand to an island, and what a solver sees of it.
+"""The contract: what parts hand an island, a solver sees.
+
+It is what models, forces and contacts hand to an island, and what a solver sees of it.
 
 An island is a set of models that are solved together. Its state is one vector ``y``; its rate dy/dt = f(t, y) is the
 sum of *terms*: compiled kernels of one signature, each called with its own integers and with the island's one array
@@ -15,6 +17,7 @@ Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None
     after_step(t0, t1, y0, rate0, y1, floats, ints) -> bool   acts at the end of an accepted step, before contacts do;
                                             True where it changed the state or the floats: then frames inside the step
                                             are read off its cubic Hermite interpolant, and the rate is evaluated anew
+    free_motion(h, y, floats, ints)         moves entries of y by their exact motion without forces over h
     step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes
                                             y1; the error is scaled by the tolerance (accept when <= 1), 0 for fixed
                                             steps
@@ -28,16 +31,18 @@ A step gets the addresses of the functions it may call: ``rate = rate_at(functio
 It may be called again from the same start with another h (a rejected step; the search for an event), and `dense`
 belongs to the latest call. After an event y0 is not the y1 of the step before.
 
-Stages: the terms run in the order `internal` (a model's own), `force`, `close` (a model turns newtons into
-accelerations by its inverse masses and writes dx/dt = v), `constrain` (a resting contact removes accelerations into
+Stages: the terms run in the order `internal` (a model's own), `force`, `tie` (the forces by which bodies keep to their
+ties, found from all other forces), `close` (a model turns newtons into accelerations by its inverse masses and writes
+dx/dt = v), `constrain` (a resting contact removes accelerations into
 the surface).
 """
 
 from sceneql.system.assembly import Assembly, Mode
 from sceneql.system.fields import Cells, Grid
-from sceneql.system.state import Bodies, ModelState
+from sceneql.system.state import Bodies, ModelState, Place, Turning
 from sceneql.system.stepping import Control, IslandFacts, Method, Needs, Prepared, Stepper
 from sceneql.system.terms import Pattern, Slopes, Stage
+from sceneql.system.ties import Led, Mover, Tied, TieRow
 
 __all__ = [
     "Assembly",
@@ -46,13 +51,19 @@ __all__ = [
     "Control",
     "Grid",
     "IslandFacts",
+    "Led",
     "Method",
     "Mode",
     "ModelState",
+    "Mover",
     "Needs",
     "Pattern",
+    "Place",
     "Prepared",
     "Slopes",
     "Stage",
     "Stepper",
+    "TieRow",
+    "Tied",
+    "Turning",
 ]

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from sceneql.quantities.expression import Expr, Link
     from sceneql.quantities.span import Span
     from sceneql.system.fields import Grid
+    from sceneql.system.state import Place
+    from sceneql.system.ties import Tied
 
 Mode = Literal["exact", "local"]
 """How contacts act: by events located in time and impulses (exact), or by impacts resolved within a step (local)."""
@@ -62,6 +64,9 @@ class Assembly(Protocol):
         alone, so that a large island may be solved in blocks of its bodies.
         """
 
+    def alike(self, at: int, count: int) -> None:
+        """Say that y[at : at + count] are of one size: methods with a tolerance measure their errors by one scale."""
+
     def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
         """Say that a close term scales rate[velocity_at + 3k : +3], and so its slopes, by floats[inverse_at + k]."""
 
@@ -71,10 +76,20 @@ class Assembly(Protocol):
         ``apart``: as for a term; for local contacts only.
         """
 
-    def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False) -> None:
+    def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False, samples: bool = False) -> None:
         """Add a kernel that acts at the end of each accepted step: springs that tear, particles that are born.
 
         ``kernel`` is ``"package.module:function"``; it returns whether it changed anything. ``apart``: as for a term.
+        ``samples``: it takes away what errors have added, as the length of quaternions, and so acts after impacts and
+        on every state that is read off a step, too, with both times equal; what it returns is whether the rate at the
+        end of the step is to be evaluated anew.
+        """
+
+    def free_motion(self, kernel: str, ints: Sequence[int], at: int, count: int) -> None:
+        """Add the exact motion without forces of y[at : at + count], which splittings use as their drift.
+
+        ``kernel(h, y, floats, ints)`` changes these entries alone, from those of velocities and momenta. Of entries
+        named by `pair` it need not be told: x += h v.
         """
 
     def grid(self, grid: Grid) -> None:
@@ -121,6 +136,12 @@ class Assembly(Protocol):
 
     def places(self, link: Link) -> Any:
         """Indices into y of a model's output, in an array of its shape; None where the output is computed."""
+
+    def place(self, link: Link) -> Place | None:
+        """The mass, or the place on a body, whose position a link is; None where it is none of this island's."""
+
+    def tie(self, tied: Tied) -> None:
+        """Hold two bodies to conditions; their forces are found together with those of all other ties."""
 
     def body_count(self) -> int:
         """Number of bodies of the island (contacts choose their mode by it)."""

@@ -1,4 +1,4 @@
-"""The state of an island as words see it: the offsets of its point masses, and a model's view at an instant."""
+"""The state of an island as words see it: the offsets of its masses, and a model's view at an instant."""
 
 from __future__ import annotations
 
@@ -10,8 +10,26 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
+class Turning:
+    """How rigid bodies turn, as offsets: body k has the quaternion y[rotation_at + 4k : +4], [w, x, y, z].
+
+    It turns the body's axes to the world's; only its direction counts.
+    """
+
+    rotation_at: int
+    momentum_at: int
+    """y[momentum_at + 3k : +3]: angular momentum about the center of mass, in the world's axes [kg m^2/s]."""
+    inverse_at: int
+    """floats[inverse_at + 6k : +6]: inverse of the inertia about the center of mass, in the body's axes, its xx, yy,
+    zz, yz, xz, xy [1/(kg m^2)]; 0 for a fixed body."""
+    principal_at: int
+    """floats[principal_at + 7k : +7]: principal moments of inertia [kg m^2], then the quaternion that turns their axes
+    to the body's; the moments of a fixed body are 0."""
+
+
+@dataclass(frozen=True, slots=True)
 class Bodies:
-    """Point masses in an island's state, as offsets: body k has position y[position_at + 3k : +3] [m]."""
+    """Masses in an island's state, as offsets: body k has its center of mass at y[position_at + 3k : +3] [m]."""
 
     model: str
     count: int
@@ -30,6 +48,30 @@ class Bodies:
     """Lower bound of the periods of the springs' oscillations at the start [s]; infinite without springs."""
     tied: Any = None
     """(m, 2) int: the bodies at the ends of these springs; None without springs."""
+    turning: Turning | None = None
+    """How they turn; None for point masses."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a force acts: a mass, or a place on a rigid body."""
+
+    bodies: Bodies
+    body: int
+    """Its number among these."""
+    arm_at: int = -1
+    """floats[arm_at : +3]: the place in the body's axes, from the center of mass [m]; -1: the center itself."""
+
+    @property
+    def ints(self) -> tuple[int, int, int, int, int, int, int, int]:
+        """For kernels (bodies/rigid/place_kernels.py): offsets of position and velocity in y, of the work in y, of the
+        inverse mass; of the quaternion and the angular momentum in y, of the inverse inertia, of the arm: or -1."""
+        bodies, k, turning = self.bodies, self.body, self.bodies.turning
+        center = (bodies.position_at + 3 * k, bodies.velocity_at + 3 * k, bodies.work_at, bodies.inverse_at + k)
+        if turning is None:
+            return (*center, -1, -1, -1, -1)
+        turns = (turning.rotation_at + 4 * k, turning.momentum_at + 3 * k, turning.inverse_at + 6 * k)
+        return (*center, *turns, self.arm_at)
 
 
 @dataclass(frozen=True, slots=True)

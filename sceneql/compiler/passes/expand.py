@@ -8,7 +8,7 @@ from typing import Any
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.graph import Task
-from sceneql.kinds import Camera, Contact, Force, Kind, Light, Model, Object, Output, Picture, Solver, Value
+from sceneql.kinds import Camera, Contact, Interaction, Kind, Light, Model, Object, Output, Picture, Solver, Value
 from sceneql.quantities.dimension import LENGTH
 from sceneql.quantities.expression import Link, Number, Type
 
@@ -77,7 +77,7 @@ def _staged(tasks: Mapping[str, Task]) -> bool:
     if not any(isinstance(kind, Picture) for kind in kinds) or not all(light.stages for light in lights):
         return False
     solved = any(isinstance(kind, Model) and not kind.kinematic for kind in kinds)
-    return any(isinstance(kind, Force) and kind.weighs for kind in kinds) or not solved
+    return any(isinstance(kind, Interaction) and kind.weighs for kind in kinds) or not solved
 
 
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
@@ -99,13 +99,16 @@ def _drive(tasks: dict[str, Task]) -> dict[str, Task]:
     for model in list(tasks.values()):
         if not isinstance(model.kind, Model):
             continue
-        for name, (field, output) in model.kind.drives().items():
+        for name, outputs in model.kind.drives().items():
             target = tasks[name]
-            old: Value | None = getattr(target.kind, field, None)
-            if old is None:
+            old = {field: value for field in outputs if isinstance(value := getattr(target.kind, field, None), Value)}
+            if not old:
                 continue  # the model says what it cannot drive
-            link = Value(Link(model.name, output, old.expr.type), old.span)
+            links = {
+                field: Value(Link(model.name, outputs[field], value.expr.type), value.span)
+                for field, value in old.items()
+            }
             needs = (*target.needs, model.name)
-            driven = target.kind.model_copy(update={field: link})
+            driven = target.kind.model_copy(update=links)
             tasks[name] = replace(target, kind=driven, needs=needs, original=target.kind)
     return tasks

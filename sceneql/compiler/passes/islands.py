@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from sceneql.compiler.passes.reads import reads
 from sceneql.compiler.passes.touchable import no_collider, touchable
 from sceneql.graph import Island, Task
-from sceneql.kinds import Contact, Force, Model, Object, Solver
+from sceneql.kinds import Contact, Interaction, Model, Object, Solver
 from sceneql.quantities.diagnostic import Diagnostics, Note
 
 
@@ -30,7 +30,7 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         if a in root and b in root:
             root[max(find(a), find(b), key=names.index)] = min(find(a), find(b), key=names.index)
 
-    forces = {t.name: acts_on(t, models) for t in tasks.values() if isinstance(t.kind, Force)}
+    forces = {t.name: acts_on(t, models, tasks) for t in tasks.values() if isinstance(t.kind, Interaction)}
     for force, targets in forces.items():
         if targets and not any(getattr(tasks[name].kind, "has_bodies", False) for name in targets):
             text = f"{tasks[force].word} acts on masses, and there are none in {' and '.join(targets)}"
@@ -44,7 +44,7 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             for target in targets:
                 tie(target, other)
         kind = tasks[force].kind
-        if isinstance(kind, Force) and kind.mutual:
+        if isinstance(kind, Interaction) and kind.mutual:
             for target in targets[1:]:
                 tie(targets[0], target)
     for contact, (targets, others) in contacts.items():
@@ -75,12 +75,12 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
     return tuple(result)
 
 
-def acts_on(force: Task, models: list[Task]) -> tuple[str, ...]:
-    """The models that a force acts on: those it names, else all that have masses."""
-    assert isinstance(force.kind, Force)
+def acts_on(force: Task, models: list[Task], tasks: Mapping[str, Task]) -> tuple[str, ...]:
+    """The models that a force or tie acts on: those it names, else all that have masses."""
+    assert isinstance(force.kind, Interaction)
     named = force.kind.targets()
     if named is not None:
-        return named
+        return tuple(name for name in named if not (name in tasks and isinstance(tasks[name].kind, Object)))
     return tuple(t.name for t in models if isinstance(t.kind, Model) and t.kind.has_bodies)
 
 

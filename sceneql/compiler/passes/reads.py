@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from sceneql.compiler.check import values_of
 from sceneql.graph import Task
-from sceneql.kinds import Force, Model, Object
+from sceneql.kinds import Interaction, Model, Object
 
 
 def reads(name: str, tasks: Mapping[str, Task]) -> tuple[str, ...]:
@@ -35,6 +35,6 @@ def _driven_by(model: str, name: str, tasks: Mapping[str, Task]) -> bool:
 
 
 def _needs(task: Task) -> list[str]:
-    acted_on = set(task.kind.targets() or ()) if isinstance(task.kind, Force) else set()
+    acted_on = set(task.kind.targets() or ()) if isinstance(task.kind, Interaction) else set()
     linked = {link.task for value in values_of(task.kind) for link in value.links} if acted_on else set()
     return [name for name in task.needs if name in linked or name not in acted_on]

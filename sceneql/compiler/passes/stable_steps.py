@@ -8,7 +8,7 @@ from functools import cache
 from typing import cast
 
 from sceneql.graph import Island, Task
-from sceneql.kinds import Force, Model, Solver
+from sceneql.kinds import Interaction, Model, Solver
 from sceneql.kinds.stable_step import Oscillation, stable_step
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
@@ -46,7 +46,7 @@ def warn_of_steps(
             continue
         growth = cast(Solver, solver.kind).oscillation
         stable = _stable_steps(growth)
-        damped = any(type(cast(Force, tasks[force].kind)).potential is Force.potential for force, _ in island.forces)
+        damped = any(type(cast(Interaction, tasks[force].kind)).potential is Interaction.potential for force, _ in island.forces)
         for name, modes in _modes(island, tasks):
             entry = script.sections.get(tasks[name].family, {}).get(name)
             for fastest in _known(modes):
@@ -69,7 +69,7 @@ def _modes(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, Ite
     known = {name: model.static_masses() for name, model in models.items()}
     for force in dict.fromkeys(force for force, _ in island.forces):
         on = {model: known[model] for other, model in island.forces if other == force}
-        yield force, cast(Force, tasks[force].kind).fastest(force, on)
+        yield force, cast(Interaction, tasks[force].kind).fastest(force, on)
 
 
 def _known(modes: Iterable[Oscillation]) -> tuple[Oscillation, ...]:

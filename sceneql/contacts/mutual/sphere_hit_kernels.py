@@ -6,7 +6,7 @@ from numba import types
 
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.contacts.hit_kernels import LOWEST_FLIGHT
-from sceneql.contacts.impulse_kernels import STILL, count_hit
+from sceneql.contacts.impact_kernels import STILL, count_hit
 from sceneql.contacts.mutual import sphere_pair_kernels as spheres
 from sceneql.contacts.mutual.simultaneous_kernels import collide_at_once, parting, push
 from sceneql.contacts.mutual.sphere_pair_kernels import ROWS, approach, distance, extent, of, pair_of, radii

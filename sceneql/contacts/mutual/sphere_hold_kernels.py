@@ -9,7 +9,7 @@ import math
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.contacts.impulse_kernels import STILL
+from sceneql.contacts.impact_kernels import STILL
 from sceneql.contacts.mutual import sphere_pair_kernels as spheres
 from sceneql.contacts.mutual.sphere_pair_kernels import approach, distance, extent, of, radii
 from sceneql.contacts.pair_kernels import NEAR

@@ -12,7 +12,7 @@ import numpy as np
 
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.contacts.impulse_kernels import count_hit
+from sceneql.contacts.impact_kernels import count_hit
 from sceneql.contacts.mutual import sphere_pair_kernels as spheres
 from sceneql.contacts.mutual.sphere_pair_kernels import ROWS, distance, impulse, of, radii, rests_below
 from sceneql.system.signatures_kernels import A, F, I, N

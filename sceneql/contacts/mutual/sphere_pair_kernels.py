@@ -16,7 +16,7 @@ from numba import types
 
 from sceneql.bodies.neighbors_kernels import cell_of, sort_by_cell
 from sceneql.compiled.kernels import inlined, kernel
-from sceneql.contacts.impulse_kernels import scale_of
+from sceneql.contacts.impact_kernels import scale_of
 from sceneql.system.signatures_kernels import A, F, I, N
 
 COUNT, RESTITUTION, FRICTION, TALLY, POINTS, SORTED, ORDER, START, SIZE, P, Q, OBJECTS, TIED, FREE, HEAD = range(15)

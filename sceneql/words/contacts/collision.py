@@ -72,7 +72,7 @@ class Collision(Contact):
         from sceneql.compiled.compile_beside import compile_beside
         from sceneql.compiled.numba import lazy_kernels
         from sceneql.contacts.colliders import OFTEN, must_be_outside, surfaces
-        from sceneql.contacts.impulse_kernels import MOST_CUTS
+        from sceneql.contacts.impact_kernels import MOST_CUTS
 
         if not others:
             return

@@ -16,14 +16,14 @@ from sceneql.quantities.expression import Link
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from sceneql.system import Assembly, Bodies, ModelState, Slopes
+    from sceneql.system import Assembly, Bodies, ModelState, Place, Slopes
 
 
 class Spring(Force):
     """A spring between two places: F = stiffness (l - rest) + damping dl/dt along it (Hooke 1678).
 
-    ``from`` and ``to`` are positions of masses, as `cage.corner.position`, of any models; one of them may be a place of
-    its own, that of a `motion` too. Half of its energy belongs to each mass; all of it to the only one. The models are
+    ``from`` and ``to`` are positions of masses, as `cage.corner.position`, or of points of rigid bodies, as
+    `crate.hook`, of any models; one of them may be a place of its own, that of a `motion` too. Half of its energy belongs to each mass; all of it to the only one. The models are
     solved together. What the damping takes is counted as dissipated, less what moves the place gives. The velocity of
     a place is the central difference over 0.2 ms.
     """
@@ -70,36 +70,38 @@ class Spring(Force):
         """Add the spring. Raises ScriptError where an end is computed of masses but is none."""
         import numpy as np
 
-        ends = [self._end(value, assembly, everyone) for value in (self.from_, self.to)]
+        values = (self.from_, self.to)
+        places = [self._place(value, assembly, everyone) for value in values]
         span = self.from_.span
-        if ends[0][0] == ends[1][0] >= 0:
+        if places[0] is not None and places[0] == places[1]:
             raise ScriptError([Diagnostic("same-mass", "a spring leads from a mass to itself", self.to.span or span)])
-        if max(end[0] for end in ends) < 0:
+        if places == [None, None]:
             raise ScriptError([Diagnostic("no-mass", "a spring needs a mass at one of its ends", span)])
         length = float(np.linalg.norm(np.subtract(assembly.initial(self.to), assembly.initial(self.from_))))
         rest = assembly.floats([length if self.rest is None else self.rest])
-        values = (assembly.value(self.stiffness), assembly.value(self.damping), rest)
-        speeds = (self._speed(end[0], value, assembly) for end, value in zip(ends, (self.from_, self.to), strict=True))
-        ints = (*ends[0][:3], *ends[1][:3], *values, *speeds)
-        more = (*ints, ends[0][3], ends[1][3])
-        assembly.term("force", "sceneql.words.forces.spring_kernels:spring", ints, lambda: _slopes(ends, more))
-        assembly.remember(*ints)
+        ends = [
+            (-1, assembly.value(value), *(6 * (-1,))) if place is None else place.ints
+            for place, value in zip(places, values, strict=True)
+        ]
+        law = (assembly.value(self.stiffness), assembly.value(self.damping), rest)
+        speeds = tuple(self._speed(place, value, assembly) for place, value in zip(places, values, strict=True))
+        if max(end[-1] for end in ends) >= 0:
+            ints = (*ends[0], *ends[1], *law, *speeds)
+            assembly.term("force", "sceneql.words.forces.spring_on_bodies_kernels:spring", ints)
+        else:
+            ints = (*ends[0][:3], *ends[1][:3], *law, *speeds)
+            more = (*ints, ends[0][3], ends[1][3])
+            assembly.term("force", "sceneql.words.forces.spring_kernels:spring", ints, lambda: _slopes(ends, more))
+        assembly.remember(*ends[0], *ends[1], *law)
 
-    def _end(self, value: Value, assembly: Assembly, everyone: Sequence[Bodies]) -> tuple[int, int, int, int]:
-        """Offsets of position and velocity in y, of the work, of the inverse mass; or -1, the place's, -1, -1."""
-        link = value.expr if isinstance(value.expr, Link) and assembly.formula(value.expr) is None else None
-        places = None if link is None else assembly.places(link)
-        if places is not None:
-            at = int(places[0])
-            for bodies in everyone:
-                if bodies.position_at <= at < bodies.position_at + 3 * bodies.count:
-                    moved = at - bodies.position_at
-                    return at, bodies.velocity_at + moved, bodies.work_at, bodies.inverse_at + moved // 3
-        return -1, assembly.value(value), -1, -1
+    def _place(self, value: Value, assembly: Assembly, everyone: Sequence[Bodies]) -> Place | None:
+        """The mass or place on a body at an end; None for a place of its own."""
+        place = assembly.place(value.expr) if isinstance(value.expr, Link) else None
+        return place if place is not None and place.bodies in everyone else None
 
-    def _speed(self, mass_at: int, value: Value, assembly: Assembly) -> int:
+    def _speed(self, mass: Place | None, value: Value, assembly: Assembly) -> int:
         """Offset of the velocity of a place, -1 of a mass. Raises ScriptError where a damped one's is not known."""
-        if mass_at >= 0:
+        if mass is not None:
             return -1
         if value.constant:
             return assembly.floats([0.0, 0.0, 0.0])
@@ -115,14 +117,18 @@ class Spring(Force):
         """Half stiffness stretch^2 [J], the part of this model's masses."""
         import numpy as np
 
-        ends = (state.ints[0:3], state.ints[3:6])
-        places = [state.y[at : at + 3] if at >= 0 else state.floats[other : other + 3] for at, other, _ in ends]
-        stretch = float(np.linalg.norm(places[1] - places[0])) - state.floats[state.ints[8]]
-        owned = sum(work == bodies.work_at for _, _, work in ends) / sum(work >= 0 for _, _, work in ends)
-        return float(0.5 * state.floats[state.ints[6]] * stretch**2 * owned)
+        from sceneql.bodies.rigid.place_kernels import PLACE, WORK_AT, where
+
+        ints = np.array(state.ints, dtype=np.int64)
+        ends = [where(state.y, state.floats, ints, at) for at in (0, PLACE)]
+        stiffness_at, _, rest_at = state.ints[2 * PLACE :]
+        stretch = float(np.linalg.norm(np.subtract(*ends))) - state.floats[rest_at]
+        works = [state.ints[at + WORK_AT] for at in (0, PLACE)]
+        owned = works.count(bodies.work_at) / sum(work >= 0 for work in works)
+        return float(0.5 * state.floats[stiffness_at] * stretch**2 * owned)
 
 
-def _slopes(ends: Sequence[tuple[int, int, int, int]], ints: Sequence[int]) -> Slopes:
+def _slopes(ends: Sequence[tuple[int, ...]], ints: Sequence[int]) -> Slopes:
     """Where the blocks of the derivatives stand: see spring_slopes_kernels."""
     import numpy as np
 

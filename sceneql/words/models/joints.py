@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 
 from sceneql.kinds import Gives, Model, Position, Problem, Record, Rotation, field, quantity_type
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.expression import Call, Expr, Number, Type, Vector
+from sceneql.quantities.expression import Call, Expr, Type
+from sceneql.quantities.turned import rotated
 
 PLACE = Type((3,), dim.LENGTH)
 TURN = Type((4,))
-AXIS = Type((3,))
 
 
 class Joint(Record):
@@ -67,12 +67,3 @@ class Joints(Model):
             place = Call("add", (place, rotated(rotation, joint.at.expr)), PLACE)
             rotation = Call("turn", (rotation, joint.turn.expr), TURN)
         return place if what == "position" else rotation
-
-
-def rotated(rotation: Expr, vector: Expr) -> Expr:
-    """A vector turned by a unit quaternion [w, u]: v + 2 w (u x v) + 2 u x (u x v)."""
-    w, *rest = (Call("component", (rotation, Number(float(k))), Type(())) for k in range(4))
-    axis = Vector(tuple(rest), AXIS)
-    across = Call("cross", (axis, vector), PLACE)
-    half = Call("add", (Call("mul", (w, across), PLACE), Call("cross", (axis, across), PLACE)), PLACE)
-    return Call("add", (vector, Call("mul", (Number(2.0), half), PLACE)), PLACE)

@@ -255,6 +255,6 @@ class Particles(Model):
             return min((float(point[1]) for point in self.positions.number()), default=0.0) - radius
         return None
 
-    def drives(self) -> Mapping[str, tuple[str, str]]:
+    def drives(self) -> Mapping[str, Mapping[str, str]]:
         """The position of the object that is the particle."""
-        return {} if self.of is None else {self.of.name: ("position", "position")}
+        return {} if self.of is None else {self.of.name: {"position": "position"}}

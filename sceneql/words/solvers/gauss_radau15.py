@@ -70,9 +70,11 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     positions = np.concatenate([np.arange(x, x + n) for x, _, n in pairs] or [np.zeros(0, dtype=int)])
     velocities = system.partner[positions]
     others = np.setdiff1d(np.flatnonzero(system.partner < 0), velocities)
-    pushed = np.concatenate([velocities, others])
+    alike = np.concatenate([np.arange(at, at + n) for at, n in system.alike] or [np.zeros(0, dtype=int)])
+    pushed = np.concatenate([velocities, alike, np.setdiff1d(others, alike)])
     # A body's three components share one time scale; states of equations share that of all of their copy.
-    sizes = [size for _, _, n in pairs for size in ([3] * (n // 3) if n % 3 == 0 else [n])] or [len(pushed)]
+    sizes = [size for _, _, n in pairs for size in ([3] * (n // 3) if n % 3 == 0 else [n])]
+    sizes = sizes + [n for _, n in system.alike] or [len(pushed)]
     numbers = np.concatenate(
         [(int(stepper.control.adaptive), len(pushed), len(positions), len(sizes)), pushed, positions, np.cumsum(sizes)]
     )

@@ -1,0 +1,43 @@
+"""The field of a word that says where on a mass or a rigid body something acts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Protocol
+
+from sceneql.kinds import Problem, Value
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Link
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Place
+
+HELP = "name a mass, `net.bob`, or a point of a rigid body, `crate.hook`"
+
+
+class Acting(Protocol):
+    """A word that acts at a place."""
+
+    on: object
+    at: Value | None
+
+
+def model_of(at: Value) -> tuple[str, ...]:
+    """The model of a place; none where it is not the output of a part."""
+    return (at.expr.task,) if isinstance(at.expr, Link) else ()
+
+
+def place_problems(word: Acting) -> Iterator[Problem]:
+    """A place that is no mass's, and one that is named besides models."""
+    if word.at is not None and not isinstance(word.at.expr, Link):
+        yield Problem(f"this is a place, but no mass to act on: {HELP}", ("at",))
+    if word.at is not None and word.on is not None:
+        yield Problem("what acts `at` a place acts on that alone", ("on",), at_key=True)
+
+
+def place_of(at: Value, assembly: Assembly) -> Place:
+    """The mass or point of a body that a value names. Raises ScriptError where it is none."""
+    place = assembly.place(at.expr) if isinstance(at.expr, Link) else None
+    if place is None:
+        raise ScriptError([Diagnostic("no-mass", "there is no mass here to act on", at.span, HELP)])
+    return place

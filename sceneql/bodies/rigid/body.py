@@ -1,0 +1,134 @@
+"""A rigid body as a script describes it: its object, its mass and how that is spread, how it starts, its points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
+
+from sceneql import kinds
+from sceneql.kinds import Problem, Quantity, Record, Value, field
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly
+
+INERTIA = dim.MASS * dim.LENGTH**2
+Triple = tuple[float, float, float]
+WATER = 1000.0
+"""Density of a body of which the script tells none [kg/m^3]."""
+SLACK = 1e-9
+"""Part of an inertia by which the triangle inequality may fail: as a plate's moments are written in decimals."""
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """A body at the start of the run."""
+
+    mass: float
+    """[kg]"""
+    center: Floats
+    """(3,) center of mass in its own axes, from its origin [m]."""
+    inertia: Floats
+    """(3, 3) about the center of mass, in its own axes [kg m^2]."""
+    error: float
+    """Bound of the relative error of these where they are integrals over cells."""
+    position: Floats
+    """(3,) of the center of mass in the world [m]."""
+    rotation: Floats
+    """(4,) unit quaternion that turns its axes to the world's."""
+
+
+class Body(Record):
+    """A rigid body: an object with an inside whose matter is spread evenly, or a mass with an inertia of its own."""
+
+    of: kinds.ObjectRef | None = field(
+        "The object that is the body, and that it drives; without one it has `mass` and `inertia`.", None
+    )
+    density: Annotated[float, Quantity(dim.DENSITY)] | None = field(
+        "Mass by volume; by default that of water, 1000 kg/m^3.", None, above=0
+    )
+    mass: kinds.FixedMass | None = field("Its mass, in place of `density`.", None, above=0)
+    inertia: Annotated[Triple, Quantity(INERTIA, (3,))] | None = field(
+        "Principal moments of inertia about the center of mass, with `mass`; by default those of the object.",
+        None,
+        above=0,
+    )
+    axes: kinds.Rotation = field("How the axes of `inertia` are turned against the body's own.", "1 0 0 0")
+    center: kinds.FixedPosition | None = field(
+        "The center of mass in the body's own axes, from its origin; by default that of the object.", None
+    )
+    position: kinds.FixedPosition | None = field("Where its origin starts; by default the object's place.", None)
+    rotation: kinds.Rotation | None = field("How it is turned at the start; by default as the object is.", None)
+    velocity: kinds.FixedVelocity = field("Velocity of its center of mass at the start.", "0 0 0 m/s")
+    spin: Annotated[Triple, Quantity(dim.FREQUENCY, (3,))] = field(
+        "Angular velocity at the start, in the world's axes [rad/s].", "0 0 0 rad/s"
+    )
+    fixed: bool = field("It never moves.", False)
+    points: dict[str, kinds.FixedPosition] = field(
+        "Places on it by name, in its own axes from its origin: `name.hook.position` tells where one is.", {}
+    )
+
+    def problems(self) -> Iterator[Problem]:
+        """A mass said twice or not at all, an inertia that no body has, and motion of what is fixed."""
+        if self.density is not None and self.mass is not None:
+            yield Problem("a body has either a `density` or a `mass`", ("mass",), at_key=True)
+        if self.inertia is not None and self.mass is None:
+            yield Problem("a body of given `inertia` needs its `mass`, too", ("inertia",), at_key=True)
+        elif self.of is None and self.inertia is None and self._alone():
+            yield Problem("a body without an object (`of`) needs `mass` and `inertia`")
+        if self.inertia is not None:
+            small, middle, large = sorted(self.inertia)
+            if large > (small + middle) * (1 + SLACK):
+                text = (
+                    f"no body has these moments of inertia: the largest, {large:g} kg*m^2, is above the sum of the "
+                    f"others, {small + middle:g} kg*m^2"
+                )
+                yield Problem(text, ("inertia",))
+        if self.fixed and (any(self.velocity) or any(self.spin)):
+            moving = "velocity" if any(self.velocity) else "spin"
+            yield Problem(f"a fixed body has no {moving}", (moving,))
+
+    def _alone(self) -> bool:
+        """Whether the fields describe a body, and not defaults for others."""
+        return True
+
+    def made(self, name: str, assembly: Assembly) -> Made:
+        """The body at the start of the run. Raises ScriptError for an object without an inside, a place or a volume."""
+        import numpy as np
+
+        from sceneql.shapes.placement import rotation_matrix
+
+        place, turn = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
+        mass, center, inertia, error = 1.0 if self.mass is None else self.mass, np.zeros(3), np.eye(3), 0.0
+        if self.of is not None:
+            kind: Any = assembly.object(self.of)
+            values = [getattr(kind, field, None) for field in ("position", "rotation")]
+            if not all(isinstance(value, Value) for value in values):
+                word = type(kind).__module__.rpartition(".")[2]
+                message = f"'{self.of.name}' is a {word}, which has no position and rotation that a body could drive"
+                help = f"put it into a group, `{{group: {{children: [{self.of.name}]}}}}`, and name that"
+                raise ScriptError([Diagnostic("no-position", message, self.of.span, help)])
+            place, turn = (np.asarray(assembly.initial(value), dtype=float) for value in values)
+            if self.inertia is None or self.center is None:
+                found = self._uniform(name, kind, assembly)
+                if self.mass is None:
+                    mass = found.volume * (WATER if self.density is None else self.density)
+                center, inertia, error = found.center, found.inertia * (mass / found.volume), found.error
+        if self.center is not None:
+            center = np.asarray(self.center)
+        if self.inertia is not None:
+            axes = rotation_matrix(assembly.initial(self.axes))
+            inertia = axes @ np.diag(self.inertia) @ axes.T
+        if self.position is not None:
+            place = np.asarray(self.position)
+        if self.rotation is not None:
+            turn = np.asarray(assembly.initial(self.rotation), dtype=float)
+        turn = turn / np.linalg.norm(turn)
+        return Made(mass, center, inertia, error, place + rotation_matrix(turn) @ center, turn)
+
+    def _uniform(self, name: str, kind: Any, assembly: Assembly) -> MassProperties:
+        """The mass properties of its object, in the object's own coordinates."""
+        raise NotImplementedError

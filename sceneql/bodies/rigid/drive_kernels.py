@@ -1,0 +1,77 @@
+# mypy: ignore-errors
+"""The one motion that a hinge or a slider leaves: how far and how fast it is, and the force along it."""
+
+import math
+
+from numba import types
+
+from sceneql.bodies.rigid.tie_rows_kernels import (
+    AT_C,
+    AT_J,
+    AT_R,
+    AT_SPEED,
+    AT_W,
+    MOMENTUM,
+    MOVED,
+    MOVER,
+    NUMBERS,
+    POINT,
+    POSITION,
+    ROTATION,
+    ROW_INTS,
+    SCRATCH,
+    VELOCITY,
+    put,
+    see,
+    turned,
+    write_row,
+)
+from sceneql.compiled.kernels import kernel, lean
+from sceneql.system.signatures_kernels import TERM, A, F, I
+
+ROW_AT, SCRATCH_AT = 2 * MOVER, 2 * MOVER + ROW_INTS
+FORCE_AT, STIFFNESS_AT, REST_AT, DAMPING_AT, WORK_AT = range(SCRATCH_AT + 1, SCRATCH_AT + 6)
+"""Behind two movers and a row (tie_rows_kernels): offsets of what `see` writes of both; of the force, of stiffness, rest
+and damping; of the work in y. The row's kind is POINT for a shift along n_b; else it is a turn about n_b, and its
+numbers are directions across that axis: one of a, one of b, and n_b."""
+
+
+@lean(types.UniTuple(F, 2)(A, A, I))
+def motion(y, floats, ints):
+    """How far [m or rad] and how fast [1/s of that] a has gone against b; the row's J is written."""
+    a, b = ints[SCRATCH_AT], ints[SCRATCH_AT] + MOVED
+    see(y, floats, a, ints, 0)
+    see(y, floats, b, ints, MOVER)
+    to, own = ints[ROW_AT + SCRATCH], ints[ROW_AT + NUMBERS]
+    if ints[ROW_AT] == POINT:
+        write_row(floats, ints, ROW_AT, a, b)
+        return floats[to + AT_C], floats[to + AT_SPEED]
+    px, py, pz = turned(floats, a + AT_R, floats[own], floats[own + 1], floats[own + 2])
+    qx, qy, qz = turned(floats, b + AT_R, floats[own + 3], floats[own + 4], floats[own + 5])
+    nx, ny, nz = turned(floats, b + AT_R, floats[own + 6], floats[own + 7], floats[own + 8])
+    for k in range(12):
+        floats[to + AT_J + k] = 0.0
+    put(floats, to + AT_J + 3, nx, ny, nz)
+    put(floats, to + AT_J + 9, -nx, -ny, -nz)
+    sine = nx * (qy * pz - qz * py) + ny * (qz * px - qx * pz) + nz * (qx * py - qy * px)
+    speed = nx * (floats[a + AT_W] - floats[b + AT_W]) + ny * (floats[a + AT_W + 1] - floats[b + AT_W + 1])
+    speed += nz * (floats[a + AT_W + 2] - floats[b + AT_W + 2])
+    return math.atan2(sine, qx * px + qy * py + qz * pz), speed
+
+
+@kernel(TERM, inner=True)
+def drive(t, y, rate, floats, ints):
+    """Adds force - stiffness (s - rest) - damping s' along the motion, and what force and damping take to the work."""
+    far, fast = motion(y, floats, ints)
+    given, lost = floats[ints[FORCE_AT]], floats[ints[DAMPING_AT]] * fast
+    total = given - lost - floats[ints[STIFFNESS_AT]] * (far - floats[ints[REST_AT]])
+    to = ints[ROW_AT + SCRATCH] + AT_J
+    for side in range(2):
+        at = MOVER * side
+        if ints[at + POSITION] >= 0:
+            for c in range(3):
+                rate[ints[at + VELOCITY] + c] += total * floats[to + 6 * side + c]
+            if ints[at + ROTATION] >= 0:
+                for c in range(3):
+                    rate[ints[at + MOMENTUM] + c] += total * floats[to + 6 * side + 3 + c]
+    rate[ints[WORK_AT]] += (lost - given) * fast

@@ -1,0 +1,229 @@
+"""What the words of ties share: the two bodies and where they are at the start, and the force between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from sceneql.kinds import Gives, Object, Ref, Tie, Value, quantity_type
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Link, Type
+from sceneql.system import Led, Place, Tied, TieRow
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, Bodies, ModelState, Mover
+    from sceneql.system.ties import Triple
+
+APART = 1e-9
+"""How far a mass may be from where it is held, against the numbers of that place."""
+FORCES = {
+    "force": Gives(quantity_type(dim.FORCE, (3,)), "Its force on the first body."),
+    "torque": Gives(quantity_type(dim.FORCE * dim.LENGTH, (3,)), "Its torque on the first body, about where it is."),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One of the two bodies of a tie at the start of the run."""
+
+    mover: Mover
+    position: Floats
+    """(3,) [m]"""
+    axes: Floats
+    """(3, 3) rotation of its axes to the world's."""
+
+    @property
+    def turns(self) -> bool:
+        """Whether it has axes: a mass has none."""
+        return not (isinstance(self.mover, Place) and self.mover.bodies.turning is None)
+
+    def place(self, point: Any) -> Triple:
+        """A point of the world, in its axes from its position."""
+        return _triple(self.axes.T @ (point - self.position))
+
+    def direction(self, vector: Any) -> Triple:
+        """A direction of the world in its axes."""
+        return _triple(self.axes.T @ vector)
+
+
+def _triple(vector: Floats) -> Triple:
+    x, y, z = (float(c) for c in vector)
+    return x, y, z
+
+
+class Joint(Tie):
+    """A tie of rows that a word gives."""
+
+    def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
+        """The conditions that hold, all of them at the start."""
+        raise NotImplementedError
+
+    def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
+        """Add the conditions. Raises ScriptError for what cannot be held."""
+        import numpy as np
+
+        from sceneql.bodies.rigid.tie_rows_kernels import ROW
+        from sceneql.bodies.rigid.tie_system import integers
+
+        first, second = sides_of(self.between, assembly)
+        if not (isinstance(first.mover, Place) or isinstance(second.mover, Place)):
+            message = "a tie needs a body that it can hold: neither of these is moved by forces"
+            raise ScriptError([Diagnostic("no-mass", message, self.between[0].span)])
+        if first.mover == second.mover:
+            raise ScriptError([Diagnostic("same-mass", "a tie leads from a body to itself", self.between[1].span)])
+        rows = self.rows(first, second, assembly)
+        scratch = assembly.floats(np.zeros(ROW * len(rows)))
+        assembly.tie(Tied((first.mover, second.mover), tuple(rows), scratch))
+        assembly.remember(scratch, len(rows), *integers(first.mover), *integers(second.mover))
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """Force and torque."""
+        import numpy as np
+
+        from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, ROW
+
+        at, count, *_ = state.ints
+        rows = state.floats[at : at + ROW * count].reshape(count, ROW)
+        parts = rows[:, AT_FORCE, None] * rows[:, AT_J : AT_J + 6]
+        force = parts[:, :3].sum(axis=0)
+        if output == "force":
+            return force
+        return parts[:, 3:].sum(axis=0) - np.cross(self.arm(state), force)
+
+    def arm(self, state: ModelState) -> Floats:
+        """From the center of mass of the first body to where the tie is (3,) [m]."""
+        import numpy as np
+
+        return np.zeros(3)
+
+
+def sides_of(refs: Sequence[Ref], assembly: Assembly) -> tuple[Side, Side]:
+    """The two bodies of a tie. Raises ScriptError where there is none."""
+    first, second = (_side(ref, assembly) for ref in refs)
+    return first, second
+
+
+def _side(ref: Ref, assembly: Assembly) -> Side:
+    """A body of a tie. Raises ScriptError where there is none."""
+    import numpy as np
+
+    from sceneql.shapes.placement import rotation_matrix
+
+    if not ref.name:
+        return Side(None, np.zeros(3), np.eye(3))
+    kind = assembly.object(ref)
+    if isinstance(kind, Object):
+        return _led(ref, kind, assembly)
+    output = f"{ref.within}.position" if ref.within else "position"
+    place = assembly.place(Link(ref.name, output, Type((3,), dim.LENGTH)))
+    if place is None:
+        message = f"'{ref.name}' is no body that a tie could hold"
+        raise ScriptError([Diagnostic("no-mass", message, ref.span, "name a rigid body or a mass, or `world`")])
+    y, at = assembly.start(), place.ints
+    turn = np.eye(3) if place.bodies.turning is None else rotation_matrix(y[at[4] : at[4] + 4])
+    return Side(Place(place.bodies, place.body), y[at[0] : at[0] + 3].copy(), turn)
+
+
+def _led(ref: Ref, kind: Object, assembly: Assembly) -> Side:
+    """An object that moves by itself; one that does not move is part of the world."""
+    import numpy as np
+
+    from sceneql.bodies.time_shift import rate_of_change
+    from sceneql.quantities.turned import spin
+    from sceneql.shapes.placement import rotation_matrix
+
+    values = [getattr(kind, name, None) for name in ("position", "rotation")]
+    if not all(isinstance(value, Value) for value in values):
+        message = f"'{ref.name}' has no position and rotation of its own"
+        raise ScriptError([Diagnostic("no-position", message, ref.span)])
+    position, rotation = values
+    if position.constant and rotation.constant:
+        return Side(None, np.zeros(3), np.eye(3))
+    try:
+        velocity, turning = (rate_of_change(value.expr, assembly.formula) for value in values)
+        spinning = spin(rotation.expr, turning)
+        exprs = (velocity, spinning, *(rate_of_change(one, assembly.formula) for one in (velocity, spinning)))
+    except ValueError as error:
+        message = f"a tie needs to know how '{ref.name}' moves: {error}"
+        raise ScriptError([Diagnostic("no-velocity", message, ref.span)]) from None
+    rates = (assembly.value(Value(expr, ref.span)) for expr in exprs)
+    mover = Led(assembly.value(position), assembly.value(rotation), *rates)
+    turn = rotation_matrix(assembly.initial(rotation))
+    return Side(mover, np.asarray(assembly.initial(position), dtype=float), turn)
+
+
+def across(axis: Any) -> tuple[Floats, Floats]:
+    """Two unit vectors that make a right-handed triple with a unit vector (3,)."""
+    import numpy as np
+
+    least = np.zeros(3)
+    least[int(np.argmin(np.abs(axis)))] = 1.0
+    first = np.cross(axis, least)
+    first /= np.linalg.norm(first)
+    return first, np.cross(axis, first)
+
+
+def together(first: Side, second: Side, point: Any) -> list[TieRow]:
+    """A point of both stays one."""
+    import numpy as np
+
+    ends = first.place(point), second.place(point)
+    return [TieRow("point", (*ends, second.direction(axis))) for axis in np.eye(3)]
+
+
+def parallel(first: Side, second: Side) -> list[TieRow]:
+    """Both keep the directions that they have to each other."""
+    import numpy as np
+
+    one, two, three = np.eye(3)
+    pairs = ((one, two), (two, three), (three, one))
+    return [TieRow("angle", (first.direction(u), second.direction(w))) for u, w in pairs]
+
+
+def point_of(
+    value: Value | None, refs: Sequence[Ref], sides: Sequence[Side], assembly: Assembly, center: bool = False
+) -> Floats:
+    """Where a tie is at the start (3,) [m]: as the script says, or where a mass is, or with ``center`` the first body.
+
+    Raises ScriptError where none is told, and for a place away from a mass that is to be held there.
+    """
+    import numpy as np
+
+    points = [side for side in sides if not side.turns]
+    if value is None and (points or center) and sides[0].mover is not None:
+        found: Floats = (points or list(sides))[0].position
+    elif value is None:
+        message = "where the tie is at the start is not told"
+        raise ScriptError([Diagnostic("no-place", message, assembly.line(), "say it by `at: 0 1 0 m`, or `at: crate.hook`")])
+    else:
+        found = np.asarray(assembly.initial(value), dtype=float)
+    for ref, side in zip(refs, sides, strict=True):
+        away = float(np.linalg.norm(found - side.position))
+        if not side.turns and away > APART * (1.0 + float(np.abs(found).max())):
+            message = f"'{ref.name}{'.' if ref.within else ''}{ref.within}' is a mass, {away:.3g} m away from this place"
+            raise ScriptError([Diagnostic("ties-apart", message, None if value is None else value.span)])
+    return found
+
+
+def must_turn(refs: Sequence[Ref], sides: Sequence[Side]) -> None:
+    """Raise ScriptError for a mass, which has no axes."""
+    for ref, side in zip(refs, sides, strict=True):
+        if not side.turns:
+            message = f"'{ref.name}{'.' if ref.within else ''}{ref.within}' is a mass, which has no axes to be held by"
+            raise ScriptError([Diagnostic("no-rotation", message, ref.span, "a mass is held by a `ball` or a `rod`")])
+
+
+def axis_of(value: Value, assembly: Assembly) -> Floats:
+    """A unit vector of the world at the start. Raises ScriptError for one of length 0."""
+    import numpy as np
+
+    from sceneql.shapes.placement import unit_vector
+
+    axis = np.asarray(assembly.initial(value), dtype=float)
+    if not axis.any():
+        raise ScriptError([Diagnostic("no-length", "an axis of length 0 has no direction", value.span)])
+    return unit_vector(axis)

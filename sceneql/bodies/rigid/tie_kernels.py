@@ -1,0 +1,262 @@
+# mypy: ignore-errors
+"""The forces of all ties of an island at once, and what takes their errors away.
+
+With a' the accelerations by all other forces, M the masses and J the rows of ties, the accelerations are a' + T f, T =
+J^T / M, with J (a' + T f) + bias = 0. The matrix J T is positive semidefinite, sparse by the bodies that rows share. It
+is factored with EASE of its diagonal added, and the solution is corrected by what it leaves: so ties that say the same
+twice, or do so at one instant, share the force of least square (a proximal iteration: Rockafellar 1976).
+"""
+
+from numba import types
+
+from sceneql.bodies.rigid.tie_rows_kernels import (
+    AT_A,
+    AT_BIAS,
+    AT_C,
+    AT_FORCE,
+    AT_INVERSE,
+    AT_J,
+    AT_MASS,
+    AT_SIZE,
+    AT_SPEED,
+    AT_T,
+    AT_TWIST,
+    AT_V,
+    AT_W,
+    FIRST,
+    INVERSE,
+    MOMENTUM,
+    MOVED,
+    MOVER,
+    POSITION,
+    ROTATION,
+    ROW_INTS,
+    SCRATCH,
+    SECOND,
+    VELOCITY,
+    press,
+    put,
+    see,
+    turned,
+    write_row,
+)
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
+from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
+from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
+
+MOVERS, ROWS, MOVERS_AT, ROWS_AT, PRODUCTS, PRODUCTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(9)
+MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, HEAD = range(9, 18)
+"""Integers of an island's ties: numbers of movers, rows, products (value, row, side of it, row, side of it: a part of an
+entry of J T), of the plan's integers, and where each begins; places of the diagonal's values; offsets into the floats
+and sizes of what movers, matrix, factors, scratch and right hand side take."""
+
+EASE = 1e-12
+"""Part of the diagonal that is added to it."""
+LEFT = 1e-13
+"""What may be left of an equation, against the numbers that it is a sum of."""
+MOST_CORRECTIONS = 6
+CLOSED = 1e-14
+"""Gap of a row, against the numbers that it is the difference of, below which it is rounding."""
+MOST_CLOSINGS = 6
+
+
+@lean(types.void(F, A, A, I))
+def survey(t, y, floats, ints):
+    """Write the movers and the rows for a state."""
+    for m in range(ints[MOVERS]):
+        see(y, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
+    for k in range(ints[ROWS]):
+        row = ints[ROWS_AT] + ROW_INTS * k
+        a, b = ints[MOVED_AT] + MOVED * ints[row + FIRST], ints[MOVED_AT] + MOVED * ints[row + SECOND]
+        write_row(floats, ints, row, a, b)
+        to = ints[row + SCRATCH]
+        for side in range(2):
+            mover = a if side == 0 else b
+            j, weighed, inverse = to + AT_J + 6 * side, to + AT_T + 6 * side, floats[mover + AT_MASS]
+            put(floats, weighed, inverse * floats[j], inverse * floats[j + 1], inverse * floats[j + 2])
+            turn = turned(floats, mover + AT_INVERSE, floats[j + 3], floats[j + 4], floats[j + 5])
+            put(floats, weighed + 3, *turn)
+
+
+@lean(types.boolean(A, I))
+def factor(floats, ints):
+    """Factor J T with EASE of its diagonal added; False where that cannot be."""
+    values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
+    for k in range(values.size):
+        values[k] = 0.0
+    for k in range(ints[PRODUCTS]):
+        at = ints[PRODUCTS_AT] + 5 * k
+        one = ints[ints[ROWS_AT] + ROW_INTS * ints[at + 1] + SCRATCH] + AT_J + 6 * ints[at + 2]
+        other = ints[ints[ROWS_AT] + ROW_INTS * ints[at + 3] + SCRATCH] + AT_T + 6 * ints[at + 4]
+        total = 0.0
+        for c in range(6):
+            total += floats[one + c] * floats[other + c]
+        values[ints[at]] += total
+    for k in range(ints[ROWS]):
+        place = ints[ints[DIAGONAL_AT] + k]
+        # A row that no mass can meet, as of two parts that are led, has no force.
+        values[place] = values[place] * (1.0 + EASE) if values[place] > 0.0 else 1.0
+    factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
+    work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
+    return factor_symmetric(ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]], values, factors, work)
+
+
+@lean(types.void(A, I))
+def solve(floats, ints):
+    """Solve with the factors, in place."""
+    factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
+    work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
+    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
+    solve_symmetric(ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]], factors, right, work)
+
+
+@lean(types.void(A, I, N))
+def balance(floats, ints, target):
+    """Forces of the rows, to AT_FORCE, by which J x + floats[target] = 0 for x the movers' AT_A, which they change."""
+    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
+    for k in range(ints[ROWS]):
+        floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
+    if not factor(floats, ints):
+        return
+    for _ in range(MOST_CORRECTIONS):
+        worst = 0.0
+        for k in range(ints[ROWS]):
+            row = ints[ROWS_AT] + ROW_INTS * k
+            to = ints[row + SCRATCH]
+            left, size = floats[to + target], abs(floats[to + target])
+            for side in range(2):
+                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_A
+                for c in range(6):
+                    part = floats[to + AT_J + 6 * side + c] * floats[mover + c]
+                    left += part
+                    size += abs(part)
+            right[k] = -left
+            if abs(left) > worst * size:
+                worst = abs(left) / size
+        if worst <= LEFT:
+            break
+        solve(floats, ints)
+        for k in range(ints[ROWS]):
+            row = ints[ROWS_AT] + ROW_INTS * k
+            to = ints[row + SCRATCH]
+            floats[to + AT_FORCE] += right[k]
+            for side in range(2):
+                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_A
+                for c in range(6):
+                    floats[mover + c] += floats[to + AT_T + 6 * side + c] * right[k]
+
+
+@lean(types.void(A, A, I))
+def add(rate, floats, ints):
+    """Adds the rows' forces and torques to the entries of velocities and angular momenta."""
+    for k in range(ints[ROWS]):
+        row = ints[ROWS_AT] + ROW_INTS * k
+        to = ints[row + SCRATCH]
+        force = floats[to + AT_FORCE]
+        for side in range(2):
+            at = ints[MOVERS_AT] + MOVER * ints[row + FIRST + side]
+            if ints[at + POSITION] >= 0:
+                for c in range(3):
+                    rate[ints[at + VELOCITY] + c] += force * floats[to + AT_J + 6 * side + c]
+                if ints[at + ROTATION] >= 0:
+                    for c in range(3):
+                        rate[ints[at + MOMENTUM] + c] += force * floats[to + AT_J + 6 * side + 3 + c]
+
+
+@lean(TERM, inner=True)
+def hold(t, y, rate, floats, ints):
+    """Adds the forces [N] and torques [N m] of all ties."""
+    survey(t, y, floats, ints)
+    for m in range(ints[MOVERS]):
+        press(y, rate, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
+    balance(floats, ints, AT_BIAS)
+    add(rate, floats, ints)
+
+
+@lean_inlined
+def clear(floats, ints):
+    """Zero the movers' accelerations."""
+    for m in range(ints[MOVERS]):
+        for c in range(6):
+            floats[ints[MOVED_AT] + MOVED * m + AT_A + c] = 0.0
+
+
+@lean_inlined
+def open_by(floats, ints, at):
+    """The largest gap of a row, against the numbers that it is the difference of."""
+    worst = 0.0
+    for k in range(ints[ROWS]):
+        to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]
+        worst = max(worst, abs(floats[to + at]) / max(floats[to + AT_SIZE], 1e-300))
+    return worst
+
+
+@lean(types.void(A, A, I))
+def shift(y, floats, ints):
+    """Move the bodies by the movers' changes of place and rotation."""
+    for m in range(ints[MOVERS]):
+        at, to = ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m
+        x, q = ints[at + POSITION], ints[at + ROTATION]
+        if x < 0:
+            continue
+        for c in range(3):
+            y[x + c] += floats[to + AT_A + c]
+        if q >= 0:
+            ux, uy, uz = 0.5 * floats[to + AT_TWIST], 0.5 * floats[to + AT_TWIST + 1], 0.5 * floats[to + AT_TWIST + 2]
+            a, b, c, d = y[q], y[q + 1], y[q + 2], y[q + 3]
+            # q + (0, u) q, of the same length.
+            e, f = a - (ux * b + uy * c + uz * d), b + ux * a + uy * d - uz * c
+            g, h = c + uy * a + uz * b - ux * d, d + uz * a + ux * c - uy * b
+            scale = ((a * a + b * b + c * c + d * d) / (e * e + f * f + g * g + h * h)) ** 0.5
+            y[q], y[q + 1], y[q + 2], y[q + 3] = e * scale, f * scale, g * scale, h * scale
+
+
+@lean(AFTER_STEP, inner=True)
+def settle(t0, t1, y0, rate0, y1, floats, ints):
+    """Closes the ties: places and rotations first, then velocities, each by the least change (in energy)."""
+    changed = False
+    for _ in range(MOST_CLOSINGS):
+        survey(t1, y1, floats, ints)
+        if open_by(floats, ints, AT_C) <= CLOSED:
+            break
+        clear(floats, ints)
+        balance(floats, ints, AT_C)
+        shift(y1, floats, ints)
+        changed = True
+    moving = 0.0
+    for m in range(ints[MOVERS]):
+        mover = ints[MOVED_AT] + MOVED * m
+        for c in range(3):
+            moving = max(moving, abs(floats[mover + AT_V + c]))
+    worst = 0.0
+    for k in range(ints[ROWS]):
+        row = ints[ROWS_AT] + ROW_INTS * k
+        to = ints[row + SCRATCH]
+        size = 0.0
+        for side in range(2):
+            mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side]
+            for c in range(3):
+                size += abs(floats[to + AT_J + 6 * side + c] * floats[mover + AT_V + c])
+                size += abs(floats[to + AT_J + 6 * side + 3 + c] * floats[mover + AT_W + c])
+        if abs(floats[to + AT_SPEED]) > worst * size:
+            worst = abs(floats[to + AT_SPEED]) / size
+    if worst > CLOSED:
+        clear(floats, ints)
+        balance(floats, ints, AT_SPEED)
+        for m in range(ints[MOVERS]):
+            at = ints[MOVERS_AT] + MOVER * m
+            if ints[at + POSITION] >= 0:
+                for c in range(3):
+                    y1[ints[at + VELOCITY] + c] += floats[ints[MOVED_AT] + MOVED * m + AT_A + c]
+        for k in range(ints[ROWS]):
+            row = ints[ROWS_AT] + ROW_INTS * k
+            to = ints[row + SCRATCH]
+            for side in range(2):
+                at = ints[MOVERS_AT] + MOVER * ints[row + FIRST + side]
+                if ints[at + POSITION] >= 0 and ints[at + ROTATION] >= 0:
+                    for c in range(3):
+                        impulse = floats[to + AT_FORCE] * floats[to + AT_J + 6 * side + 3 + c]
+                        y1[ints[at + MOMENTUM] + c] += impulse
+        changed = True
+    return changed

@@ -1,0 +1,90 @@
+"""All ties of an island together: the term that finds their forces, and the closing of what errors have opened."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import TYPE_CHECKING
+
+from sceneql.system import Led, Place
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Mover, Tied
+
+KERNELS = "sceneql.bodies.rigid.tie_kernels"
+KINDS = ("point", "angle", "distance")
+
+
+def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
+    """Add the forces of ties, once all other forces are there."""
+    import numpy as np
+    from scipy.sparse import csr_array
+
+    from sceneql.bodies.rigid import tie_kernels as kernels
+    from sceneql.bodies.rigid.tie_rows_kernels import MOVED, MOVER, ROW
+    from sceneql.linear.multifrontal import plan
+
+    movers: dict[tuple[int, ...], int] = {}
+    rows, numbers = [], []
+    for tie in ties:
+        pair = tuple(movers.setdefault(integers(mover), len(movers)) for mover in tie.movers)
+        for k, row in enumerate(tie.rows):
+            vectors = [number for vector in row.vectors for number in vector]
+            rows.append((KINDS.index(row.kind), *pair, 0, tie.scratch_at + ROW * k))
+            numbers.append([*vectors, *([] if row.kind == "point" else [row.constant]), 0.0, 0.0, 0.0][:9])
+    numbers_at = assembly.floats(numbers)
+    rows = [(kind, a, b, numbers_at + 9 * k, at) for k, (kind, a, b, _, at) in enumerate(rows)]
+    solved = [which[0] >= 0 for which in movers]
+    of_mover: dict[int, list[tuple[int, int]]] = {}
+    for k, (_, a, b, *_) in enumerate(rows):
+        for side, mover in enumerate((a, b)):
+            if solved[mover]:
+                of_mover.setdefault(mover, []).append((k, side))
+    parts = [(one, other) for some in of_mover.values() for one, other in product(some, some)]
+    own = np.arange(len(rows))
+    pattern = csr_array(
+        (
+            np.ones(len(parts) + len(rows)),
+            (
+                np.concatenate([[one[0] for one, _ in parts], own]),
+                np.concatenate([[other[0] for _, other in parts], own]),
+            ),
+        ),
+        shape=(len(rows), len(rows)),
+    )
+    pattern.sum_duplicates()
+    pattern.sort_indices()
+    starts, columns = pattern.indptr, pattern.indices
+
+    def place(row: int, column: int) -> int:
+        return int(starts[row] + np.searchsorted(columns[starts[row] : starts[row + 1]], column))
+
+    products = [(place(one[0], other[0]), *one, *other) for one, other in parts]
+    planned = plan(pattern)
+    lists = [
+        [number for which in movers for number in which],
+        [number for row in rows for number in row],
+        [number for each in products for number in each],
+        [place(k, k) for k in range(len(rows))],
+        planned.numbers,
+    ]
+    begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
+    sizes = (MOVED * len(movers), len(columns), planned.factors, planned.work + len(rows), len(rows))
+    moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
+    head = [len(movers), len(rows), begins[0], begins[1], len(products), begins[2], begins[3], begins[4], len(lists[4])]
+    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right]
+    ints = tuple(int(number) for number in np.concatenate([head, *lists]))
+    assert len(head) == kernels.HEAD and len(lists[0]) == MOVER * len(movers)
+    assembly.term("tie", f"{KERNELS}:hold", ints)
+    assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
+
+
+def integers(mover: Mover) -> tuple[int, ...]:
+    """The integers of a mover (tie_rows_kernels)."""
+    if isinstance(mover, Place):
+        position, velocity, _, inverse, rotation, momentum, inertia, _ = mover.ints
+        return (position, velocity, inverse, rotation, momentum, inertia, *(6 * (-1,)))
+    if isinstance(mover, Led):
+        values = (mover.position_at, mover.rotation_at, mover.velocity_at, mover.spin_at)
+        return (*(6 * (-1,)), *values, mover.acceleration_at, mover.twist_at)
+    return 12 * (-1,)

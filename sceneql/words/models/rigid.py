@@ -1,0 +1,229 @@
+"""rigid: rigid bodies, which move and turn as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from pydantic import PrivateAttr
+
+from sceneql import kinds
+from sceneql.bodies import bodies as masses
+from sceneql.bodies.rigid.body import INERTIA, Body, Made
+from sceneql.kinds import Gives, Model, Problem, Ref, field, quantity_type
+from sceneql.kinds.stable_step import StaticMass
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Call, Expr, Link, Number, Type, Vector
+from sceneql.quantities.turned import rotated
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.system import Assembly, Bodies, ModelState
+
+TURN, PLACE = Type((4,)), Type((3,), dim.LENGTH)
+
+ONE: Mapping[str, Gives] = {
+    "position": Gives(PLACE, "Where its center of mass is."),
+    "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast that moves."),
+    "acceleration": Gives(quantity_type(dim.ACCELERATION, (3,)), "How fast that changes."),
+    "origin": Gives(PLACE, "Where the origin of its own axes, and of its object, is."),
+    "rotation": Gives(TURN, "How its axes are turned: quaternion [w, x, y, z]."),
+    "spin": Gives(quantity_type(dim.FREQUENCY, (3,)), "Angular velocity in the world's axes."),
+    "body_spin": Gives(quantity_type(dim.FREQUENCY, (3,)), "Angular velocity in its own axes."),
+    "inertia": Gives(quantity_type(INERTIA, (3, 3)), "Inertia about the center of mass, in its own axes."),
+}
+"""Outputs of one body."""
+POINT: Mapping[str, Gives] = {
+    "position": Gives(PLACE, "Where it is."),
+    "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast it moves."),
+}
+"""Outputs of a point of a body."""
+
+
+class Rigid(Body, Model):
+    """Rigid bodies: m dv/dt = F and dL/dt = torque (Euler 1776), L = R I R^T w being the angular momentum in the world.
+
+    One is described by the fields themselves, several under `bodies` by name; the fields are then what each has that
+    says no other. A body is an object with an inside (`of`), which it drives, of even density; or it has a mass and
+    principal moments of inertia. Forces act at its center of mass, or at one of its `points`. The angular momentum is
+    part of the state, so that every method keeps it to rounding where no torque acts; `verlet`, `blanes_moan` and
+    `semi_implicit_euler` turn bodies by their exact free rotation between the forces' kicks.
+    """
+
+    gives: ClassVar[Mapping[str, Gives]] = masses.BODY_OUTPUTS
+
+    bodies: dict[str, Body] | None = field("Several bodies by name.", None)
+
+    _made: dict[str, Made] = PrivateAttr(default_factory=dict)
+
+    def problems(self) -> Iterator[Problem]:
+        """Those of a body; one body and several, or none."""
+        yield from super().problems()
+        if self.bodies is not None and (self.of is not None or self.inertia is not None or self.points):
+            yield Problem(
+                "either the fields describe one body, or there are `bodies` by name", ("bodies",), at_key=True
+            )
+        if self.bodies is not None and not self.bodies:
+            yield Problem("there are no bodies in this list", ("bodies",))
+
+    def _alone(self) -> bool:
+        return self.bodies is None
+
+    @property
+    def _each(self) -> Mapping[str, Body]:
+        """The bodies by name; one alone has an empty name."""
+        return {"": self} if self.bodies is None else self.bodies
+
+    @classmethod
+    def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
+        """Those of all masses, and of each body and its points by name."""
+        bodies = written.get("bodies")
+        several = bodies if isinstance(bodies, Mapping) else {"": written}
+        found = dict(cls.gives)
+        for name, body in several.items():
+            points = body.get("points") if isinstance(body, Mapping) else None
+            own = {f"{point}.{output}": gives for point in points or () for output, gives in POINT.items()}
+            found |= {_joined(name, output): gives for output, gives in {**ONE, **own}.items()}
+        return found
+
+    def items(self, output: str) -> int | None:
+        """How many there are."""
+        several = masses.BODY_OUTPUTS.get(output)
+        return len(self._each) if several is not None and several.type.shape[:1] == (None,) else None
+
+    def static_masses(self) -> Mapping[str, StaticMass]:
+        """Those whose mass is told."""
+        return {
+            name: StaticMass(body.mass, body.position, body.velocity, body.fixed)
+            for name, body in self._each.items()
+            if body.mass is not None
+        }
+
+    def assemble(self, name: str, assembly: Assembly) -> Bodies:
+        """Reserve the bodies."""
+        import numpy as np
+
+        from sceneql.bodies.rigid import turning
+
+        each = list(self._each.values())
+        made = [body.made(name, assembly) for body in each]
+        self._made = dict(zip(self._each, made, strict=True))
+        bodies = masses.reserve(
+            name,
+            assembly,
+            positions=np.array([one.position for one in made]),
+            velocities=np.array([body.velocity for body in each]),
+            masses=np.array([one.mass for one in made]),
+            radii=np.zeros(len(made)),
+            fixed=np.array([body.fixed for body in each]),
+        )
+        return turning.reserve(
+            assembly,
+            bodies,
+            rotations=np.array([one.rotation for one in made]),
+            spins=np.array([body.spin for body in each]),
+            inertias=np.array([one.inertia for one in made]),
+        )
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """Any output of the manual; of a body among several by its name first."""
+        import numpy as np
+
+        from sceneql.bodies.rigid import turning
+        from sceneql.shapes.placement import rotation_matrix
+
+        bodies = state.bodies
+        assert bodies is not None and bodies.turning is not None
+        if output in masses.BODY_OUTPUTS:
+            return masses.read(output, bodies, state)
+        name, point, what = self._said(output)
+        k = list(self._each).index(name)
+        x, v = masses.positions(bodies, state)[k], masses.velocities(bodies, state)[k]
+        q = turning.rotations(bodies.turning, bodies.count, state)[k]
+        spin = turning.spins(bodies.turning, bodies.count, state)[k]
+        arm = rotation_matrix(q) @ self._arm(name, point)
+        match what:
+            case "position":
+                return x + arm if point else x.copy()
+            case "velocity":
+                return v + np.cross(spin, arm) if point else v.copy()
+            case "acceleration":
+                return masses.accelerations(bodies, state)[k].copy()
+            case "origin":
+                return x + arm
+            case "rotation":  # of length 1, since states that are read are settled
+                return state.y[bodies.turning.rotation_at + 4 * k :][:4].copy()
+            case "spin":
+                return spin
+            case "body_spin":
+                return turning.body_spins(bodies.turning, bodies.count, state)[k]
+        return self._made[name].inertia
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of the centers of mass and their velocities, and of quaternions, within a step nearly of length 1."""
+        import numpy as np
+
+        bodies = state.bodies
+        assert bodies is not None and bodies.turning is not None
+        if output in masses.BODY_OUTPUTS:
+            return masses.places(output, bodies)
+        name, point, what = self._said(output)
+        k = list(self._each).index(name)
+        at = {"position": bodies.position_at + 3 * k, "velocity": bodies.velocity_at + 3 * k}.get(what)
+        if (point or what == "origin") and what != "velocity" and not any(self._arm(name, point)):
+            at = bodies.position_at + 3 * k
+        elif point or what not in ("position", "velocity", "rotation"):
+            return None
+        return np.arange(3) + at if at is not None else np.arange(4) + bodies.turning.rotation_at + 4 * k
+
+    def point(self, output: str, state: ModelState) -> tuple[int, tuple[float, float, float]] | None:
+        """Centers of mass, origins, and points."""
+        found = super().point(output, state)
+        if found is not None or output in masses.BODY_OUTPUTS:
+            return found
+        name, point, what = self._said(output)
+        if not (what == "origin" or (point and what == "position")):
+            return None
+        x, y, z = (float(c) for c in self._arm(name, point))
+        return list(self._each).index(name), (x, y, z)
+
+    def _arm(self, body: str, point: str) -> Sequence[float]:
+        """From the center of mass of a body to one of its points, or to its origin: (3,) in its own axes [m]."""
+        # Before the model is assembled the center is not known, nor asked for.
+        center = self._made[body].center if body in self._made else (0.0, 0.0, 0.0)
+        return [p - c for p, c in zip(self._each[body].points[point] if point else (0, 0, 0), center, strict=True)]
+
+    def computed(self, name: str, output: str) -> Expr | None:
+        """The origin and points, by the place of the center of mass and the rotation."""
+        if output in masses.BODY_OUTPUTS:
+            return None
+        body, point, what = self._said(output)
+        if not (what == "origin" or (point and what == "position")) or not any(self._arm(body, point)):
+            return None
+        arm = tuple(Number(float(c), Type((), dim.LENGTH)) for c in self._arm(body, point))
+        place, turn = Link(name, _joined(body, "position"), PLACE), Link(name, _joined(body, "rotation"), TURN)
+        return Call("add", (place, rotated(Call("normalize", (turn,), TURN), Vector(arm, PLACE))), PLACE)
+
+    def drives(self) -> Mapping[str, Mapping[str, str]]:
+        """Position and rotation of the objects that are bodies."""
+        return {
+            body.of.name: {"position": _joined(name, "origin"), "rotation": _joined(name, "rotation")}
+            for name, body in self._each.items()
+            if body.of is not None
+        }
+
+    def insides(self) -> Iterable[Ref]:
+        """The objects whose mass properties it takes."""
+        return [body.of for body in self._each.values() if body.of is not None]
+
+    def _said(self, output: str) -> tuple[str, str, str]:
+        """Body, point and output of a name as ``crate.hook.position``; empty where there is none."""
+        *names, what = output.split(".")
+        body = names.pop(0) if self.bodies is not None else ""
+        return body, names[0] if names else "", what
+
+
+def _joined(name: str, output: str) -> str:
+    return f"{name}.{output}" if name else output

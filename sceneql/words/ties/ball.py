@@ -1,0 +1,24 @@
+"""ball: a ball-and-socket joint."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
+
+from sceneql.bodies.rigid.joint import FORCES, Joint, Side, point_of, together
+from sceneql.kinds import Gives, Position, field
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, TieRow
+
+
+class Ball(Joint):
+    """A point of one body stays at a point of the other; they turn about it freely."""
+
+    gives: ClassVar[Mapping[str, Gives]] = FORCES
+
+    at: Position | None = field("Where it is at the start; by default where the mass is that it holds.", None)
+
+    def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
+        """The point, along three axes."""
+        return together(first, second, point_of(self.at, self.between, (first, second), assembly))

@@ -1,0 +1,37 @@
+"""rod: a massless rod with a ball joint at each end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
+
+from sceneql.bodies.rigid.joint import FORCES, Joint, Side, point_of
+from sceneql.kinds import Gives, Position, field
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.system import TieRow
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly
+
+
+class Rod(Joint):
+    """Two points, one of each body, keep the distance that they have at the start."""
+
+    gives: ClassVar[Mapping[str, Gives]] = FORCES
+
+    from_: Position | None = field("The point of the first body at the start; by default its center of mass.", None)
+    to: Position | None = field("The point of the second body at the start; by default its center of mass.", None)
+
+    def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
+        """The distance."""
+        import numpy as np
+
+        ends = [
+            point_of(value, (ref,), (side,), assembly, center=True)
+            for value, ref, side in zip((self.from_, self.to), self.between, (first, second), strict=True)
+        ]
+        length = float(np.linalg.norm(ends[0] - ends[1]))
+        if length == 0.0:
+            message = "the two points of a rod are one at the start"
+            raise ScriptError([Diagnostic("no-length", message, assembly.line(), "a `ball` holds two points together")])
+        return [TieRow("distance", (first.place(ends[0]), second.place(ends[1])), length)]
