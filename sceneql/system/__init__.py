@@ -1,4 +1,6 @@
-"""The system contract: what models, forces and contacts hand to an island, and what a solver sees of it.
+"""The contract: what parts hand an island, a solver sees.
+
+It is what models, forces and contacts hand to an island, and what a solver sees of it.
 
 An island is a set of models that are solved together. Its state is one vector ``y``; its rate dy/dt = f(t, y) is the
 sum of *terms*: compiled kernels of one signature, each called with its own integers and with the island's one array
