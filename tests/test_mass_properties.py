@@ -254,6 +254,23 @@ def test_what_has_no_inside_no_end_or_no_volume_is_told():
             properties(solid, NOW)
 
 
+def test_equal_solids_are_measured_once(monkeypatch):
+    from sceneql.mesh import curved_moments
+
+    runs = []
+
+    def counted(*arguments):
+        runs.append(arguments)
+        return measure(*arguments)
+
+    measure = curved_moments.curved_moments
+    monkeypatch.setattr(curved_moments, "curved_moments", counted)
+    egg = formula("x^2 + 2*y^2 + 3*z^2 - 0.5")
+    found = [properties(Implicit(field=egg, position=const([k, 0, 0])), NOW, 8) for k in range(4)]
+    assert len(runs) == 2
+    assert [one.center[0] for one in found] == pytest.approx([0, 1, 2, 3], abs=1e-3)
+
+
 def test_groups_and_unions_of_what_stands_apart_are_exact():
     parts = {
         "head": Box(size=const([0.4, 0.2, 0.2]), position=const([0.0, 1.1, 0.0])),

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from sceneql import frame
     from sceneql.frame import Floats, Surface
     from sceneql.kinds import FieldBuilder, Moment, Object, Shaped
+    from sceneql.mesh.bounded import Corner
 
 INFINITY = float("inf")
 LARGEST, SMALLEST = 1e100, 1e-100
@@ -68,7 +69,7 @@ class Solid(Placed):
 
 def field_in_box(
     solid: Shaped, name: str, place: Floats, moment: Moment, verb: str
-) -> tuple[frame.Tape, tuple[float, float, float], tuple[float, float, float]] | None:
+) -> tuple[frame.Tape, Corner, Corner] | None:
     """The field of any object that has one, as a tape, in a box low..high a little larger than the object; None where
     the box is empty. ``verb``: what it is to be, as ``drawn``.
 
