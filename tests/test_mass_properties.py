@@ -254,6 +254,13 @@ def test_what_has_no_inside_no_end_or_no_volume_is_told():
             properties(solid, NOW)
 
 
+def test_walls_thinner_than_cells_are_told_as_errors():
+    exact = 4 * math.pi * 0.7**2 * 1e-3
+    found = properties(Implicit(field=formula("abs(sqrt(x^2 + y^2 + z^2) - 0.7) - 0.0005")), NOW)
+    assert abs(found.volume - exact) > 0.5 * exact
+    assert found.error.volume > abs(found.volume - exact)
+
+
 def test_equal_solids_are_measured_once(monkeypatch):
     from sceneql.mesh import curved_moments
 

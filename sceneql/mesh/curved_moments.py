@@ -48,6 +48,9 @@ TURN = 0.8
 """Cosine of 37 degrees: a triangle with gradients at two corners that turn by more is quartered, too."""
 DEEPEST = 3
 """Most quarterings of a triangle."""
+MANY, FEW = 1024, 0.125
+"""Most triangles that are quartered, and the share of all that may be besides, as along edges: of more the cells are
+too coarse, and none is."""
 CHUNK = 1 << 13
 """Triangles at a time."""
 
@@ -101,7 +104,8 @@ def _beyond(solid: Tape, middle: Floats, cell: float, corners: Floats, ways: Flo
         size = np.sqrt(0.5 * np.linalg.norm(np.cross(first, second), axis=1))
         off = np.abs(lengths @ (WEIGHTS - LOWER))
         rough = off > ROUGH_PART * size if level else turned | (off > ROUGH * size)
-        done = np.ones_like(rough) if level == DEEPEST else ~rough
+        last = level == DEEPEST or (level == 0 and np.count_nonzero(rough) > MANY + FEW * len(rough))
+        done = np.ones_like(rough) if last else ~rough
         turns = ways[done, 1:] - ways[done, :1]
         whole += _between(first[done], second[done], turns, feet[done], normals[done], lengths[done])
         if done.all():

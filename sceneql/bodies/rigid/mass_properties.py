@@ -20,6 +20,9 @@ CELLS = 64
 """Cells along the longest side of an object that is measured by its field."""
 SAFE = 2.0
 """Error over the difference of two runs."""
+DOUBT = 0.01
+"""What cells leave undecided, in parts of the volume, from which on it counts as an error; in less, as where fields
+touch, there is mostly nothing."""
 BROKEN = 1e-9
 """By how much of itself the largest principal value may exceed the sum of the others: rounding in a script."""
 
@@ -120,6 +123,7 @@ def _in_cells(tape: Tape, low: Corner, high: Corner, cells: int) -> VolumeMoment
     """Of the solid {tape < 0} in a box, with the error as of ``by_field``."""
     import numpy as np
 
+    from sceneql.mesh.cubes.unresolved import unresolved
     from sceneql.mesh.curved_moments import curved_moments
 
     cell = max(np.subtract(high, low)) / cells
@@ -134,6 +138,9 @@ def _in_cells(tape: Tape, low: Corner, high: Corner, cells: int) -> VolumeMoment
         away = np.linalg.norm(fine.center - coarse.center) / length
         turned = np.linalg.norm(fine.second - coarse.second) / whole
         share = SAFE * float(max(abs(1.0 - coarse.volume / fine.volume), away, turned))
+    doubt = unresolved(tape, low, high, cell).volume / fine.volume
+    if doubt > DOUBT:  # as of walls thinner than cells, which neither run sees
+        share = max(share, doubt)
     return VolumeMoments(fine.volume, fine.center, fine.second, (share * fine.volume, share * length, share * whole))
 
 
