@@ -49,8 +49,8 @@ TURN = 0.8
 DEEPEST = 3
 """Most quarterings of a triangle."""
 MANY, FEW = 1024, 0.125
-"""Most triangles that are quartered, and the share of all that may be besides, as along edges: of more the cells are
-too coarse, and none is."""
+"""Most triangles of a CHUNK that are quartered, and the share of them that may be besides, as along edges: of more the
+cells are too coarse, and none is."""
 CHUNK = 1 << 13
 """Triangles at a time."""
 
@@ -98,11 +98,12 @@ def _beyond(solid: Tape, middle: Floats, cell: float, corners: Floats, ways: Flo
     """
     whole = np.zeros(10)
     for level in range(DEEPEST + 1):
-        feet, normals = PLACES @ corners, PLACES @ ways
+        # By einsum, since BLAS may add in another order with other numbers of threads.
+        feet, normals = (np.einsum("qk,tkj->tqj", PLACES, some) for some in (corners, ways))
         lengths = _roots(solid, (feet + middle).reshape(-1, 3), normals.reshape(-1, 3), cell).reshape(feet.shape[:2])
         first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         size = np.sqrt(0.5 * np.linalg.norm(np.cross(first, second), axis=1))
-        off = np.abs(lengths @ (WEIGHTS - LOWER))
+        off = np.abs(np.einsum("tq,q->t", lengths, WEIGHTS - LOWER))
         rough = off > ROUGH_PART * size if level else turned | (off > ROUGH * size)
         last = level == DEEPEST or (level == 0 and np.count_nonzero(rough) > MANY + FEW * len(rough))
         done = np.ones_like(rough) if last else ~rough
