@@ -57,6 +57,7 @@ from sceneql.kinds.types import (
     WordsOverTime,
 )
 from sceneql.kinds.values import Formula, Interpolated, Paint, Quantity, Ref, Refers, SceneFile, Symbols, Turn, Value
+from sceneql.kinds.volume_moments import VolumeMoments
 from sceneql.kinds.word import (
     GRAMMAR,
     LIMITS,

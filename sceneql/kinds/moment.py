@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.field_builder import FieldBuilder
     from sceneql.kinds.values import Ref, Value
+    from sceneql.kinds.volume_moments import VolumeMoments
     from sceneql.system import ModelState
 
 T = TypeVar("T")
@@ -60,6 +61,9 @@ class Shaped(Protocol):
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of a world box around it."""
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments | None:
+        """Volume, center and second moments of its inside, where it knows them better than its field does."""
 
 
 Remembered = Union["Value", Seen]

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.field_builder import FieldBuilder
-    from sceneql.kinds.moment import Moment
+    from sceneql.kinds.moment import Moment, Shaped
+    from sceneql.kinds.volume_moments import VolumeMoments
     from sceneql.system import Assembly
 
 
@@ -80,6 +81,14 @@ class Object(Kind):
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of a world box around it; infinite where it is unbounded."""
         raise TypeError(f"`{self._word()}` has no extent")
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments | None:
+        """Volume, center and second moments of its inside in its parent's coordinates, for bodies.
+
+        None: its field tells them best. ``measure`` tells those of a member in this object's own coordinates. Raises
+        ValueError where it has no inside to weigh, as an open mesh.
+        """
+        return None
 
     def read(self, output: str, moment: Moment) -> Any:
         """An output of ``gives`` now, SI."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from sceneql import frame
     from sceneql.frame import Floats, Surface
     from sceneql.kinds import FieldBuilder, Moment, Object, Shaped
+    from sceneql.mesh.bounded import Corner
 
 INFINITY = float("inf")
 LARGEST, SMALLEST = 1e100, 1e-100
@@ -66,34 +67,50 @@ class Solid(Placed):
         return measure(self, output, moment)
 
 
-def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
-    """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
+def field_in_box(
+    solid: Shaped, name: str, place: Floats, moment: Moment, verb: str
+) -> tuple[frame.Tape, Corner, Corner] | None:
+    """The field of any object that has one, as a tape, in a box low..high a little larger than the object; None where
+    the box is empty. ``verb``: what it is to be, as ``drawn``.
 
     Raises TypeError where it is unbounded, ValueError where it is too large, too small or too far away for float64.
     """
     import numpy as np
 
-    from sceneql import frame
     from sceneql.field.tape.builder import TapeBuilder
 
     low, high = solid.extent(place, moment)
     if not (high > low).all():
-        return
+        return None
     with np.errstate(over="ignore", invalid="ignore"):
         finite = np.isfinite(high - low).all()
     if not finite:
-        raise TypeError(f"{name} is unbounded, and cannot be drawn: intersect it with a box")
+        raise TypeError(f"{name} is unbounded, and cannot be {verb}: intersect it with a box")
     told_by_numbers(low, high)
     _not_rounded_away(low, high)
     build = TapeBuilder()
     value = solid.implicit(build, *build.affine(inverse(place), build.x, build.y, build.z), moment)
     room = MARGIN * float(np.max(high - low))
+    return build.finish(value), triple(low - room), triple(high + room)
+
+
+def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
+    """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
+
+    Raises as ``field_in_box``.
+    """
+    from sceneql import frame
+    from sceneql.field.tape.builder import TapeBuilder
+
+    found = field_in_box(solid, name, place, moment, "drawn")
+    if found is None:
+        return
+    tape, low, high = found
     surface = moment.surface(name, solid.material, solid.color)
-    box = triple(low - room), triple(high + room)
     colored = TapeBuilder()
     at = colored.affine(inverse(place), colored.x, colored.y, colored.z)
     hues = solid.hues(colored, *at, surface, moment)
-    yield frame.Implicit(name, surface, build.finish(value), *box, None if hues is None else colored.finish(*hues))
+    yield frame.Implicit(name, surface, tape, low, high, None if hues is None else colored.finish(*hues))
 
 
 def by_field(kind: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:

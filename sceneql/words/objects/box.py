@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.failure import RunFailure
-from sceneql.kinds import Collider, FieldBuilder, Moment, Position, Value, field
+from sceneql.kinds import Collider, FieldBuilder, Moment, Position, Shaped, Value, VolumeMoments, field
 from sceneql.quantities.dimension import LENGTH
 from sceneql.quantities.expression import Call, Number, Type
 from sceneql.shapes.placement import compose
@@ -48,6 +48,11 @@ class Box(Solid):
         """The box itself."""
         a, b, c = self._half(moment)
         return (-a, -b, -c), (a, b, c)
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments:
+        """a b c; the mean of x^2 is a^2/12."""
+        a, b, c = self._half(moment)
+        return VolumeMoments.centered(8 * a * b * c, (a * a / 3, b * b / 3, c * c / 3)).mapped(self.local(moment))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A quadric without terms: its bounds alone."""

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from math import pi
 from typing import TYPE_CHECKING, Any
 
-from sceneql.kinds import FieldBuilder, Length, Moment, field
+from sceneql.kinds import FieldBuilder, Length, Moment, Shaped, VolumeMoments, field
 from sceneql.shapes.checked_values import positive
 from sceneql.shapes.placement import compose
 from sceneql.shapes.solid import INFINITY, Solid, largest, length, less, quadric
@@ -39,6 +40,12 @@ class Cylinder(Solid):
         """The block around it."""
         r, half = positive(moment, self.radius, "radius"), 0.5 * positive(moment, self.height, "height")
         return (-r, -half, -r), (r, half, r)
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments:
+        """pi r^2 h; the means of x^2 and z^2 are r^2/4, of y^2 h^2/12."""
+        r, half = positive(moment, self.radius, "radius"), 0.5 * positive(moment, self.height, "height")
+        squares = 0.25 * r * r, half * half / 3, 0.25 * r * r
+        return VolumeMoments.centered(2 * pi * r * r * half, squares).mapped(self.local(moment))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A quadric cut off at its ends."""

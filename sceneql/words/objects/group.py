@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
-from sceneql.kinds import FieldBuilder, Moment, ObjectRef, Ref, Shaped, field
+from sceneql.kinds import FieldBuilder, Moment, ObjectRef, Ref, Shaped, VolumeMoments, field
+from sceneql.shapes.apart import apart
 from sceneql.shapes.placement import Placed, Scale, affine, compose, inverse
 
 if TYPE_CHECKING:
@@ -38,6 +39,11 @@ class Group(Placed):
             if child.material is None and child.color is None:
                 child = child.model_copy(update={"material": self.material, "color": self.color})
             yield ref.name, child
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments | None:
+        """Those of its children together, where their boxes do not overlap; else None."""
+        found = apart([child for _, child in self._objects(moment)], moment, measure)
+        return None if found is None else found.mapped(self.local(moment))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """The shapes of its children."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 from pydantic import field_validator
 
 from sceneql.doing import doing
-from sceneql.kinds import Collider, File, FixedAngle, Moment, field
+from sceneql.kinds import Collider, File, FixedAngle, Moment, Shaped, VolumeMoments, field
 from sceneql.shapes.mesh_header import declared
 from sceneql.shapes.placement import Placed, Scale, affine, apply, compose
 from sceneql.shapes.read_mesh import Loaded, load
@@ -87,6 +87,13 @@ class Mesh(Placed):
         surface = moment.surface(name, self.material, self.color)
         colors = self._loaded.colors if self.color is None and self.material is None else None
         yield Triangles(name, surface, made.vertices, made.triangles, made.normals, colors)
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments:
+        """By the divergence theorem. Raises ValueError for a mesh that is open or turned inside out."""
+        from sceneql.mesh.polyhedra import moments
+
+        loaded = self._loaded
+        return moments(loaded.vertices, loaded.triangles).mapped(self.local(moment))
 
     def collider(self, assembly: Assembly) -> Collider:
         """Its triangles. Raises ValueError for a mesh that is open, or whose scale varies."""

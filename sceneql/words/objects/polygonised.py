@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
-from sceneql.kinds import Color, FieldBuilder, FixedLength, Moment, Object, ObjectRef, Ref, Shaped, field
+from sceneql.kinds import Color, FieldBuilder, FixedLength, Moment, Object, ObjectRef, Ref, Shaped, VolumeMoments, field
 from sceneql.shapes.solid import traced
 
 if TYPE_CHECKING:
@@ -76,6 +76,10 @@ class Polygonised(Object):
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """That of its object."""
         return moment.object(self.of).implicit(build, x, y, z, moment)
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments | None:
+        """Those of its object."""
+        return measure(moment.object(self.of))
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """That of its object."""

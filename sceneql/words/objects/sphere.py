@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from sceneql.kinds import Collider, FieldBuilder, Length, Moment, field
+from sceneql.kinds import Collider, FieldBuilder, Length, Moment, Shaped, VolumeMoments, field
 from sceneql.shapes.checked_values import positive
 from sceneql.shapes.placement import compose
 from sceneql.shapes.solid import Solid, length, less, quadric
@@ -43,6 +44,11 @@ class Sphere(Solid):
         whole = compose(place, self.local(moment))
         half = positive(moment, self.radius, "radius") * np.linalg.norm(whole[:, :3], axis=1)
         return whole[:, 3] - half, whole[:, 3] + half
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments:
+        """4/3 pi r^3; the mean of x^2 is r^2/5."""
+        r = positive(moment, self.radius, "radius")
+        return VolumeMoments.centered(4 / 3 * pi * r**3, [r * r / 5] * 3).mapped(self.local(moment))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A quadric; under an uneven scale an ellipsoid."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from math import pi
 from typing import Any
 
-from sceneql.kinds import FieldBuilder, Length, Moment, field
+from sceneql.kinds import FieldBuilder, Length, Moment, Shaped, VolumeMoments, field
 from sceneql.shapes.checked_values import positive
 from sceneql.shapes.solid import Solid, length, less
 
@@ -28,3 +30,11 @@ class Torus(Solid):
         tube = positive(moment, self.tube, "tube")
         r = positive(moment, self.radius, "radius") + tube
         return (-r, -tube, -r), (r, tube, r)
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments | None:
+        """2 pi^2 R r^2; the mean of y^2 is r^2/4, of x^2 and z^2 R^2/2 + 3/8 r^2. None where the ring has no hole."""
+        R, r = positive(moment, self.radius, "radius"), positive(moment, self.tube, "tube")
+        if r > R:
+            return None
+        across = 0.5 * R * R + 0.375 * r * r
+        return VolumeMoments.centered(2 * pi**2 * R * r * r, (across, 0.25 * r * r, across)).mapped(self.local(moment))

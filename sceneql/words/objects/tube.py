@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from math import pi
 from typing import TYPE_CHECKING
 
 from sceneql.failure import RunFailure
-from sceneql.kinds import FieldBuilder, Length, Moment, Object, Points, field
+from sceneql.kinds import FieldBuilder, Length, Moment, Object, Points, Shaped, VolumeMoments, field
 from sceneql.shapes.checked_values import positive
 from sceneql.shapes.placement import apply, balls_box, uniform_scale
 from sceneql.shapes.wire import chain
@@ -39,6 +40,22 @@ class Tube(Object):
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
         """The box around its points and radius."""
         return balls_box(place, self._path(moment), positive(moment, self.radius, "radius"))
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments | None:
+        """A capsule's, of a tube through two points: of a column and two halves of a ball."""
+        import numpy as np
+
+        path, r = self._path(moment), positive(moment, self.radius, "radius")
+        if len(path) != (3 if self.closed else 2):
+            return None
+        along = path[1] - path[0]
+        length = float(np.linalg.norm(along))
+        column, ball = pi * r * r * length, 4 / 3 * pi * r**3
+        across = column * r * r / 4 + ball * r * r / 5
+        more = column * length**2 / 12 + ball * (r * r / 5 + length * length / 4 + 3 / 8 * r * length) - across
+        axis = along / (length or 1.0)
+        second = across * np.eye(3) + more * np.outer(axis, axis)
+        return VolumeMoments(column + ball, path[0] + 0.5 * along, second)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Its pieces as capsules. Raises ValueError in a group that is stretched unevenly."""

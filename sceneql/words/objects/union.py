@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from sceneql.kinds import FieldBuilder, Moment
+from sceneql.kinds import FieldBuilder, Moment, Shaped, VolumeMoments
+from sceneql.shapes.apart import apart
 from sceneql.shapes.blend import bulge, least
 from sceneql.shapes.csg import Combination
 from sceneql.shapes.placement import compose, mapped_box
@@ -42,6 +44,12 @@ class Union(Combination):
         if not ((low > -float("inf")) | (high < float("inf"))).any():
             return value
         return build.op("max", value, block(build, (x, y, z), low, high))
+
+    def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments | None:
+        """Those of its members together, where nothing blends and their boxes do not overlap; else None."""
+        members = [moment.object(ref) for ref in self.members()]
+        found = None if self.width(moment) > 0.0 else apart(members, moment, measure)
+        return None if found is None else found.mapped(self.local(moment))
 
     def gaps(self, build: FieldBuilder, values: list[int]) -> list[int]:
         """They themselves."""
