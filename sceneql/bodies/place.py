@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 from sceneql.kinds import Problem, Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -15,23 +15,16 @@ if TYPE_CHECKING:
 HELP = "name a mass, `net.bob`, or a point of a rigid body, `crate.hook`"
 
 
-class Acting(Protocol):
-    """A word that acts at a place."""
-
-    on: object
-    at: Value | None
-
-
 def model_of(at: Value) -> tuple[str, ...]:
     """The model of a place; none where it is not the output of a part."""
     return (at.expr.task,) if isinstance(at.expr, Link) else ()
 
 
-def place_problems(word: Acting) -> Iterator[Problem]:
+def place_problems(at: Value | None, models: bool) -> Iterator[Problem]:
     """A place that is no mass's, and one that is named besides models."""
-    if word.at is not None and not isinstance(word.at.expr, Link):
+    if at is not None and not isinstance(at.expr, Link):
         yield Problem(f"this is a place, but no mass to act on: {HELP}", ("at",))
-    if word.at is not None and word.on is not None:
+    if at is not None and models:
         yield Problem("what acts `at` a place acts on that alone", ("on",), at_key=True)
 
 

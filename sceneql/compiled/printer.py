@@ -199,8 +199,8 @@ def write_term(
 ) -> str:
     """Write a kernel with the signature of a term; returns its ``"module:function"``.
 
-    ``lines``: its body; ``imports``: of what it calls besides. The constants stand in floats from ints[0] on, each value read from other parts at one of
-    ints[first:].
+    ``lines``: its body; ``imports``: of what it calls besides. The constants stand in floats from ints[0] on, each
+    value read from other parts at one of ints[first:].
     """
     text = [
         *TERM_HEAD,

@@ -314,12 +314,16 @@ class IslandAssembly:
         if slopes is not None:
             found, derived, more = section(len(ints), len(y), slopes, self._masses, self._pairs)
             ints = np.concatenate([ints, more])
+        names = [tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free)]
         structure = Structure(
-            tuple(kernels[0] for kernels, _ in groups),
-            tuple((kernels[0], kernels[1]) for kernels, _ in exact),
-            *(tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free)),
-            bool(self._varying),
-            derived,
+            terms=tuple(kernels[0] for kernels, _ in groups),
+            exact=tuple((kernels[0], kernels[1]) for kernels, _ in exact),
+            local=names[0],
+            after=names[1],
+            settling=names[2],
+            free=names[3],
+            varying=bool(self._varying),
+            slopes=derived,
         )
         partner = np.full(len(y), -1, dtype=np.int64)
         for position, velocity, count in self._pairs:

@@ -34,7 +34,7 @@ class Setting:
         return cast(Object, task.original or task.kind)
 
     def formula(self, link: Link) -> Expr | None:
-        """The output of a kinematic model, or an object's field, as an expression; None for what stands in the state."""
+        """The output of a kinematic model, or an object's field, as an expression; None of what stands in the state."""
         kind = self.tasks[link.task].kind
         if isinstance(kind, Model):
             return kind.formula(link.output) if kind.kinematic else kind.computed(link.task, link.output)

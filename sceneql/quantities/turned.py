@@ -19,7 +19,7 @@ def rotated(rotation: Expr, vector: Expr) -> Expr:
 
 
 def spin(rotation: Expr, rate: Expr) -> Expr:
-    """The angular velocity (3,) [1/s] of a unit quaternion q that changes at a rate q': twice the vector of q' conj(q)."""
+    """The angular velocity (3,) [1/s] of a unit quaternion q of the rate q': twice the vector of q' conj(q)."""
     one, plain = Type(()), Type((), PLAIN / TIME)
     w, *u = (Call("component", (rotation, Number(float(k))), one) for k in range(4))
     back = Vector((w, *(Call("neg", (c,), one) for c in u)), Type((4,)))

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
 def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
     """The plan and the scales before the first step.
 
-    Positions of a model's masses share a scale, and so do their velocities, the cells of a field, and what its words
-    say is alike; other entries have their own. Sums on which nothing depends, such as the energy lost by damping, have a scale of at least 1 in SI.
+    Positions of a model's masses share a scale, and so do their velocities, the cells of a field, and what words say is
+    alike; other entries have their own. Sums on which nothing depends, such as the energy lost by damping, have a scale
+    of at least 1 in SI.
     """
     group = np.full(len(system.y), -1, dtype=np.int64)
     shared = 0

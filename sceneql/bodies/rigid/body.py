@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sceneql import kinds
-from sceneql.kinds import Problem, Quantity, Record, Value, field
+from sceneql.bodies.rigid.mass_properties import impossible
+from sceneql.kinds import Problem, Quantity, Record, Ref, Value, field
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
+    from sceneql.bodies.rigid.mass_properties import MassProperties
     from sceneql.frame import Floats
     from sceneql.system import Assembly
 
@@ -19,8 +21,6 @@ INERTIA = dim.MASS * dim.LENGTH**2
 Triple = tuple[float, float, float]
 WATER = 1000.0
 """Density of a body of which the script tells none [kg/m^3]."""
-SLACK = 1e-9
-"""Part of an inertia by which the triangle inequality may fail: as a plate's moments are written in decimals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,14 +79,8 @@ class Body(Record):
             yield Problem("a body of given `inertia` needs its `mass`, too", ("inertia",), at_key=True)
         elif self.of is None and self.inertia is None and self._alone():
             yield Problem("a body without an object (`of`) needs `mass` and `inertia`")
-        if self.inertia is not None:
-            small, middle, large = sorted(self.inertia)
-            if large > (small + middle) * (1 + SLACK):
-                text = (
-                    f"no body has these moments of inertia: the largest, {large:g} kg*m^2, is above the sum of the "
-                    f"others, {small + middle:g} kg*m^2"
-                )
-                yield Problem(text, ("inertia",))
+        if self.inertia is not None and (text := impossible(self.inertia)):
+            yield Problem(text, ("inertia",))
         if self.fixed and (any(self.velocity) or any(self.spin)):
             moving = "velocity" if any(self.velocity) else "spin"
             yield Problem(f"a fixed body has no {moving}", (moving,))
@@ -95,28 +89,36 @@ class Body(Record):
         """Whether the fields describe a body, and not defaults for others."""
         return True
 
-    def made(self, name: str, assembly: Assembly) -> Made:
+    def made(self, assembly: Assembly) -> Made:
         """The body at the start of the run. Raises ScriptError for an object without an inside, a place or a volume."""
         import numpy as np
 
         from sceneql.shapes.placement import rotation_matrix
 
-        place, turn = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0])
-        mass, center, inertia, error = 1.0 if self.mass is None else self.mass, np.zeros(3), np.eye(3), 0.0
+        place: Floats = np.zeros(3)
+        turn: Floats = np.array([1.0, 0.0, 0.0, 0.0])
+        center: Floats = np.zeros(3)
+        inertia: Floats = np.eye(3)
+        mass, error = 1.0 if self.mass is None else self.mass, 0.0
         if self.of is not None:
             kind: Any = assembly.object(self.of)
-            values = [getattr(kind, field, None) for field in ("position", "rotation")]
-            if not all(isinstance(value, Value) for value in values):
+            position, rotation = getattr(kind, "position", None), getattr(kind, "rotation", None)
+            if not (isinstance(position, Value) and isinstance(rotation, Value)):
                 word = type(kind).__module__.rpartition(".")[2]
                 message = f"'{self.of.name}' is a {word}, which has no position and rotation that a body could drive"
                 help = f"put it into a group, `{{group: {{children: [{self.of.name}]}}}}`, and name that"
                 raise ScriptError([Diagnostic("no-position", message, self.of.span, help)])
-            place, turn = (np.asarray(assembly.initial(value), dtype=float) for value in values)
+            place, turn = (np.asarray(assembly.initial(value), dtype=np.float64) for value in (position, rotation))
             if self.inertia is None or self.center is None:
-                found = self._uniform(name, kind, assembly)
+                found = self._uniform(self.of, kind, assembly)
                 if self.mass is None:
                     mass = found.volume * (WATER if self.density is None else self.density)
-                center, inertia, error = found.center, found.inertia * (mass / found.volume), found.error
+                own = rotation_matrix(turn)
+                center = own.T @ (found.center - place)
+                inertia = own.T @ found.inertia @ own * (mass / found.volume)
+                inertia = 0.5 * (inertia + inertia.T)
+                size = float(np.linalg.norm(found.inertia))
+                error = max(found.error.volume / found.volume, found.error.inertia / size)
         if self.center is not None:
             center = np.asarray(self.center)
         if self.inertia is not None:
@@ -129,6 +131,14 @@ class Body(Record):
         turn = turn / np.linalg.norm(turn)
         return Made(mass, center, inertia, error, place + rotation_matrix(turn) @ center, turn)
 
-    def _uniform(self, name: str, kind: Any, assembly: Assembly) -> MassProperties:
-        """The mass properties of its object, in the object's own coordinates."""
-        raise NotImplementedError
+    def _uniform(self, ref: Ref, kind: Any, assembly: Assembly) -> MassProperties:
+        """The mass properties of its object as it stands. Raises ScriptError where it has none."""
+        from sceneql.bodies.rigid.mass_properties import properties
+        from sceneql.island.start import Start
+
+        start: Any = Start(assembly)
+        try:
+            return properties(kind, start)
+        except (TypeError, ValueError) as error:
+            message = f"'{ref.name}' cannot be a rigid body: {error}"
+            raise ScriptError([Diagnostic("no-body", message, ref.span)]) from None

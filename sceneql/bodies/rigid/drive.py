@@ -10,7 +10,6 @@ from sceneql.kinds import Value
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies, ModelState
 
 

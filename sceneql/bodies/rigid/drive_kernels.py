@@ -31,8 +31,8 @@ from sceneql.system.signatures_kernels import TERM, A, F, I
 
 ROW_AT, SCRATCH_AT = 2 * MOVER, 2 * MOVER + ROW_INTS
 FORCE_AT, STIFFNESS_AT, REST_AT, DAMPING_AT, WORK_AT = range(SCRATCH_AT + 1, SCRATCH_AT + 6)
-"""Behind two movers and a row (tie_rows_kernels): offsets of what `see` writes of both; of the force, of stiffness, rest
-and damping; of the work in y. The row's kind is POINT for a shift along n_b; else it is a turn about n_b, and its
+"""Behind two movers and a row (tie_rows_kernels): offsets of what `see` writes of both; of the force, of stiffness,
+rest and damping; of the work in y. The row's kind is POINT for a shift along n_b; else it is a turn about n_b, and its
 numbers are directions across that axis: one of a, one of b, and n_b."""
 
 

@@ -136,15 +136,14 @@ def _led(ref: Ref, kind: Object, assembly: Assembly) -> Side:
     from sceneql.quantities.turned import spin
     from sceneql.shapes.placement import rotation_matrix
 
-    values = [getattr(kind, name, None) for name in ("position", "rotation")]
-    if not all(isinstance(value, Value) for value in values):
+    position, rotation = getattr(kind, "position", None), getattr(kind, "rotation", None)
+    if not (isinstance(position, Value) and isinstance(rotation, Value)):
         message = f"'{ref.name}' has no position and rotation of its own"
         raise ScriptError([Diagnostic("no-position", message, ref.span)])
-    position, rotation = values
     if position.constant and rotation.constant:
         return Side(None, np.zeros(3), np.eye(3))
     try:
-        velocity, turning = (rate_of_change(value.expr, assembly.formula) for value in values)
+        velocity, turning = (rate_of_change(value.expr, assembly.formula) for value in (position, rotation))
         spinning = spin(rotation.expr, turning)
         exprs = (velocity, spinning, *(rate_of_change(one, assembly.formula) for one in (velocity, spinning)))
     except ValueError as error:
@@ -153,7 +152,7 @@ def _led(ref: Ref, kind: Object, assembly: Assembly) -> Side:
     rates = (assembly.value(Value(expr, ref.span)) for expr in exprs)
     mover = Led(assembly.value(position), assembly.value(rotation), *rates)
     turn = rotation_matrix(assembly.initial(rotation))
-    return Side(mover, np.asarray(assembly.initial(position), dtype=float), turn)
+    return Side(mover, np.asarray(assembly.initial(position), dtype=np.float64), turn)
 
 
 def across(axis: Any) -> tuple[Floats, Floats]:
@@ -198,22 +197,30 @@ def point_of(
         found: Floats = (points or list(sides))[0].position
     elif value is None:
         message = "where the tie is at the start is not told"
-        raise ScriptError([Diagnostic("no-place", message, assembly.line(), "say it by `at: 0 1 0 m`, or `at: crate.hook`")])
+        raise ScriptError(
+            [Diagnostic("no-place", message, assembly.line(), "say it by `at: 0 1 0 m`, or `at: crate.hook`")]
+        )
     else:
-        found = np.asarray(assembly.initial(value), dtype=float)
+        found = np.asarray(assembly.initial(value), dtype=np.float64)
     for ref, side in zip(refs, sides, strict=True):
         away = float(np.linalg.norm(found - side.position))
         if not side.turns and away > APART * (1.0 + float(np.abs(found).max())):
-            message = f"'{ref.name}{'.' if ref.within else ''}{ref.within}' is a mass, {away:.3g} m away from this place"
+            message = (
+                f"'{ref.name}{'.' if ref.within else ''}{ref.within}' is a mass, {away:.3g} m away from this place"
+            )
             raise ScriptError([Diagnostic("ties-apart", message, None if value is None else value.span)])
     return found
+
+
+def _named(ref: Ref) -> str:
+    return f"{ref.name}.{ref.within}" if ref.within else ref.name
 
 
 def must_turn(refs: Sequence[Ref], sides: Sequence[Side]) -> None:
     """Raise ScriptError for a mass, which has no axes."""
     for ref, side in zip(refs, sides, strict=True):
         if not side.turns:
-            message = f"'{ref.name}{'.' if ref.within else ''}{ref.within}' is a mass, which has no axes to be held by"
+            message = f"'{_named(ref)}' is a mass, which has no axes to be held by"
             raise ScriptError([Diagnostic("no-rotation", message, ref.span, "a mass is held by a `ball` or a `rod`")])
 
 
@@ -223,7 +230,7 @@ def axis_of(value: Value, assembly: Assembly) -> Floats:
 
     from sceneql.shapes.placement import unit_vector
 
-    axis = np.asarray(assembly.initial(value), dtype=float)
+    axis = np.asarray(assembly.initial(value), dtype=np.float64)
     if not axis.any():
         raise ScriptError([Diagnostic("no-length", "an axis of length 0 has no direction", value.span)])
     return unit_vector(axis)

@@ -24,7 +24,6 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_V,
     AT_W,
     FIRST,
-    INVERSE,
     MOMENTUM,
     MOVED,
     MOVER,
@@ -45,11 +44,12 @@ from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
 from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
-MOVERS, ROWS, MOVERS_AT, ROWS_AT, PRODUCTS, PRODUCTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(9)
+MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(9)
 MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, HEAD = range(9, 18)
-"""Integers of an island's ties: numbers of movers, rows, products (value, row, side of it, row, side of it: a part of an
-entry of J T), of the plan's integers, and where each begins; places of the diagonal's values; offsets into the floats
-and sizes of what movers, matrix, factors, scratch and right hand side take."""
+"""Integers of an island's ties: numbers of movers, rows, movers that rows share, of the plan's integers, and where each
+begins; places of the diagonal's values; offsets into the floats and sizes of what movers, matrix, factors, scratch and
+right hand side take. A mover that rows share: their number n, the floats of each at its side, and the place of the
+value of each with each, n x n."""
 
 EASE = 1e-12
 """Part of the diagonal that is added to it."""
@@ -85,14 +85,21 @@ def factor(floats, ints):
     values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     for k in range(values.size):
         values[k] = 0.0
-    for k in range(ints[PRODUCTS]):
-        at = ints[PRODUCTS_AT] + 5 * k
-        one = ints[ints[ROWS_AT] + ROW_INTS * ints[at + 1] + SCRATCH] + AT_J + 6 * ints[at + 2]
-        other = ints[ints[ROWS_AT] + ROW_INTS * ints[at + 3] + SCRATCH] + AT_T + 6 * ints[at + 4]
-        total = 0.0
-        for c in range(6):
-            total += floats[one + c] * floats[other + c]
-        values[ints[at]] += total
+    at = ints[SHARED_AT]
+    for _ in range(ints[SHARED]):
+        count = ints[at]
+        table = at + 1 + count
+        for i in range(count):
+            one = ints[at + 1 + i] + AT_J
+            for j in range(i, count):
+                other = ints[at + 1 + j] + AT_T
+                total = 0.0
+                for c in range(6):
+                    total += floats[one + c] * floats[other + c]
+                values[ints[table + i * count + j]] += total
+                if j > i:
+                    values[ints[table + j * count + i]] += total
+        at = table + count * count
     for k in range(ints[ROWS]):
         place = ints[ints[DIAGONAL_AT] + k]
         # A row that no mass can meet, as of two parts that are led, has no force.

@@ -119,8 +119,7 @@ def press(y, rate, floats, to, ints, at):
 
 @lean_inlined
 def arm(floats, mover, at):
-    """A place at floats[at:], in a mover's axes from its position, in the world's axes; and its velocity and w x (w x r)
-    against the mover's."""
+    """A place r at floats[at:], in a mover's axes, in the world's; and w x r and w x (w x r) of the mover's spin."""
     rx, ry, rz = turned(floats, mover + AT_R, floats[at], floats[at + 1], floats[at + 2])
     wx, wy, wz = floats[mover + AT_W], floats[mover + AT_W + 1], floats[mover + AT_W + 2]
     sx, sy, sz = cross(wx, wy, wz, rx, ry, rz)

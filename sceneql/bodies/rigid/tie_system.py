@@ -21,7 +21,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     from scipy.sparse import csr_array
 
     from sceneql.bodies.rigid import tie_kernels as kernels
-    from sceneql.bodies.rigid.tie_rows_kernels import MOVED, MOVER, ROW
+    from sceneql.bodies.rigid.tie_rows_kernels import MOVED, ROW
     from sceneql.linear.multifrontal import plan
 
     movers: dict[tuple[int, ...], int] = {}
@@ -41,6 +41,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
             if solved[mover]:
                 of_mover.setdefault(mover, []).append((k, side))
     parts = [(one, other) for some in of_mover.values() for one, other in product(some, some)]
+    scratch = [row[-1] for row in rows]
     own = np.arange(len(rows))
     pattern = csr_array(
         (
@@ -59,22 +60,24 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     def place(row: int, column: int) -> int:
         return int(starts[row] + np.searchsorted(columns[starts[row] : starts[row + 1]], column))
 
-    products = [(place(one[0], other[0]), *one, *other) for one, other in parts]
+    shared = [
+        [len(some), *(scratch[k] + 6 * side for k, side in some), *(place(k, j) for k, _ in some for j, _ in some)]
+        for some in of_mover.values()
+    ]
     planned = plan(pattern)
-    lists = [
+    lists: list[Sequence[int]] = [
         [number for which in movers for number in which],
         [number for row in rows for number in row],
-        [number for each in products for number in each],
+        [number for some in shared for number in some],
         [place(k, k) for k in range(len(rows))],
-        planned.numbers,
+        planned.numbers.tolist(),
     ]
     begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
     sizes = (MOVED * len(movers), len(columns), planned.factors, planned.work + len(rows), len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
-    head = [len(movers), len(rows), begins[0], begins[1], len(products), begins[2], begins[3], begins[4], len(lists[4])]
+    head = [len(movers), len(rows), begins[0], begins[1], len(shared), begins[2], begins[3], begins[4], len(lists[4])]
     head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
-    assert len(head) == kernels.HEAD and len(lists[0]) == MOVER * len(movers)
     assembly.term("tie", f"{KERNELS}:hold", ints)
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
 

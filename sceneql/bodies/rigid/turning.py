@@ -27,7 +27,7 @@ def reserve(assembly: Assembly, bodies: Bodies, rotations: Floats, spins: Floats
     n = bodies.count
     moving = assembly.numbers()[bodies.inverse_at : bodies.inverse_at + n] > 0
     momenta, inverses, principal = np.zeros((n, 3)), np.zeros((n, 6)), np.zeros((n, 7))
-    for k in np.flatnonzero(moving):
+    for k in np.flatnonzero(moving).tolist():
         turn = rotation_matrix(rotations[k])
         momenta[k] = turn @ inertias[k] @ turn.T @ spins[k]
         moments, axes = principal_axes(inertias[k])
@@ -128,14 +128,16 @@ def body_spins(turning: Turning, count: int, state: ModelState) -> Floats:
 
     inverses = unpacked(state.floats[turning.inverse_at : turning.inverse_at + 6 * count].reshape(-1, 6))
     turns = matrices(turning, count, state)
-    return np.einsum("nij,nkj,nk->ni", inverses, turns, momenta(turning, count, state))
+    found: Floats = np.einsum("nij,nkj,nk->ni", inverses, turns, momenta(turning, count, state))
+    return found
 
 
 def spins(turning: Turning, count: int, state: ModelState) -> Floats:
     """(n, 3) angular velocities in the world's axes [rad/s]."""
     import numpy as np
 
-    return np.einsum("nij,nj->ni", matrices(turning, count, state), body_spins(turning, count, state))
+    found: Floats = np.einsum("nij,nj->ni", matrices(turning, count, state), body_spins(turning, count, state))
+    return found
 
 
 def rotation_energy(turning: Turning, count: int, state: ModelState) -> float:

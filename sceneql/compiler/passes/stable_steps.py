@@ -46,7 +46,9 @@ def warn_of_steps(
             continue
         growth = cast(Solver, solver.kind).oscillation
         stable = _stable_steps(growth)
-        damped = any(type(cast(Interaction, tasks[force].kind)).potential is Interaction.potential for force, _ in island.forces)
+        damped = any(
+            type(cast(Interaction, tasks[force].kind)).potential is Interaction.potential for force, _ in island.forces
+        )
         for name, modes in _modes(island, tasks):
             entry = script.sections.get(tasks[name].family, {}).get(name)
             for fastest in _known(modes):

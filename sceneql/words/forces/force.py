@@ -21,8 +21,9 @@ SYMBOLS = ("x", "y", "z", "vx", "vy", "vz", "t", "m")
 class Force(Family):
     """A force by formula, on every mass: three components in N, or minus the gradient of a potential energy in J.
 
-    With `at` it acts at one place, a mass or a point of a rigid body, `at: crate.hook`, which it turns, too. x y z (place [m]), vx vy vz (velocity [m/s]), t (time [s]) and m (mass [kg]) are plain numbers in the formulas. What
-    a force by components does to the masses is counted in the work, so that the energy is conserved with both.
+    With `at` it acts at one place, a mass or a point of a rigid body, `crate.hook`, which it turns, too. x y z (place
+    [m]), vx vy vz (velocity [m/s]), t (time [s]) and m (mass [kg]) are plain numbers in the formulas. What a force by
+    components does to the masses is counted in the work, so that the energy is conserved with both.
     """
 
     components: Annotated[Formula, Symbols(SYMBOLS, dim.FORCE)] | None = field(
@@ -42,7 +43,7 @@ class Force(Family):
         """Two formulas or none, those that are no force, and a place that is none."""
         from sceneql.bodies.point_program import problem
 
-        yield from place_problems(self)
+        yield from place_problems(self.at, self.on is not None)
         if (self.components is None) == (self.potential_ is None):
             yield Problem("a force is said in one way: `components` or `potential`")
         for name, formula, count in (("components", self.components, 3), ("potential_", self.potential_, 1)):

@@ -23,9 +23,9 @@ class Spring(Force):
     """A spring between two places: F = stiffness (l - rest) + damping dl/dt along it (Hooke 1678).
 
     ``from`` and ``to`` are positions of masses, as `cage.corner.position`, or of points of rigid bodies, as
-    `crate.hook`, of any models; one of them may be a place of its own, that of a `motion` too. Half of its energy belongs to each mass; all of it to the only one. The models are
-    solved together. What the damping takes is counted as dissipated, less what moves the place gives. The velocity of
-    a place is the central difference over 0.2 ms.
+    `crate.hook`, of any models; one of them may be a place of its own, that of a `motion` too. Half of its energy
+    belongs to each mass; all of it to the only one. The models are solved together. What the damping takes is counted
+    as dissipated, less what moves the place gives. The velocity of a place is the central difference over 0.2 ms.
     """
 
     mutual: ClassVar[bool] = True

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import PrivateAttr
 
-from sceneql import kinds
 from sceneql.bodies import bodies as masses
 from sceneql.bodies.rigid.body import INERTIA, Body, Made
 from sceneql.kinds import Gives, Model, Problem, Ref, field, quantity_type
@@ -108,7 +107,7 @@ class Rigid(Body, Model):
         from sceneql.bodies.rigid import turning
 
         each = list(self._each.values())
-        made = [body.made(name, assembly) for body in each]
+        made = [body.made(assembly) for body in each]
         self._made = dict(zip(self._each, made, strict=True))
         bodies = masses.reserve(
             name,
@@ -135,7 +134,8 @@ class Rigid(Body, Model):
         from sceneql.shapes.placement import rotation_matrix
 
         bodies = state.bodies
-        assert bodies is not None and bodies.turning is not None
+        assert bodies is not None
+        assert bodies.turning is not None
         if output in masses.BODY_OUTPUTS:
             return masses.read(output, bodies, state)
         name, point, what = self._said(output)
@@ -166,7 +166,8 @@ class Rigid(Body, Model):
         import numpy as np
 
         bodies = state.bodies
-        assert bodies is not None and bodies.turning is not None
+        assert bodies is not None
+        assert bodies.turning is not None
         if output in masses.BODY_OUTPUTS:
             return masses.places(output, bodies)
         name, point, what = self._said(output)
