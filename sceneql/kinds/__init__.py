@@ -76,7 +76,7 @@ from sceneql.kinds.word import (
 FAMILIES: tuple[type[Kind], ...] = (
     Object,
     Model,
-    Force,
+    Interaction,
     Tie,
     Contact,
     Solver,
