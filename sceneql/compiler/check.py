@@ -311,7 +311,9 @@ class _Checker:
                 return Ref("", node.span)
             model, _, body = name.rpartition(".")
             if mark.bodies and name not in self.entries and model in self.entries and self.family(model) == mark.family:
-                return Ref(model, node.span, body)
+                return self._body(node, model, body)
+            if mark.bodies and name in self.entries and self.family(name) == mark.family:
+                return self._body(node, name, "")
             if name in self.entries and self.catalogue.load(self.family_of[name], self.entries[name].word) is None:
                 return None  # its word is reported there
             if name in self.entries and self.family(name) in (mark.family, mark.also):
@@ -329,6 +331,20 @@ class _Checker:
             return None
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
         self.found.error("entry-shape", message, node.span)
+        return None
+
+    def _body(self, node: Scalar, model: str, body: str) -> Ref | None:
+        """One body of a model, or the only one, where there is such a one."""
+        outputs = self.names.outputs_of(model)
+        if outputs is None or self.names.unsure(model):
+            return None  # it is reported there
+        if (f"{body}.position" if body else "position") in outputs:
+            return Ref(model, node.span, body)
+        bodies = list(dict.fromkeys(one.partition(".")[0] for one in outputs if one.endswith(".position")))
+        message = f"'{model}' has no body '{body}'" if body else f"'{model}' is no single body"
+        near = suggestion(body, bodies) if body else None
+        one = f"name one of its bodies, `{model}.{bodies[0]}`" if bodies else "name a model that is one body, or `world`"
+        self.found.error("no-body", message, node.span, help=near or one)
         return None
 
     def copies(self, node: Scalar, mark: Refers, entry: Entry) -> list[str]:

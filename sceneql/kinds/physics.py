@@ -72,6 +72,10 @@ class Model(Kind):
         body, rest = divmod(int(found[0]) - state.bodies.position_at, 3)
         return None if rest or not 0 <= body < state.bodies.count else (body, (0.0, 0.0, 0.0))
 
+    def remark(self, state: ModelState) -> str:
+        """What `explain` says of it at the start of the run, as how exact its numbers are."""
+        return ""
+
     def sums_up(self, output: str) -> bool:
         """Whether an output is a sum over the run that the state holds: values that read it have no slopes."""
         return output in self.gives and self.gives[output].tally
@@ -273,6 +277,8 @@ class Solver(Kind):
     family: ClassVar[str] = "solvers"
     fields_only: ClassVar[bool] = False
     """Whether it marches fields on grids and nothing else."""
+    refuses_ties: ClassVar[str] = ""
+    """Why it does not march bodies that ties hold; empty where it does."""
 
     on: tuple[ModelRef, ...] | None = field("The models it marches; by default all.", None)
 

@@ -307,8 +307,10 @@ def march(
             impact(t1, y1, -1, floats, ints)
             if floats[channels.CHANGED] != 0.0:
                 rate(t1, y1, rate1, floats, ints)
-        if counts[SETTLES] > 0 and settle(t0, t1, y0, rate0, y1, floats, ints):
-            rate(t1, y1, rate1, floats, ints)
+        if counts[SETTLES] > 0:
+            floats[channels.SETTLED] = counts[LOCAL] == 0 and counts[ALTERED] == 0 and counts[PENDING] < 0
+            if settle(t0, t1, y0, rate0, y1, floats, ints):
+                rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1
         counts[STEPS] += 1

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from sceneql.compiler.catalogue import ROOT, Catalogue
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Camera, Contact, Interaction, Object, Output, Overlay, Picture
+from sceneql.kinds import Camera, Contact, Interaction, Model, Object, Output, Overlay, Picture, Tie
 
 if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
@@ -102,8 +102,11 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
     bound = stability(run.march, run.methods.bounded_by or run.solver)
     return {
         "models": list(island.models),
-        "forces": sorted({force for force, _ in island.forces}),
+        "model_remarks": _model_remarks(graph, run),
+        "forces": sorted({force for force, _ in island.forces if not isinstance(graph.tasks[force].kind, Tie)}),
         "force_remarks": _remarks(graph, run),
+        "ties": sorted({force for force, _ in island.forces if isinstance(graph.tasks[force].kind, Tie)}),
+        "redundant": _redundant(run),
         "contacts": sorted({contact for contact, _, _ in island.contacts}),
         "contact_mode": run.assembly.contact_mode,
         "contact_why": _contact_why(graph, run),
@@ -154,6 +157,28 @@ def _remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
     return {force: remark for force, remark in found.items() if remark}
 
 
+def _model_remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
+    """Remarks of models at the start."""
+    from sceneql.system import ModelState
+
+    march, found = run.march, {}
+    for model in run.island.models:
+        y, ints = march.system.y, run.assembly.remembered(model)
+        state = ModelState(0.0, y, y, march.floats, run.bodies.get(model), ints)
+        found[model] = cast(Model, graph.tasks[model].kind).remark(state)
+    return {model: remark for model, remark in found.items() if remark}
+
+
+def _redundant(run: IslandRun) -> list[int]:
+    """Conditions of ties at the start, and how many of them the others imply; none without ties."""
+    if not run.assembly.ties:
+        return []
+    from sceneql.bodies.rigid.tie_system import redundant
+
+    run.march.rate(0.0, run.march.system.y)
+    return list(redundant(run.assembly.ties, run.march.floats))
+
+
 def _contact_remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
     """Remarks of contacts at the start."""
     from sceneql.system import ModelState
@@ -193,6 +218,11 @@ def text(plan: dict[str, Any]) -> str:
         )
     for island in plan["islands"]:
         lines += ["", f"solved together: {', '.join(island['models'])} ({island['states']} numbers)"]
+        lines += [f"  {model}: {remark}" for model, remark in island["model_remarks"].items()]
+        if island["ties"]:
+            rows, more = island["redundant"]
+            twice = f", of which the others imply {more}: these share the least forces" if more else ""
+            lines.append(f"  ties: {', '.join(island['ties'])}, {rows} conditions{twice}")
         if island["forces"]:
             lines.append(f"  forces: {', '.join(island['forces'])}")
         lines += [f"    {force}: {remark}" for force, remark in island["force_remarks"].items()]

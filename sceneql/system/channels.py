@@ -5,7 +5,7 @@ memories of words follow. Where a solver needs slopes, three arrays of the state
 where they are.
 """
 
-RATES, STEP_END, HOLDS, CHANGED, DEFINITE, STAGE, STAGES, HEAD = range(8)
+RATES, STEP_END, HOLDS, CHANGED, SETTLED, DEFINITE, STAGE, STAGES, HEAD = range(9)
 """
 RATES: how many times the rate was evaluated.
 
@@ -16,6 +16,9 @@ HOLDS: not 0 where a body rests on a local contact. In the next step the contact
 floats for the state at the step's end, so the rate must be evaluated there.
 
 CHANGED: not 0 where an exact contact, updating its resting pairs at the end of a step, changed the state or a flag.
+
+SETTLED: not 0 where nothing but what settles it (Assembly.after_step of samples) has changed the state since the end of
+the last step: a method of several steps goes on with what it remembers.
 
 DEFINITE: above 0 while Newton's method evaluates slopes. A force that occurs in its own slopes is then the one that the
 latest Newton update predicted (BEFORE, AFTER). Finite far from a solution, where the matrix is to be positive definite:

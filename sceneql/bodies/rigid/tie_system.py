@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from sceneql.system import Led, Place
 
 if TYPE_CHECKING:
+    from sceneql.frame import Floats
     from sceneql.system import Assembly, Mover, Tied
 
 KERNELS = "sceneql.bodies.rigid.tie_kernels"
@@ -80,6 +81,28 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     assembly.term("tie", f"{KERNELS}:hold", ints)
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
+
+
+def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int]:
+    """Conditions of ties, and how many of them the others imply, by what the last evaluation of the rate wrote."""
+    import numpy as np
+
+    from sceneql.bodies.rigid.tie_rows_kernels import AT_J, AT_T, ROW
+
+    of_mover: dict[tuple[int, ...], list[tuple[int, int, int]]] = {}
+    count = 0
+    for tie in ties:
+        for k in range(len(tie.rows)):
+            for side, mover in enumerate(tie.movers):
+                of_mover.setdefault(integers(mover), []).append((count + k, tie.scratch_at + ROW * k, 6 * side))
+        count += len(tie.rows)
+    whole = np.zeros((count, count))
+    for some in of_mover.values():
+        rows = [row for row, _, _ in some]
+        j, t = (np.array([floats[to + at + side :][:6] for _, to, side in some]) for at in (AT_J, AT_T))
+        whole[np.ix_(rows, rows)] += j @ t.T
+    sizes = np.sqrt(np.maximum(np.diag(whole), 1e-300))
+    return count, count - int(np.linalg.matrix_rank(whole / np.outer(sizes, sizes), tol=1e-9, hermitian=True))
 
 
 def integers(mover: Mover) -> tuple[int, ...]:

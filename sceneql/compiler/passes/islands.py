@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from sceneql.compiler.passes.reads import reads
 from sceneql.compiler.passes.touchable import no_collider, touchable
 from sceneql.graph import Island, Task
-from sceneql.kinds import Contact, Interaction, Model, Object, Solver
+from sceneql.kinds import Contact, Interaction, Model, Object, Solver, Tie
 from sceneql.quantities.diagnostic import Diagnostics, Note
 
 
@@ -35,6 +35,12 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         if targets and not any(getattr(tasks[name].kind, "has_bodies", False) for name in targets):
             text = f"{tasks[force].word} acts on masses, and there are none in {' and '.join(targets)}"
             found.error("no-mass", text, tasks[force].span)
+    driver = {name: t.name for t in models if isinstance(t.kind, Model) for name in t.kind.drives()}
+    for task in tasks.values():
+        for ref in task.kind.between if isinstance(task.kind, Tie) else ():
+            if ref.name in driver:
+                text = f"'{ref.name}' is moved by '{driver[ref.name]}'"
+                found.error("no-body", text, ref.span, help=f"name that: `{driver[ref.name]}`")
     contacts = {t.name: _touching(t, tasks, names, found) for t in tasks.values() if isinstance(t.kind, Contact)}
     for task in models:
         for other in reads(task.name, tasks):
@@ -61,6 +67,13 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
     for first in [name for name in names if find(name) == name]:
         group = tuple(name for name in names if find(name) == first)
         solver, reason = _solver(group, tasks, found)
+        tied = [f for f, targets in forces.items() if isinstance(tasks[f].kind, Tie) and set(targets) & set(group)]
+        marching = tasks[solver].kind
+        if tied and isinstance(marching, Solver) and marching.refuses_ties:
+            word = tasks[solver].word
+            message = f"{word} does not march bodies that ties hold, as '{tied[0]}' does: {marching.refuses_ties}"
+            help = "choose auto, rk4, dop853 or verlet for them"
+            found.error("refuses-ties", message, tasks[solver].span, help=help)
         result.append(
             Island(
                 models=group,

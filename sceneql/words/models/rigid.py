@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from sceneql.system import Assembly, Bodies, ModelState
 
+MOST_TOLD = 6
+"""Bodies whose masses `explain` tells."""
 TURN, PLACE = Type((4,)), Type((3,), dim.LENGTH)
 
 ONE: Mapping[str, Gives] = {
@@ -99,6 +101,16 @@ class Rigid(Body, Model):
             for name, body in self._each.items()
             if body.mass is not None
         }
+
+    def remark(self, state: ModelState) -> str:
+        """The masses, and how exact those are that are integrals over cells."""
+        heaviest = sorted(self._made.items(), key=lambda one: -one[1].mass)
+        told = ", ".join(
+            f"{name or 'it'} {made.mass:.6g} kg" + (f" (within {made.error:.1g} of it)" if made.error > 0 else "")
+            for name, made in heaviest[:MOST_TOLD]
+        )
+        more = len(heaviest) - MOST_TOLD
+        return f"{told} and {more} lighter" if more > 0 else told
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the bodies."""

@@ -12,6 +12,7 @@ the slope at the end; the state before; start and end of the latest step; base; 
 
 import math
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear.newton_kernels import MEMORY, newton, norm
 from sceneql.linear.stage_kernels import solve_stage
@@ -35,9 +36,9 @@ def same(x, y):
 
 
 @lean_inlined
-def remember(t, y0, before, start, end, settings, numbers):
+def remember(t, y0, before, start, end, settings, numbers, settled):
     """Find out whether this step continues the latest (whose start is then the previous state) or repeats it."""
-    if t == settings[END] and same(y0, end):
+    if t == settings[END] and (settled or same(y0, end)):
         for k in range(y0.size):
             before[k] = start[k]
         settings[LENGTH] = settings[END] - settings[START]
@@ -59,7 +60,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     jacobian = work[ARRAYS * n : ARRAYS * n + numbers[ROOM]]
     store = work[ARRAYS * n + numbers[ROOM] :]
     scales, plan = settings[SCALES_AT:], numbers[HEAD:]
-    remember(t, y0, before, start, end, settings, numbers)
+    remember(t, y0, before, start, end, settings, numbers, floats[channels.SETTLED] != 0.0)
     w = h / settings[LENGTH] if numbers[HAS_BEFORE] == 1 else 0.0
     back = w * w / (1.0 + 2.0 * w)
     a = h * (1.0 + w) / (1.0 + 2.0 * w)

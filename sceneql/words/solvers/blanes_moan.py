@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds import FixedTime, Solver, field
 from sceneql.stepping.splitting import BLANES_MOAN
@@ -20,6 +20,8 @@ class BlanesMoan(Solver):
     without a velocity, its order is 2. Source: Blanes & Moan (2002), J. Comput. Appl. Math. 142, 313-330, table 3,
     SRKN6b.
     """
+
+    refuses_ties: ClassVar[str] = "its drifts are free motions, and some of them go back in time"
 
     step: FixedTime = field("Length of a step.", "1 ms", above=0)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds import FixedTime, Solver, field
 from sceneql.kinds.eigenvalues import eigenvalues
@@ -27,6 +27,8 @@ class Boris(Solver):
     Source: Boris (1970), Proc. 4th Conf. Numerical Simulation of Plasmas, 3-67; Birdsall & Langdon, Plasma Physics via
     Computer Simulation (1985), section 4-4.
     """
+
+    refuses_ties: ClassVar[str] = "its kicks and turns are those of free charges"
 
     step: FixedTime = field("Length of a step.", "1 ms", above=0)
 

@@ -12,6 +12,7 @@ step that does not start at the previous one's end starts without them.
 
 import math
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.system.signatures_kernels import DENSE, STEP
@@ -58,10 +59,10 @@ def same(a, b):
 
 
 @lean_inlined
-def remember(t, y0, work, vectors):
+def remember(t, y0, work, vectors, settled):
     """Keep the last try as the previous step if it ended at (t, y0); clear the memory at any other new start."""
     n = y0.size
-    if t > work[BEGAN] and same(y0, vectors[END * n : (END + 1) * n]):
+    if t > work[BEGAN] and (settled or same(y0, vectors[END * n : (END + 1) * n])):
         for k in range(14 * n):
             vectors[LAST * n + k] = vectors[B * n + k]
         for k in range(n):
@@ -193,7 +194,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     m, p, groups = numbers[PUSHED], numbers[POSITIONS], numbers[GROUPS]
     watched = numbers[ENTRIES - 1 + m + p + groups]
     vectors = work[HEAD:]
-    remember(t, y0, work, vectors)
+    remember(t, y0, work, vectors, floats[channels.SETTLED] != 0.0)
     work[TRIED] = h
     if work[BEFORE] > 0.0 and h < LONGEST_RATIO * work[BEFORE]:
         predict(h / work[BEFORE], n, m, vectors, settings)

@@ -19,8 +19,9 @@ class Verlet(Solver):
     the positions alone: the error of the energy stays bounded for ever, and an undamped oscillation is stable up to
     h = 2/omega. Forces that depend on the velocity (drag, damping, magnetism) see v0 + h a: the order stays 2, but
     the method is no longer symplectic or reversible. States without a velocity advance by Heun's method with the slope
-    handed on. Source: Verlet (1967), Phys. Rev. 159, 98-103; Swope, Andersen, Berens & Wilson (1982), J. Chem. Phys.
-    76, 637-649, eq. 5; Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.4.
+    handed on. Rigid bodies drift by their exact free rotation; ties are closed behind each step, with order 2.
+    Source: Verlet (1967), Phys. Rev. 159, 98-103; Swope, Andersen, Berens & Wilson (1982), J. Chem. Phys. 76, 637-649,
+    eq. 5; Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.4.
     """
 
     step: FixedTime = field("Length of a step.", "1 ms", above=0)
