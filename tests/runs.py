@@ -11,12 +11,15 @@ from sceneql.quantities.diagnostic import ScriptError
 from sceneql.run.run import Run
 
 
-def watch(folder: Path, script: str, times: Sequence[float], *outputs: str) -> list[list[Any]]:
-    """For every instant the values of the outputs, written as `part.output`."""
+def watch(folder: Path, script: str, times: Sequence[float], *outputs: str, pruned: bool = True) -> list[list[Any]]:
+    """For every instant the values of the outputs, written as `part.output`.
+
+    ``pruned``: without what no output of the script needs.
+    """
     path = folder / "scene.yaml"
     path.write_text(script, encoding="utf-8")
     rows = []
-    for moment in Run(load(path)).moments(times):
+    for moment in Run(load(path, pruned=pruned)).moments(times):
         rows.append([moment.read(*output.split(".", 1)) for output in outputs])
     return rows
 

@@ -343,7 +343,9 @@ class _Checker:
         bodies = list(dict.fromkeys(one.partition(".")[0] for one in outputs if one.endswith(".position")))
         message = f"'{model}' has no body '{body}'" if body else f"'{model}' is no single body"
         near = suggestion(body, bodies) if body else None
-        one = f"name one of its bodies, `{model}.{bodies[0]}`" if bodies else "name a model that is one body, or `world`"
+        one = (
+            f"name one of its bodies, `{model}.{bodies[0]}`" if bodies else "name a model that is one body, or `world`"
+        )
         self.found.error("no-body", message, node.span, help=near or one)
         return None
 

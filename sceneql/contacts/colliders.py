@@ -15,7 +15,7 @@ from sceneql.kinds import Collider, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
-    from sceneql.system import Assembly
+    from sceneql.system import Assembly, Bodies
 
 OFTEN = 1 / 240
 """Longest adaptive step [s] where contacts act at the ends of steps or objects accelerate: the error estimate sees
@@ -38,6 +38,14 @@ def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...
         heads += [*head, at + len(refs) * layout.OBJECT + len(tail)]
         tail += data
     return (*heads, *tail)
+
+
+def must_be_points(bodies: Bodies, assembly: Assembly) -> None:
+    """Raise ScriptError for rigid bodies: masses alone collide."""
+    if bodies.turning is not None:
+        message = f"'{bodies.model}' is rigid, and rigid bodies do not collide yet: masses do"
+        help = "name under `between` what may touch, without it"
+        raise ScriptError([Diagnostic("no-collider", message, assembly.line(), help)])
 
 
 def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assembly: Assembly) -> None:

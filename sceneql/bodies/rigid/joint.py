@@ -208,7 +208,8 @@ def point_of(
             message = (
                 f"'{ref.name}{'.' if ref.within else ''}{ref.within}' is a mass, {away:.3g} m away from this place"
             )
-            raise ScriptError([Diagnostic("ties-apart", message, None if value is None else value.span)])
+            help = "leave the place out: a tie holds a mass where that is"
+            raise ScriptError([Diagnostic("ties-apart", message, None if value is None else value.span, help)])
     return found
 
 
@@ -225,12 +226,7 @@ def must_turn(refs: Sequence[Ref], sides: Sequence[Side]) -> None:
 
 
 def axis_of(value: Value, assembly: Assembly) -> Floats:
-    """A unit vector of the world at the start. Raises ScriptError for one of length 0."""
-    import numpy as np
-
+    """A unit vector of the world at the start."""
     from sceneql.shapes.placement import unit_vector
 
-    axis = np.asarray(assembly.initial(value), dtype=np.float64)
-    if not axis.any():
-        raise ScriptError([Diagnostic("no-length", "an axis of length 0 has no direction", value.span)])
-    return unit_vector(axis)
+    return unit_vector(assembly.initial(value))

@@ -51,7 +51,7 @@ begins; places of the diagonal's values; offsets into the floats and sizes of wh
 right hand side take. A mover that rows share: their number n, the floats of each at its side, and the place of the
 value of each with each, n x n."""
 
-EASE = 1e-12
+EASE = 1e-9
 """Part of the diagonal that is added to it."""
 LEFT = 1e-13
 """What may be left of an equation, against the numbers that it is a sum of."""

@@ -66,9 +66,11 @@ class MutualCollision(Contact):
         import numpy as np
 
         from sceneql.bodies.neighbors import table
-        from sceneql.contacts.colliders import OFTEN, surfaces
+        from sceneql.contacts.colliders import OFTEN, must_be_points, surfaces
         from sceneql.contacts.mutual.sphere_pair_kernels import BODY, HEAD, INSTANT, MOST_WARM, PAIR
 
+        for bodies in everyone:
+            must_be_points(bodies, assembly)
         rows = [
             (
                 at.position_at + 3 * k,
