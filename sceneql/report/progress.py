@@ -1,4 +1,4 @@
-"""A progress bar with what is being done, on a terminal (elsewhere a line a minute); raises interrupts that got lost."""
+"""A progress bar with what is being done, or without a terminal a line a minute; it raises interrupts that got lost."""
 
 from __future__ import annotations
 
