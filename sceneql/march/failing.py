@@ -10,7 +10,7 @@ import numpy as np
 from sceneql.failure import RunFailure
 from sceneql.march import march_kernels as kernels
 from sceneql.march.blame import culprit
-from sceneql.march.pace import HOPELESS
+from sceneql.march.pace import MOST_STEPS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -112,7 +112,7 @@ def _hopeless(march: Stopped, step: float) -> RunFailure:
     entry = int(np.argmax(np.abs(march.rate)))
     name = march.system.name(entry)
     told = f"{f'the rate of {name}' if name else 'a rate'} is {march.rate[entry]:.3g} where it is {march.y[entry]:.3g}"
-    text = f"more than {HOPELESS:.0e} steps as short as {step:.2g} s are left to the next instant: {told}"
+    text = f"more than {MOST_STEPS:.0e} steps as short as {step:.2g} s are left to the next instant: {told}"
     return blamed(march, entry, f"{text}; a number in it is too large, or a tolerance too small")
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sceneql.doing import Deed
 
-HOPELESS = 1e12
-"""Steps still needed to the next instant from which on a march is given up: days, even for the smallest island."""
+MOST_STEPS = 1e11
+"""Most steps of a run, or of the rest of a way to the next instant: those of a single mass take half an hour."""
 LOOKS, FEWEST = 3, 10_000
 """Looks in a row, and steps meanwhile, that must find so many: the first steps of a stiff start are as short."""
 GROWING = 1.5
@@ -39,7 +39,7 @@ class Pace:
             f"solving, at {t:.6g} s: steps of {self._mean:.2g} s, to the next instant"
             f" {_told(left * (now - at) / (steps - before))}"
         )
-        if grown or left < HOPELESS:
+        if grown or left < MOST_STEPS:
             self._looks, self._since = 0, steps
         else:
             self._looks += 1
