@@ -7,6 +7,7 @@ Exit codes: 0 ok, 1 run failed, 2 usage, 3 script invalid, 4 gallery differs, 5 
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -36,6 +37,7 @@ def main() -> None:
     """The entry point of the program: exceptions become messages and exit codes."""
     interrupts.end_at_once()
     _without_plugins()
+    _without_overflows()
     try:
         with interrupts.raised() as interrupted:
             code = _run(interrupted)
@@ -75,6 +77,12 @@ def _without_plugins() -> None:
     loader = ModuleType("pydantic.plugin._loader")
     loader.get_plugins = tuple  # type: ignore[attr-defined]  # a module of our own making
     sys.modules[loader.__name__] = loader
+
+
+def _without_overflows() -> None:
+    """Hide NumPy's warnings of overflows: parts that have no finite value tell so themselves, at their place."""
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore", RuntimeWarning)
 
 
 def _failure(error: Exception) -> int:

@@ -10,26 +10,28 @@ LONG = 0.5
 """Seconds after which it is worth showing: what takes less flickers."""
 
 
-class _Deed:
+class Deed:
+    """What is being done; ``what`` may tell more while it goes on."""
+
     def __init__(self, what: str) -> None:
         self.what, self.since = what, time.monotonic()
 
 
-_deeds: list[_Deed] = []
+_deeds: list[Deed] = []
 
 
 @contextmanager
-def doing(what: str) -> Iterator[None]:
+def doing(what: str) -> Iterator[Deed]:
     """Say what the block does, as ``filling bone``. Blocks may lie within one another, and on several threads."""
-    deed = _Deed(what)
+    deed = Deed(what)
     _deeds.append(deed)
     try:
-        yield
+        yield deed
     finally:
         _deeds.remove(deed)
 
 
-def now() -> str:
-    """The innermost of what has been done for longer than LONG; empty where nothing has."""
-    begun = time.monotonic() - LONG
+def now(longer: float | None = None) -> str:
+    """The innermost of what has been done for longer than so many seconds, by default LONG; empty where nothing has."""
+    begun = time.monotonic() - (LONG if longer is None else longer)
     return next((deed.what for deed in reversed([*_deeds]) if deed.since <= begun), "")

@@ -44,6 +44,8 @@ def rendered(tmp_path, entry):
         ("blobby: {points: [1e200 0 0 m, -1e200 0 0 m]}", "more than 1e.100"),
         ("blobby: {points: [1e11 0 0 m]}", "numbers are 1.5e-05 m apart"),
         ("torus: {position: 0 1e11 0 m}", "numbers are 1.5e-05 m apart"),
+        ("blobby: {skeleton: [{polyline: [0 0 0 m, 0 1e20 0 m]}]}", "radius reaches 1e.20 m away from the origin"),
+        ("blobby: {skeleton: [{spline: [0 0 0 m, 1 0 0 m], radius: [1 m, 0.19 Pm]}]}", "has a radius of .* m apart"),
         ("blobby: {points: [0 0 0 m, 1 0 0 m], weight: [1e308, 1e308]}", "more than 1e.100"),
         ("blobby: {points: [0 0 0 m], threshold: 1e-300}", "at least 1e-09"),
         ("blobby: {skeleton: [{radius: 1 m}]}", "one of point, points"),

@@ -207,6 +207,10 @@ def test_marks_and_controls_are_drawn_on_one_line(text):
     [
         ("models: {a: {diffusion: {size: 1 1e308 m, cell: 1 mm, coefficient: '1'}}}", "limit-refused"),
         ("models: {a: {diffusion: {size: 1 1e-300 m, cell: 1 mm, coefficient: '1'}}}", "a side is at least 1e-100 m"),
+        (
+            "objects: {o: sphere}\nmodels: {a: {diffusion: {domain: o, cell: 1e-300 m, coefficient: '1'}}}",
+            "a cell is at least 1e-100 m",
+        ),
         ("models: {a: {diffusion: {size: 1 1 m, cell: 1 m, coefficient: [1]}}}", "coefficient is one number"),
         (
             "models: {a: {diffusion: {size: 1 1 m, cell: 1 m, coefficient: 1, initial: [1, 2]}}}",

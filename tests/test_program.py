@@ -54,6 +54,12 @@ def test_check_tells_the_mistakes_of_all_variants(tmp_path):
     assert said.index("radus") < said.index("1 s")
 
 
+def test_no_library_warns_of_numbers_that_are_too_large(tmp_path):
+    script = "objects: {spring: {coil: {from: 0 0 0 m, to: 1e300 0 0 m}}}\noutputs: {still: {image: {size: 16 9}}}\n"
+    (tmp_path / "s.yaml").write_text(script)
+    assert sceneql(tmp_path, "render", "s.yaml").startswith("made s.png\nrun ")
+
+
 def test_no_folder_is_made_for_a_path_that_was_named(tmp_path):
     (tmp_path / "still.yaml").write_text(STILL)
     assert "there is no folder nowhere" in sceneql(tmp_path, "render", "still.yaml", "-o", "nowhere/x.png", code=1)

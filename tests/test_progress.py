@@ -8,7 +8,8 @@ from contextlib import suppress
 
 import pytest
 
-from sceneql.doing import doing, now
+from sceneql.doing import Deed, doing, now
+from sceneql.march.pace import Pace
 from sceneql.report.progress import bar
 
 
@@ -61,3 +62,29 @@ def test_the_innermost_of_what_takes_long_is_told(monkeypatch):
             assert now() == "filling bone"
         assert now() == "running ahead"
     assert now() == ""
+
+
+def test_what_takes_minutes_is_told_in_a_line_where_there_is_no_terminal(monkeypatch, capsys):
+    monkeypatch.setattr("sceneql.report.progress.LINES", 0.01)
+    monkeypatch.setattr("sceneql.report.progress.LONG", 0.0)
+    told = ""
+    with bar("film"), doing("filling bone"):
+        while not told:
+            told = capsys.readouterr().err
+    assert told.splitlines()[0] == "film: filling bone"
+
+
+def test_a_march_tells_its_steps_and_when_it_will_be_at_the_next_instant():
+    deed = Deed("solving")
+    pace = Pace(deed, 1.0, 0.0, 0)
+    assert not pace.hopeless(1e-9, 1_000_000)
+    assert "at 1e-09 s: steps of 1e-15 s, to the next instant" in deed.what
+
+
+@pytest.mark.parametrize(("growth", "hopeless"), [(1.0, True), (2.0, False)])
+def test_only_a_march_whose_steps_stay_too_short_is_given_up(growth, hopeless):
+    pace, t, given_up = Pace(Deed("solving"), 1.0, 0.0, 0), 0.0, False
+    for look in range(1, 8):
+        t += 20_000 * 1e-15 * growth**look
+        given_up = given_up or pace.hopeless(t, 20_000 * look)
+    assert given_up == hopeless

@@ -68,6 +68,28 @@ def test_a_singularity_is_told_from_a_tolerance_that_rounding_exceeds(tmp_path, 
         island(tmp_path, script, "gauss_radau15" if why == "rounding" else "auto", 2).march.advance(2.0)
 
 
+def test_steps_that_never_come_to_the_next_instant_are_told_soon(tmp_path, monkeypatch):
+    monkeypatch.setattr("sceneql.march.march.ENTRIES_A_CALL", 100_000)
+    fast = "models: {m: {equations: {start: {a: 1, b: 0}, rate: {a: 1e16*b/(1 s), b: -1e16*a/(1 s)}}}}"
+    with pytest.raises(RunFailure, match=r"as short as .* s are left .*: the rate of [ab] is .* too large"):
+        island(tmp_path, fast, "dopri5").march.advance(1.0)
+
+
+def test_steps_that_are_short_at_first_alone_go_on(tmp_path):
+    """A rate of 1e14/s that dies out within 1e-12 s."""
+    script = "models: {m: {equations: {start: {a: 1}, rate: {a: -1e14*a*exp(-1e14*time)}}}}"
+    y, _ = island(tmp_path, script, "dopri5").march.advance(1.0)
+    assert y == pytest.approx(np.exp(-1.0), rel=1e-3)
+
+
+@pytest.mark.parametrize("damping", ["1e300 %", "1e308 %"])
+def test_a_first_step_that_vanishes_is_told(tmp_path, damping):
+    cloth = f"size: 1 1 m, cells: 2 2, stretch: 800 N/m, damping: {damping}, pins: {{top_left: {{}}}}"
+    script = f"models: {{m: {{cloth: {{{cloth}}}}}}}\nforces: [gravity]"
+    with pytest.raises(RunFailure, match="below the resolution of time"):
+        island(tmp_path, script, "auto").march.advance(1.0)
+
+
 @pytest.mark.parametrize(("tolerance", "name"), [(1e-3, "dopri5"), (1e-4, "dop853"), (1e-8, "dop853")])
 def test_auto_takes_order_8_where_its_tolerance_is_tight(tmp_path, tolerance, name):
     script = "models: {m: {equations: {start: {a: 1, a': 0}, rate: {a'': -a}}}}"

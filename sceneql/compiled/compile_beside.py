@@ -85,7 +85,7 @@ class _Told(Listener):
     """Says while a function is compiled that it is."""
 
     def __init__(self) -> None:
-        self._open: list[AbstractContextManager[None]] = []
+        self._open: list[AbstractContextManager[object]] = []
 
     def on_start(self, event: Any) -> None:
         """A compilation begins, perhaps within another one."""

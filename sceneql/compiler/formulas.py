@@ -9,7 +9,7 @@ from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
 from sceneql.compiler.values import origin, parsed_text
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
-from sceneql.quantities.bind import bind
+from sceneql.quantities.bind import SECONDS, bind
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, suggestion
 from sceneql.quantities.dimension import ANGLE, PERCENTAGE, PLAIN, Dimension
 from sceneql.quantities.expression import Expr, Link, Symbol, Type, Vector, walk
@@ -68,6 +68,8 @@ def read_formula(
         lost = parts[0] in names.broken
         if parts[0] not in names.defines and parts[0] not in CONSTANTS and len(parts) == 1 and not lost:
             help = suggestion(parts[0], [*free, *names.defines]) or "free here are " + ", ".join(sorted(free))
+            if parts[0] == "time" and "t" in free:
+                help = SECONDS
             return Diagnostic("unknown-name", f"nothing is called '{parts[0]}'", span, help)
         expr = names.lookup(parts, span)
         return expr if expr is None or isinstance(expr, Diagnostic) else names.plain(expr)

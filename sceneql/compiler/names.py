@@ -30,17 +30,20 @@ class Parsed:
     """The trees of texts, by their nodes: the variants of a script share the nodes that none of them replaces."""
 
     def __init__(self) -> None:
-        self._trees: dict[int, tuple[Node, Expr, Expr | None]] = {}
+        self._trees: dict[int, tuple[Node, Expr, bool, Expr | None]] = {}
 
     def tree(self, node: Scalar, text: str, lookup: Lookup, found: Diagnostics) -> Expr | None:
         """The bound tree of a text, or None after reporting what is wrong with it. Raises ScriptError."""
         known = self._trees.get(id(node))
-        expr = parse_value(text, node.content) if known is None else known[1]
-        if known is not None and known[2] is not None:
-            return known[2]
+        if known is None:
+            expr = parse_value(text, node.content)
+            alone = not any(isinstance(part, Name) for part in each_once(expr))
+        else:
+            _, expr, alone, bound = known
+            if bound is not None:
+                return bound
         bound = bind(expr, lookup, found)
-        alone = bound is not None and not any(isinstance(part, Name) for part in each_once(expr))
-        self._trees[id(node)] = node, expr, bound if alone else None
+        self._trees[id(node)] = node, expr, alone, bound if alone else None
         return bound
 
 

@@ -34,7 +34,7 @@ FLUX = Annotated[Formula, Symbols(ANY, dim.VELOCITY, of_field=True)]
 SOURCE = Annotated[Formula, Symbols(ANY, dim.FREQUENCY, of_field=True)]
 MEASURES = ("field", "concentration", "temperature", "centers", "mass", "inflow", "max", "min", "mean")
 SHORTEST = 1e-100
-"""[m] Least side of a domain: rates of spreading over shorter ones overflow."""
+"""[m] Least side of a domain, or of a cell: rates of spreading over shorter ones overflow."""
 SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]
 
 
@@ -196,6 +196,9 @@ class Medium(Model):
                 yield Problem(f"a probe cannot be called '{name}'", ("probes", name), at_key=True)
             if len(place) not in (2, 3):
                 yield Problem("a probe stands at two or three numbers, `0.5 0.2 m`", ("probes", name))
+        if self.cell < SHORTEST:
+            yield Problem(f"a cell is at least {SHORTEST:g} m", ("cell",), code="out-of-range")
+            return
         if self.size is None:
             return
         if self.drift is not None:

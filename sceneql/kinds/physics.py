@@ -270,6 +270,11 @@ class Methods:
     bounded_by: Solver | None = dataclasses.field(default=None, compare=False)
     """The word whose `growth` tells the stability of ``first``, where that is not ``solver``'s."""
 
+    @property
+    def bounding(self) -> Solver:
+        """The word whose `growth` tells the stability of ``first``."""
+        return self.bounded_by or self.solver
+
 
 class Solver(Kind):
     """Marches a system in time. Sees only its rate, its Jacobian, its invariants and its events."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from sceneql.quantities.dimension import Dimension
@@ -39,16 +39,25 @@ class Value(Checked):
 
     expr: Expr
     span: Span | None = None
+    _read: tuple[Symbol | Link, ...] | None = field(default=None, init=False, repr=False, compare=False)
+    """The times and outputs that it reads, once they are asked for."""
 
     @property
     def constant(self) -> bool:
         """Whether it depends neither on time nor on another part."""
-        return not any(isinstance(node, Symbol | Link) for node in walk(self.expr))
+        return not self._reads()
 
     @property
     def links(self) -> tuple[Link, ...]:
         """The outputs of other parts that it reads."""
-        return tuple(node for node in walk(self.expr) if isinstance(node, Link))
+        return tuple(node for node in self._reads() if isinstance(node, Link))
+
+    def _reads(self) -> tuple[Symbol | Link, ...]:
+        if self._read is None:
+            read = tuple(node for node in walk(self.expr) if isinstance(node, Symbol | Link))
+            object.__setattr__(self, "_read", read)
+            return read
+        return self._read
 
     def number(self) -> Any:
         """The float, or nested tuple of floats, of a constant value, in SI."""

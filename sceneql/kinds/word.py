@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, Any, ClassVar, Literal, Self, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, model_validator
@@ -47,6 +48,12 @@ def field(
     if default is REQUIRED:
         return Field(description=doc, json_schema_extra=extra)
     return Field(default=default, description=doc, json_schema_extra=extra)
+
+
+@cache
+def of_default(text: str) -> Value:
+    """The Value of a default's text, read once."""
+    return literal(text)
 
 
 def literal(text: str, place: Span | None = None) -> Value:
@@ -138,7 +145,7 @@ def read_default(info: Any) -> Any:
         return info.default
     mark, annotation = grammar_of(info)
     if mark is not None:
-        value = literal(text)
+        value = of_default(text)
         return value if annotation is Value else value.number()
     return tuple(map(read_default, items_of(info))) if isinstance(info.default, tuple) else info.default
 

@@ -10,6 +10,7 @@ import numpy as np
 from sceneql.failure import RunFailure
 from sceneql.march import march_kernels as kernels
 from sceneql.march.blame import culprit
+from sceneql.march.pace import MOST_STEPS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -63,6 +64,8 @@ def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure
     control = march.control
     if status == kernels.STUCK:
         return blamed(march, 0, MESSAGES[status])
+    if status == kernels.PAUSED:
+        return _hopeless(march, ahead)
     if status == kernels.STEP_TOO_SMALL:
         return _without_step(march, entry)
     if status == kernels.NOT_FINITE:
@@ -102,6 +105,15 @@ def _without_step(march: Stopped, entry: int) -> RunFailure:
         return blamed(march, at, text.format(f"a singularity, where {_rate_of(march, at)} no bound"))
     limit = f"{march.control.tolerance:g}"
     return blamed(march, entry, text.format(f"rounding alone makes larger errors than its {limit}; take a larger one"))
+
+
+def _hopeless(march: Stopped, step: float) -> RunFailure:
+    """Steps have been so short for so long that the march is given up (`pace`)."""
+    entry = int(np.argmax(np.abs(march.rate)))
+    name = march.system.name(entry)
+    told = f"{f'the rate of {name}' if name else 'a rate'} is {march.rate[entry]:.3g} where it is {march.y[entry]:.3g}"
+    text = f"more than {MOST_STEPS:.0e} steps as short as {step:.2g} s are left to the next instant: {told}"
+    return blamed(march, entry, f"{text}; a number in it is too large, or a tolerance too small")
 
 
 def _missing(march: Stopped, t: float, y: Floats, rate: Floats) -> tuple[int, float] | None:

@@ -13,6 +13,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled.generated import function
 from sceneql.compiled.kernels import compiled
 from sceneql.compiled.pointers_kernels import addresses
+from sceneql.doing import doing
 from sceneql.failure import LimitRefused
 from sceneql.island.breakpoint_table import before, next_breakpoint
 from sceneql.island.island import IslandAssembly
@@ -20,6 +21,7 @@ from sceneql.island.system import System
 from sceneql.march import march_kernels as kernels
 from sceneql.march.driver import driver, jacobian
 from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
+from sceneql.march.pace import Pace
 from sceneql.march.switching import Switch
 from sceneql.system import Prepared
 
@@ -220,7 +222,8 @@ class March:
         if not self._started:
             self._start()
         if t > self._clock[kernels.T1]:
-            self._march(t)
+            with doing("solving") as deed:
+                self._march(t, Pace(deed, t, self.time, int(self._counts[kernels.STEPS])))
         t0, t1 = float(self._clock[kernels.T0]), float(self._clock[kernels.T1])
         if not t < t1:
             return self._settled(t, self._y1), True
@@ -285,6 +288,7 @@ class March:
                 self._change(self._switch, 0.0)
         self._clock[kernels.STEP] = step
 
+    @np.errstate(over="ignore", invalid="ignore")
     def _first_step(self) -> float:
         """The first step of an adaptive method (Hairer, Norsett & Wanner 1993, II.4, "starting step size").
 
@@ -307,7 +311,7 @@ class March:
         guess = max(1e-6, 1e-3 * h) if not most > 1e-15 else (0.01 / most) ** (1.0 / self.stepper.method.order)
         return min(100.0 * h, guess, control.largest_step)
 
-    def _march(self, target: float) -> None:
+    def _march(self, target: float, pace: Pace) -> None:
         started = time.perf_counter() - compiled.seconds
         counts, clock = self._counts, self._clock
         if counts[kernels.HELD] and not math.isnan(self._floats_time):
@@ -343,6 +347,8 @@ class March:
                 counts[kernels.SWAPPED] = 0
             if status == kernels.PAUSED:
                 self._look()
+                if pace.hopeless(self.time, int(counts[kernels.STEPS])):
+                    break
             elif status == kernels.REACHED and target > self._step_end:
                 self._pass_breakpoint()
             elif not self._goes_on(status):

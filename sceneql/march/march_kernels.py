@@ -38,7 +38,8 @@ SHORTEST = 1e-3
 CRAWL = 1e-12
 """Part of the time reached below which a step hardly moves it."""
 MOST_CRAWLED = 2000
-"""Such steps in a row after which the march is stuck: an impact or a breakpoint takes far fewer to leave."""
+"""Such steps in a row, or shorter than any, after which the march is stuck: an impact or a breakpoint takes far fewer
+to leave."""
 
 REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
 
@@ -316,7 +317,7 @@ def march(
         counts[STEPS] += 1
         if counts[ADAPTIVE] == 0:
             counts[GRID] += t1 >= grid
-        elif clock[STEP] < CRAWL * t1:
+        elif clock[STEP] <= max(CRAWL * t1, clock[LEAST]):
             counts[CRAWLED] += 1
             if counts[CRAWLED] > MOST_CRAWLED:
                 return STEP_TOO_SMALL

@@ -38,6 +38,7 @@ def dominant(values: Complexes) -> complex:
     return complex(found.real, abs(found.imag))
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def spectrum(rate_at: Rate, partner: Partners, t: float, y: Floats, negligible: float = 0.0) -> Complexes:
     """The outermost eigenvalues [1/s] of the rate's Jacobian at a state.
 

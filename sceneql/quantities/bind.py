@@ -10,7 +10,7 @@ from typing import Any
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note
 from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Name, Number, Type, Vector, each_once
+from sceneql.quantities.expression import Call, Expr, Name, Number, Symbol, Type, Vector, each_once
 from sceneql.quantities.literal import quantity
 from sceneql.quantities.operations import CONSTANTS, OPERATIONS
 from sceneql.quantities.other_words import time_meant
@@ -25,6 +25,8 @@ The Diagnostic is reported only where the name is none of the constants `pi`, `t
 bar behind a number (``1500 /s``). None: the name is one of these constants, or its error has been reported already.
 """
 
+SECONDS = "the time is `t` here, a plain number of seconds, as all numbers here: write `sin(3*t)`, not `sin(3 /s*time)`"
+"""The help for a time in a formula over plain numbers."""
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
 """Names of a vector's components by their number."""
 
@@ -57,7 +59,7 @@ def _bound(node: Expr, bound: dict[int, Expr | None], lookup: Lookup, found: Dia
                     return Vector(args, listed(args), node.span)
                 return fold(Call(node.op, args, OPERATIONS[node.op].rule(args), node.span))
             except MismatchError as error:
-                _report(node, parts, error, found)
+                _report(node, parts, error, lookup, found)
                 return None
     return node
 
@@ -111,12 +113,15 @@ def _literal(value: Any, expr: Expr, bare: bool) -> Expr:
     return Number(value, Type((), PLAIN if dimension is None and value != 0.0 else dimension), bare, expr.span)
 
 
-def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, found: Diagnostics) -> None:
+def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, lookup: Lookup, found: Diagnostics) -> None:
     """Point at the arguments as they stand in this expression, not at a define that they name."""
     second = None if error.second is None else parts[error.second].span
     notes = [] if second is None else [Note("the other is here", second)]
     written = "" if node.span is None else node.span.text
-    help = time_meant(written) or "; ".join(filter(None, (error.help, _better(node, parts, error))))
+    time = time_meant(written)
+    if time is not None and node.span is not None and isinstance(lookup(("t",), node.span), Symbol):
+        time = SECONDS
+    help = time or "; ".join(filter(None, (error.help, _better(node, parts, error))))
     found.error(error.code, error.message, parts[error.first].span or node.span, help=help or None, notes=notes)
 
 

@@ -17,7 +17,8 @@ class Dimension:
     drops; else empty. It stays in sums and choices; products, quotients, powers and functions drop it."""
 
     def __mul__(self, other: Dimension) -> Dimension:
-        return Dimension(tuple(a + b for a, b in zip(self.exponents, other.exponents, strict=True)))
+        pairs = zip(self.exponents, other.exponents, strict=True)
+        return Dimension(tuple(a + b if a and b else a or b for a, b in pairs))  # a sum of fractions takes long
 
     def __truediv__(self, other: Dimension) -> Dimension:
         return Dimension(tuple(a - b for a, b in zip(self.exponents, other.exponents, strict=True)))

@@ -158,7 +158,8 @@ def walk(expr: Expr) -> Iterator[Expr]:
         if id(node) not in known:
             known.add(id(node))
             yield node
-            stack.extend(reversed(children(node)))
+            if parts := children(node):
+                stack.extend(reversed(parts))
 
 
 def each_once(*roots: Expr, below: Callable[[Expr], tuple[Expr, ...]] = children) -> list[Expr]:
@@ -175,8 +176,11 @@ def each_once(*roots: Expr, below: Callable[[Expr], tuple[Expr, ...]] = children
             order.append(node)
         elif id(node) not in known:
             known.add(id(node))
-            stack.append((node, True))
-            stack.extend((child, False) for child in reversed(below(node)))
+            if parts := below(node):
+                stack.append((node, True))
+                stack.extend([(child, False) for child in reversed(parts)])
+            else:
+                order.append(node)
     return order
 
 

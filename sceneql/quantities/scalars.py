@@ -14,6 +14,8 @@ from sceneql.quantities.operations import FLOATS, OPERATIONS, Operation
 
 def evaluate_scalars(expr: Expr, look_up: Callable[[Any], Any]) -> Any:
     """The value of a bound tree as a float or nested tuple of floats; see `evaluate`."""
+    if isinstance(expr, Number):
+        return expr.value
     values: dict[int, Any] = {}
     for node in each_once(expr):
         match node:

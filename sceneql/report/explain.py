@@ -99,7 +99,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
 
     island = run.island
     order, control = run.march.stepper.method.order, run.march.stepper.control
-    bound = stability(run.march, run.methods.bounded_by or run.solver)
+    bound = stability(run.march, run.methods.bounding)
     return {
         "models": list(island.models),
         "model_remarks": _model_remarks(graph, run),

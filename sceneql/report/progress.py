@@ -1,4 +1,4 @@
-"""A progress bar with what is being done, on a terminal only, which also raises interrupts that a library lost."""
+"""A progress bar with what is being done, or without a terminal a line a minute; it raises interrupts that got lost."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 PATIENCE = 0.3
 """Seconds before it is drawn: what is done by then needs none."""
+LINES, LONG = 60.0, 30.0
+"""Seconds between lines where there is no terminal, each of what has been done for longer than so many seconds."""
 
 
 @contextmanager
@@ -43,7 +45,8 @@ def bar(title: str) -> Iterator[Callable[[int, int], None]]:
 @contextmanager
 def _drawn(title: str) -> Iterator[Callable[[int, int], None]]:
     if not sys.stderr.isatty():
-        yield lambda done, total: None
+        with _lines(title):
+            yield lambda done, total: None
         return
     shown = _Shown(title)
     waiting = threading.Timer(PATIENCE, shown.appear)
@@ -55,6 +58,22 @@ def _drawn(title: str) -> Iterator[Callable[[int, int], None]]:
         waiting.cancel()
         waiting.join()
         shown.vanish()
+
+
+@contextmanager
+def _lines(title: str) -> Iterator[None]:
+    ended = threading.Event()
+
+    def say() -> None:
+        while not ended.wait(LINES):
+            if what := doing.now(LONG):
+                print(f"{title}: {what}", file=sys.stderr, flush=True)
+
+    threading.Thread(target=say, daemon=True).start()
+    try:
+        yield
+    finally:
+        ended.set()
 
 
 class _Shown:

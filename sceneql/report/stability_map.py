@@ -144,5 +144,5 @@ def _bound(graph: SimulationGraph, island: Island, solver: Solver) -> float:
 
     if adaptive(solver):
         return math.inf
-    march = Run(prepared(graph, island, solver)).islands[0].march
-    return math.nan if len(march.system.y) > DENSE else stability(march, solver).step
+    chosen = Run(prepared(graph, island, solver)).islands[0]
+    return math.nan if len(chosen.march.system.y) > DENSE else stability(chosen.march, chosen.methods.bounding).step

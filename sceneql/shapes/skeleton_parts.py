@@ -21,6 +21,9 @@ Numbers = Annotated[Value, Quantity(dim.PLAIN, (None, 3))]
 
 MOST = 200_000
 """Most parts of a skeleton: beyond that a frame takes minutes and gigabytes."""
+COARSEST = 1e-5
+"""Distance of neighboring float64 numbers, in parts of a curve's size, above which the search along a ray would cut it
+to ever shorter pieces, of which rounding lets it prove none."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -178,6 +181,32 @@ class Part(Record):
         if weight.ndim:
             raise failure("a line or a polygon has one weight", self.weight, moment)
         return np.full(n, float(weight)), np.zeros(n)
+
+
+def refuse_rounded(shape: Shape, place: Value, radius: Value, moment: Moment) -> None:
+    """Raise RunFailure for a curve or face so far away, or so wide for its length, that float64 cannot tell its points.
+
+    Points of their own are left: the density about one has no shape to lose.
+    """
+    import numpy as np
+
+    longs = np.ptp(shape.corners, axis=1).max(axis=1)
+    away, wide, least = np.abs(shape.corners).max(axis=(1, 2)), shape.radii.max(axis=1), shape.radii.min(axis=1)
+    if len(longs) and not shape.groups.any():  # pieces of one curve
+        longs, least = np.where(longs > 0.0, longs.max(), 0.0), np.full(len(longs), least.min())
+    far = np.spacing(away) > COARSEST * wide
+    swollen = np.spacing(wide) > COARSEST * np.maximum(longs, least)
+    bad = np.flatnonzero((longs > 0.0) & (far | swollen))
+    if not len(bad):
+        return
+    k = bad[0]
+    if far[k]:
+        size, value = away[k], place
+        told = f"a part of {wide[k]:.3g} m radius reaches {size:.3g} m away from the origin"
+    else:
+        size, value = wide[k], radius
+        told = f"a part {longs[k]:.3g} m long has a radius of {size:.3g} m"
+    raise failure(f"{told}, where float64 numbers are {np.spacing(size):.2g} m apart: too coarse", value, moment)
 
 
 def each(value: Value, n: int, what: str, moment: Moment) -> Floats:

@@ -14,14 +14,13 @@ from sceneql.language.scope import Entry
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Sequence
+from sceneql.march.pace import MOST_STEPS
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
 Growth = Callable[[float, float, float, float], float | None]
 """`Solver.oscillation`."""
 SLACK = 1.0 + 1e-6
-MOST_STEPS = 1e11
-"""Most steps of a run: those of a single mass would take half an hour."""
 NOTABLE = 10.0
 """Growth over the whole run from which a method that is stable at no step gives a warning."""
 

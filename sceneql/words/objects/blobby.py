@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 from sceneql.kinds import FieldBuilder, FixedScalar, Gives, Moment, Object, Points, Problem, Value, field
 from sceneql.shapes.placement import balls_box
-from sceneql.shapes.skeleton_parts import MOST, LengthOrLengths, NumberOrNumbers, Part, Shape, each, failure, numbers
+from sceneql.shapes.skeleton_parts import (
+    MOST,
+    LengthOrLengths,
+    NumberOrNumbers,
+    Part,
+    Shape,
+    each,
+    failure,
+    numbers,
+    refuse_rounded,
+)
 from sceneql.shapes.solid import MEASURES, measure, traced
 
 if TYPE_CHECKING:
@@ -112,12 +122,13 @@ class Blobby(Object):
         own = [] if self.points is None else [self._listed(self.points, moment)]
         shapes = own + [part.now(moment) for part in self.skeleton]
         values = [self.radius] * len(own) + [part.radius for part in self.skeleton]
-        for shape, value in zip(shapes, values, strict=True):
+        places = [self.points] * len(own) + [part.place() for part in self.skeleton]
+        for shape, value, place in zip(shapes, values, places, strict=True):
             if not (np.isfinite(shape.radii).all() and (shape.radii > 0).all()):
                 raise failure(f"a radius must be above 0, but one is {np.min(shape.radii):g} m now", value, moment)
+            refuse_rounded(shape, place or value, value, moment)
         count = sum(len(shape.weights) for shape in shapes)
         if count > MOST:
-            places = [self.points] * len(own) + [part.place() for part in self.skeleton]
             most = places[int(np.argmax([len(shape.weights) for shape in shapes]))]
             assert most is not None
             raise failure(f"a skeleton has at most {MOST:,} parts, not {count:,}", most, moment)

@@ -1,0 +1,52 @@
+"""How fast a march comes on: told while it runs, and whether it can end at all."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sceneql.doing import Deed
+
+MOST_STEPS = 1e11
+"""Most steps of a run, or of the rest of a way to the next instant: those of a single mass take half an hour."""
+LOOKS, FEWEST = 3, 10_000
+"""Looks in a row, and steps meanwhile, that must find so many: the first steps of a stiff start are as short."""
+GROWING = 1.5
+"""Factor from look to look by which steps grow that are on their way to be longer."""
+MINUTES, HOURS = 100.0, 6000.0
+"""Seconds from which on a time is told in minutes, in hours."""
+
+
+class Pace:
+    """The pace of a march on its way to an instant ``target`` [s], from a time [s] after so many steps."""
+
+    def __init__(self, deed: Deed, target: float, t: float, steps: int) -> None:
+        self._deed, self._target = deed, target
+        self._last = t, steps, time.perf_counter()
+        self._mean = 0.0
+        self._looks, self._since = 0, steps
+
+    def hopeless(self, t: float, steps: int) -> bool:
+        """Tell of the pace at a time [s] after so many steps; whether it leads nowhere."""
+        t0, before, at = self._last
+        if steps == before:
+            return False
+        now, grown = time.perf_counter(), t - t0 > GROWING * self._mean * (steps - before)
+        self._last, self._mean = (t, steps, now), (t - t0) / (steps - before)
+        left = (self._target - t) / self._mean if self._mean > 0.0 else float("inf")
+        self._deed.what = (
+            f"solving, at {t:.6g} s: steps of {self._mean:.2g} s, to the next instant"
+            f" {_told(left * (now - at) / (steps - before))}"
+        )
+        if grown or left < MOST_STEPS:
+            self._looks, self._since = 0, steps
+        else:
+            self._looks += 1
+        return self._looks >= LOOKS and steps - self._since >= FEWEST
+
+
+def _told(seconds: float) -> str:
+    if seconds < MINUTES:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < HOURS else f"{seconds / 3600.0:.3g} h"
