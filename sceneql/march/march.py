@@ -21,6 +21,7 @@ from sceneql.island.system import System
 from sceneql.march import march_kernels as kernels
 from sceneql.march.driver import driver, jacobian
 from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
+from sceneql.march.first_step import first_step
 from sceneql.march.pace import Pace
 from sceneql.march.switching import Switch
 from sceneql.system import Prepared
@@ -281,35 +282,13 @@ class March:
         self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
         positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)
         self._clock[kernels.SLOP] = TOUCHING * positions
-        step = self.stepper.control.first_step or self._first_step()
+        step = self.stepper.control.first_step
+        step = step or first_step(self.stepper, y, self._rate1, self._alone, self.end, self.rate)
         if self._switch is not None:
             self._switch.start(y, step)
             if self._switch.active is not self.stepper:
                 self._change(self._switch, 0.0)
         self._clock[kernels.STEP] = step
-
-    @np.errstate(over="ignore", invalid="ignore")
-    def _first_step(self) -> float:
-        """The first step of an adaptive method (Hairer, Norsett & Wanner 1993, II.4, "starting step size").
-
-        An entry that is measured by its own size counts where it has one: a zero, by its change in such a step.
-        """
-        y, rate, control = self._y1, self._rate1, self.stepper.control
-        scale = np.asarray(control.absolute) + control.tolerance * np.abs(y)
-        scale = np.where(self._alone, np.where(y == 0.0, np.inf, control.tolerance * np.abs(y)), scale)
-
-        def norm(x: Floats) -> float:
-            return math.sqrt(float(np.mean((x / scale) ** 2))) if len(x) else 0.0
-
-        size, speed = norm(y), norm(rate)
-        h = 1e-6 if size < 1e-5 or speed < 1e-5 else 0.01 * size / speed
-        h = min(h, control.largest_step, self.end)
-        change = control.tolerance * h * np.abs(rate)
-        scale = np.where(self._alone & (scale == np.inf) & (change > 0.0), change, scale)
-        bend = norm(self.rate(h, y + h * rate) - rate) / h
-        most = max(speed, bend)
-        guess = max(1e-6, 1e-3 * h) if not most > 1e-15 else (0.01 / most) ** (1.0 / self.stepper.method.order)
-        return min(100.0 * h, guess, control.largest_step)
 
     def _march(self, target: float, pace: Pace) -> None:
         started = time.perf_counter() - compiled.seconds

@@ -1,0 +1,41 @@
+"""The first step of a method whose steps a tolerance chooses."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sceneql.frame import Floats
+    from sceneql.system import Stepper
+
+
+@np.errstate(over="ignore", invalid="ignore")
+def first_step(
+    stepper: Stepper, y: Floats, rate: Floats, alone: Any, end: float, rate_at: Callable[[float, Floats], Floats]
+) -> float:
+    """Its length [s] (Hairer, Norsett & Wanner 1993, II.4, "starting step size").
+
+    ``y``, ``rate`` (n,) at the start; ``alone`` (n,) bool: entries that are measured by their own sizes; ``end`` of the
+    run [s]. Such an entry counts where it has a size: a zero, by its change in such a step.
+    """
+    control = stepper.control
+    scale = np.asarray(control.absolute) + control.tolerance * np.abs(y)
+    scale = np.where(alone, np.where(y == 0.0, np.inf, control.tolerance * np.abs(y)), scale)
+
+    def norm(x: Floats) -> float:
+        return math.sqrt(float(np.mean((x / scale) ** 2))) if len(x) else 0.0
+
+    size, speed = norm(y), norm(rate)
+    h = 1e-6 if size < 1e-5 or speed < 1e-5 else 0.01 * size / speed
+    h = min(h, control.largest_step, end)
+    change = control.tolerance * h * np.abs(rate)
+    scale = np.where(alone & (scale == np.inf) & (change > 0.0), change, scale)
+    bend = norm(rate_at(h, y + h * rate) - rate) / h
+    most = max(speed, bend)
+    guess = max(1e-6, 1e-3 * h) if not most > 1e-15 else (0.01 / most) ** (1.0 / stepper.method.order)
+    return min(100.0 * h, guess, control.largest_step)
