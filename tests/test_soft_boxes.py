@@ -53,7 +53,7 @@ def test_matte_surfaces_and_the_ground_are_as_without_boxes(tmp_path):
     pictures = []
     for boxes in (0, 1):
         (tmp_path / "scene.yaml").write_text(BALLS.format(boxes=boxes))
-        render(load(tmp_path / "scene.yaml"), tmp_path / "still.png")
+        render(load(tmp_path / "scene.yaml"), output=tmp_path / "still.png")
         pictures.append(imread(tmp_path / "still.png").astype(float))
     off = np.abs(pictures[1] - pictures[0]).max(axis=-1)
     assert off[:, :48].max() > 60
