@@ -114,7 +114,8 @@ def test_a_panel_of_the_script_itself_shares_the_framing_of_its_variants(tmp_pat
     found = boxes([EachVariant(each="variant", columns=3), ("a", "b", "c")], ["near", "far"], (300, 100))
     panels = [whole[top : top + high, left : left + wide] for _, (left, top, wide, high) in found[:3]]
     near, far, own = ((panel[14:].max(axis=2) < 90).sum() for panel in panels)
-    assert near == far > 20
+    assert near == pytest.approx(far, rel=0.5)
+    assert near > 20
     assert near == pytest.approx(own, rel=0.5)  # the names take some of their panels
 
 

@@ -196,6 +196,12 @@ _SENTENCES = (
     ("sign", "²", "write `^2`"),
     ("sign", "³", "write `^3`"),
     ("sign", "°", "write `deg`"),
+    (
+        "sign",
+        "{ }",
+        "only the number of a copy by `repeat` stands in braces, in a name, `\"ball.{i}.position\"`: "
+        "`sceneql words repeat`",
+    ),
     ("name", "t", "the time is written 'time'"),
     ("name", "if then else elif when", f"{_IF}: `sceneql words functions`"),
     ("name", "true yes", "in a formula write `1`"),
