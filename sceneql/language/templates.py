@@ -22,6 +22,8 @@ __all__ = ["Entry", "Expanded", "Given", "Scope", "expand", "filled"]
 
 MOST_NESTED: Final = 64
 MOST_PARTS: Final = 100_000
+_EQUALS = re.compile(r"(\w+)\s*:?=\s*(\S+(?:[ \t]\S+)*)")
+"""A value given as in other languages, ``k = 10 N/m``, alone on its line."""
 
 
 def expand(
@@ -112,7 +114,8 @@ class _Expander:
         self.done.broken.any = True
         if broken(node):
             return {}
-        help = f"write `{key}: {{name: ...}}`"
+        equals = _EQUALS.fullmatch(node.text) if isinstance(node, Scalar) else None
+        help = f"write `{key}: {{name: ...}}`" if equals is None else f"write `{equals[1]}: {equals[2]}`"
         self.found.error("section-shape", f"'{key}' holds values by name", node.span, help=help)
         return {}
 
