@@ -131,6 +131,6 @@ def test_what_is_repeated_in_defaults_is_written_out_wherever_they_stand(tmp_pat
 
 
 def test_braces_elsewhere_are_told_with_what_they_are_for(tmp_path):
-    ((message, _, help),) = told(tmp_path, "objects: {a: {sphere: {radius: \"0.1 m*{i}\"}}}")
+    ((message, _, help),) = told(tmp_path, 'objects: {a: {sphere: {radius: "0.1 m*{i}"}}}')
     assert message == "'{' cannot stand in an expression"
     assert "of a copy by `repeat`" in help

@@ -1,4 +1,4 @@
-"""Soft boxes of the default light: metal and glass mirror them, matte surfaces and the backdrop know nothing of them."""
+"""Soft boxes of the default light: metal and glass mirror them, matte surfaces and the backdrop do not."""
 
 from __future__ import annotations
 

@@ -50,8 +50,8 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     head[layout.SKY : layout.SKY + 14] = _sky(frame)
     head[[layout.TOLERANCE, layout.SAMPLES]] = tolerance, samples
     head[layout.CAMERA : layout.CAMERA + 16] = _camera(frame.view)
-    boxes_of_light = _soft_boxes(frame.lights)
-    surfaces_at = layout.LIGHTS + lights.size + boxes_of_light.size
+    panels = _soft_boxes(frame.lights)
+    surfaces_at = layout.LIGHTS + lights.size + panels.size
     nodes_at = surfaces_at + layout.SURFACE_SIZE * len(frame.shapes)
     reals_at = nodes_at + nodes.size
     items = np.concatenate([np.empty((0, 4), np.int64), *tables.items])
@@ -60,9 +60,9 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     items[:, layout.SURFACE_AT] = surfaces_at + layout.SURFACE_SIZE * items[:, layout.SHAPE]
     links_at = layout.ITEMS + items.size
     ranges_at = links_at + links.size
-    reals = np.concatenate([head, lights.ravel(), boxes_of_light.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
+    reals = np.concatenate([head, lights.ravel(), panels.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), tables.thin]
-    header.append(len(boxes_of_light))
+    header.append(len(panels))
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
         place = ranges_at + layout.RANGES * k

@@ -85,7 +85,7 @@ class Copies:
 
 
 def in_braces(node: Node, scope: Scope) -> Node:
-    """The fields of a part that is a copy, with its number, the one field of ``scope``, in place of what is in braces."""
+    """The fields of a part that is a copy, its number, the one field of ``scope``, in place of what is in braces."""
     if not _BRACES.search(node.source.text, node.start, node.end):
         return node
     ((symbol, written),) = scope.fields.items()

@@ -26,9 +26,7 @@ _EQUALS = re.compile(r"(\w+)\s*:?=\s*(\S+(?:[ \t]\S+)*)")
 """A value given as in other languages, ``k = 10 N/m``, alone on its line."""
 
 
-def expand(
-    root: Mapping, families: List[str], lost: Broken, found: Diagnostics, *, repeats: bool = True
-) -> Expanded:
+def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics, *, repeats: bool = True) -> Expanded:
     """The entries of a script, templates and copies written out and defaults filled in.
 
     ``lost`` holds the names of unreadable entries; those of entries found to be wrong here are added; ``repeats``:

@@ -200,7 +200,7 @@ _SENTENCES = (
     (
         "sign",
         "{ }",
-        "only the number of a copy by `repeat` stands in braces, in a name, `\"ball.{i}.position\"`: "
+        'only the number of a copy by `repeat` stands in braces, in a name, `"ball.{i}.position"`: '
         "`sceneql words repeat`",
     ),
     ("name", "t", "the time is written 'time'"),
