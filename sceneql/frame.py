@@ -236,6 +236,17 @@ class PointLight:
 
 
 @dataclass(frozen=True, slots=True)
+class SoftBox:
+    """A rectangle of the sky that polished surfaces mirror, upright; ``direction`` points from the scene towards it."""
+
+    direction: RGB
+    size: tuple[float, float]
+    """Width and height [rad], below pi."""
+    radiance: RGB
+    """What it adds to the sky's."""
+
+
+@dataclass(frozen=True, slots=True)
 class Sky:
     """Light from all around: radiance blends from ``horizon`` to ``zenith`` above and to ``ground`` below."""
 
@@ -244,6 +255,8 @@ class Sky:
     ground: RGB
     visible: RGB | None = None
     """Seen by camera rays in place of the sky, where given (a plain background)."""
+    boxes: tuple[SoftBox, ...] = ()
+    """Seen in reflections alone: matte surfaces have the blended light, which is that of a sky with boxes in it."""
 
 
 LightSource = Sun | PointLight | Sky

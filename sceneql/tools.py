@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from sceneql.pictures.arrangement import Arrangement
     from sceneql.pictures.layout import Panel
     from sceneql.quantities.diagnostic import Diagnostic
-    from sceneql.run.instant import Instant
+    from sceneql.run.instant import Framed, Instant
 
 
 @dataclass
@@ -180,11 +180,13 @@ class Tools:
 
         if not self.panels and any(isinstance(row, EachVariant) for row in output.layout):
             self.panels = {name: Panel(self.graph.variant(name)) for name in self.graph.variants.names}
-        pixels = page(output.pixels)
+        pixels, seen = page(output.pixels), replace(moment, beside=tuple(self.panels.values()))
+        shown = any(isinstance(self.graph.tasks[ref.name].kind, Camera) for ref in output.laid_out)
+        base = (moment.run,) if shown else ()
         for item, (left, top, wide, high) in boxes(output.layout, self.graph.variants.names, output.pixels):
             block, scale = pixels[top : top + high, left : left + wide], len(pixels) / high
             if isinstance(item, str):
-                block[:] = self._variant(item, (wide, high), moment.time, scale)
+                block[:] = self._variant(item, (wide, high), moment.time, scale, base)
                 continue
             task = self.graph.tasks[item.name]
             with failing_as(task.name, moment.time, task.span):
@@ -192,11 +194,14 @@ class Tools:
                     task.kind.fill(block, moment, scale)
                 else:
                     part = output.model_copy(update={"size": (wide, high)})
-                    block[:] = self._seen(part, moment, item.name, panel=Part(scale))
+                    block[:] = self._seen(part, seen, item.name, panel=Part(scale))
         return pixels
 
-    def _variant(self, name: str, size: tuple[int, int], time: float, scale: float) -> Any:
-        """The panel (h, w, 3) of a variant; one whose run has failed stays as it was, under the message."""
+    def _variant(self, name: str, size: tuple[int, int], time: float, scale: float, base: tuple[Framed, ...]) -> Any:
+        """The panel (h, w, 3) of a variant; one whose run has failed stays as it was, under the message.
+
+        ``base``: the script's own run, where a panel shows it.
+        """
         from sceneql.pictures.layout import label, label_box
 
         panel = self.panels[name]
@@ -204,7 +209,7 @@ class Tools:
             panel.tools = Tools(panel.graph, self.name, self.report, self.target, draft=self.draft)
         if panel.failure is None or panel.picture is None:
             others = tuple(other for other in self.panels.values() if other is not panel)
-            moment = replace(panel.at(time), beside=others)
+            moment = replace(panel.at(time), beside=(*base, *others))
             kind = cast(Picture, panel.graph.tasks[self.name].kind).model_copy(update={"size": size})
             panel.picture = panel.tools._seen(kind, moment, panel=Part(scale, (label_box(size, self.panels, scale),)))
             panel.tools._frames += 1

@@ -17,7 +17,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
 from sceneql.report import work_precision
 from sceneql.report.bench import bench, cheapest
-from sceneql.report.curve_ends import GAP, spread
+from sceneql.report.curve_ends import GAP, label_ends, spread
 from sceneql.report.order import observed_order
 from sceneql.report.page import Table, write_page
 from sceneql.report.work_precision import Measurement
@@ -265,3 +265,14 @@ def test_labels_move_apart_as_little_as_they_need():
         assert found == sorted(found)
         assert found[0] + 1e-12 >= 0.0
         assert found[-1] <= 1.0
+
+
+def test_a_label_stands_at_the_end_that_is_nearest_to_it():
+    """Of curves by run time that is the last point, of those by step the first."""
+    from matplotlib.figure import Figure
+
+    axes = Figure().subplots()
+    axes.plot([1.0, 2.0, 3.0], [1.0, 0.5, 0.1], label="time")
+    axes.plot([3.0, 2.0, 1.0], [2.0, 1.0, math.nan], label="step")
+    label_ends(axes)
+    assert {text.get_text(): text.xy for text in axes.texts} == {"time": (3.0, 0.1), "step": (3.0, 2.0)}

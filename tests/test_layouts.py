@@ -99,6 +99,26 @@ def test_a_script_that_only_its_variants_show_is_not_run(tmp_path):
     assert 20 + 8 <= report.steps <= 20 + 10  # those of `slow`, and those of `breaks` until it does
 
 
+def test_a_panel_of_the_script_itself_shares_the_framing_of_its_variants(tmp_path):
+    """A ball that does not move is as large beside variants that fly 1 m and 8 m away as in their panels."""
+    (tmp_path / "scene.yaml").write_text(
+        "define: {v: 0 m/s}\n"
+        "clock: {end: 1 s}\n"
+        "objects: {ball: {sphere: {radius: 1 m, color: black}}}\n"
+        "models: {fly: {particles: {of: ball, mass: 1 kg, velocity: [v, 0 m/s, 0 m/s]}}}\n"
+        "variants: {near: {define.v: 1 m/s}, far: {define.v: 8 m/s}}\n"
+        "cameras: {eye: auto}\nbackground: white\n"
+        "outputs: {film: {image: {size: 300 100, layout: [{each: variant, columns: 3}, [eye, eye, eye]]}}}\n"
+    )
+    ((whole,), _) = pictures(load(tmp_path / "scene.yaml"), tmp_path, [0.0])
+    found = boxes([EachVariant(each="variant", columns=3), ("a", "b", "c")], ["near", "far"], (300, 100))
+    panels = [whole[top : top + high, left : left + wide] for _, (left, top, wide, high) in found[:3]]
+    near, far, own = ((panel[14:].max(axis=2) < 90).sum() for panel in panels)
+    assert near == pytest.approx(far, rel=0.5)
+    assert near > 20
+    assert near == pytest.approx(own, rel=0.5)  # the names take some of their panels
+
+
 def test_a_row_has_panels(tmp_path):
     told = complaint(tmp_path, SCENE.format(layout="[[front], []]", may="", first=0))
     assert "this row has no panel" in told

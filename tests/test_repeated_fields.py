@@ -102,3 +102,35 @@ def test_a_copy_does_not_take_the_place_of_an_entry_of_its_name(tmp_path, where)
     assert ("a copy of 'b' is called 'b.1', and so is another entry", "b", "give one another name") in told(
         tmp_path, text
     )
+
+
+def test_a_copy_of_a_part_meets_the_others_by_its_number_in_braces(tmp_path):
+    graph = load(
+        tmp_path,
+        """
+define: {far_0: 1 m, far_1: 2 m}
+objects:
+  ball: {repeat: {count: 2, as: i}, sphere: {radius: 0.1 m, position: ["far_{i} + 0.1 m*i", 1 m, 0 m]}}
+  rope: {repeat: {count: 2, as: i}, tube: {through: [0 2 0 m, "ball.{1 - i}.position"], radius: 1 cm}}
+templates: {flag: {fields: {at: }, objects: {cloth: {box: {position: at}}}}}
+parts: {flag: {repeat: {count: 2, as: k}, flag: {at: "ball.{k}.position"}}}
+""",
+    )
+    places = [graph.tasks[f"ball.{k}"].kind.position.number() for k in (0, 1)]
+    assert places == [pytest.approx([1, 1, 0]), pytest.approx([2.1, 1, 0])]
+    assert [graph.tasks[f"rope.{k}"].needs for k in (0, 1)] == [("ball.1",), ("ball.0",)]
+    assert [graph.tasks[f"flag.{k}.cloth"].needs for k in (0, 1)] == [("ball.0",), ("ball.1",)]
+
+
+def test_what_is_repeated_in_defaults_is_written_out_wherever_they_stand(tmp_path):
+    (tmp_path / "house.yaml").write_text(
+        "defaults: {particles: {list: {p: {repeat: {count: 3, as: i}, position: [0.5 m*i, 1 m, 0 m]}}}}\n"
+    )
+    graph = load(tmp_path, "include: [house.yaml]\nmodels: {dots: {particles: {mass: 1 kg}}}\n")
+    assert list(graph.tasks["dots"].kind.list) == ["p.0", "p.1", "p.2"]
+
+
+def test_braces_elsewhere_are_told_with_what_they_are_for(tmp_path):
+    ((message, _, help),) = told(tmp_path, 'objects: {a: {sphere: {radius: "0.1 m*{i}"}}}')
+    assert message == "'{' cannot stand in an expression"
+    assert "of a copy by `repeat`" in help

@@ -12,6 +12,7 @@ from renderers.tracing.camera_kernels import camera_ray
 from renderers.tracing.light.lamps_kernels import mirrored_lamps
 from renderers.tracing.light.light_kernels import backdrop, dielectric, polish, sharpness, sky_radiance, smoothstep
 from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, shade
+from renderers.tracing.light.soft_boxes_kernels import soft_boxes
 from renderers.tracing.light.through_kernels import CLEAR
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted, refracted_spread
@@ -115,6 +116,9 @@ def advance(scene, scratch, path, first, second, spare):
         cr, cg, cb = cr + path[LAMPS] * wr * r, cg + path[LAMPS] * wg * g, cb + path[LAMPS] * wb * b
     if item < 0:
         r, g, b = backdrop(scene.reals, dy) if straight else sky_radiance(scene.reals, dy)
+        if not straight:
+            br, bg, bb = soft_boxes(scene, dx, dy, dz, abs(spread))
+            r, g, b = r + br, g + bg, b + bb
         cr, cg, cb = cr + wr * r, cg + wg * g, cb + wb * b
     else:
         radius += spread * t

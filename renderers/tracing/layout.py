@@ -1,10 +1,10 @@
 """Layout of the tracer's scene (two arrays), of its scratch and of its lists of rays."""
 
-NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT, HAS_THIN = range(8)
-"""The header; the last tells whether there are THIN items.
+NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT, HAS_THIN, BOX_COUNT = range(9)
+"""The header; HAS_THIN tells whether there are THIN items.
 The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""
 
-ITEMS = 8
+ITEMS = 9
 """Offset of the items, by leaf: kind, place of the reals, place of the surface, index of the shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
 TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID, THIN = range(8)
@@ -41,6 +41,9 @@ LIGHT = 9
 """Reals of a light: kind, direction to it or position, irradiance or intensity, angular diameter or radius; radius of
 its disk, of a sun at distance 1."""
 SUN, POINT = range(2)
+BOX = 14
+"""Reals of a soft box, behind the lights: direction to it, unit vectors across and up in it, half width and half height
+at distance 1, radiance."""
 
 COLOR, ROUGHNESS, METALLIC, SPECULAR, TRANSMISSION = 0, 3, 4, 5, 6
 INDEX, EMISSION, CHECKER, CHECKER_COLOR = 7, 8, 11, 12

@@ -50,7 +50,8 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     head[layout.SKY : layout.SKY + 14] = _sky(frame)
     head[[layout.TOLERANCE, layout.SAMPLES]] = tolerance, samples
     head[layout.CAMERA : layout.CAMERA + 16] = _camera(frame.view)
-    surfaces_at = layout.LIGHTS + lights.size
+    panels = _soft_boxes(frame.lights)
+    surfaces_at = layout.LIGHTS + lights.size + panels.size
     nodes_at = surfaces_at + layout.SURFACE_SIZE * len(frame.shapes)
     reals_at = nodes_at + nodes.size
     items = np.concatenate([np.empty((0, 4), np.int64), *tables.items])
@@ -59,8 +60,9 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     items[:, layout.SURFACE_AT] = surfaces_at + layout.SURFACE_SIZE * items[:, layout.SHAPE]
     links_at = layout.ITEMS + items.size
     ranges_at = links_at + links.size
-    reals = np.concatenate([head, lights.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
+    reals = np.concatenate([head, lights.ravel(), panels.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), tables.thin]
+    header.append(len(panels))
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
         place = ranges_at + layout.RANGES * k
@@ -271,6 +273,17 @@ def _lights(lights: tuple[LightSource, ...]) -> Floats:
         elif not isinstance(light, seen.Sky):
             rows.append([layout.POINT, *light.position, *light.intensity, light.radius, light.radius])
     return np.array(rows, dtype=np.float64).reshape(-1, layout.LIGHT)
+
+
+def _soft_boxes(lights: tuple[LightSource, ...]) -> Floats:
+    rows = []
+    for box in (box for light in lights if isinstance(light, seen.Sky) for box in light.boxes):
+        toward = np.array(box.direction) / np.linalg.norm(box.direction)
+        across = np.cross((0.0, 1.0, 0.0) if abs(toward[1]) < 0.99 else (0.0, 0.0, 1.0), toward)
+        across /= np.linalg.norm(across)
+        sides = (math.tan(0.5 * side) for side in box.size)
+        rows.append([*toward, *across, *np.cross(toward, across), *sides, *box.radiance])
+    return np.array(rows, dtype=np.float64).reshape(-1, layout.BOX)
 
 
 def _sky(frame: SeenFrame) -> Floats:

@@ -12,8 +12,10 @@ MOST = 200
 
 
 def by_corners(node: Node, field: str, length: int) -> str | None:
-    """What to write for a field of a low and a high corner of ``length`` components: by six numbers of space as they
-    stand, by three those of a box of this size about the origin; None where the numbers are others."""
+    """What to write for a field of a low and a high corner of ``length`` components, or None.
+
+    Six numbers of space are the corners as they stand, three the size of a box about the origin; others are neither.
+    """
     text = node.span.source.text[node.span.start : node.span.end]
     numbers = NUMBER.findall(text) if len(text) <= MOST else []
     if len(numbers) == length:

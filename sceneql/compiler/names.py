@@ -15,7 +15,7 @@ from sceneql.quantities.dimension import PLAIN, TIME
 from sceneql.quantities.expression import Expr, Link, Name, Symbol, Type, each_once, rebuilt
 from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
-from sceneql.quantities.other_words import instead
+from sceneql.quantities.other_words import OURS, instead
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_table import UNITS
@@ -202,7 +202,8 @@ class Names:
         wanted = ".".join(parts)
         if continues_unit(span.source.text, span.start):
             message = f"there is no unit '{wanted}', and nothing is called so"
-            constant = parts[-1].lower() if parts[-1].lower() in CONSTANTS else None
+            meant = (parts[-1].lower(), *OURS.get(wanted, ()))
+            constant = next((name for name in meant if name in CONSTANTS), None)
             help = f"did you mean '{constant}'?" if constant else unit_hint(wanted) or suggestion(wanted, self.defines)
             help = help or "units are such as m, s, kg, N or deg: `sceneql words units`"
             return Diagnostic("unknown-unit", message, span, help)

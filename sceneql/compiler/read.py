@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler import limits, paint, values
@@ -20,6 +20,7 @@ from sceneql.compiler.corners import by_corners
 from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.names import Names
 from sceneql.compiler.paths import read_path
+from sceneql.compiler.problems import validated
 from sceneql.compiler.texts import read_text
 from sceneql.compiler.unknown import meant_field, report_unknown
 from sceneql.language.repeat import numbered
@@ -27,7 +28,6 @@ from sceneql.language.scope import Scope
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
-from sceneql.language.within import within
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.span import Span
@@ -101,21 +101,7 @@ class Reader:
                 ok = False
         if not ok:
             raise Unreadable
-        try:
-            context: list[tuple[BaseModel, kinds.Problem]] = []
-            result = cls.model_validate(got, context=context)
-        except ValidationError as error:
-            for problem in error.errors():
-                exceeds = isinstance(problem.get("ctx", {}).get("error"), kinds.Exceeds)
-                code = "limit-refused" if exceeds else "invalid"
-                self.found.error(code, _text(problem), _place(problem["loc"], node, span))
-            raise Unreadable from None
-        problems = [problem for one, problem in context if one is result]  # those inside were reported
-        for told in problems:
-            self.found.error(told.code, told.text, _place(told.path, node, span, told.at_key, told.part))
-        if problems and issubclass(cls, kinds.Kind):
-            raise Unreadable
-        return result  # the record or word around it may have problems of its own
+        return self._some(validated(cls, got, node, span, self.found))
 
     def _meant(self, node: Node, cls: type[BaseModel]) -> str | None:
         """The help for a field without its colon, or for a quantity in place of all fields that suits one of them."""
@@ -377,30 +363,3 @@ def _could_be(annotation: Any, node: Node) -> bool:
     if origin is Literal:
         return isinstance(node, Scalar) and node.text in [str(c) for c in get_args(base)]
     return isinstance(node, Scalar)
-
-
-def _text(problem: Any) -> str:
-    message: str = problem["msg"]
-    return message.removeprefix("Value error, ").removeprefix("Assertion failed, ")
-
-
-def _place(
-    path: tuple[int | str, ...],
-    node: Node | None,
-    span: Span,
-    at_key: bool = False,
-    part: tuple[str, int, int] | None = None,
-) -> Span:
-    """The span of the deepest node on a validation error's path, of the last step's key, or of a part of its text."""
-    for number, step in enumerate(path, 1):
-        if isinstance(node, MappingNode) and isinstance(step, str) and kinds.written_name(step) in node.entries:
-            if at_key and number == len(path):
-                return node.keys[kinds.written_name(step)].span
-            node = node.entries[kinds.written_name(step)]
-        elif isinstance(node, Sequence) and isinstance(step, int) and step < len(node.items):
-            node = node.items[step]
-        else:
-            break
-    if part is not None and isinstance(node, Scalar) and node.text == part[0]:
-        return within(node, part[1], part[2])
-    return span if node is None else node.span

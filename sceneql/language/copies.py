@@ -1,6 +1,7 @@
 """`repeat` inside the fields of a part: entries of a map by name, or items of a list, written out as copies.
 
-A copy's number is known where its values are read (`Mapping.index`); in braces it stands in names: ``bead.{i + 1}``.
+A copy's number is known where its values are read (`Mapping.index`); in braces it stands in names: ``bead.{i + 1}``,
+also in the fields of a part that is a copy itself.
 Where copies go over names, ``repeat: {leg: [left, right]}``, the word stands for one of them, alone or before a dot.
 """
 
@@ -32,13 +33,13 @@ class Copies:
     define: Table[str, Node]
     lost: Broken
     found: Diagnostics
+    any: bool = True
+    """Whether some file or patch of the script has the word, be it in what fills fields from elsewhere."""
     count: int = 0
 
     def written_out(self, fields: Node | None, scope: Scope | None) -> Node | None:
         """The fields of a part with all copies in them; the same node where none are."""
-        if fields is None or KEY not in fields.source.text:
-            return fields
-        return self._walked(fields, scope)
+        return self._walked(fields, scope) if self.any and fields is not None else fields
 
     def _walked(self, node: Node, scope: Scope | None) -> Node:
         if isinstance(node, Sequence):
@@ -81,6 +82,15 @@ class Copies:
             assert isinstance(copy, Mapping)
             copy.index = index
             yield f"{name}.{number}", copy
+
+
+def in_braces(node: Node, scope: Scope) -> Node:
+    """The fields of a part that is a copy, its number, the one field of ``scope``, in place of what is in braces."""
+    if not _BRACES.search(node.source.text, node.start, node.end):
+        return node
+    ((symbol, written),) = scope.fields.items()
+    assert isinstance(written, Scalar)
+    return _numbered(node, Repeat(1, symbol, written), int(written.text))
 
 
 def _numbered(node: Node, times: Repeat, number: int) -> Node:

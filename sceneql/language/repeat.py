@@ -14,7 +14,8 @@ from sceneql.quantities.diagnostic import Diagnostics
 
 MOST_COPIES: Final = 10_000
 _MOST_HOPS: Final = 64
-_NUMBERED = re.compile(r"(\w*)\{(\w+)\}\w*")
+_NUMBERED = re.compile(r"(\w*)[{[(<$%]+(\w+)[}\])>]*\w*")
+_LOOP = re.compile(r"for(?:each)?\s+\(?(?:int |let |var )?\s*(\w+)\b.*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +36,13 @@ class Repeat:
 
 
 def numbered(name: str) -> str | None:
-    """The help for a name that has its copy's number in braces, ``hook_{i}``; None for other names."""
-    found = _NUMBERED.fullmatch(name)
-    if found is None:
+    """The help for a name with its copy's number in it, ``hook_{i}``, or a loop, ``for i in``; None for other names."""
+    if (found := _NUMBERED.fullmatch(name)) is not None:
+        plain, index = found[1].rstrip("_") or "name", found[2]
+    elif (loop := _LOOP.fullmatch(name)) is not None:
+        plain, index = "name", loop[1]
+    else:
         return None
-    plain, index = found[1].rstrip("_") or "name", found[2]
     copies = f"the copies are {plain}.0, {plain}.1, ..."
     return f"write `{plain}: {{repeat: {{count: 5, as: {index}}}, ...}}`, {copies}: `sceneql words repeat`"
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from sceneql.language.compose import compose
+from sceneql.language.copies import KEY
 from sceneql.language.include import OutsideError, Read, folder_reader, read_included, read_source
 from sceneql.language.nesting import unnested
 from sceneql.language.patch import VARIANT_OPTIONS, Patch, apply_patch, parse_set, variant, variant_names
@@ -127,7 +128,8 @@ class Composed:
                 found.extend(error.diagnostics)
         patched = apply_patch(root, patches, self.families, self.settings, found)
         whole = reused(unnested(patched, self.families, found), (*self.families, "parts"), found)
-        expanded = expand(whole, self.families, lost, found)
+        repeats = bool(patches) or any(KEY in tree.source.text for tree in self.trees)
+        expanded = expand(whole, self.families, lost, found, repeats=repeats)
         defaults = patched.entries.get("defaults")
         return Script(
             name=self.name,

@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
-from sceneql.language.copies import Copies
+from sceneql.language.copies import Copies, in_braces
 from sceneql.language.repeat import numbered, read_repeat
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
 from sceneql.language.sections import Written, duplicate, empty, read_entry, section, with_known_keys
@@ -22,15 +22,17 @@ __all__ = ["Entry", "Expanded", "Given", "Scope", "expand", "filled"]
 
 MOST_NESTED: Final = 64
 MOST_PARTS: Final = 100_000
+_EQUALS = re.compile(r"(\w+)\s*:?=\s*(\S+(?:[ \t]\S+)*)")
+"""A value given as in other languages, ``k = 10 N/m``, alone on its line."""
 
 
-def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics) -> Expanded:
+def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics, *, repeats: bool = True) -> Expanded:
     """The entries of a script, templates and copies written out and defaults filled in.
 
-    ``lost`` holds the names of unreadable entries; those of entries found to be wrong here are added. Raises
-    ScriptError where there are more parts than are checked.
+    ``lost`` holds the names of unreadable entries; those of entries found to be wrong here are added; ``repeats``:
+    whether `repeat` stands anywhere. Raises ScriptError where there are more parts than are checked.
     """
-    expander = _Expander(root, families, lost, found)
+    expander = _Expander(root, families, lost, found, repeats)
     expander.unique(root)
     for name in expander.templates:
         expander.template(name)
@@ -83,7 +85,7 @@ class _Template:
 
 
 class _Expander:
-    def __init__(self, root: Mapping, families: List[str], lost: Broken, found: Diagnostics) -> None:
+    def __init__(self, root: Mapping, families: List[str], lost: Broken, found: Diagnostics, repeats: bool) -> None:
         self.families, self.found = families, found
         self.done = Expanded(broken=lost)
         self.define = self.named(root, "define")
@@ -96,7 +98,7 @@ class _Expander:
         self.read: dict[str, _Template | None] = {}
         self.made: set[str] = set()
         self.sections = self.done.sections
-        self.inner = Copies(self.define, self.done.broken, found)
+        self.inner = Copies(self.define, self.done.broken, found, repeats)
         self.count = 0
 
     def named(self, mapping: Mapping, key: str) -> dict[str, Node]:
@@ -110,7 +112,8 @@ class _Expander:
         self.done.broken.any = True
         if broken(node):
             return {}
-        help = f"write `{key}: {{name: ...}}`"
+        equals = _EQUALS.fullmatch(node.text) if isinstance(node, Scalar) else None
+        help = f"write `{key}: {{name: ...}}`" if equals is None else f"write `{equals[1]}: {equals[2]}`"
         self.found.error("section-shape", f"'{key}' holds values by name", node.span, help=help)
         return {}
 
@@ -226,7 +229,10 @@ class _Expander:
         """Add one entry, and register its name with the enclosing instances."""
         assert isinstance(section, Mapping)
         span, word = section.keys[key].span, written.word.text
-        fields = filled(word, written.fields, self.defaults, written.word.span)
+        own = written.fields
+        if own is not None and scope is not None and scope is not place.scope:
+            own = in_braces(own, scope)
+        fields = filled(word, own, self.defaults, written.word.span)
         fields = self.inner.written_out(fields, scope)
         entry = Entry(name, word, fields, span, written.word.span, scope)
         self.sections.setdefault(family, {})[name] = entry
@@ -266,7 +272,10 @@ class _Expander:
             return
         for full, outer in self.copies(name, written.repeat, place):
             self.group(full, place)
-            self.instance(word.text, template, given, full, outer, place)
+            own = given
+            if outer is not None and outer is not place.scope:
+                own = {key: in_braces(node, outer) for key, node in given.items()}
+            self.instance(word.text, template, own, full, outer, place)
 
     def instance(
         self, name: str, template: _Template, given: dict[str, Node], full: str, outer: Scope | None, place: _Place

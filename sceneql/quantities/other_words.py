@@ -97,6 +97,7 @@ _LISTS = (
     ("equations", "ode system odes equation"),
     ("gravity", "weight g"),
     ("drag", "air air_resistance"),
+    ("force", "constant push pull thrust external constant_force"),
     ("collision", "collide collisions bounce contact"),
     ("point", "bulb lamp spot pointlight spotlight light omni"),
     ("sun", "directional directional_light"),
@@ -196,6 +197,12 @@ _SENTENCES = (
     ("sign", "²", "write `^2`"),
     ("sign", "³", "write `^3`"),
     ("sign", "°", "write `deg`"),
+    (
+        "sign",
+        "{ }",
+        'only the number of a copy by `repeat` stands in braces, in a name, `"ball.{i}.position"`: '
+        "`sceneql words repeat`",
+    ),
     ("name", "t", "the time is written 'time'"),
     ("name", "if then else elif when", f"{_IF}: `sceneql words functions`"),
     ("name", "true yes", "in a formula write `1`"),
@@ -208,6 +215,12 @@ _SENTENCES = (
     ("field entry", "repeat", _REPEAT),
     ("field entry", "type kind shape", _WORD),
     ("field", "scale", "no part is scaled: write its sizes as they shall be"),
+    (
+        "field",
+        "roughness metallic metalness shininess specular reflectivity",
+        "a material says it, `material: {metal: {roughness: 0.2}}`: `sceneql words glossy`",
+    ),
+    ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
     ("field", "diameter", "write half of it as `radius`"),
     (
         "field",

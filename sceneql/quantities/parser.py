@@ -230,6 +230,10 @@ class _Parser:
         if isinstance(expr, Number) and self.kind == "number":
             help = "a vector is numbers alone and one unit, `0 1.2 0 m`, or expressions in brackets, `[a, b, c]`"
             if (vector := vector_meant(self.text)) is not None:
+                if vector == self.text.strip():  # right as a vector, but a formula stands here
+                    *numbers, last = vector.split(" ")
+                    unit = "" if last[-1:].isdigit() else f" {last}"
+                    vector = f"[{', '.join(f'{one}{unit}' for one in (numbers if unit else (*numbers, last)))}]"
                 help = f"write `{vector}`"
         elif (meant := self._unit_behind(expr)) is not None:
             help = f"a unit stands directly after a number: write `{meant}`"

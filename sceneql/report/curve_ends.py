@@ -39,9 +39,10 @@ def label_ends(axes: Any) -> None:
 
 
 def _end(line: Any) -> tuple[float, float] | None:
-    """The last of a line's points that can be drawn; None without one."""
+    """The point of a line that is nearest to the labels, the last of several; None without one that can be drawn."""
     points = [(float(x), float(y)) for x, y in zip(*line.get_data(), strict=True)]
-    return next(((x, y) for x, y in reversed(points) if math.isfinite(x) and math.isfinite(y)), None)
+    drawn = [(x, y) for x, y in points if math.isfinite(x) and math.isfinite(y)]
+    return max(reversed(drawn), key=lambda point: point[0], default=None)
 
 
 def spread(heights: Sequence[float]) -> list[float]:

@@ -7,6 +7,7 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.light.albedo_kernels import mean_reflectance
 from renderers.tracing.light.light_kernels import highlight, schlick, sky_ambient, sky_radiance
+from renderers.tracing.light.soft_boxes_kernels import soft_boxes
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY, light_at
 from renderers.tracing.record_kernels import IMAGED, NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
 from renderers.tracing.scene_kernels import ROW, SCENE, part
@@ -84,7 +85,9 @@ def shade(scene, record, visibility):
     specular = mean_specular(u, record, nv)
     body = (1.0 - u[s + layout.METALLIC]) * (1.0 - u[s + layout.TRANSMISSION])
     open_sky = sky_ambient(u, ny)
-    mirrored_sky = sky_radiance(u, 2.0 * (nx * vx + ny * vy + nz * vz) * ny - vy)
+    twice = 2.0 * (nx * vx + ny * vy + nz * vz)
+    mirrored_sky = sky_radiance(u, twice * ny - vy)
+    boxes = soft_boxes(scene, twice * nx - vx, twice * ny - vy, twice * nz - vz, 2.0 * roughness * roughness)
     sums = (0.0, 0.0, 0.0)  # irradiance of the matte part, by channel
     lobes = (0.0, 0.0, 0.0)
     scale, bias = mean_reflectance(roughness, nv)
@@ -111,7 +114,7 @@ def shade(scene, record, visibility):
     for c in range(3):
         arriving = max(open_sky[c] - visibility[SKY + c], 0.0)
         share = min(arriving / open_sky[c], 1.0) if open_sky[c] > 0.0 else 0.0
-        blurred = arriving + share * (1.0 - roughness) * (mirrored_sky[c] - open_sky[c])
+        blurred = arriving + share * ((1.0 - roughness) * (mirrored_sky[c] - open_sky[c]) + boxes[c])
         diffuse = body * record[TINT + c] * (1.0 - specular[c])
         total = diffuse * (arriving + sums[c] / np.pi) + u[s + layout.EMISSION + c]
         total += (1.0 - record[IMAGED]) * lobes[c] * reflected_more(f0[c], once)

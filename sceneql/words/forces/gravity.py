@@ -21,7 +21,7 @@ class Gravity(Force):
 
     weighs: ClassVar[bool] = True
 
-    strength: Annotated[Value, Quantity(dim.ACCELERATION)] = field("How strong it is.", "9.81 m/s^2")
+    strength: Annotated[Value, Quantity(dim.ACCELERATION)] = field("How strong it is.", "9.81 m/s^2", at_least=0)
     direction: Direction = field("Where it points; its length does not matter.", "0 -1 0")
     acceleration: Acceleration | None = field("The vector g, in place of strength and direction.", None)
 

@@ -17,17 +17,28 @@ RIM, RIM_FROM, RIM_ANGLE = 0.30, (0.62, 0.40, -0.68), math.radians(14.0)
 """The same of the light from behind, which parts edges from the background."""
 DOME = ((0.44, 0.45, 0.47), (0.24, 0.245, 0.25), (0.15, 0.15, 0.15))
 """Radiance overhead, at the horizon and from below: a white surface has a quarter of its light from it (4:1)."""
+BOXES = (
+    ((-0.50, 0.72, 0.48), (50.0, 38.0), 1.6),
+    ((0.93, 0.30, 0.25), (13.0, 62.0), 1.6),
+    ((0.10, 0.80, -0.60), (80.0, 16.0), 1.0),
+)
+"""What metal and glass mirror: soft boxes about the key light, as a strip on the right and as a bar behind and above;
+direction, width and height [deg], radiance. Their light on matte surfaces is a part of the dome's."""
 BACKGROUND = (0.655, 0.655, 0.655)
 """As bright as the stage of a plane without material (words/objects/plane.py), so that its horizon does not show."""
 
 
 class Studio(Light):
-    """A picture of a product: a soft key light from the upper left front, a bright dome, a light gray background."""
+    """A picture of a product: a soft key light from the upper left front, a bright dome, a light gray background.
+
+    Metal, glass and gloss mirror soft boxes, that stand outside of the picture; they change nothing on matte surfaces.
+    """
 
     stages: ClassVar[bool] = True
 
     key: Scalar = field("Factor of the key light.", "1", at_least=0)
     fill: Scalar = field("Factor of the dome's light.", "1", at_least=0)
+    boxes: Scalar = field("Factor of the soft boxes that metal and glass mirror.", "1", at_least=0)
 
     def lower(self, moment: Moment) -> Iterable[frame.LightSource]:
         """The key light and the dome."""
@@ -38,4 +49,9 @@ class Studio(Light):
             yield frame.Sun((x / far, y / far, z / far), (given, 0.99 * given, 0.97 * given), angle)
         fill = float(moment.at(self.fill))
         zenith, horizon, ground = ((fill * r, fill * g, fill * b) for r, g, b in DOME)
-        yield frame.Sky(zenith, horizon, ground, visible=BACKGROUND)
+        shine = float(moment.at(self.boxes))
+        boxes = tuple(
+            frame.SoftBox(toward, (math.radians(wide), math.radians(high)), (shine * radiance,) * 3)
+            for toward, (wide, high), radiance in BOXES
+        )
+        yield frame.Sky(zenith, horizon, ground, visible=BACKGROUND, boxes=boxes)

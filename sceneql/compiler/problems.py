@@ -1,0 +1,59 @@
+"""What is wrong with fields that each are right: the problems of a record, reported where they stand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from sceneql import kinds
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence
+from sceneql.language.within import within
+from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.span import Span
+
+
+def validated(cls: type[BaseModel], got: dict[str, Any], node: Node | None, span: Span, found: Diagnostics) -> Any:
+    """The record of fields that were read from ``node``; None after a report where they do not go together.
+
+    A record that is no word is returned with its problems: the record or word around it may have some of its own.
+    """
+    context: list[tuple[BaseModel, kinds.Problem]] = []
+    try:
+        result = cls.model_validate(got, context=context)
+    except ValidationError as error:
+        for problem in error.errors():
+            exceeds = isinstance(problem.get("ctx", {}).get("error"), kinds.Exceeds)
+            found.error("limit-refused" if exceeds else "invalid", _text(problem), _place(problem["loc"], node, span))
+        return None
+    problems = [problem for one, problem in context if one is result]  # those inside were reported
+    for told in problems:
+        found.error(told.code, told.text, _place(told.path, node, span, told.at_key, told.part))
+    return None if problems and issubclass(cls, kinds.Kind) else result
+
+
+def _text(problem: Any) -> str:
+    message: str = problem["msg"]
+    return message.removeprefix("Value error, ").removeprefix("Assertion failed, ")
+
+
+def _place(
+    path: tuple[int | str, ...],
+    node: Node | None,
+    span: Span,
+    at_key: bool = False,
+    part: tuple[str, int, int] | None = None,
+) -> Span:
+    """The span of the deepest node on a validation error's path, of the last step's key, or of a part of its text."""
+    for number, step in enumerate(path, 1):
+        if isinstance(node, Mapping) and isinstance(step, str) and kinds.written_name(step) in node.entries:
+            if at_key and number == len(path):
+                return node.keys[kinds.written_name(step)].span
+            node = node.entries[kinds.written_name(step)]
+        elif isinstance(node, Sequence) and isinstance(step, int) and step < len(node.items):
+            node = node.items[step]
+        else:
+            break
+    if part is not None and isinstance(node, Scalar) and node.text == part[0]:
+        return within(node, part[1], part[2])
+    return span if node is None else node.span
