@@ -46,6 +46,7 @@ def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...
 def lay_out(
     triples: list[tuple[int, int, int]],
     frees: list[tuple[int, int]],
+    tied: bool,
     blocks: list[Block],
     first_blocks: list[int],
     pairs: list[int],
@@ -57,7 +58,7 @@ def lay_out(
     ranges_at = table_at + len(blocks) + 1
     table = list(accumulate((len(block.ints) for block in blocks), initial=ranges_at + len(pairs) + 1))
     parts = [
-        [triples_at, len(triples), frees_at, len(frees), table_at, ranges_at, table[-1]],
+        [triples_at, len(triples), frees_at, len(frees), int(tied), table_at, ranges_at, table[-1]],
         [table_at + block for block in first_blocks],
         [number for triple in triples for number in triple],
         [number for free in frees for number in free],

@@ -81,6 +81,7 @@ class IslandAssembly:
     _settling: list[Block] = field(default_factory=list)
     _free: list[Block] = field(default_factory=list)
     _frees: list[tuple[int, int]] = field(default_factory=list)
+    _tied: list[Block] = field(default_factory=list)
     _varying: list[tuple[int, Value, Word]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _stops: set[Breakpoint] = field(default_factory=set)
@@ -139,6 +140,12 @@ class IslandAssembly:
         self._stored += len(numbers)
         return first
 
+    def write(self, at: int, values: Any) -> None:
+        """Replace numbers (system.Assembly)."""
+        numbers = self.numbers()
+        numbers[at : at + len(values)] = values
+        self._numbers = [numbers]
+
     def value(self, value: Value) -> int:
         """Store a value, a varying one to be evaluated at stage times; the offset of its first float."""
         if value.constant:
@@ -165,6 +172,10 @@ class IslandAssembly:
         """Add a term to the rate."""
         self._apart = self._apart and apart
         self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, *self._word))
+
+    def tied_drift(self, kernel: str, ints: Sequence[int]) -> None:
+        """Add what lets drifts end where ties hold (system.Assembly)."""
+        self._tied.append(Block((kernel,), tuple(ints)))
 
     def alike(self, at: int, count: int) -> None:
         """Say that entries share a scale of errors (system.Assembly)."""
@@ -306,15 +317,16 @@ class IslandAssembly:
         exact = grouped(self._exact, blocks)
         pairs = [block.pairs for block in blocks[first_exact:]]
         local = grouped(self._local, blocks)
-        after, settling, free = (grouped(some, blocks) for some in (self._after, self._settling, self._free))
-        counts = (count for _, count in (*groups, *exact, *local, *after, *settling, *free))
+        between = (self._after, self._settling, self._free, self._tied)
+        after, settling, free, tied = (grouped(some, blocks) for some in between)
+        counts = (count for _, count in (*groups, *exact, *local, *after, *settling, *free, *tied))
         first_blocks = list(accumulate(counts, initial=1))
-        ints = lay_out(self._pairs, self._frees, blocks, first_blocks, pairs)
+        ints = lay_out(self._pairs, self._frees, bool(tied), blocks, first_blocks, pairs)
         found, derived = full(len(y)) if jacobian else None, None
         if slopes is not None:
             found, derived, more = section(len(ints), len(y), slopes, self._masses, self._pairs)
             ints = np.concatenate([ints, more])
-        names = [tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free)]
+        names = [tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free, tied)]
         structure = Structure(
             terms=tuple(kernels[0] for kernels, _ in groups),
             exact=tuple((kernels[0], kernels[1]) for kernels, _ in exact),
@@ -322,6 +334,7 @@ class IslandAssembly:
             after=names[1],
             settling=names[2],
             free=names[3],
+            tied=names[4],
             varying=bool(self._varying),
             slopes=derived,
         )

@@ -1,8 +1,9 @@
 """The layout of an island's array of integers, with the section of its Jacobian at the end: indices by name."""
 
-TRIPLES_AT, TRIPLES, FREES_AT, FREES, TABLE_AT, RANGES_AT, SLOPES_AT, GROUPS_AT = range(8)
+TRIPLES_AT, TRIPLES, FREES_AT, FREES, TIED, TABLE_AT, RANGES_AT, SLOPES_AT, GROUPS_AT = range(9)
 """All indices are absolute. At TRIPLES_AT: TRIPLES triples (POSITION, VELOCITY, COUNT) of pairs; at FREES_AT:
-FREES times offset and number of the entries of y that a free motion moves; at TABLE_AT: the start
+FREES times offset and number of the entries of y that a free motion moves; TIED: whether drifts end where ties hold; at
+TABLE_AT: the start
 of every block and the end of the last; at RANGES_AT: the first pair of every exact contact and the end. Block 0 is the
 program of the values that vary in time. A group is a run of blocks with the same kernel; at GROUPS_AT: the index in the
 table of each group's first block. At SLOPES_AT: the section of the Jacobian, which has a kernel of its own, so that

@@ -32,6 +32,8 @@ class Structure:
     """Those that act on samples, too."""
     free: tuple[str, ...]
     """Free motions."""
+    tied: tuple[str, ...]
+    """What lets drifts end where ties hold."""
     varying: bool
     """Whether values vary in time."""
     slopes: tuple[str, ...] | None = None

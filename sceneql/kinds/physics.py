@@ -218,6 +218,10 @@ class Tie(Interaction):
         """The parts that it holds; objects are among them."""
         return tuple(dict.fromkeys(ref.name for ref in self.between if ref.name))
 
+    def pivot(self) -> Ref | None:
+        """The body that only turns about a point of the world, where it leaves it no other motion; else None."""
+        return None
+
     def read(self, output: str, state: ModelState) -> Any:
         """An output at a state."""
         raise TypeError(f"{type(self).__name__} gives no {output}")

@@ -31,6 +31,7 @@ class Driver(NamedTuple):
     after_step: Any
     settle: Any
     free_motion: Any
+    tied_drift: Any
 
 
 def driver(structure: Structure) -> Driver:
@@ -50,7 +51,8 @@ def _driver(structure: Structure, code: str) -> Driver:
     after = source.after_step if structure.after else module.no_act
     settle = source.settle if structure.settling else module.no_act
     free = source.free_motion if structure.free else module.no_free_motion
-    return Driver(source.rate, gap, impact, back_off, after, settle, free)
+    tied = source.tied_drift if structure.tied else module.no_tied_drift
+    return Driver(source.rate, gap, impact, back_off, after, settle, free, tied)
 
 
 def jacobian(system: System) -> Any:
@@ -92,7 +94,7 @@ def jacobian_text(structure: Structure) -> str:
 
 def modules(structure: Structure) -> tuple[str, ...]:
     """The modules of an island's kernels; those of contacts, as a rule the largest, first."""
-    after = (*(structure.slopes or ()), *structure.after, *structure.settling, *structure.free)
+    after = (*(structure.slopes or ()), *structure.after, *structure.settling, *structure.free, *structure.tied)
     names = (*structure.local, *chain(*structure.exact), *after, *structure.terms)
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 
@@ -106,14 +108,16 @@ def lazy_first(structure: Structure) -> list[str]:
 def text(structure: Structure) -> str:
     """The module's text."""
     names: dict[str, str] = {}
-    between = (*structure.local, *structure.after, *structure.settling, *structure.free)
+    between = (*structure.local, *structure.after, *structure.settling, *structure.free, *structure.tied)
     for name in (*structure.terms, *chain(*structure.exact), *between):
         names.setdefault(name, f"kernel_{len(names)}")
     lines = [
         *_imports(names),
         "from sceneql.compiled.kernels import lean",
         *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
-        "from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, FREE_MOTION, GAP, IMPACT, TERM",
+        "from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, GAP, IMPACT, TERM",
+        *(["from sceneql.system.signatures_kernels import FREE_MOTION"] if structure.free else []),
+        *(["from sceneql.system.signatures_kernels import TIED_DRIFT"] if structure.tied else []),
     ]
     refresh = [REFRESH] if structure.varying else []
     group = layout.GROUPS_AT
@@ -145,6 +149,13 @@ def text(structure: Structure) -> str:
         lines += ["", "", "@lean(FREE_MOTION)", "def free_motion(h, y, floats, ints):"]
         for k, name in enumerate(structure.free, group):
             lines += _blocks(k, f"{names[name]}(h, y, floats, ints[ints[b] : ints[b + 1]])")
+    group += len(structure.free)
+    if structure.tied:
+        lines += ["", "", "@lean(TIED_DRIFT)", "def tied_drift(functions, h, y0, kicked, y1, floats, ints):"]
+        for k, name in enumerate(structure.tied, group):
+            lines += _blocks(
+                k, f"{names[name]}(functions, h, y0, kicked, y1, floats, ints, ints[ints[b] : ints[b + 1]])"
+            )
     return "\n".join(lines) + "\n"
 
 

@@ -14,7 +14,7 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled import pointers_kernels as pointers
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, FREE_MOTION, GAP, IMPACT, A, F, I
+from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, DENSE, FREE_MOTION, GAP, IMPACT, TIED_DRIFT, A, F, I
 
 T0, T1, STEP, ERROR, LARGEST, LIMIT, SLOP, LEAST, CLOCKS = range(9)
 """Ends of the last step [s]; the step to try next, or the fixed one [s]; the last error; largest step [s]; largest |y|;
@@ -98,6 +98,11 @@ def no_act(t0, t1, y0, rate0, y1, floats, ints):
 @lean(FREE_MOTION, inner=True)
 def no_free_motion(h, y, floats, ints):
     """Stands in on an island whose motion without forces is x += h v."""
+
+
+@lean(TIED_DRIFT, inner=True)
+def no_tied_drift(functions, h, y0, kicked, y1, floats, ints):
+    """Stands in on an island whose drifts no ties bind."""
 
 
 @lean_inlined

@@ -3,11 +3,18 @@
 
 ``numbers`` = (drifts s,). ``settings`` = (kicks (s + 1), drifts (s)). ``work``: the rate at the step's end, handed on
 to the next step; the state that the forces see; the rates of what moves freely at the step's end. What has a free
-motion (Assembly.free_motion) drifts by it.
+motion (Assembly.free_motion) drifts by it; where a step has one drift, it ends where ties hold.
 """
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.pointers_kernels import AT_FREE_MOTION, AT_RATE, free_motion_at, rate_at
+from sceneql.compiled.pointers_kernels import (
+    AT_FREE_MOTION,
+    AT_RATE,
+    AT_TIED_DRIFT,
+    free_motion_at,
+    rate_at,
+    tied_drift_at,
+)
 from sceneql.island import layout
 from sceneql.system.signatures_kernels import STEP
 
@@ -28,6 +35,17 @@ def keep_positions(slope, ints):
             slope[k] = 0.0
 
 
+@lean_inlined
+def drift(free_motion, h, y, floats, ints):
+    """Positions move by their velocities over h, and what has a free motion by that."""
+    for pair in range(ints[layout.TRIPLES]):
+        at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
+        position, velocity = ints[at + layout.POSITION], ints[at + layout.VELOCITY]
+        for k in range(ints[at + layout.COUNT]):
+            y[position + k] += h * y[velocity + k]
+    free_motion(h, y, floats, ints)
+
+
 @lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after kicks and drifts (splitting.py)."""
@@ -45,12 +63,12 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for i in range(drifts):
         share = settings[drifts + 1 + i]
         passed += share
-        for pair in range(ints[layout.TRIPLES]):
-            at = ints[layout.TRIPLES_AT] + layout.TRIPLE * pair
-            position, velocity = ints[at + layout.POSITION], ints[at + layout.VELOCITY]
-            for k in range(ints[at + layout.COUNT]):
-                y1[position + k] += h * share * y1[velocity + k]
-        free_motion(h * share, y1, floats, ints)
+        if ints[layout.TIED] != 0 and drifts == 1:
+            for k in range(n):
+                last[k] = y1[k]
+        drift(free_motion, h * share, y1, floats, ints)
+        if ints[layout.TIED] != 0 and drifts == 1:
+            tied_drift_at(functions[AT_TIED_DRIFT])(functions, h, y0, last, y1, floats, ints)
         kick = h * settings[i + 1]
         lead = kick if i == drifts - 1 else 0.5 * kick
         for k in range(n):

@@ -18,6 +18,7 @@ Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None
                                             True where it changed the state or the floats: then frames inside the step
                                             are read off its cubic Hermite interpolant, and the rate is evaluated anew
     free_motion(h, y, floats, ints)         moves entries of y by their exact motion without forces over h
+    tied_drift(functions, h, y0, kicked, y1, floats, ints)   ends a drift where ties hold, by other momenta before it
     step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints) -> error   one step of a solver: writes
                                             y1; the error is scaled by the tolerance (accept when <= 1), 0 for fixed
                                             steps

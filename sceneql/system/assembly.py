@@ -39,6 +39,9 @@ class Assembly(Protocol):
     def floats(self, values: Any) -> int:
         """Store numbers; the offset of the first."""
 
+    def write(self, at: int, values: Any) -> None:
+        """Replace numbers that are stored from an offset on."""
+
     def value(self, value: Value) -> int:
         """Store a value of the script, a varying one to be evaluated at stage times; the offset of its first float.
 
@@ -62,6 +65,13 @@ class Assembly(Protocol):
         ``jacobian``: its derivatives, or a function that gives them if a solver needs them; None: unknown, then the
         island takes differences of the whole rate. ``apart``: its force on a body depends on that body and the time
         alone, so that a large island may be solved in blocks of its bodies.
+        """
+
+    def tied_drift(self, kernel: str, ints: Sequence[int]) -> None:
+        """Add what changes the momenta before a splitting's drift, so that it ends where ties hold (RATTLE).
+
+        ``kernel(functions, h, y0, kicked, y1, floats, all_ints, ints)``: y1 is the state that has drifted over h from
+        ``kicked``, whose places are those of y0; it writes both anew. ``all_ints`` are the island's.
         """
 
     def alike(self, at: int, count: int) -> None:

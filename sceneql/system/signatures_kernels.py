@@ -14,6 +14,9 @@ IMPACT = types.void(F, A, N, A, I)
 BACK_OFF = types.void(F, F, A, A, A, A, I)
 AFTER_STEP = types.boolean(F, F, A, A, A, A, I)
 FREE_MOTION = types.void(F, A, A, I)
+TIED_DRIFT = types.void(I, F, A, A, A, A, I)
+TIED_DRIFT_OF = types.void(I, F, A, A, A, A, I, I)
+"""One part of it, with its own integers last."""
 
 RATE_FUNCTION = types.FunctionType(TERM)
 GAP_FUNCTION = types.FunctionType(GAP)
@@ -21,6 +24,7 @@ IMPACT_FUNCTION = types.FunctionType(IMPACT)
 BACK_OFF_FUNCTION = types.FunctionType(BACK_OFF)
 AFTER_STEP_FUNCTION = types.FunctionType(AFTER_STEP)
 FREE_MOTION_FUNCTION = types.FunctionType(FREE_MOTION)
+TIED_DRIFT_FUNCTION = types.FunctionType(TIED_DRIFT)
 
 JACOBIAN = types.void(I, F, A, A, A, I)
 STEP = types.float64(I, F, F, A, A, A, A, A, I, A, I)

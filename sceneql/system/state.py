@@ -24,7 +24,7 @@ class Turning:
     zz, yz, xz, xy [1/(kg m^2)]; 0 for a fixed body."""
     principal_at: int
     """floats[principal_at + 7k : +7]: principal moments of inertia [kg m^2], then the quaternion that turns their axes
-    to the body's; the moments of a fixed body are 0."""
+    to the body's; the moments of a body without a free motion of its own are 0."""
 
 
 @dataclass(frozen=True, slots=True)

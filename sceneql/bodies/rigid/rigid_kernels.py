@@ -61,7 +61,7 @@ def close(t, y, rate, floats, ints):
         rate[q + 1] += a * x + c * z - d * y_
         rate[q + 2] += a * y_ + d * x - b * z
         rate[q + 3] += a * z + b * y_ - c * x
-        if floats[ints[PRINCIPAL_AT] + 7 * k] == 0.0:
+        if floats[inverse] == 0.0:
             rate[momentum] = rate[momentum + 1] = rate[momentum + 2] = 0.0
 
 

@@ -45,11 +45,11 @@ from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
 MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(9)
-MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, HEAD = range(9, 18)
+MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, HEAD = range(9, 19)
 """Integers of an island's ties: numbers of movers, rows, movers that rows share, of the plan's integers, and where each
 begins; places of the diagonal's values; offsets into the floats and sizes of what movers, matrix, factors, scratch and
-right hand side take. A mover that rows share: their number n, the floats of each at its side, and the place of the
-value of each with each, n x n."""
+right hand side take, and what drifts keep (rattle_kernels). A mover that rows share: their number n, the floats of each
+at its side, and the place of the value of each with each, n x n."""
 
 EASE = 1e-9
 """Part of the diagonal that is added to it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from itertools import product
 from typing import TYPE_CHECKING
@@ -22,6 +23,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     from scipy.sparse import csr_array
 
     from sceneql.bodies.rigid import tie_kernels as kernels
+    from sceneql.bodies.rigid.rattle_kernels import KEPT
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, ROW
     from sceneql.linear.multifrontal import plan
 
@@ -77,10 +79,49 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     sizes = (MOVED * len(movers), len(columns), planned.factors, planned.work + len(rows), len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
     head = [len(movers), len(rows), begins[0], begins[1], len(shared), begins[2], begins[3], begins[4], len(lists[4])]
-    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right]
+    free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
+    kept = assembly.floats(np.zeros(KEPT * len(rows) if free else 0))
+    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
+    _add_pivots(assembly, ties)
     assembly.term("tie", f"{KERNELS}:hold", ints)
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
+    if free:  # else where parts are led to is known at the end of a step alone
+        assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
+
+
+def _add_pivots(assembly: Assembly, ties: Sequence[Tied]) -> None:
+    """The exact motion of bodies that a single ball holds to a point of the world."""
+    import numpy as np
+
+    from sceneql.bodies.rigid.turning import packed, principal_axes, quaternion, unpacked
+
+    held = Counter(integers(mover) for tie in ties for mover in tie.movers)
+    for tie in ties:
+        mine, other = sorted(tie.movers, key=lambda mover: mover is None)
+        ball = [row.kind for row in tie.rows] == 3 * ["point"]
+        if other is not None or not ball or not isinstance(mine, Place) or held[integers(mine)] > 1:
+            continue
+        turning, k, numbers = mine.bodies.turning, mine.body, assembly.numbers()
+        if turning is None or numbers[mine.bodies.inverse_at + k] == 0.0:
+            continue
+        mine_first = tie.movers[0] is mine
+        arm, point = (
+            -np.array(tie.rows[0].vectors[0 if mine_first else 1]),
+            tie.rows[0].vectors[1 if mine_first else 0],
+        )
+        mass = float(numbers[mine.bodies.mass_at + k])
+        own = np.linalg.inv(unpacked(numbers[turning.inverse_at + 6 * k :][:6]))
+        about = own + mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        moments, axes = principal_axes(about)
+        assembly.write(turning.principal_at + 7 * k, [0.0])
+        offsets = mine.ints
+        ints = (
+            *(offsets[0], offsets[1], offsets[4], offsets[5], mine.bodies.mass_at + k),
+            *(assembly.floats(arm), assembly.floats(point), assembly.floats([*moments, *quaternion(axes)])),
+            assembly.floats(packed(np.linalg.inv(about))),
+        )
+        assembly.free_motion("sceneql.bodies.rigid.free_motion_kernels:pivot", ints, offsets[4], 4)
 
 
 def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int]:

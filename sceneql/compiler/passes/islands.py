@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from sceneql.compiler.passes.reads import reads
 from sceneql.compiler.passes.touchable import no_collider, touchable
@@ -69,7 +69,7 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         solver, reason = _solver(group, tasks, found)
         tied = [f for f, targets in forces.items() if isinstance(tasks[f].kind, Tie) and set(targets) & set(group)]
         marching = tasks[solver].kind
-        if tied and isinstance(marching, Solver) and marching.refuses_ties:
+        if isinstance(marching, Solver) and marching.refuses_ties and not _pivots(tied, tasks):
             word = tasks[solver].word
             message = f"{word} does not march bodies that ties hold, as '{tied[0]}' does: {marching.refuses_ties}"
             help = "choose auto, rk4, dop853 or verlet for them"
@@ -86,6 +86,13 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             )
         )
     return tuple(result)
+
+
+def _pivots(ties: Sequence[str], tasks: Mapping[str, Task]) -> bool:
+    """Whether ties leave each body just its turning about one point of the world: that motion is known exactly."""
+    kinds = [kind for name in ties if isinstance(kind := tasks[name].kind, Tie)]
+    bodies = {(ref.name, ref.within) for kind in kinds if (ref := kind.pivot()) is not None}
+    return len(bodies) == len(kinds)
 
 
 def acts_on(force: Task, models: list[Task], tasks: Mapping[str, Task]) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.bodies.rigid.joint import FORCES, Joint, Side, point_of, together
-from sceneql.kinds import Gives, Position, field
+from sceneql.kinds import Gives, Position, Ref, field
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, TieRow
@@ -18,6 +18,13 @@ class Ball(Joint):
     gives: ClassVar[Mapping[str, Gives]] = FORCES
 
     at: Position | None = field("Where it is at the start; by default where the mass is that it holds.", None)
+
+    def pivot(self) -> Ref | None:
+        """The other body, where one is the world."""
+        first, second = self.between
+        if first.name and second.name:
+            return None
+        return first if first.name else second
 
     def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
         """The point, along three axes."""
