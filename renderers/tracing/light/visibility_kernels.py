@@ -5,10 +5,11 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
+from renderers.tracing.light.embers_kernels import NEARLY, ROUGHLY, ember_seen, met, sum_up
 from renderers.tracing.light.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, NEXT_DISK, SKY_COUNT, SKY_DISK, across
 from renderers.tracing.light.through_kernels import CLEAR, clearness, go_through
-from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
+from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, SURFACE, TINT, start_of
 from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import ask, walk
 from renderers.tracing.solids.surface_kernels import color_at, normal_at
@@ -31,6 +32,8 @@ AGAIN = 0.25
 """Share of the sky that the last surface on the way of light from there is assumed to see."""
 SURFACES = 3
 """Surfaces beside the lit one that light from around is followed to."""
+NEXT_EMBER = (37, 101, 175)
+"""Factors of a sample's number that choose a small glowing sphere for each of these, odd ones."""
 
 
 @part
@@ -96,32 +99,36 @@ def in_a_lamp(scene, x, y, z):
 
 
 @part
-def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
+def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
     """Radiance (3) of a surface that hides the sky: its emission, and light reflected by it and two more, as if matte.
 
     Light goes on in one direction from each, and those beyond the first are lit by one lamp in place of all. The last
-    sees a part of the sky between neighbors as bright as itself, so that white in white loses nothing.
+    sees a part of the sky between neighbors as bright as itself, so that white in white loses nothing. ``told`` is the
+    share of the emission that counts, if the item is a small sphere.
     """
     u = scene.reals
     red, green, blue = 0.0, 0.0, 0.0
     wr, wg, wb = 1.0, 1.0, 1.0
-    for met in range(SURFACES):
+    for number in range(SURFACES):
         nx, ny, nz, fx, fy, fz, lift, pr, pg, pb = normal_at(scene, scratch, item, x, y, z)
         if dx * fx + dy * fy + dz * fz > 0.0:
             nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
         s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT] + layout.EMISSION
         if max(u[s], max(u[s + 1], u[s + 2])) > 0.0 and not in_a_lamp(scene, x, y, z):
-            red, green, blue = red + wr * u[s], green + wg * u[s + 1], blue + wb * u[s + 2]
+            hr, hg, hb = told * u[s], told * u[s + 1], told * u[s + 2]
+            red, green, blue = red + wr * hr, green + wg * hg, blue + wb * hb
         r, g, b = color_at(scene, item, (pr, pg, pb), x, y, z, nx, ny, nz, dx, dy, dz, radius)
         wr, wg, wb = wr * r, wg * g, wb * b
+        if max(wr, max(wg, wb)) <= 0.0:
+            break
         off = 0.05 * radius + 1e-6 * (abs(x) + abs(y) + abs(z)) + lift
         sx, sy, sz = x + off * fx, y + off * fy, z + off * fz
         er, eg, eb = 0.0, 0.0, 0.0
         lights = int(scene.ints[layout.LIGHT_COUNT])
-        for l in range(lights if met == 0 else min(lights, 1)):
+        for l in range(lights if number == 0 else min(lights, 1)):
             of = 1.0
-            if met > 0:  # one for all
-                l, of = (sample + met) % lights, float(lights)
+            if number > 0:  # one for all
+                l, of = (sample + number) % lights, float(lights)
             lx, ly, lz, far, ir, ig, ib = light_at(u, l, sx, sy, sz)
             cosine = of * (nx * lx + ny * ly + nz * lz)
             if cosine > 0.0 and fx * lx + fy * ly + fz * lz > 0.0:
@@ -130,11 +137,17 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
                 _, _, share = walk(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
                 cosine *= share / np.pi
                 er, eg, eb = er + cosine * ir, eg + cosine * ig, eb + cosine * ib
-        if met > 0:
+        if scene.ints[layout.EMBERS] > 0:
+            ir, ig, ib, total, _, _ = sum_up(scene, x, y, z, nx, ny, nz, ROUGHLY, np.inf)
+            if total > 0.0:
+                until = ((sample * NEXT_EMBER[number]) % SKY_COUNT + 0.5) / SKY_COUNT * total
+                share = ember_seen(scene, scratch, x, y, z, nx, ny, nz, sx, sy, sz, ROUGHLY, until)
+                er, eg, eb = er + share * ir, eg + share * ig, eb + share * ib
+        if number > 0:
             share = min(1.0, BRIGHTEST_AGAIN / max(max(er, eg), max(eb, BRIGHTEST_AGAIN)))
             er, eg, eb = share * er, share * eg, share * eb
         vr, vg, vb = 1.0, 1.0, 1.0  # what comes through glass on the way on
-        ended = met == SURFACES - 1
+        ended = number == SURFACES - 1
         if ended:
             hr, hg, hb = sky_ambient(u, ny)
             hr, hg, hb = AGAIN * hr, AGAIN * hg, AGAIN * hb
@@ -156,6 +169,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
                 hr, hg, hb = sky_radiance(u, dy)
                 er, eg, eb = er + vr * hr, eg + vg * hg, eb + vb * hb
             else:
+                told = met(scene, item, sx, sy, sz)
                 x, y, z, radius = sx + t * dx, sy + t * dy, sz + t * dz, radius + 0.05 * t
         red, green, blue = red + wr * er, green + wg * eg, blue + wb * eb
         if ended:
@@ -191,10 +205,35 @@ def sky_loss(scene, scratch, asked, record, sample):
         t, item, way = go_through(scene, scratch, x, y, z, dx, dy, dz, t, radius, item)
     r, g, b = hr, hg, hb
     if item >= 0:
-        r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius, sample)
+        told = met(scene, item, x, y, z)
+        r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius, sample, told)
     if glass:
         r, g, b = way[3] + way[0] * r, way[4] + way[1] * g, way[5] + way[2] * b
     return hr - r, hg - g, hb - b
+
+
+@part
+def by_embers(scene, scratch, asked, record, number, samples, visibility):
+    """Add the light of small spheres that glow, their shadows by so many samples, to a row of visibility."""
+    x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+    tint = max(record[TINT], max(record[TINT + 1], record[TINT + 2]))
+    if tint <= 0.0 and scene.reals[int(record[SURFACE]) + layout.SPECULAR] == 0.0:
+        return
+    if asked[0, layout.MODE] == layout.ASKING:  # found when rays have answers
+        asked[0, layout.OPEN] = 1.0
+        return
+    r, g, b, total, _, _ = sum_up(scene, x, y, z, nx, ny, nz, NEARLY, np.inf)
+    if total == 0.0:
+        return
+    sx, sy, sz = start_of(record)
+    share = 0.0
+    for k in range(samples):
+        until = ((number * samples + k) % SKY_COUNT + 0.5) / SKY_COUNT * total
+        share += ember_seen(scene, scratch, x, y, z, nx, ny, nz, sx, sy, sz, NEARLY, until) / samples
+    visibility[SKY] -= share * r
+    visibility[SKY + 1] -= share * g
+    visibility[SKY + 2] -= share * b
 
 
 @part
@@ -241,6 +280,8 @@ def look_around(scene, scratch, asked, record, number, of_sky, of_lights, visibi
             visibility[SKY] += r / of_sky
             visibility[SKY + 1] += g / of_sky
             visibility[SKY + 2] += b / of_sky
+        if scene.ints[layout.EMBERS] > 0:
+            by_embers(scene, scratch, asked, record, number, of_sky, visibility)
     jitter = 0.0 if of_lights == 1 else 1.0
     for l in range(int(scene.ints[layout.LIGHT_COUNT])):
         column = FIRST_LIGHT + 2 * l
