@@ -71,7 +71,7 @@ def test_a_light_counts_once_whether_samples_meet_it_or_not(size):
 def test_walls_hide_small_lights_and_give_their_light_back():
     wall = stage.box(Surface(color=(1.0, 0.5, 0.0), specular=0.0), (0.0, 1.5, -0.7), (9.0, 3.0, 0.1))
     followed = 0.00776, 0.00625 / 2, 0.00489 / 4  # by 6000 random paths of eight surfaces
-    assert at(np.zeros(3), embers(), wall) == pytest.approx(followed, rel=0.06)
+    assert at(np.zeros(3), embers(), wall) == pytest.approx(followed, rel=0.03)
 
 
 def test_a_tree_of_lights_has_the_light_of_all_but_what_shows_a_lamp():

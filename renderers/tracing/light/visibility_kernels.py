@@ -29,11 +29,14 @@ BRIGHTEST_AGAIN = 1.0
 SHOWN = 1e-3
 """Part of a lamp's radius by which a ball that shows it may be larger."""
 AGAIN = 0.25
-"""Share of the sky that the last surface on the way of light from there is assumed to see."""
-SURFACES = 3
-"""Surfaces beside the lit one that light from around is followed to."""
-NEXT_EMBER = (37, 101, 175)
-"""Factors of a sample's number that choose a small glowing sphere for each of these, odd ones."""
+"""Share of the sky that the last of SURFACES on the way of light from there is assumed to see."""
+SURFACES, LEAST = 64, 0.01
+"""Most surfaces beside the lit one that light from around is followed to, and its share of what the last of them
+gives below which it is followed no further: in closed rooms the sky is far, and in white corners."""
+BLURRED = 2
+"""Of these those behind which the cone of a way widens: it tells how far from a surface the way goes on too."""
+FACTOR, STEP = 55, 67
+"""Of the orders of ``shuffled``."""
 
 
 @part
@@ -99,12 +102,18 @@ def in_a_lamp(scene, x, y, z):
 
 
 @part
-def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
-    """Radiance (3) of a surface that hides the sky: its emission, and light reflected by it and two more, as if matte.
+def shuffled(sample, number):
+    """A sample's number in another order of the net for each surface that its light has met; 0 leaves it."""
+    return (sample * (2 * FACTOR * number + 1) + number * (number + 1) // 2 * STEP) % SKY_COUNT
 
-    Light goes on in one direction from each, and those beyond the first are lit by one lamp in place of all. The last
-    sees a part of the sky between neighbors as bright as itself, so that white in white loses nothing. ``told`` is the
-    share of the emission that counts, if the item is a small sphere.
+
+@part
+def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
+    """Radiance (3) of a surface that hides the sky: its emission, and light reflected by it and others, as if matte.
+
+    Light goes on in one direction from each, and those beyond the first are lit by one lamp in place of all. After
+    SURFACES, all of them bright, the last sees a part of the sky between neighbors as bright as itself, so that nothing
+    is lost in white corners. ``told`` is the share of the emission that counts, if the item is a small sphere.
     """
     u = scene.reals
     red, green, blue = 0.0, 0.0, 0.0
@@ -119,7 +128,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
             red, green, blue = red + wr * hr, green + wg * hg, blue + wb * hb
         r, g, b = color_at(scene, item, (pr, pg, pb), x, y, z, nx, ny, nz, dx, dy, dz, radius)
         wr, wg, wb = wr * r, wg * g, wb * b
-        if max(wr, max(wg, wb)) <= 0.0:
+        if max(wr, max(wg, wb)) < LEAST:
             break
         off = 0.05 * radius + 1e-6 * (abs(x) + abs(y) + abs(z)) + lift
         sx, sy, sz = x + off * fx, y + off * fy, z + off * fz
@@ -140,7 +149,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
         if scene.ints[layout.EMBERS] > 0:
             ir, ig, ib, total, _, _ = sum_up(scene, x, y, z, nx, ny, nz, ROUGHLY, np.inf)
             if total > 0.0:
-                until = ((sample * NEXT_EMBER[number]) % SKY_COUNT + 0.5) / SKY_COUNT * total
+                until = (shuffled(sample, number + 1) + 0.5) / SKY_COUNT * total
                 share = ember_seen(scene, scratch, x, y, z, nx, ny, nz, sx, sy, sz, ROUGHLY, until)
                 er, eg, eb = er + share * ir, eg + share * ig, eb + share * ib
         if number > 0:
@@ -156,7 +165,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
             eb += hb / (1.0 - (1.0 - AGAIN) * min(b, 1.0))
         else:
             ax, ay, az, bx, by, bz = across(nx, ny, nz)
-            v, w = NEXT_DISK[sample, 0], NEXT_DISK[sample, 1]
+            v, w = NEXT_DISK[shuffled(sample, number), 0], NEXT_DISK[shuffled(sample, number), 1]
             up = np.sqrt(max(1.0 - v * v - w * w, 0.0))
             dx, dy, dz = v * ax + w * bx + up * nx, v * ay + w * by + up * ny, v * az + w * bz + up * nz
             t, item, _ = walk(scene, scratch, sx, sy, sz, dx, dy, dz, 0.0, np.inf, False)
@@ -170,7 +179,9 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
                 er, eg, eb = er + vr * hr, eg + vg * hg, eb + vb * hb
             else:
                 told = met(scene, item, sx, sy, sz)
-                x, y, z, radius = sx + t * dx, sy + t * dy, sz + t * dz, radius + 0.05 * t
+                x, y, z = sx + t * dx, sy + t * dy, sz + t * dz
+                if number < BLURRED:
+                    radius += 0.05 * t
         red, green, blue = red + wr * er, green + wg * eg, blue + wb * eb
         if ended:
             break
