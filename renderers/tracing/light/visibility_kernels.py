@@ -119,9 +119,9 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
     red, green, blue = 0.0, 0.0, 0.0
     wr, wg, wb = 1.0, 1.0, 1.0
     for number in range(SURFACES):
-        nx, ny, nz, fx, fy, fz, lift, pr, pg, pb = normal_at(scene, scratch, item, x, y, z)
+        nx, ny, nz, fx, fy, fz, lift, sink, pr, pg, pb = normal_at(scene, scratch, item, x, y, z)
         if dx * fx + dy * fy + dz * fz > 0.0:
-            nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
+            nx, ny, nz, fx, fy, fz, lift = -nx, -ny, -nz, -fx, -fy, -fz, sink
         s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT] + layout.EMISSION
         if max(u[s], max(u[s + 1], u[s + 2])) > 0.0 and not in_a_lamp(scene, x, y, z):
             hr, hg, hb = told * u[s], told * u[s + 1], told * u[s + 2]
