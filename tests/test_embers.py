@@ -27,7 +27,7 @@ def embers(moved=0.0):
 
 def at(place, *shapes):
     """Light (3) of a white floor at a place, seen from near by."""
-    seen = view(tuple(place + [0.0, 0.4, 0.6]), tuple(place), (33, 33), 0.02, orthographic=False)
+    seen = view(tuple(place + np.array([0.0, 0.4, 0.6])), tuple(place), (33, 33), 0.02, orthographic=False)
     return Trace().draw(frame(stage.floor(WHITE), *shapes, seen=seen)).linear[16, 16]
 
 

@@ -1,6 +1,6 @@
 """Pixels of the scenes' films that flicker: brighter or darker in one frame than in the ones before and after.
 
-Run as ``python tests/bench/bench_flicker.py [SCENE ...]``. At INSTANTS of each film three frames are drawn at 320 x 180,
+Run as ``python tests/bench/bench_flicker.py [SCENE ...]``. At INSTANTS of each film three frames are drawn, 320 x 180,
 without overlays and without soft discs and mist, which take no samples. A pixel flickers that goes up and back, or down
 and back, by more than LEVELS of 255 in a channel. Not counted are moving edges: pixels with a neighbor whose surface,
 normal or color changes from frame to frame, seen at once or in a mirror or through glass; where a thin line is; and
@@ -106,7 +106,7 @@ def triples(scene: Path) -> Iterator[list[list[Drawn]]]:
     draw = tracer.draw
 
     def kept(frame: SeenFrame, *rest: Any) -> Traced:
-        sampled = tuple(s for s in frame.shapes if not (isinstance(s, Mist) or isinstance(s, Points) and s.soft))
+        sampled = tuple(s for s in frame.shapes if not (isinstance(s, Mist) or (isinstance(s, Points) and s.soft)))
         frame = replace(frame, shapes=sampled)
         picture = draw(frame, *rest)
         drawn.append(Drawn(frame, picture))
@@ -118,7 +118,7 @@ def triples(scene: Path) -> Iterator[list[list[Drawn]]]:
             drawn.clear()
             tools.pixels(small, moment)
             frames.append(list(drawn))
-    at = {instant: frame for instant, frame in zip(sorted(set(wanted)), frames, strict=True)}
+    at = dict(zip(sorted(set(wanted)), frames, strict=True))
     for start in starts:
         yield [at[times[start + k]] for k in range(3)]
 

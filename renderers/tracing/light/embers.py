@@ -36,29 +36,22 @@ def _tree(places: Floats, radii: Floats, intensity: Floats) -> Floats:
     """Rows of the tree, level by level; a level halves its parts across their longest side."""
     count = len(places)
     rows = np.empty((max(2 * count - 1, 0), layout.EMBER))
-    order = np.arange(count)
-    starts, stops, at = (np.array([k] if count else [], dtype=np.int64) for k in (0, count, 0))
-    while len(starts):
-        own = np.repeat(np.arange(len(starts)), stops - starts)
-        firsts = np.concatenate([[0], np.cumsum(stops - starts)])[:-1]
-        items = order[np.concatenate([np.arange(a, b) for a, b in zip(starts, stops, strict=True)])]
-        weight = intensity[items].sum(axis=1)
-        total = np.add.reduceat(weight, firsts)
-        middle = np.add.reduceat(weight[:, None] * places[items], firsts) / total[:, None]
-        reach = np.linalg.norm(places[items] - middle[own], axis=1) + radii[items]
+    sizes, at = np.full(min(count, 1), count), np.zeros(min(count, 1), dtype=np.int64)
+    while len(sizes):
+        firsts, own = np.cumsum(sizes) - sizes, np.repeat(np.arange(len(sizes)), sizes)
+        weight = intensity.sum(axis=1)
+        middle = np.add.reduceat(weight[:, None] * places, firsts) / np.add.reduceat(weight, firsts)[:, None]
+        reach = np.linalg.norm(places - middle[own], axis=1) + radii
         rows[at, :3], rows[at, 3] = middle, np.maximum.reduceat(reach, firsts)
-        rows[at, 4], rows[at, 5:8] = np.maximum.reduceat(radii[items], firsts), np.add.reduceat(intensity[items], firsts)
-        rows[at, 8] = stops - starts
-        sides = np.maximum.reduceat(places[items], firsts) - np.minimum.reduceat(places[items], firsts)
-        along = places[items, sides.argmax(axis=1)[own]]
-        order[np.concatenate([np.arange(a, b) for a, b in zip(starts, stops, strict=True)])] = items[
-            np.lexsort((along, own))
-        ]
-        more = stops - starts > 1
-        starts, stops, at = starts[more], stops[more], at[more]
-        half = (stops - starts + 1) // 2
-        starts, stops, at = (
-            np.stack(pair, axis=1).ravel()
-            for pair in ((starts, starts + half), (starts + half, stops), (at + 1, at + 2 * half))
-        )
+        rows[at, 4] = np.maximum.reduceat(radii, firsts)
+        rows[at, 5:8], rows[at, 8] = np.add.reduceat(intensity, firsts), sizes
+        low, high = np.minimum.reduceat(places, firsts), np.maximum.reduceat(places, firsts)
+        axis, side = (high - low).argmax(axis=1), np.maximum((high - low).max(axis=1), 1e-300)
+        along = (places[np.arange(len(own)), axis[own]] - low[np.arange(len(low)), axis][own]) / side[own]
+        more = sizes > 1
+        order = np.argsort(own + 0.5 * along, kind="stable")[more[own]]
+        places, radii, intensity = places[order], radii[order], intensity[order]
+        sizes, at = sizes[more], at[more]
+        half = (sizes + 1) // 2
+        sizes, at = (np.stack(pair, axis=1).ravel() for pair in ((half, sizes - half), (at + 1, at + 2 * half)))
     return rows

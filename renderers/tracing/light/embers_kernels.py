@@ -15,7 +15,7 @@ from renderers.tracing.scene_kernels import SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
 from sceneql.compiled.kernels import kernel
 
-_f = types.float64
+_f, _i = types.float64, types.int64
 FEW, MANY = 4.0, 16.0
 """Samples of a whole net that meet a sphere up to which they tell nothing of it, and from which on they tell all."""
 NEARLY, ROUGHLY = 0.3, 0.5
@@ -46,17 +46,18 @@ def met(scene, item, x, y, z):
     return met_share(u[k + 6], (u[k] - x) ** 2 + (u[k + 1] - y) ** 2 + (u[k + 2] - z) ** 2)
 
 
-@kernel(types.Tuple((_f, _f, _f, _f, _f, types.int64))(SCENE, *(_f,) * 8), _nrt=False)
-def sum_up(scene, x, y, z, nx, ny, nz, far, until):
+@kernel(types.Tuple((_f, _f, _f, _f, _i, _f))(SCENE, *(_f,) * 7, _i, _f, _f), _nrt=False)
+def sum_up(scene, x, y, z, nx, ny, nz, far, k, total, until):
     """Irradiance (3) of a surface by all spheres, over pi and without shadows, and the sum of that.
 
-    Stops at the node where that sum exceeds ``until``; then it says by how much of the node's, and which it is.
+    The sum goes on from node k of the tree and ``total``, and stops at the node where it would exceed ``until``; it
+    says which that is, -1 if there is none, and at which share of the node's light.
     """
     u = scene.reals
-    r, g, b, total = 0.0, 0.0, 0.0, 0.0
+    r, g, b = 0.0, 0.0, 0.0
     first = int(scene.ints[layout.EMBERS_AT])
     end = first + layout.EMBER * (2 * int(scene.ints[layout.EMBERS]) - 1)
-    k = first
+    k = first + layout.EMBER * k
     while k < end:
         dx, dy, dz = u[k] - x, u[k + 1] - y, u[k + 2] - z
         height = dx * nx + dy * ny + dz * nz
@@ -77,20 +78,18 @@ def sum_up(scene, x, y, z, nx, ny, nz, far, until):
             share *= height / (np.pi * d2 * np.sqrt(d2))
             more = share * (u[k + 5] + u[k + 6] + u[k + 7])
             if total + more > until:
-                return r, g, b, total, (until - total) / more, k
+                return r, g, b, total, (k - first) // layout.EMBER, (until - total) / more
             r, g, b = r + share * u[k + 5], g + share * u[k + 6], b + share * u[k + 7]
             total += more
         k = behind
-    return r, g, b, total, 0.0, -1
+    return r, g, b, total, -1, 0.0
 
 
-@kernel(_f(SCENE, SCRATCH, *(_f,) * 11), _nrt=False)
-def ember_seen(scene, scratch, x, y, z, nx, ny, nz, sx, sy, sz, far, until):
-    """Seen share of the sphere at which ``sum_up`` exceeds ``until``, from (sx, sy, sz), a little off the surface."""
+@kernel(_f(SCENE, SCRATCH, _f, _f, _f, _i, _f), _nrt=False)
+def ember_seen(scene, scratch, x, y, z, k, rest):
+    """Seen share of the sphere at a share of a node's light, from a place a little off a surface."""
     u = scene.reals
-    _, _, _, _, rest, k = sum_up(scene, x, y, z, nx, ny, nz, far, until)
-    if k < 0:
-        return 1.0
+    k = int(scene.ints[layout.EMBERS_AT]) + layout.EMBER * k
     while u[k + 8] > 1.0:
         left = k + layout.EMBER
         right = k + 2 * layout.EMBER * ((int(u[k + 8]) + 1) // 2)
@@ -99,10 +98,10 @@ def ember_seen(scene, scratch, x, y, z, nx, ny, nz, sx, sy, sz, far, until):
             rest, k = rest / share, left
         else:
             rest, k = (rest - share) / (1.0 - share), right
-    dx, dy, dz = u[k] - sx, u[k + 1] - sy, u[k + 2] - sz
+    dx, dy, dz = u[k] - x, u[k + 1] - y, u[k + 2] - z
     d = np.sqrt(dx * dx + dy * dy + dz * dz)
     length = (1.0 - BARELY) * (d - u[k + 3])
     if not length > 0.0:
         return 1.0
-    _, _, light = walk(scene, scratch, sx, sy, sz, dx / d, dy / d, dz / d, 0.0, length, True)
+    _, _, light = walk(scene, scratch, x, y, z, dx / d, dy / d, dz / d, 0.0, length, True)
     return light

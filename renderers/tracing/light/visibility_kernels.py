@@ -35,6 +35,8 @@ SURFACES, LEAST = 64, 0.01
 gives below which it is followed no further: in closed rooms the sky is far, and in white corners."""
 BLURRED = 2
 """Of these those behind which the cone of a way widens: it tells how far from a surface the way goes on too."""
+EMBERS = 3
+"""Least samples of the shadows of small spheres that glow, since the sum of their light is known without."""
 FACTOR, STEP = 55, 67
 """Of the orders of ``shuffled``."""
 
@@ -147,10 +149,11 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
                 cosine *= share / np.pi
                 er, eg, eb = er + cosine * ir, eg + cosine * ig, eb + cosine * ib
         if scene.ints[layout.EMBERS] > 0:
-            ir, ig, ib, total, _, _ = sum_up(scene, x, y, z, nx, ny, nz, ROUGHLY, np.inf)
+            ir, ig, ib, total, _, _ = sum_up(scene, x, y, z, nx, ny, nz, ROUGHLY, 0, 0.0, np.inf)
             if total > 0.0:
                 until = (shuffled(sample, number + 1) + 0.5) / SKY_COUNT * total
-                share = ember_seen(scene, scratch, x, y, z, nx, ny, nz, sx, sy, sz, ROUGHLY, until)
+                _, _, _, _, node, rest = sum_up(scene, x, y, z, nx, ny, nz, ROUGHLY, 0, 0.0, until)
+                share = ember_seen(scene, scratch, sx, sy, sz, node, rest)
                 er, eg, eb = er + share * ir, eg + share * ig, eb + share * ib
         if number > 0:
             share = min(1.0, BRIGHTEST_AGAIN / max(max(er, eg), max(eb, BRIGHTEST_AGAIN)))
@@ -225,7 +228,7 @@ def sky_loss(scene, scratch, asked, record, sample):
 
 @part
 def by_embers(scene, scratch, asked, record, number, samples, visibility):
-    """Add the light of small spheres that glow, their shadows by so many samples, to a row of visibility."""
+    """Add the light of small spheres that glow, their shadows by as many samples at least, to a row of visibility."""
     x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     tint = max(record[TINT], max(record[TINT + 1], record[TINT + 2]))
@@ -234,14 +237,15 @@ def by_embers(scene, scratch, asked, record, number, samples, visibility):
     if asked[0, layout.MODE] == layout.ASKING:  # found when rays have answers
         asked[0, layout.OPEN] = 1.0
         return
-    r, g, b, total, _, _ = sum_up(scene, x, y, z, nx, ny, nz, NEARLY, np.inf)
+    r, g, b, total, _, _ = sum_up(scene, x, y, z, nx, ny, nz, NEARLY, 0, 0.0, np.inf)
     if total == 0.0:
         return
     sx, sy, sz = start_of(record)
-    share = 0.0
-    for k in range(samples):
-        until = ((number * samples + k) % SKY_COUNT + 0.5) / SKY_COUNT * total
-        share += ember_seen(scene, scratch, x, y, z, nx, ny, nz, sx, sy, sz, NEARLY, until) / samples
+    share, done, node, some = 0.0, 0.0, 0, max(samples, EMBERS)
+    for k in range(some):
+        until = (k + (number % SKY_COUNT + 0.5) / SKY_COUNT) / some * total
+        _, _, _, done, node, rest = sum_up(scene, x, y, z, nx, ny, nz, NEARLY, node, done, until)
+        share += ember_seen(scene, scratch, sx, sy, sz, node, rest) / some
     visibility[SKY] -= share * r
     visibility[SKY + 1] -= share * g
     visibility[SKY + 2] -= share * b
