@@ -62,6 +62,12 @@ def test_small_lights_throw_shadows(place):
     assert at(place, embers(), stage.sphere(BLACK, *HIDING)) == pytest.approx(hidden, rel=0.04)
 
 
+def test_small_lights_light_solids_of_formulas_as_others():
+    shapes = stage.sphere(WHITE), stage.implicit_sphere(WHITE)
+    lit, also = (Trace().draw(frame(stage.floor(WHITE), embers(), shape, seen=SEEN)).linear for shape in shapes)
+    assert also == pytest.approx(lit, abs=1e-4)
+
+
 @pytest.mark.parametrize("size", [0.01, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5])
 def test_a_light_counts_once_whether_samples_meet_it_or_not(size):
     ball = stage.points(GLOWING, [[0.0, 1.0, 0.0]], [size])
