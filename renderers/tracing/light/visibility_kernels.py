@@ -30,7 +30,7 @@ SHOWN = 1e-3
 """Part of a lamp's radius by which a ball that shows it may be larger."""
 AGAIN = 0.25
 """Share of the sky that the last of SURFACES on the way of light from there is assumed to see."""
-SURFACES, LEAST = 64, 0.01
+SURFACES, LEAST = 64, 0.02
 """Most surfaces beside the lit one that light from around is followed to, and its share of what the last of them
 gives below which it is followed no further: in closed rooms the sky is far, and in white corners."""
 BLURRED = 2
