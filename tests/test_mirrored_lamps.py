@@ -69,6 +69,14 @@ def test_clear_glass_before_a_mirror_hides_no_image(light):
     assert behind.sum() == pytest.approx((0.96**2 + 0.04) * bare.sum(), rel=0.2)
 
 
+@pytest.mark.parametrize("count", [2, 3])
+def test_several_panes_before_a_mirror_hide_no_image(count):
+    clear = Surface(color=(1.0, 1.0, 1.0), roughness=0.0, transmission=1.0)
+    panes = [stage.box(clear, (0, 0, 0.5 + 0.5 * k), (9, 9, 0.1)) for k in range(count)]
+    through = 0.96 ** (2 * count)
+    assert through < draw(*panes, light=LAMP).max() / draw(light=LAMP).max() < through + 0.08
+
+
 def test_what_stands_before_a_lamp_hides_its_image_through_glass_as_well():
     pane = stage.box(Surface(color=(1.0,) * 3, roughness=0.0, transmission=1.0), (0, 0, 1), (9, 9, 0.1))
     around = stage.sphere(Surface((0.0,) * 3, specular=0.0), LAMP.position, 0.4)

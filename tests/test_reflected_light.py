@@ -117,3 +117,21 @@ def test_white_contacts_in_a_furnace_are_not_to_be_seen():
     shapes = stage.floor(gray(1.0)), stage.sphere(gray(1.0), (0, 1, 0)), stage.box(gray(1.0), (1.3, 0.5, 0), (1, 1, 1))
     picture = draw(*shapes, lights=(sky(1.0),), seen=AROUND)
     assert np.abs(picture - 1).max() < 0.01
+
+
+@pytest.mark.parametrize("tone", [0.5, 0.8, 0.9])
+def test_no_sky_comes_into_a_closed_room(tone):
+    walls = [
+        stage.box(gray(tone), tuple(1.1 * side * np.eye(3)[axis]), tuple(2.4 - 2.2 * np.eye(3)[axis]))
+        for axis in range(3)
+        for side in (-1, 1)
+    ]
+    seen = view((0, 0, 0.9), (0, -0.3, 0), (48, 36), 0.8, orthographic=False)
+    assert draw(*walls, lights=(sky(1.0),), seen=seen).max() < 1e-6
+
+
+@pytest.mark.parametrize("tone", [0.3, 0.6, 0.8, 0.9])
+def test_a_lamp_in_a_hollow_ball_lights_it_by_all_that_goes_back_and_forth(tone):
+    seen = view((0, 0, 0.5), (0, -0.3, 0), (48, 36), 0.8, orthographic=False)
+    picture = draw(stage.sphere(gray(tone)), lights=(PointLight((0.0,) * 3, (1.0,) * 3, 0.02),), seen=seen)
+    assert picture == pytest.approx(tone / (1 - tone) / np.pi, rel=0.015)  # as in an integrating sphere

@@ -7,7 +7,7 @@ import pytest
 
 from renderers.trace import Trace
 from renderers.tracing.solids.line_pieces import line_lengths
-from sceneql.frame import Segments, Surface
+from sceneql.frame import Segments, Sky, Surface
 from stage import GLOW, WHITE, box, floor, frame, sun, view
 
 HEIGHT, LENGTH, WIDTH = 60, 1.4, 0.3
@@ -102,3 +102,13 @@ def test_many_lines_one_behind_another_hide_each_other_by_chance():
     tops = np.linspace(-8, 8, 160_001) * PIXEL
     covered = (np.abs(tops[:, None] - heights) < 0.05 * PIXEL).any(axis=1).mean()
     assert band.mean() == pytest.approx(covered, abs=0.03)
+
+
+@pytest.mark.parametrize("tint", [(1.0, 1.0, 1.0), (0.2, 1.0, 1.0)])
+def test_light_goes_through_a_thin_line_of_glass(tint):
+    glass = Surface(color=tint, roughness=0.0, transmission=1.0)
+    line = Segments("line", glass, np.array([[[-0.7, -0.3, 0.0], [0.7, 0.4, 0.0]]]), np.array([0.5 * WIDTH * PIXEL]))
+    around = Sky((1.0,) * 3, (1.0,) * 3, (1.0,) * 3)
+    loss = 1 - Trace().draw(frame(line, lights=[around], seen=view(size=(80, HEIGHT), half_height=1.0))).linear
+    shares = loss.sum(axis=(0, 1)) / (np.hypot(1.4, 0.7) / PIXEL * WIDTH)
+    assert shares == pytest.approx(0.96 * (1 - np.array(tint)), abs=0.01)  # the rest is mirrored

@@ -64,6 +64,18 @@ def test_a_sphere_looks_the_same_whatever_it_is_made_of():
         assert np.abs(draw(other, lights=lights) - quadric).mean() < 3e-3
 
 
+@pytest.mark.parametrize("side", [1, -1], ids=["front", "back"])
+def test_facets_of_a_coarse_mesh_throw_no_shadows_on_it(side):
+    ball = stage.round_mesh(WHITE, steps=8)  # 256 triangles, of a smooth ball, seen from their front or their back
+    ball = replace(ball, triangles=ball.triangles[:, ::side].copy(), normals=side * ball.normals)
+    light = sun((1.0, 0.25, 0.0), (math.pi,) * 3)
+    for row in draw(ball, lights=[light])[24:72, 24:66, 0]:
+        lit = row[row > 0.0]
+        assert np.diff(lit).min() > -1e-3
+        assert lit[0] < 0.05  # it fades out, where a facet's shadow cut it off
+        assert np.diff(lit).max() < 0.06
+
+
 @pytest.mark.parametrize("quarters", [1, 2, 3])
 def test_edges_of_what_is_brighter_than_white_are_smooth(quarters):
     # Seen by 1/4, 2/4 or 3/4 of a pixel's rays. Plain means would make 7.5 of 30 and black, which is as white as 30.

@@ -16,15 +16,15 @@ from renderers.tracing.light.soft_boxes_kernels import soft_boxes
 from renderers.tracing.light.through_kernels import CLEAR
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted, refracted_spread
-from renderers.tracing.record_kernels import IMAGED, TINT, TRACED, WEIGHT, copy_record, erase, start_of
+from renderers.tracing.record_kernels import IMAGED, SURFACE, TINT, TRACED, WEIGHT, copy_record, erase, start_of
 from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.thin_capsules_kernels import coverage
 from sceneql.compiled.kernels import kernel
 
 PLACES = types.float64[::1]
-BOUNCES = 8
-"""Most surfaces that a ray meets behind the first one."""
+BOUNCES = 16
+"""Most surfaces that a ray meets behind the first one: a mirror behind three panes of glass, and back through these."""
 FAINT = 0.025
 """Weight of a mirrored ray below which the sky's reflection replaces it; from twice that on it counts in full."""
 MOST_LINES, AT_A_LINE = 6, 2
@@ -103,9 +103,13 @@ def advance(scene, scratch, path, first, second, spare):
             share, past = coverage(scene, item, radius, spread, ox, oy, oz, dx, dy, dz)
             if share < 1.0:
                 describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius + spread * t, spare)
+                s = int(spare[SURFACE])
+                clear = scene.reals[s + layout.TRANSMISSION]
+                if clear > 0.0:  # light goes straight through glass so thin
+                    clear *= clear * (1.0 - dielectric(facing_ratio(spare), 1.0 / scene.reals[s + layout.INDEX]))
                 for c in range(3):
                     spare[WEIGHT + c] = share * path[LIGHT_WEIGHT + c]
-                    path[LIGHT_WEIGHT + c] *= 1.0 - share
+                    path[LIGHT_WEIGHT + c] *= 1.0 - share + share * clear * spare[TINT + c]
                 path[PAST], path[DARK] = past, FAINT_LINE
                 path[LINES] += 1.0
                 path[DOUBTED] = 1.0 if scratch[counter, 0] > 0.0 or path[DOUBTED] > 0.0 else FAINTLY

@@ -1,10 +1,11 @@
 """Layout of the tracer's scene (two arrays), of its scratch and of its lists of rays."""
 
-NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT, HAS_THIN, BOX_COUNT = range(9)
-"""The header; HAS_THIN tells whether there are THIN items.
+NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT = range(7)
+HAS_THIN, BOX_COUNT, EMBERS_AT, EMBERS = range(7, 11)
+"""The header; HAS_THIN tells whether there are THIN items, EMBERS how many spheres glow, EMBERS_AT where their tree is.
 The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""
 
-ITEMS = 9
+ITEMS = 11
 """Offset of the items, by leaf: kind, place of the reals, place of the surface, index of the shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
 TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID, THIN = range(8)
@@ -24,6 +25,9 @@ CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
 CELLS = 32
 """Occupancy cells along each axis of an implicit object's box, through which single rays walk."""
 
+EMBER = 9
+"""Reals of a node of the tree of spheres that glow: their mean place by intensity, distance from there up to which they
+reach, largest radius, sum of their intensities (3), number of spheres. With one sphere it is that sphere."""
 LINK = 3
 """Integers of a node: its skip link (the next node after a miss), first item, number of items (0: an inner node)."""
 

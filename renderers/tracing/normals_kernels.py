@@ -22,7 +22,7 @@ def seen_normal(scene, scratch, px, py):
     t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
     if item < 0:
         return False, 0.0, 0.0, 0.0
-    nx, ny, nz, fx, fy, fz, _, _, _, _ = normal_at(scene, scratch, item, ox + t * dx, oy + t * dy, oz + t * dz)
+    nx, ny, nz, fx, fy, fz, _, _, _, _, _ = normal_at(scene, scratch, item, ox + t * dx, oy + t * dy, oz + t * dz)
     side = 1.0 if dx * fx + dy * fy + dz * fz <= 0.0 else -1.0
     return True, side * nx, side * ny, side * nz
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from renderers.tracing import layout
 from renderers.tracing.certified import TOLERANCE
+from renderers.tracing.light.embers import embers_of
 from renderers.tracing.scene_kernels import Scene
 from renderers.tracing.solids.hierarchy import hierarchy
 from renderers.tracing.solids.thin_capsules_kernels import TENT
@@ -60,9 +61,11 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     items[:, layout.SURFACE_AT] = surfaces_at + layout.SURFACE_SIZE * items[:, layout.SHAPE]
     links_at = layout.ITEMS + items.size
     ranges_at = links_at + links.size
-    reals = np.concatenate([head, lights.ravel(), panels.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals])
+    embers = embers_of(frame.shapes, frame.lights)
+    parts = [lights.ravel(), panels.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals, embers.ravel()]
+    reals = np.concatenate([head, *parts])
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), tables.thin]
-    header.append(len(panels))
+    header += [len(panels), len(reals) - embers.size, (len(embers) + 1) // 2]
     ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
         place = ranges_at + layout.RANGES * k

@@ -19,10 +19,10 @@ FADE = 0.04
 def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
     """Write the record of a hit item, but for its weight; returns whether the ray comes from its outer side."""
     x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
-    nx, ny, nz, fx, fy, fz, lift, red, green, blue = normal_at(scene, scratch, item, x, y, z)
+    nx, ny, nz, fx, fy, fz, lift, sink, red, green, blue = normal_at(scene, scratch, item, x, y, z)
     outside = dx * fx + dy * fy + dz * fz <= 0.0
     if not outside:
-        nx, ny, nz, lift = -nx, -ny, -nz, 0.0
+        nx, ny, nz, lift = -nx, -ny, -nz, sink
     r, g, b = color_at(scene, item, (red, green, blue), x, y, z, nx, ny, nz, dx, dy, dz, radius)
     records.put(record, x, y, z, nx, ny, nz, -dx, -dy, -dz, r, g, b)
     record[records.SURFACE] = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
@@ -74,7 +74,7 @@ def bend(scene, scratch, record):
         hx, hy, hz, length = ny, nz, nx, 1.0
     step = record[records.RADIUS] / length
     x, y, z = record[PLACE] + step * hx, record[PLACE + 1] + step * hy, record[PLACE + 2] + step * hz
-    mx, my, mz, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[records.ITEM]), x, y, z)
+    mx, my, mz, _, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[records.ITEM]), x, y, z)
     side = 1.0 if mx * nx + my * ny + mz * nz >= 0.0 else -1.0
     # Of the difference: the cosine of a record's normal, in single precision, would turn flat surfaces by 3e-4.
     mx, my, mz = side * mx - nx, side * my - ny, side * mz - nz
@@ -100,7 +100,7 @@ def refracted_spread(scene, scratch, record, ratio, radius, spread):
         return ratio * spread
     ex, ey, ez = ex / length, ey / length, ez / length
     x, y, z = record[PLACE] + step * ex, record[PLACE + 1] + step * ey, record[PLACE + 2] + step * ez
-    mx, my, mz, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[records.ITEM]), x, y, z)
+    mx, my, mz, _, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[records.ITEM]), x, y, z)
     side = 1.0 if mx * nx + my * ny + mz * nz >= 0.0 else -1.0
     turn = ((side * mx - nx) * ex + (side * my - ny) * ey + (side * mz - nz) * ez) / step
     cosine = facing_ratio(record)

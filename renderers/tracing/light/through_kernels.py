@@ -45,7 +45,7 @@ def go_through(scene, scratch, x, y, z, dx, dy, dz, t, radius, item):
     red, green, blue = 0.0, 0.0, 0.0
     for _ in range(PASSED):
         px, py, pz = x + t * dx, y + t * dy, z + t * dz
-        nx, ny, nz, fx, fy, fz, lift, pr, pg, pb = normal_at(scene, scratch, item, px, py, pz)
+        nx, ny, nz, fx, fy, fz, lift, _, pr, pg, pb = normal_at(scene, scratch, item, px, py, pz)
         if dx * fx + dy * fy + dz * fz <= 0.0:  # what would be mirrored within the glass leaves it
             cosine = min(max(-dx * nx - dy * ny - dz * nz, 0.0), 1.0)
             s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]

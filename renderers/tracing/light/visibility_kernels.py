@@ -5,10 +5,11 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
+from renderers.tracing.light.embers_kernels import NEARLY, ROUGHLY, ember_seen, met, sum_up
 from renderers.tracing.light.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, NEXT_DISK, SKY_COUNT, SKY_DISK, across
 from renderers.tracing.light.through_kernels import CLEAR, clearness, go_through
-from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, start_of
+from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, SURFACE, TINT, start_of
 from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import ask, walk
 from renderers.tracing.solids.surface_kernels import color_at, normal_at
@@ -28,9 +29,16 @@ BRIGHTEST_AGAIN = 1.0
 SHOWN = 1e-3
 """Part of a lamp's radius by which a ball that shows it may be larger."""
 AGAIN = 0.25
-"""Share of the sky that the last surface on the way of light from there is assumed to see."""
-SURFACES = 3
-"""Surfaces beside the lit one that light from around is followed to."""
+"""Share of the sky that the last of SURFACES on the way of light from there is assumed to see."""
+SURFACES, LEAST = 64, 0.02
+"""Most surfaces beside the lit one that light from around is followed to, and its share of what the last of them
+gives below which it is followed no further: in closed rooms the sky is far, and in white corners."""
+BLURRED = 2
+"""Of these those behind which the cone of a way widens: it tells how far from a surface the way goes on too."""
+EMBERS = 3
+"""Least samples of the shadows of small spheres that glow, since the sum of their light is known without."""
+FACTOR, STEP = 55, 67
+"""Of the orders of ``shuffled``."""
 
 
 @part
@@ -96,32 +104,42 @@ def in_a_lamp(scene, x, y, z):
 
 
 @part
-def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
-    """Radiance (3) of a surface that hides the sky: its emission, and light reflected by it and two more, as if matte.
+def shuffled(sample, number):
+    """A sample's number in another order of the net for each surface that its light has met; 0 leaves it."""
+    return (sample * (2 * FACTOR * number + 1) + number * (number + 1) // 2 * STEP) % SKY_COUNT
 
-    Light goes on in one direction from each, and those beyond the first are lit by one lamp in place of all. The last
-    sees a part of the sky between neighbors as bright as itself, so that white in white loses nothing.
+
+@part
+def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample, told):
+    """Radiance (3) of a surface that hides the sky: its emission, and light reflected by it and others, as if matte.
+
+    Light goes on in one direction from each, and those beyond the first are lit by one lamp in place of all. After
+    SURFACES, all of them bright, the last sees a part of the sky between neighbors as bright as itself, so that nothing
+    is lost in white corners. ``told`` is the share of the emission that counts, if the item is a small sphere.
     """
     u = scene.reals
     red, green, blue = 0.0, 0.0, 0.0
     wr, wg, wb = 1.0, 1.0, 1.0
-    for met in range(SURFACES):
-        nx, ny, nz, fx, fy, fz, lift, pr, pg, pb = normal_at(scene, scratch, item, x, y, z)
+    for number in range(SURFACES):
+        nx, ny, nz, fx, fy, fz, lift, sink, pr, pg, pb = normal_at(scene, scratch, item, x, y, z)
         if dx * fx + dy * fy + dz * fz > 0.0:
-            nx, ny, nz, fx, fy, fz = -nx, -ny, -nz, -fx, -fy, -fz
+            nx, ny, nz, fx, fy, fz, lift = -nx, -ny, -nz, -fx, -fy, -fz, sink
         s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT] + layout.EMISSION
         if max(u[s], max(u[s + 1], u[s + 2])) > 0.0 and not in_a_lamp(scene, x, y, z):
-            red, green, blue = red + wr * u[s], green + wg * u[s + 1], blue + wb * u[s + 2]
+            hr, hg, hb = told * u[s], told * u[s + 1], told * u[s + 2]
+            red, green, blue = red + wr * hr, green + wg * hg, blue + wb * hb
         r, g, b = color_at(scene, item, (pr, pg, pb), x, y, z, nx, ny, nz, dx, dy, dz, radius)
         wr, wg, wb = wr * r, wg * g, wb * b
+        if max(wr, max(wg, wb)) < LEAST:
+            break
         off = 0.05 * radius + 1e-6 * (abs(x) + abs(y) + abs(z)) + lift
         sx, sy, sz = x + off * fx, y + off * fy, z + off * fz
         er, eg, eb = 0.0, 0.0, 0.0
         lights = int(scene.ints[layout.LIGHT_COUNT])
-        for l in range(lights if met == 0 else min(lights, 1)):
+        for l in range(lights if number == 0 else min(lights, 1)):
             of = 1.0
-            if met > 0:  # one for all
-                l, of = (sample + met) % lights, float(lights)
+            if number > 0:  # one for all
+                l, of = (sample + number) % lights, float(lights)
             lx, ly, lz, far, ir, ig, ib = light_at(u, l, sx, sy, sz)
             cosine = of * (nx * lx + ny * ly + nz * lz)
             if cosine > 0.0 and fx * lx + fy * ly + fz * lz > 0.0:
@@ -130,11 +148,18 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
                 _, _, share = walk(scene, scratch, sx, sy, sz, lx, ly, lz, 0.0, far, True)
                 cosine *= share / np.pi
                 er, eg, eb = er + cosine * ir, eg + cosine * ig, eb + cosine * ib
-        if met > 0:
+        if scene.ints[layout.EMBERS] > 0:
+            ir, ig, ib, total, _, _ = sum_up(scene, x, y, z, nx, ny, nz, ROUGHLY, 0, 0.0, np.inf)
+            if total > 0.0:
+                until = (shuffled(sample, number + 1) + 0.5) / SKY_COUNT * total
+                _, _, _, _, node, rest = sum_up(scene, x, y, z, nx, ny, nz, ROUGHLY, 0, 0.0, until)
+                share = ember_seen(scene, scratch, sx, sy, sz, node, rest)
+                er, eg, eb = er + share * ir, eg + share * ig, eb + share * ib
+        if number > 0:
             share = min(1.0, BRIGHTEST_AGAIN / max(max(er, eg), max(eb, BRIGHTEST_AGAIN)))
             er, eg, eb = share * er, share * eg, share * eb
         vr, vg, vb = 1.0, 1.0, 1.0  # what comes through glass on the way on
-        ended = met == SURFACES - 1
+        ended = number == SURFACES - 1
         if ended:
             hr, hg, hb = sky_ambient(u, ny)
             hr, hg, hb = AGAIN * hr, AGAIN * hg, AGAIN * hb
@@ -143,7 +168,7 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
             eb += hb / (1.0 - (1.0 - AGAIN) * min(b, 1.0))
         else:
             ax, ay, az, bx, by, bz = across(nx, ny, nz)
-            v, w = NEXT_DISK[sample, 0], NEXT_DISK[sample, 1]
+            v, w = NEXT_DISK[shuffled(sample, number), 0], NEXT_DISK[shuffled(sample, number), 1]
             up = np.sqrt(max(1.0 - v * v - w * w, 0.0))
             dx, dy, dz = v * ax + w * bx + up * nx, v * ay + w * by + up * ny, v * az + w * bz + up * nz
             t, item, _ = walk(scene, scratch, sx, sy, sz, dx, dy, dz, 0.0, np.inf, False)
@@ -156,7 +181,10 @@ def bounced(scene, scratch, item, x, y, z, dx, dy, dz, radius, sample):
                 hr, hg, hb = sky_radiance(u, dy)
                 er, eg, eb = er + vr * hr, eg + vg * hg, eb + vb * hb
             else:
-                x, y, z, radius = sx + t * dx, sy + t * dy, sz + t * dz, radius + 0.05 * t
+                told = met(scene, item, sx, sy, sz)
+                x, y, z = sx + t * dx, sy + t * dy, sz + t * dz
+                if number < BLURRED:
+                    radius += 0.05 * t
         red, green, blue = red + wr * er, green + wg * eg, blue + wb * eb
         if ended:
             break
@@ -191,10 +219,36 @@ def sky_loss(scene, scratch, asked, record, sample):
         t, item, way = go_through(scene, scratch, x, y, z, dx, dy, dz, t, radius, item)
     r, g, b = hr, hg, hb
     if item >= 0:
-        r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius, sample)
+        told = met(scene, item, x, y, z)
+        r, g, b = bounced(scene, scratch, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius, sample, told)
     if glass:
         r, g, b = way[3] + way[0] * r, way[4] + way[1] * g, way[5] + way[2] * b
     return hr - r, hg - g, hb - b
+
+
+@part
+def by_embers(scene, scratch, asked, record, number, samples, visibility):
+    """Add the light of small spheres that glow, their shadows by as many samples at least, to a row of visibility."""
+    x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+    tint = max(record[TINT], max(record[TINT + 1], record[TINT + 2]))
+    if tint <= 0.0 and scene.reals[int(record[SURFACE]) + layout.SPECULAR] == 0.0:
+        return
+    if asked[0, layout.MODE] == layout.ASKING:  # found when rays have answers
+        asked[0, layout.OPEN] = 1.0
+        return
+    r, g, b, total, _, _ = sum_up(scene, x, y, z, nx, ny, nz, NEARLY, 0, 0.0, np.inf)
+    if total == 0.0:
+        return
+    sx, sy, sz = start_of(record)
+    share, done, node, some = 0.0, 0.0, 0, max(samples, EMBERS)
+    for k in range(some):
+        until = (k + (number % SKY_COUNT + 0.5) / SKY_COUNT) / some * total
+        _, _, _, done, node, rest = sum_up(scene, x, y, z, nx, ny, nz, NEARLY, node, done, until)
+        share += ember_seen(scene, scratch, sx, sy, sz, node, rest) / some
+    visibility[SKY] -= share * r
+    visibility[SKY + 1] -= share * g
+    visibility[SKY + 2] -= share * b
 
 
 @part
@@ -241,6 +295,8 @@ def look_around(scene, scratch, asked, record, number, of_sky, of_lights, visibi
             visibility[SKY] += r / of_sky
             visibility[SKY + 1] += g / of_sky
             visibility[SKY + 2] += b / of_sky
+        if scene.ints[layout.EMBERS] > 0:
+            by_embers(scene, scratch, asked, record, number, of_sky, visibility)
     jitter = 0.0 if of_lights == 1 else 1.0
     for l in range(int(scene.ints[layout.LIGHT_COUNT])):
         column = FIRST_LIGHT + 2 * l

@@ -80,9 +80,10 @@ def barycentric(m, k, x, y, z):
 
 @part
 def triangle_normal(scene, k, x, y, z):
-    """(normal, facet normal, lift): lift is the height of the surface that the normals imply above the facet.
+    """(normal, facet normal, lifts): heights of the surface that the normals imply, above the facet and below it.
 
-    A shadow ray that starts lifted does not see the facets (Hanika 2021, Hacking the Shadow Terminator).
+    A shadow ray that starts lifted does not see the facets (Hanika 2021, Hacking the Shadow Terminator); from the back
+    of the facet it starts as far below.
     """
     m = scene.reals
     fx, fy, fz = unit(
@@ -92,9 +93,9 @@ def triangle_normal(scene, k, x, y, z):
     )
     c = k + TRIANGLE_NORMALS
     if m[c] != m[c]:
-        return fx, fy, fz, fx, fy, fz, 0.0
+        return fx, fy, fz, fx, fy, fz, 0.0, 0.0
     v, w = barycentric(m, k, x, y, z)
-    nx, ny, nz, lift = 0.0, 0.0, 0.0, 0.0
+    nx, ny, nz, lift, sink = 0.0, 0.0, 0.0, 0.0, 0.0
     for corner in range(3):
         weight = 1.0 - v - w if corner == 0 else (v if corner == 1 else w)
         at = 3 * corner
@@ -105,22 +106,23 @@ def triangle_normal(scene, k, x, y, z):
         cx, cy, cz = m[k], m[k + 1], m[k + 2]
         if corner > 0:
             cx, cy, cz = cx + m[k + at], cy + m[k + at + 1], cz + m[k + at + 2]
-        lift += weight * max(0.0, (cx - x) * ex + (cy - y) * ey + (cz - z) * ez)
+        height = weight * ((cx - x) * ex + (cy - y) * ey + (cz - z) * ez)
+        lift, sink = lift + max(0.0, height), sink + max(0.0, -height)
     nx, ny, nz = unit(nx, ny, nz)
-    return nx, ny, nz, fx, fy, fz, max(lift, 0.0)
+    return nx, ny, nz, fx, fy, fz, lift, sink
 
 
-@kernel(types.UniTuple(_f, 10)(SCENE, SCRATCH, types.int64, _f, _f, _f), _nrt=False)
+@kernel(types.UniTuple(_f, 11)(SCENE, SCRATCH, types.int64, _f, _f, _f), _nrt=False)
 def normal_at(scene, scratch, item, x, y, z):
-    """(normal, facet normal, lift, paint) of an item at a point of its surface.
+    """(normal, facet normal, lift above the facet and below it, paint) of an item at a point of its surface.
 
     Only for meshes the two normals differ; the paint (3) is NaN where the point has no color of its own.
     """
     kind = scene.ints[layout.ITEMS + 4 * item + layout.KIND]
     k = scene.ints[layout.ITEMS + 4 * item + layout.REALS_AT]
     if kind == layout.TRIANGLE:
-        nx, ny, nz, fx, fy, fz, lift = triangle_normal(scene, k, x, y, z)
-        return nx, ny, nz, fx, fy, fz, lift, np.nan, np.nan, np.nan
+        nx, ny, nz, fx, fy, fz, lift, sink = triangle_normal(scene, k, x, y, z)
+        return nx, ny, nz, fx, fy, fz, lift, sink, np.nan, np.nan, np.nan
     r, g, b = np.nan, np.nan, np.nan
     if kind == layout.ROUND or kind == layout.THIN:
         nx, ny, nz = round_normal(scene.reals, k, x, y, z)
@@ -132,7 +134,7 @@ def normal_at(scene, scratch, item, x, y, z):
         nx, ny, nz, r, g, b = skin_at(scene.grid_skin)(scene, scratch, k, x, y, z)
     else:
         nx, ny, nz, r, g, b = skin_at(scene.skin)(scene, scratch, k, x, y, z)
-    return nx, ny, nz, nx, ny, nz, 0.0, r, g, b
+    return nx, ny, nz, nx, ny, nz, 0.0, 0.0, r, g, b
 
 
 @part
