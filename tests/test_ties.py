@@ -367,3 +367,25 @@ def test_a_scene_without_ties_loads_nothing_of_them(tmp_path):
     assert not structure.settling
     assert not structure.free
     assert not any("tie" in name or "rigid" in name for name in structure.terms)
+
+
+def test_a_rope_ties_two_bodies_both_ways(tmp_path):
+    script = """
+clock: {end: 1 s}
+models:
+  crate: {rigid: {mass: 2 kg, inertia: 0.1 0.2 0.15 kg*m^2, position: 1 1 0 m, points: {hook: 0 0.1 0 m}}}
+  rope: {mass_spring: {rope: {from: 0 2 0 m, to: 1 1.1 0 m, count: 6}, mass: 0.02 kg, stiffness: 3000 N/m}}
+  sheet: {cloth: {size: 1 1 m, cells: 3 3, center: 0.5 2.5 0 m, facing: 0 0 1, pins: [top]}}
+forces: [gravity]
+ties:
+  knot: {ball: {between: [rope.end, crate]}}
+  hem: {ball: {between: [rope.start, sheet.bottom_left]}}
+solvers: {main: {dop853: {tolerance: 1e-9}}}
+"""
+    names = ("crate.energy", "rope.energy", "sheet.energy")
+    places = ("rope.end.position", "crate.hook.position", "rope.start.position", "sheet.bottom_left.position")
+    first, last = watch(tmp_path, script, [0, 1], *names, *places)
+    assert sum(last[:3]) == pytest.approx(sum(first[:3]), abs=1e-5)
+    np.testing.assert_allclose(last[3], last[4], atol=1e-13)
+    np.testing.assert_allclose(last[5], last[6], atol=1e-13)
+    assert np.linalg.norm(last[4] - first[4]) > 0.1

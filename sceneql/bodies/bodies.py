@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from sceneql.bodies.rigid.turning import momenta, rotation_energy
@@ -186,13 +186,18 @@ def read(output: str, bodies: Bodies, state: ModelState, own_potential: float = 
     raise KeyError(output)
 
 
-def read_named(output: str, names: Sequence[str], bodies: Bodies, state: ModelState) -> Any:
+def numbered(names: Iterable[str]) -> dict[str, int]:
+    """The numbers of masses by name, where they are in this order."""
+    return {name: k for k, name in enumerate(names)}
+
+
+def read_named(output: str, names: Mapping[str, int], bodies: Bodies, state: ModelState) -> Any:
     """An output ``name.position``, ``name.velocity`` or ``name.acceleration``: (3,). Raises KeyError."""
     name, _, what = output.rpartition(".")
     if name not in names or what not in MASS_OUTPUTS:
         raise KeyError(output)
     rows = {"position": positions, "velocity": velocities, "acceleration": accelerations}[what]
-    return rows(bodies, state)[names.index(name)].copy()
+    return rows(bodies, state)[names[name]].copy()
 
 
 def places(output: str, bodies: Bodies) -> NDArray[int64] | None:
@@ -212,8 +217,8 @@ def places(output: str, bodies: Bodies) -> NDArray[int64] | None:
     return None
 
 
-def places_named(output: str, names: Sequence[str], bodies: Bodies) -> NDArray[int64] | None:
+def places_named(output: str, names: Mapping[str, int], bodies: Bodies) -> NDArray[int64] | None:
     """Where in y an output ``name.position`` or ``name.velocity`` stands."""
     name, _, what = output.rpartition(".")
     found = places({"position": "positions", "velocity": "velocities"}.get(what, ""), bodies)
-    return None if found is None or name not in names else found[names.index(name)]
+    return None if found is None or name not in names else found[names[name]]

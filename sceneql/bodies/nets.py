@@ -29,6 +29,7 @@ STEPS = tuple(step for step in product((-1, 0, 1), repeat=3) if step > (0, 0, 0)
 THINNEST = 1e6
 """Length over width of a cloth's cell above which the rounding of the long side moves masses along the short one."""
 CORNERS = ("bottom_left", "bottom_right", "top_left", "top_right")
+ROPE_ENDS = ("start", "end")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -323,7 +324,7 @@ class Rope(Record):
             points=np.linspace(self.from_, self.to, self.count),
             pairs=np.stack([index[:-1], index[1:]], axis=1),
             stiffness=np.ones(self.count - 1),
-            places={"start": index == 0, "end": index == self.count - 1},
+            places=dict(zip(ROPE_ENDS, (index == 0, index == self.count - 1), strict=True)),
             line=True,
         )
 

@@ -134,6 +134,14 @@ class SpringModel(Model):
         return self._made[0]
 
     @property
+    def single(self) -> dict[str, int]:
+        """The numbers of masses with names of their own: listed ones, a rope's ends, a cloth's corners."""
+        import numpy as np
+
+        found = {name: np.arange(len(self.net.points))[of].ravel() for name, of in self.net.places.items()}
+        return {name: int(of[0]) for name, of in found.items() if len(of) == 1}
+
+    @property
     def rest(self) -> Floats:
         """(m,) lengths of the springs without force [m]."""
         assert self._made is not None
@@ -221,13 +229,14 @@ class SpringModel(Model):
             lengths, rest = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1), self.rest[holding]
             stretched = rest > 0
             return float(np.max(np.abs(lengths[stretched] / rest[stretched] - 1), initial=0.0))
-        raise KeyError(output)
+        return point_masses.read_named(output, self.single, state.bodies, state)
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Indices in y of outputs of the masses, and of the ends of springs where no spring tears."""
         assert state.bodies is not None
         if output != "springs":
-            return point_masses.places(output, state.bodies)
+            found = point_masses.places(output, state.bodies)
+            return point_masses.places_named(output, self.single, state.bodies) if found is None else found
         found = point_masses.places("positions", state.bodies)
         return None if found is None or self.tear is not None else found[self.net.pairs]
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sceneql.system import Stepper
 
 
-@np.errstate(over="ignore", invalid="ignore")
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def first_step(
     stepper: Stepper, y: Floats, rate: Floats, alone: Any, end: float, rate_at: Callable[[float, Floats], Floats]
 ) -> float:

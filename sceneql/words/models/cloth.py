@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from sceneql import kinds
+from sceneql.bodies import bodies as point_masses
 from sceneql.bodies.nets import CORNERS, EDGES, Net, stiffest, turned
 from sceneql.bodies.nets import Cloth as Sheet
 from sceneql.bodies.springs import SpringModel, pin_problems
-from sceneql.kinds import Problem, Quantity, field
+from sceneql.kinds import Gives, Problem, Quantity, field
 from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.quantities import dimension as dim
 
@@ -46,6 +47,11 @@ class Cloth(SpringModel):
     bend: kinds.FixedStiffness = field("Stiffness over two cells, as that of `stretch`.", "4 N/m", at_least=0)
     damping: kinds.FixedScalar = field("Damping as a part of the critical one.", "0.02", at_least=0)
     thickness: kinds.FixedLength = field("Its thickness, in contacts and in the picture.", "5 mm", above=0)
+
+    @classmethod
+    def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
+        """Those of all masses, and of the corners by name: ``top_left.position``."""
+        return {**cls.gives, **point_masses.named_outputs(dict.fromkeys(CORNERS))}
 
     def problems(self) -> Iterator[Problem]:
         """What is wrong with the sheet, and pins that are no mass of it."""

@@ -8,7 +8,20 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sceneql.bodies import bodies as point_masses
-from sceneql.bodies.nets import CORNERS, EDGES, SIDES, Cloth, Lattice, MassPoint, Net, Rope, Spring, alike, turned
+from sceneql.bodies.nets import (
+    CORNERS,
+    EDGES,
+    ROPE_ENDS,
+    SIDES,
+    Cloth,
+    Lattice,
+    MassPoint,
+    Net,
+    Rope,
+    Spring,
+    alike,
+    turned,
+)
 from sceneql.bodies.solid_lattice import Filling
 from sceneql.bodies.springs import SpringModel, pin_problems
 from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, field, quantity_type
@@ -105,7 +118,9 @@ class MassSpring(SpringModel):
         named = [str(entry["name"]) for entry in entries if isinstance(entry, Mapping) and entry.get("name")]
         more = {f"{name}.{output}": gives for name in named for output, gives in SPRING_OUTPUTS.items()}
         solid = SOLID_OUTPUTS if "solid" in written else {}
-        return {**cls.gives, **point_masses.named_outputs(written.get("masses")), **more, **solid}
+        ends = (*(ROPE_ENDS if "rope" in written else ()), *(CORNERS if "cloth" in written else ()))
+        single = point_masses.named_outputs(written.get("masses")) | point_masses.named_outputs(dict.fromkeys(ends))
+        return {**cls.gives, **single, **more, **solid}
 
     def make(self, assembly: Assembly) -> tuple[Net, Floats, Floats]:
         """The net with the numbers of single masses and springs."""
@@ -192,7 +207,7 @@ class MassSpring(SpringModel):
             return float(held.sum() if output == "volume" else np.count_nonzero(held < 0.0))
         name, _, what = output.rpartition(".")
         if what not in SPRING_OUTPUTS:
-            return point_masses.read_named(output, tuple(self.masses or ()), state.bodies, state)
+            return super().read(output, state)
         blocks_at, stiffness_at, _ = state.ints
         k = [spring.name for spring in self.springs].index(name)
         a, b = point_masses.positions(state.bodies, state)[self.net.pairs[k]]
@@ -205,9 +220,7 @@ class MassSpring(SpringModel):
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Of the masses, those with names too."""
         assert state.bodies is not None
-        if output in self.gives:
-            return super().places(output, state)
-        return point_masses.places_named(output, tuple(self.masses or ()), state.bodies)
+        return None if output in SOLID_OUTPUTS else super().places(output, state)
 
     def static_masses(self) -> Mapping[str, StaticMass]:
         """Named ones; else one for all of them, whose place is not told, and none of a solid's by its density."""

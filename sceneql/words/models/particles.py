@@ -206,8 +206,8 @@ class Particles(Model):
         if output in masses.BODY_OUTPUTS:
             return masses.read(output, bodies, state)
         if "." not in output:
-            return masses.read_named(f"of.{output}", ("of",), bodies, state)
-        return masses.read_named(output, tuple(self.list or ()), bodies, state)
+            return masses.read_named(f"of.{output}", {"of": 0}, bodies, state)
+        return masses.read_named(output, masses.numbered(self.list or ()), bodies, state)
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Of the masses, and those with names; none where they come and go."""
@@ -215,8 +215,8 @@ class Particles(Model):
         if self.emit is not None:
             return None
         if "." in output:
-            return masses.places_named(output, tuple(self.list or ()), state.bodies)
-        named = masses.places_named(f"of.{output}", ("of",), state.bodies)
+            return masses.places_named(output, masses.numbered(self.list or ()), state.bodies)
+        named = masses.places_named(f"of.{output}", {"of": 0}, state.bodies)
         return masses.places(output, state.bodies) if named is None else named
 
     def _seen(self, state: ModelState) -> tuple[Bodies, ModelState, Floats]:
