@@ -389,3 +389,24 @@ solvers: {main: {dop853: {tolerance: 1e-9}}}
     np.testing.assert_allclose(last[3], last[4], atol=1e-13)
     np.testing.assert_allclose(last[5], last[6], atol=1e-13)
     assert np.linalg.norm(last[4] - first[4]) > 0.1
+
+
+@pytest.mark.parametrize("solver", ["dop853: {tolerance: 1e-10}", "rk4: {step: 1 ms}"])
+def test_a_tie_is_gone_once_its_force_is_too_large(tmp_path, solver):
+    """A pendulum let go level: the pull of its rod is 3 m g sin(angle), and at 2 m g the mass flies off."""
+    script = f"""
+clock: {{end: 2 s}}
+models: {{net: {{particles: {{list: {{bob: {{position: 1 0 0 m}}}}}}}}}}
+forces: [gravity]
+ties: {{string: {{rod: {{between: [net.bob, world], to: 0 0 0 m, breaks: 19.62 N}}}}}}
+solvers: {{main: {{{solver}}}}}
+"""
+    times = np.arange(0, 2, 0.01)
+    rows = watch(tmp_path, script, times, "net.bob.position", "string.broken", "net.energy", "string.force")
+    gone = next(k for k, row in enumerate(rows) if row[1])
+    place = rows[gone - 1][0]
+    assert -place[1] == pytest.approx(2 / 3, abs=0.06)
+    assert all(abs(np.linalg.norm(row[0]) - 1) < 1e-9 for row in rows[:gone])
+    assert not any(row[3].any() for row in rows[gone:])
+    assert np.linalg.norm(rows[-1][0]) > 2
+    assert abs(rows[-1][2]) < 1e-7

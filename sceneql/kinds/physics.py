@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from sceneql.failure import Unsuitable
 from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.kinds.types import BodyRef, ModelRef
-from sceneql.kinds.values import Ref, Value
+from sceneql.kinds.values import Quantity, Ref, Value
 from sceneql.kinds.word import Kind, field
+from sceneql.quantities.dimension import FORCE
 from sceneql.quantities.expression import Expr
 
 if TYPE_CHECKING:
@@ -212,6 +213,9 @@ class Tie(Interaction):
     between: tuple[BodyRef, BodyRef] = field(
         "Two bodies: `crate`, one of several, `stones.first`, a mass, `net.bob`, an object that moves by itself, or "
         "`world`."
+    )
+    breaks: Annotated[float, Quantity(FORCE)] | None = field(
+        "Force above which it is gone, at the end of a step; by default it never is.", None, above=0
     )
 
     def targets(self) -> tuple[str, ...]:

@@ -49,3 +49,5 @@ class Tied:
     rows: tuple[TieRow, ...]
     scratch_at: int
     """Offset in the floats of what its rows write there (bodies/rigid/tie_rows_kernels.py)."""
+    holds_at: int
+    """floats[holds_at]: 1 while it holds, 0 once it is broken."""

@@ -8,8 +8,6 @@ from sceneql.bodies.rigid.joint import Joint, Side
 from sceneql.kinds import Value
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from sceneql.system import Assembly, Bodies, ModelState
 
 
@@ -24,20 +22,17 @@ class Driven(Joint):
         """Force, stiffness, rest and damping."""
         raise NotImplementedError
 
-    def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
-        """Add the conditions, and what acts along the motion."""
+    def assemble_motion(self, first: Side, second: Side, holds: int, assembly: Assembly) -> tuple[int, ...]:
+        """Add what acts along the motion."""
         import numpy as np
 
-        from sceneql.bodies.rigid.joint import sides_of
         from sceneql.bodies.rigid.tie_rows_kernels import ANGLE, MOVED, POINT, ROW
         from sceneql.bodies.rigid.tie_system import integers
         from sceneql.system import Place
 
-        super().assemble_together(name, assembly, everyone)
-        first, second = sides_of(self.between, assembly)
         kind, vectors = self.motion(first, second, assembly)
         numbers, scratch = assembly.floats(vectors), assembly.floats(np.zeros(2 * MOVED + ROW))
-        row = (POINT if kind == "shift" else ANGLE, 0, 0, numbers, scratch + 2 * MOVED)
+        row = (POINT if kind == "shift" else ANGLE, 0, 0, numbers, scratch + 2 * MOVED, holds)
         force, stiffness, rest, damping = self.along()
         none = assembly.floats([0.0])
         values = [none if value is None else assembly.value(value) for value in (force, stiffness, damping)]
@@ -47,6 +42,7 @@ class Driven(Joint):
         assembly.remember(*ints)
         if any(value is not None for value in (force, stiffness, damping)):
             assembly.term("force", "sceneql.bodies.rigid.drive_kernels:drive", ints)
+        return ints
 
     def read(self, output: str, state: ModelState) -> Any:
         """How far and how fast it has gone; force and torque."""
@@ -69,7 +65,7 @@ class Driven(Joint):
         from sceneql.bodies.rigid.drive_kernels import REST_AT, STIFFNESS_AT, WORK_AT
 
         own = state.ints[-(WORK_AT + 1) :]
-        if bodies.work_at != own[WORK_AT]:
+        if bodies.work_at != own[WORK_AT] or self.read("broken", state):
             return 0.0
         far, _ = self._motion(state)
         return 0.5 * float(state.floats[own[STIFFNESS_AT]]) * (far - float(state.floats[own[REST_AT]])) ** 2

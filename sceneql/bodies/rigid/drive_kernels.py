@@ -11,6 +11,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_R,
     AT_SPEED,
     AT_W,
+    HOLDS,
     MOMENTUM,
     MOVED,
     MOVER,
@@ -62,6 +63,8 @@ def motion(y, floats, ints):
 @kernel(TERM, inner=True)
 def drive(t, y, rate, floats, ints):
     """Adds force - stiffness (s - rest) - damping s' along the motion, and what force and damping take to the work."""
+    if floats[ints[ROW_AT + HOLDS]] == 0.0:
+        return
     far, fast = motion(y, floats, ints)
     given, lost = floats[ints[FORCE_AT]], floats[ints[DAMPING_AT]] * fast
     total = given - lost - floats[ints[STIFFNESS_AT]] * (far - floats[ints[REST_AT]])

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 APART = 1e-9
 """How far a mass may be from where it is held, against the numbers of that place."""
 FORCES = {
+    "broken": Gives(Type(), "1 once it is gone, else 0."),
     "force": Gives(quantity_type(dim.FORCE, (3,)), "Its force on the first body."),
     "torque": Gives(quantity_type(dim.FORCE * dim.LENGTH, (3,)), "Its torque on the first body, about where it is."),
 }
@@ -76,17 +77,27 @@ class Joint(Tie):
         if first.mover == second.mover:
             raise ScriptError([Diagnostic("same-mass", "a tie leads from a body to itself", self.between[1].span)])
         rows = self.rows(first, second, assembly)
-        scratch = assembly.floats(np.zeros(ROW * len(rows)))
-        assembly.tie(Tied((first.mover, second.mover), tuple(rows), scratch))
-        assembly.remember(scratch, len(rows), *integers(first.mover), *integers(second.mover))
+        scratch, holds = assembly.floats(np.zeros(ROW * len(rows))), assembly.floats([1.0])
+        assembly.tie(Tied((first.mover, second.mover), tuple(rows), scratch, holds))
+        assembly.remember(scratch, len(rows), holds, *integers(first.mover), *integers(second.mover))
+        motion = self.assemble_motion(first, second, holds, assembly)
+        if self.breaks is not None:
+            ints = (scratch, len(rows), holds, assembly.floats([self.breaks]), *motion)
+            assembly.after_step("sceneql.bodies.rigid.break_kernels:part", ints)
+
+    def assemble_motion(self, first: Side, second: Side, holds: int, assembly: Assembly) -> tuple[int, ...]:
+        """Add what acts along a motion that it leaves; the integers of that, as drive_kernels has them."""
+        return ()
 
     def read(self, output: str, state: ModelState) -> Any:
-        """Force and torque."""
+        """Force, torque, and whether it is gone."""
         import numpy as np
 
         from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, ROW
 
-        at, count, *_ = state.ints
+        at, count, holds, *_ = state.ints
+        if output == "broken":
+            return float(state.floats[holds] == 0.0)
         rows = state.floats[at : at + ROW * count].reshape(count, ROW)
         parts = rows[:, AT_FORCE, None] * rows[:, AT_J : AT_J + 6]
         force = parts[:, :3].sum(axis=0)

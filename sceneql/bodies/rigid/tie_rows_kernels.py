@@ -34,8 +34,8 @@ AT_J, AT_T, AT_BIAS, AT_C, AT_SPEED, AT_FORCE, AT_SIZE, ROW = 0, 12, 24, 25, 26,
 """Floats of a row: J, by velocity and angular velocity of a, then of b; the inverse masses times J; the bias, C, dC/dt,
 the force of the row; the size of the numbers that C is the difference of."""
 
-KIND, FIRST, SECOND, NUMBERS, SCRATCH, ROW_INTS = range(6)
-"""Integers of a row: kind, both movers, offsets of its numbers and of its floats."""
+KIND, FIRST, SECOND, NUMBERS, SCRATCH, HOLDS, ROW_INTS = range(7)
+"""Integers of a row: kind, both movers, offsets of its numbers, of its floats, of whether it holds (0: it is broken)."""
 
 
 @lean_inlined
@@ -131,6 +131,11 @@ def arm(floats, mover, at):
 def write_row(floats, ints, at, a, b):
     """Write the row of ints[at:] between the movers whose floats begin at a and b."""
     kind, own, to = ints[at + KIND], ints[at + NUMBERS], ints[at + SCRATCH]
+    if floats[ints[at + HOLDS]] == 0.0:
+        for k in range(ROW):
+            floats[to + k] = 0.0
+        floats[to + AT_SIZE] = 1.0
+        return
     ax, ay, az = floats[a + AT_W], floats[a + AT_W + 1], floats[a + AT_W + 2]
     bx, by, bz = floats[b + AT_W], floats[b + AT_W + 1], floats[b + AT_W + 2]
     if kind == ANGLE:

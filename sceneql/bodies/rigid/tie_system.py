@@ -33,10 +33,10 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         pair = tuple(movers.setdefault(integers(mover), len(movers)) for mover in tie.movers)
         for k, row in enumerate(tie.rows):
             vectors = [number for vector in row.vectors for number in vector]
-            rows.append((KINDS.index(row.kind), *pair, 0, tie.scratch_at + ROW * k))
+            rows.append((KINDS.index(row.kind), *pair, 0, tie.scratch_at + ROW * k, tie.holds_at))
             numbers.append([*vectors, *([] if row.kind == "point" else [row.constant]), 0.0, 0.0, 0.0][:9])
     numbers_at = assembly.floats(numbers)
-    rows = [(kind, a, b, numbers_at + 9 * k, at) for k, (kind, a, b, _, at) in enumerate(rows)]
+    rows = [(kind, a, b, numbers_at + 9 * k, at, holds) for k, (kind, a, b, _, at, holds) in enumerate(rows)]
     solved = [which[0] >= 0 for which in movers]
     of_mover: dict[int, list[tuple[int, int]]] = {}
     for k, (_, a, b, *_) in enumerate(rows):
@@ -44,7 +44,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
             if solved[mover]:
                 of_mover.setdefault(mover, []).append((k, side))
     parts = [(one, other) for some in of_mover.values() for one, other in product(some, some)]
-    scratch = [row[-1] for row in rows]
+    scratch = [row[-2] for row in rows]
     own = np.arange(len(rows))
     pattern = csr_array(
         (
