@@ -11,7 +11,7 @@ from sceneql.doing import doing
 from sceneql.graph import Island, SimulationGraph, Task
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
-from sceneql.kinds import Contact, Interaction, Model, Object, Ref, Value
+from sceneql.kinds import Contact, Interaction, Model, Object, Ref, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
 from sceneql.system import Bodies, IslandFacts, ModelState, Stepper
@@ -83,7 +83,8 @@ class Assembled:
         if self.assembly.ties:
             from sceneql.bodies.rigid.tie_system import add_ties
 
-            add_ties(self.assembly, self.assembly.ties)
+            with self.word(next(name for name, _ in self.island.forces if isinstance(tasks[name].kind, Tie))):
+                add_ties(self.assembly, self.assembly.ties)
         contacts = dict.fromkeys(contact for contact, _, _ in self.island.contacts)
         # Contacts between masses come last: those with objects need the path of the whole step as the solver made it.
         for contact in sorted(contacts, key=lambda name: cast(Contact, tasks[name].kind).mutual):

@@ -35,7 +35,7 @@ AT_J, AT_T, AT_BIAS, AT_C, AT_SPEED, AT_FORCE, AT_SIZE, ROW = 0, 12, 24, 25, 26,
 the force of the row; the size of the numbers that C is the difference of."""
 
 KIND, FIRST, SECOND, NUMBERS, SCRATCH, HOLDS, ROW_INTS = range(7)
-"""Integers of a row: kind, both movers, offsets of its numbers, its floats, and of whether it holds (0: it is broken)."""
+"""Integers of a row: kind, both movers, offsets of its numbers, its floats, and of whether it holds (0: broken)."""
 
 
 @lean_inlined
