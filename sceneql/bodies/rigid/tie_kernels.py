@@ -29,6 +29,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     MOVER,
     POSITION,
     ROTATION,
+    ROW,
     ROW_INTS,
     SCRATCH,
     SECOND,
@@ -44,12 +45,13 @@ from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
 from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
-MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(9)
-MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, HEAD = range(9, 19)
-"""Integers of an island's ties: numbers of movers, rows, movers that rows share, of the plan's integers, and where each
-begins; places of the diagonal's values; offsets into the floats and sizes of what movers, matrix, factors, scratch and
-right hand side take, and what drifts keep (rattle_kernels). A mover that rows share: their number n, the floats of each
-at its side, and the place of the value of each with each, n x n."""
+MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, STARTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(10)
+MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, HEAD = range(10, 20)
+"""Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where each
+begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes of
+what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels). A mover that ties
+share: their number n; of each its first row, how many it has, their floats at its side; then n x n places in a row of
+the first where the rows of the second begin, counted from that row's first value."""
 
 EASE = 1e-9
 """Part of the diagonal that is added to it."""
@@ -85,20 +87,27 @@ def factor(floats, ints):
     values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     for k in range(values.size):
         values[k] = 0.0
-    at = ints[SHARED_AT]
+    at, starts = ints[SHARED_AT], ints[STARTS_AT]
     for _ in range(ints[SHARED]):
         count = ints[at]
-        table = at + 1 + count
-        for i in range(count):
-            one = ints[at + 1 + i] + AT_J
-            for j in range(i, count):
-                other = ints[at + 1 + j] + AT_T
-                total = 0.0
-                for c in range(6):
-                    total += floats[one + c] * floats[other + c]
-                values[ints[table + i * count + j]] += total
-                if j > i:
-                    values[ints[table + j * count + i]] += total
+        table = at + 1 + 3 * count
+        for one in range(count):
+            for other in range(one, count):
+                first, rows, jacobian = ints[at + 1 + 3 * one], ints[at + 2 + 3 * one], ints[at + 3 + 3 * one] + AT_J
+                last, columns, weighed = (
+                    ints[at + 1 + 3 * other],
+                    ints[at + 2 + 3 * other],
+                    ints[at + 3 + 3 * other] + AT_T,
+                )
+                across, along = ints[table + count * one + other], ints[table + count * other + one]
+                for i in range(rows):
+                    for j in range(i if one == other else 0, columns):
+                        total = 0.0
+                        for c in range(6):
+                            total += floats[jacobian + ROW * i + c] * floats[weighed + ROW * j + c]
+                        values[ints[starts + first + i] + across + j] += total
+                        if one != other or j > i:
+                            values[ints[starts + last + j] + along + i] += total
         at = table + count * count
     for k in range(ints[ROWS]):
         place = ints[ints[DIAGONAL_AT] + k]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from itertools import product
+from itertools import chain, product
 from typing import TYPE_CHECKING
 
 from sceneql.system import Led, Place
@@ -28,9 +28,11 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     from sceneql.linear.multifrontal import plan
 
     movers: dict[tuple[int, ...], int] = {}
-    rows, numbers = [], []
+    rows: list[tuple[int, ...]] = []
+    numbers, sides = [], []
     for tie in ties:
         pair = tuple(movers.setdefault(integers(mover), len(movers)) for mover in tie.movers)
+        sides.append((pair, len(rows), len(tie.rows), tie.scratch_at))
         for k, row in enumerate(tie.rows):
             vectors = [number for vector in row.vectors for number in vector]
             rows.append((KINDS.index(row.kind), *pair, 0, tie.scratch_at + ROW * k, tie.holds_at))
@@ -38,20 +40,24 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     numbers_at = assembly.floats(numbers)
     rows = [(kind, a, b, numbers_at + 9 * k, at, holds) for k, (kind, a, b, _, at, holds) in enumerate(rows)]
     solved = [which[0] >= 0 for which in movers]
-    of_mover: dict[int, list[tuple[int, int]]] = {}
-    for k, (_, a, b, *_) in enumerate(rows):
-        for side, mover in enumerate((a, b)):
+    of_mover: dict[int, list[tuple[int, int, int]]] = {}
+    for pair, first, count, scratch in sides:
+        for side, mover in enumerate(pair):
             if solved[mover]:
-                of_mover.setdefault(mover, []).append((k, side))
-    parts = [(one, other) for some in of_mover.values() for one, other in product(some, some)]
-    scratch = [row[-2] for row in rows]
+                of_mover.setdefault(mover, []).append((first, count, scratch + 6 * side))
+    parts = [
+        (one[0] + i, other[0] + j)
+        for some in of_mover.values()
+        for one, other in product(some, some)
+        for i, j in product(range(one[1]), range(other[1]))
+    ]
     own = np.arange(len(rows))
     pattern = csr_array(
         (
             np.ones(len(parts) + len(rows)),
             (
-                np.concatenate([[one[0] for one, _ in parts], own]),
-                np.concatenate([[other[0] for _, other in parts], own]),
+                np.concatenate([[row for row, _ in parts], own]),
+                np.concatenate([[column for _, column in parts], own]),
             ),
         ),
         shape=(len(rows), len(rows)),
@@ -64,7 +70,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         return int(starts[row] + np.searchsorted(columns[starts[row] : starts[row + 1]], column))
 
     shared = [
-        [len(some), *(scratch[k] + 6 * side for k, side in some), *(place(k, j) for k, _ in some for j, _ in some)]
+        [len(some), *chain(*some), *(place(one[0], other[0]) - int(starts[one[0]]) for one in some for other in some)]
         for some in of_mover.values()
     ]
     planned = plan(pattern)
@@ -72,13 +78,14 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         [number for which in movers for number in which],
         [number for row in rows for number in row],
         [number for some in shared for number in some],
+        starts[:-1].tolist(),
         [place(k, k) for k in range(len(rows))],
         planned.numbers.tolist(),
     ]
     begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
     sizes = (MOVED * len(movers), len(columns), planned.factors, planned.work + len(rows), len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
-    head = [len(movers), len(rows), begins[0], begins[1], len(shared), begins[2], begins[3], begins[4], len(lists[4])]
+    head = [len(movers), len(rows), begins[0], begins[1], len(shared), *begins[2:6], len(lists[5])]
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
     kept = assembly.floats(np.zeros(KEPT * len(rows) if free else 0))
     head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept]
