@@ -410,3 +410,31 @@ solvers: {{main: {{{solver}}}}}
     assert not any(row[3].any() for row in rows[gone:])
     assert np.linalg.norm(rows[-1][0]) > 2
     assert abs(rows[-1][2]) < 1e-7
+
+
+@pytest.mark.parametrize(("inner", "sense"), [("no", -1), ("yes", 1)])
+def test_gears_turn_by_as_many_teeth_over_many_turns(tmp_path, inner, sense):
+    script = f"""
+clock: {{end: 5 s}}
+models:
+  wheels:
+    rigid:
+      bodies:
+        small: {{mass: 1 kg, inertia: 0.2 0.2 0.1 kg*m^2}}
+        large: {{mass: 4 kg, inertia: 2 2 1.6 kg*m^2, position: 3 0 0 m}}
+forces: {{crank: {{torque: {{components: ["0", "0", "where(m < 2, 3, 0)"]}}}}}}
+ties:
+  a: {{hinge: {{between: [wheels.small, world], at: 0 0 0 m}}}}
+  b: {{hinge: {{between: [wheels.large, world], at: 3 0 0 m}}}}
+  mesh: {{gear: {{between: [wheels.small, wheels.large], teeth: 12 30, inner: {inner}}}}}
+solvers: {{main: {{dop853: {{tolerance: 1e-10}}}}}}
+"""
+    ((speed, other, torque, energy),) = watch(
+        tmp_path, script, [5], "wheels.small.spin", "wheels.large.spin", "mesh.torque", "wheels.energy"
+    )
+    # Reduced to the small wheel: 0.1 + 1.6 (12/30)^2 kg m^2.
+    rate = 3 / (0.1 + 1.6 * 0.16)
+    assert speed[2] == pytest.approx(rate * 5, rel=1e-9)
+    assert other[2] == pytest.approx(sense * 0.4 * rate * 5, rel=1e-9)
+    assert torque[2] == pytest.approx(0.1 * rate - 3, rel=1e-9)
+    assert abs(energy) < 1e-6

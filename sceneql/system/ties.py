@@ -32,13 +32,14 @@ class TieRow:
     """A condition between two movers a and b, whose vectors are fixed in the axes of one of them.
 
     `point`: n_b . (x_a + r_a - x_b - r_b) = 0, its vectors r_a, r_b, n_b; `angle`: u_a . w_b = constant, its vectors
-    u_a, w_b; `distance`: |x_a + r_a - x_b - r_b| = constant, its vectors r_a, r_b. Places are from the movers'
-    positions [m].
+    u_a, w_b; `distance`: |x_a + r_a - x_b - r_b| = constant, its vectors r_a, r_b; `gear`: the angles of both about
+    axes of the world, times the constants, sum to full turns; its vectors are, of each, the axis, a direction across it
+    at the start, and that direction in its own axes. Places are from the movers' positions [m].
     """
 
-    kind: Literal["point", "angle", "distance"]
+    kind: Literal["point", "angle", "distance", "gear"]
     vectors: tuple[Triple, ...]
-    constant: float = 0.0
+    constants: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

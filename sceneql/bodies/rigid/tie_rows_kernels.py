@@ -7,6 +7,7 @@ dC/dt = J v, and C'' = J v' + bias. Conditions, with r fixed places and u, n, w 
     POINT      n_b . (x_a + r_a - x_b - r_b)
     ANGLE      u_a . w_b - c
     DISTANCE   |x_a + r_a - x_b - r_b| - c
+    GEAR       (c_a A + c_b B) / (|c_a| + |c_b|), A the angle of a about an axis of the world, B that of b; up to turns
 """
 
 import math
@@ -17,8 +18,9 @@ from sceneql.bodies.rigid.rigid_kernels import times_symmetric, to_body, to_worl
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import A, I, N
 
-POINT, ANGLE, DISTANCE = range(3)
-"""Kinds of rows; their numbers: r_a, r_b, n; u, w, c; r_a, r_b, c."""
+POINT, ANGLE, DISTANCE, GEAR = range(4)
+"""Kinds of rows; their numbers: r_a, r_b, n; u, w, c; r_a, r_b, c; of a axis, direction across it at the start, that
+direction in its axes, the same of b, c_a, c_b."""
 
 POSITION, VELOCITY, INVERSE, ROTATION, MOMENTUM, INERTIA = range(6)
 PLACE, TURN, SPEED, SPIN, PUSH, TWIST, MOVER = range(6, 13)
@@ -138,6 +140,25 @@ def write_row(floats, ints, at, a, b):
         return
     ax, ay, az = floats[a + AT_W], floats[a + AT_W + 1], floats[a + AT_W + 2]
     bx, by, bz = floats[b + AT_W], floats[b + AT_W + 1], floats[b + AT_W + 2]
+    if kind == GEAR:
+        for k in range(12):
+            floats[to + AT_J + k] = 0.0
+        total = speed = 0.0
+        size = abs(floats[own + 18]) + abs(floats[own + 19])
+        for side in range(2):
+            mover, at_side, part = (b, own + 9, floats[own + 19]) if side == 1 else (a, own, floats[own + 18])
+            nx, ny, nz = floats[at_side], floats[at_side + 1], floats[at_side + 2]
+            ex, ey, ez = floats[at_side + 3], floats[at_side + 4], floats[at_side + 5]
+            ux, uy, uz = turned(floats, mover + AT_R, floats[at_side + 6], floats[at_side + 7], floats[at_side + 8])
+            sx, sy, sz = cross(ex, ey, ez, ux, uy, uz)
+            total += part * math.atan2(nx * sx + ny * sy + nz * sz, ex * ux + ey * uy + ez * uz)
+            part /= size
+            speed += part * (nx * floats[mover + AT_W] + ny * floats[mover + AT_W + 1] + nz * floats[mover + AT_W + 2])
+            put(floats, to + AT_J + 6 * side + 3, part * nx, part * ny, part * nz)
+        total -= 2.0 * math.pi * math.floor(total / (2.0 * math.pi) + 0.5)
+        floats[to + AT_C] = total / size
+        floats[to + AT_SPEED], floats[to + AT_BIAS], floats[to + AT_SIZE] = speed, 0.0, 1.0
+        return
     if kind == ANGLE:
         ux, uy, uz, px, py, pz, ex, ey, ez = arm(floats, a, own)
         wx, wy, wz, qx, qy, qz, fx, fy, fz = arm(floats, b, own + 3)

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Mover, Tied
 
 KERNELS = "sceneql.bodies.rigid.tie_kernels"
-KINDS = ("point", "angle", "distance")
+KINDS = ("point", "angle", "distance", "gear")
+
+LEAST = 7
+"""Numbers of a row, of which the last may be left out where it is 0."""
 
 
 def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
@@ -29,16 +32,15 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
 
     movers: dict[tuple[int, ...], int] = {}
     rows: list[tuple[int, ...]] = []
-    numbers, sides = [], []
+    sides = []
     for tie in ties:
         pair = tuple(movers.setdefault(integers(mover), len(movers)) for mover in tie.movers)
         sides.append((pair, len(rows), len(tie.rows), tie.scratch_at))
         for k, row in enumerate(tie.rows):
-            vectors = [number for vector in row.vectors for number in vector]
-            rows.append((KINDS.index(row.kind), *pair, 0, tie.scratch_at + ROW * k, tie.holds_at))
-            numbers.append([*vectors, *([] if row.kind == "point" else [row.constant]), 0.0, 0.0, 0.0][:9])
-    numbers_at = assembly.floats(numbers)
-    rows = [(kind, a, b, numbers_at + 9 * k, at, holds) for k, (kind, a, b, _, at, holds) in enumerate(rows)]
+            numbers = [*chain(*row.vectors), *row.constants]
+            numbers_at = assembly.floats([*numbers, *(0.0 for _ in range(len(numbers), LEAST))])
+            kind = KINDS.index(row.kind)
+            rows.append((kind, *pair, numbers_at, tie.scratch_at + ROW * k, tie.holds_at))
     solved = [which[0] >= 0 for which in movers]
     of_mover: dict[int, list[tuple[int, int, int]]] = {}
     for pair, first, count, scratch in sides:

@@ -34,4 +34,4 @@ class Rod(Joint):
         if length == 0.0:
             message = "the two points of a rod are one at the start"
             raise ScriptError([Diagnostic("no-length", message, assembly.line(), "a `ball` holds two points together")])
-        return [TieRow("distance", (first.place(ends[0]), second.place(ends[1])), length)]
+        return [TieRow("distance", (first.place(ends[0]), second.place(ends[1])), (length,))]

@@ -1,0 +1,44 @@
+"""gear: two toothed wheels that mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, ClassVar
+
+from sceneql.bodies.rigid.joint import FORCES, Joint, Side, across, axis_of, must_turn
+from sceneql.kinds import Direction, Gives, Problem, field
+from sceneql.system import TieRow
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly
+
+
+class Gear(Joint):
+    """Two wheels turn by as many teeth, in opposite senses about one axis, as if they met outside.
+
+    Each turns about an axis that keeps its direction in the world: a `hinge` on the world holds it there.
+    """
+
+    gives: ClassVar[Mapping[str, Gives]] = FORCES
+
+    teeth: tuple[int, int] = field("Teeth of the first and of the second.", at_least=1)
+    axis: Direction = field("Axis of the first.", "0 0 1")
+    other_axis: Direction | None = field("Axis of the second; by default that of the first.", None)
+    inner: bool = field("The smaller runs inside the larger: both turn in one sense.", False)
+
+    def problems(self) -> Iterator[Problem]:
+        """A wheel that meshes with the world."""
+        for k, ref in enumerate(self.between):
+            if not ref.name:
+                yield Problem("a wheel meshes with another, not with the world", ("between", k))
+
+    def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
+        """The angles of both, each times its teeth."""
+        must_turn(self.between, (first, second))
+        axes = [axis_of(self.axis if axis is None else axis, assembly) for axis in (None, self.other_axis)]
+        vectors = []
+        for axis, side in zip(axes, (first, second), strict=True):
+            start, _ = across(axis)
+            vectors += [(axis[0], axis[1], axis[2]), (start[0], start[1], start[2]), side.direction(start)]
+        one, other = self.teeth
+        return [TieRow("gear", tuple(vectors), (one, -other if self.inner else other))]
