@@ -1,0 +1,232 @@
+# mypy: ignore-errors
+"""The contact points of two convex shapes near each other, all along the normal of their gap.
+
+What faces each other along it is projected and intersected (overlay_kernels): up to eight corners for two faces, two
+points for an edge over a face or along an edge, else one. A point is known from step to step by two integers: which
+feature of a and of b, and which two lines cross there.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.distance.convex import CORE, HALF_SPACE
+from sceneql.contacts.distance.core_kernels import (
+    FLOATS,
+    GAP,
+    HEAD,
+    INTS,
+    KIND,
+    NORMAL,
+    ON_A,
+    ON_B,
+    RADIUS,
+    REACH,
+    ROUNDING,
+    VERTICES,
+    at3,
+    cross,
+    dot,
+    edges_at,
+    end_of,
+    put3,
+)
+from sceneql.contacts.distance.gap_kernels import nearest
+from sceneql.contacts.distance.nearest_points_kernels import FAR
+from sceneql.contacts.distance.overlay_kernels import CORNER, edge_along, overlay
+from sceneql.system.signatures_kernels import A, F, I, N
+
+MOST = 8
+"""Most points of a pair."""
+POINT = 7
+"""Numbers of a point: on the surface of a (3), on that of b (3), the gap [m] along the normal from b to a."""
+NAME = 2
+"""Integers of the name of a point."""
+SAME = 1e-9
+"""Distance of two corners of one polygon, in parts of the size of the pair, up to which they are one point."""
+POSITION = 4
+"""Numbers of a corner that say where it is and how high."""
+CROSSED = 1e-6
+"""Sine of the angle of two edges, seen along the normal, up to which they touch along a line."""
+OF_A, OF_B, ON_PLANE, TWO_LINES = range(4)
+"""How points were found: corners of a over a face of b, of b over one of a, vertices over a plane, ends of edges."""
+LONE = -7.0
+"""In place of the lines that cross at a corner: the nearest points, where no corner is."""
+
+
+@lean(types.void(A, N, F, F, F, F, F, F), inner=True)
+def put_corner(room, at, x, y, z, height, before, after):
+    """Writes a corner of an overlay."""
+    put3(room, at, x, y, z)
+    room[at + 3], room[at + 4], room[at + 5] = height, before, after
+
+
+@lean(N(A, N, N, F, F), inner=True)
+def sift(room, at, count, most, same):
+    """Keeps, in order, the corners no higher than ``most``; of neighbors at one place the lower one. Their number."""
+    kept = 0
+    for k in range(count):
+        p, twin = at + CORNER * k, -1
+        for q in (at, at + CORNER * max(0, kept - 1)):
+            away = abs(room[p] - room[q]) + abs(room[p + 1] - room[q + 1]) + abs(room[p + 2] - room[q + 2])
+            if kept > 0 and away <= same:
+                twin = q
+        if twin >= 0:
+            for c in range(POSITION if room[p + 3] < room[twin + 3] else 0):
+                room[twin + c] = room[p + c]
+        elif room[p + 3] <= most:
+            for c in range(CORNER):
+                room[at + CORNER * kept + c] = room[p + c]
+            kept += 1
+    return kept
+
+
+@lean(N(A, N, N, F, F, F), inner=True)
+def thin_out(room, at, count, nx, ny, nz):
+    """Keeps MOST of the corners: the farthest in seven directions across the normal, and the lowest; their number."""
+    if count <= MOST:
+        return count
+    if abs(nx) <= min(abs(ny), abs(nz)):
+        ux, uy, uz = cross(nx, ny, nz, 1.0, 0.0, 0.0)
+    elif abs(ny) <= abs(nz):
+        ux, uy, uz = cross(nx, ny, nz, 0.0, 1.0, 0.0)
+    else:
+        ux, uy, uz = cross(nx, ny, nz, 0.0, 0.0, 1.0)
+    vx, vy, vz = cross(nx, ny, nz, ux, uy, uz)
+    for turn in range(MOST):
+        best, found = math.inf, 0
+        angle = 2.0 * math.pi * turn / (MOST - 1)
+        pu, pv = math.cos(angle), math.sin(angle)
+        for k in range(count):
+            p = at + CORNER * k
+            if room[p + 3] < math.inf:
+                x, y, z = at3(room, p)
+                away = (
+                    room[p + 3] if turn == MOST - 1 else -pu * dot(ux, uy, uz, x, y, z) - pv * dot(vx, vy, vz, x, y, z)
+                )
+                if away < best:
+                    best, found = away, k
+        # Those that are taken stand behind the others, and are out of the search.
+        for c in range(CORNER):
+            room[at + CORNER * (count + turn) + c] = room[at + CORNER * found + c]
+        room[at + CORNER * found + 3] = math.inf
+    for k in range(CORNER * MOST):
+        room[at + k] = room[at + CORNER * count + k]
+    return MOST
+
+
+@lean_inlined
+def ends_along(room, core, ints, e, ux, uy, uz):
+    """How far along a vector the ends of an edge are: first the nearer, then the farther."""
+    p = dot(*at3(room, core + 3 * ints[e]), ux, uy, uz)
+    q = dot(*at3(room, core + 3 * ints[e + 1]), ux, uy, uz)
+    return p, q
+
+
+@lean(types.Tuple((N, N, N))(I, N, N, N, N, A, N, F, F, F), inner=True)
+def two_lines(ints, ia, core_a, ib, core_b, room, work, x, y, z):
+    """The two ends, points of b, of what two edges share that are parallel as seen along (x, y, z), from a to b.
+
+    Their number, which is 0 where there are none, and the edges.
+    """
+    i, j = edge_along(ints, ia, core_a, room, x, y, z)[1], edge_along(ints, ib, core_b, room, -x, -y, -z)[1]
+    if i < 0 or j < 0:
+        return 0, i, j
+    e, g = edges_at(ints, ia) + 4 * i, edges_at(ints, ib) + 4 * j
+    px, py, pz = at3(room, core_a + 3 * ints[e])
+    ux, uy, uz = at3(room, core_a + 3 * ints[e + 1])
+    rx, ry, rz = at3(room, core_b + 3 * ints[g])
+    vx, vy, vz = at3(room, core_b + 3 * ints[g + 1])
+    ux, uy, uz, vx, vy, vz = ux - px, uy - py, uz - pz, vx - rx, vy - ry, vz - rz
+    square = dot(ux, uy, uz, ux, uy, uz) * dot(vx, vy, vz, vx, vy, vz)
+    if abs(dot(*cross(ux, uy, uz, vx, vy, vz), x, y, z)) > CROSSED * math.sqrt(square):
+        return 0, i, j
+    # Along the edge of a, across the normal.
+    part = dot(ux, uy, uz, x, y, z)
+    wx, wy, wz = ux - part * x, uy - part * y, uz - part * z
+    a0, a1 = ends_along(room, core_a, ints, e, wx, wy, wz)
+    b0, b1 = ends_along(room, core_b, ints, g, wx, wy, wz)
+    low, high = max(min(a0, a1), min(b0, b1)), min(max(a0, a1), max(b0, b1))
+    if high < low:
+        return 0, i, j
+    for k in range(2):
+        at = low if k == 0 else high
+        s, t = (at - a0) / (a1 - a0), (at - b0) / (b1 - b0)
+        bx, by, bz = rx + t * vx, ry + t * vy, rz + t * vz
+        height = dot(bx - px - s * ux, by - py - s * uy, bz - pz - s * uz, x, y, z)
+        # Which end of which edge it is.
+        end = (0 if at == a0 else 1) if at == a0 or at == a1 else (2 if at == b0 else 3)
+        put_corner(room, work + CORNER * k, bx, by, bz, height, 0.0, 1.0 * end)
+    return 2, i, j
+
+
+@lean(types.Tuple((N, F, F, F, F))(A, I, N, N, A, N, N, F, A, I, A))
+def manifold(floats, ints, a, b, places, at_a, at_b, margin, points, names, room):
+    """The points of two shapes whose gap is at most ``margin`` [m]: their number, the least gap, the normal (b to a).
+
+    As gap_kernels.gap, with ``points`` (MOST POINT,) and ``names`` (MOST NAME,) to be written. No points where the
+    shapes are farther apart: the gap is then a bound from below.
+    """
+    kind, i, j = nearest(floats, ints, a, b, places, at_a, at_b, margin, room)
+    gap = room[GAP]
+    nx, ny, nz = at3(room, NORMAL)
+    if kind == FAR or gap > margin:
+        return 0, gap, nx, ny, nz
+    fa, ia, fb, ib = ints[a + FLOATS], ints[a + INTS], ints[b + FLOATS], ints[b + INTS]
+    ra, rb = floats[fa + RADIUS], floats[fb + RADIUS]
+    ax, ay, az = at3(places, at_a)
+    both_cores = ints[a + KIND] == CORE and ints[b + KIND] == CORE
+    of_b, face, feature, found, count = 1, i, j, TWO_LINES, 0
+    if both_cores:
+        core_a = HEAD
+        core_b = end_of(ints, ia, core_a)
+        work = end_of(ints, ib, core_b)
+        size = floats[fa + REACH] + floats[fb + REACH]
+        tiny = ROUNDING * 2.0 * size
+        count, work, of_b, face, feature = overlay(ints, ia, core_a, ib, core_b, room, work, -nx, -ny, -nz, tiny)
+        found = OF_B if of_b == 1 else OF_A
+        if count == 0:
+            count, face, feature = two_lines(ints, ia, core_a, ib, core_b, room, work, -nx, -ny, -nz)
+            of_b, found = 1, TWO_LINES
+    else:
+        # The half space is b, or a; the core stands at HEAD, and relative to its own body's center.
+        flat_b = ints[b + KIND] == HALF_SPACE
+        core, radius = (ia, ra) if flat_b else (ib, rb)
+        work = end_of(ints, core, HEAD)
+        of_b, found, face, feature = (0 if flat_b else 1), ON_PLANE, 0, 0
+        kx, ky, kz = (nx, ny, nz) if flat_b else (-nx, -ny, -nz)
+        lx, ly, lz = at3(room, HEAD + 3 * (i if flat_b else j))
+        for k in range(ints[core + VERTICES]):
+            p = HEAD + 3 * k
+            rise = dot(kx, ky, kz, room[p] - lx, room[p + 1] - ly, room[p + 2] - lz)
+            put_corner(room, work + CORNER * count, *at3(room, p), gap + radius + rise, 1.0 * k, 0.0)
+            count += 1
+        if not flat_b:
+            for k in range(count):
+                for c in range(3):
+                    room[work + CORNER * k + c] += places[at_b + c] - places[at_a + c]
+        size = floats[(fa if flat_b else fb) + REACH]
+    least = math.inf
+    for k in range(count):
+        least = min(least, room[work + CORNER * k + 3] - ra - rb)
+    if least > gap + 4.0 * ROUNDING * size:
+        # The nearest points are on features that do not face each other.
+        at = ON_B if of_b == 1 else ON_A
+        put_corner(room, work + CORNER * count, *at3(room, at), gap + ra + rb, LONE, LONE)
+        count += 1
+    count = sift(room, work, count, margin + ra + rb, SAME * size)
+    count = thin_out(room, work, count, nx, ny, nz)
+    for k in range(count):
+        p, to = work + CORNER * k, POINT * k
+        x, y, z = at3(room, p)
+        height = room[p + 3]
+        # The corner is a point of the core of a, or of b.
+        da, db = (height - ra, rb) if of_b == 1 else (-ra, rb - height)
+        put3(points, to, ax + (x + da * nx), ay + (y + da * ny), az + (z + da * nz))
+        put3(points, to + 3, ax + (x + db * nx), ay + (y + db * ny), az + (z + db * nz))
+        points[to + 6] = height - ra - rb
+        names[NAME * k] = (found << 60) + ((face + 1) << 30) + (feature % (1 << 30))
+        before, after = int(room[p + 4]), int(room[p + 5])
+        names[NAME * k + 1] = ((before + 8) << 30) + (after + 8)
+    return count, gap, nx, ny, nz
