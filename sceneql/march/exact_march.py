@@ -48,9 +48,6 @@ class ExactMarch(March):
         kinds = (f"{axis.kind} along {name}" for axis, name in zip(axes, NAMES[first:], strict=True))
         self.prepared_text = f"the exact solution of every mode: {', '.join(kinds)}"
 
-    def _first_step(self) -> float:
-        return self.end
-
     def _fields(self, values: Floats) -> Any:
         shape = self._grid.cells.shape[::-1]
         return values.reshape(shape if len(self._axes) == 3 else shape[1:])

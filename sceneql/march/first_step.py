@@ -23,6 +23,8 @@ def first_step(
     ``y``, ``rate`` (n,) at the start; ``alone`` (n,) bool: entries that are measured by their own sizes; ``end`` of the
     run [s]. Such an entry counts where it has a size: a zero, by its change in such a step.
     """
+    if stepper.method.order == 0:  # it has no steps
+        return end
     control = stepper.control
     scale = np.asarray(control.absolute) + control.tolerance * np.abs(y)
     scale = np.where(alone, np.where(y == 0.0, np.inf, control.tolerance * np.abs(y)), scale)
