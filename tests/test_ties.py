@@ -8,6 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import runs
+from sceneql.compiler import check
+from sceneql.language.tree import whole
 from sceneql.pipeline import load
 from sceneql.report.explain import explain, text
 from sceneql.run.run import Run
@@ -326,6 +328,20 @@ def test_four_bars_pass_through_the_places_where_all_links_lie_in_line(tmp_path,
     turned = [2 * np.arctan2(row[1][3], row[1][0]) for row in rows]
     assert max(abs(row[0] - start) for row in rows) < 1e-8 * max(1, abs(start))
     assert np.ptp(np.unwrap(turned)) > np.pi / 2  # they have lain in line
+
+
+def test_a_model_is_looked_through_once_however_many_ties_name_its_bodies(tmp_path, monkeypatch):
+    seen = []
+
+    def counted(node):
+        seen.append(node)
+        return whole(node)
+
+    monkeypatch.setattr(check, "whole", counted)
+    path = tmp_path / "scene.yaml"
+    path.write_text(windows(8, 1))
+    load(path, pruned=False)
+    assert len(seen) == 1
 
 
 def test_a_rod_hangs_from_an_object_that_moves_by_a_formula(tmp_path):

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +101,7 @@ class _Checker:
             found=found,
             given=script.gives,
             broken=script.broken,
-            unsure=self.unsure,
+            unsure=cache(self.unsure),  # which reads all of a part, and a part of many bodies is named by many
             parsed=parsed,
         )
 
