@@ -64,6 +64,19 @@ def test_a_body_that_turns_for_long_has_a_quaternion_of_length_1(tmp_path):
     assert np.linalg.norm(q) == pytest.approx(1, abs=1e-15)
 
 
+@pytest.mark.parametrize("unit", [1, 1e-4, 1e-7])
+def test_the_first_step_of_gauss_radau15_is_as_exact_as_all_others(tmp_path, unit):
+    # By its units alone a small body had a first step whose iteration did not end in the passes that it has.
+    script = FREE.format(spin="0.08 0 8", end=14, solver="SOLVER").replace(
+        "1 2 3 kg*m^2", f"{2.69 * unit:g} {5.13 * unit:g} {7.56 * unit:g} kg*m^2"
+    )
+    (exact,), (found,) = (
+        watch(tmp_path, script.replace("SOLVER", word), [14], "top.rotation")[0]
+        for word in ("verlet: {step: 1 s}", "gauss_radau15")
+    )
+    assert min(np.abs(found - exact).max(), np.abs(found + exact).max()) < 1e-12
+
+
 BLOCK = """
 clock: {end: 1 s}
 objects:

@@ -8,6 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import runs
+from sceneql.compiler import check
+from sceneql.language.tree import whole
 from sceneql.pipeline import load
 from sceneql.report.explain import explain, text
 from sceneql.run.run import Run
@@ -326,6 +328,37 @@ def test_four_bars_pass_through_the_places_where_all_links_lie_in_line(tmp_path,
     turned = [2 * np.arctan2(row[1][3], row[1][0]) for row in rows]
     assert max(abs(row[0] - start) for row in rows) < 1e-8 * max(1, abs(start))
     assert np.ptp(np.unwrap(turned)) > np.pi / 2  # they have lain in line
+
+
+def test_copies_are_tied_by_their_numbers_in_braces(tmp_path):
+    rods = "\n".join(f"        p{k}: {{mass: 1 kg, {ROD}, position: {k + 0.5} 0 0 m}}" for k in range(3))
+    ties = "\n".join(
+        f"  j{k}: {{hinge: {{between: [rods.p{k}, {f'rods.p{k - 1}' if k else 'world'}], at: {k} 0 0 m}}}}"
+        for k in range(3)
+    )
+    head, tail = "clock: {end: 1 s}\nforces: [gravity]\nmodels:\n  rods:\n    rigid:\n      bodies:\n", "\nties:\n"
+    repeated = (
+        f'        p: {{repeat: {{count: 3, as: i}}, mass: 1 kg, {ROD}, position: ["i*1 m + 0.5 m", 0 m, 0 m]}}{tail}'
+        "  foot: {hinge: {between: [rods.p.0, world], at: 0 0 0 m}}\n"
+        '  j: {repeat: {count: 2}, hinge: {between: ["rods.p.{i + 1}", "rods.p.{i}"], at: ["(i + 1)*1 m", 0 m, 0 m]}}'
+    )
+    ((by_hand,),) = watch(tmp_path, f"{head}{rods}{tail}{ties}\n", [1], "rods.p2.position")
+    ((by_number,),) = watch(tmp_path, f"{head}{repeated}\n", [1], "rods.p.2.position")
+    np.testing.assert_allclose(by_number, by_hand, atol=1e-12)
+
+
+def test_a_model_is_looked_through_once_however_many_ties_name_its_bodies(tmp_path, monkeypatch):
+    seen = []
+
+    def counted(node):
+        seen.append(node)
+        return whole(node)
+
+    monkeypatch.setattr(check, "whole", counted)
+    path = tmp_path / "scene.yaml"
+    path.write_text(windows(8, 1))
+    load(path, pruned=False)
+    assert len(seen) == 1
 
 
 def test_a_rod_hangs_from_an_object_that_moves_by_a_formula(tmp_path):

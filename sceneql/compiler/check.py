@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +101,7 @@ class _Checker:
             found=found,
             given=script.gives,
             broken=script.broken,
-            unsure=self.unsure,
+            unsure=cache(self.unsure),  # which reads all of a part, and a part of many bodies is named by many
             parsed=parsed,
         )
 
@@ -309,8 +310,8 @@ class _Checker:
             name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
             if mark.bodies and name == WORLD and name not in self.entries:
                 return Ref("", node.span)
-            model, _, body = name.rpartition(".")
-            if mark.bodies and name not in self.entries and model in self.entries and self.family(model) == mark.family:
+            model, body = self.names.part_of(name)
+            if mark.bodies and body and self.family(model) == mark.family:
                 return self._body(node, model, body)
             if mark.bodies and name in self.entries and self.family(name) == mark.family:
                 return self._body(node, name, "")
@@ -340,7 +341,7 @@ class _Checker:
             return None  # it is reported there
         if (f"{body}.position" if body else "position") in outputs:
             return Ref(model, node.span, body)
-        bodies = list(dict.fromkeys(one.partition(".")[0] for one in outputs if one.endswith(".position")))
+        bodies = [one.removesuffix(".position") for one in outputs if one.endswith(".position")]
         message = f"'{model}' has no body '{body}'" if body else f"'{model}' is no single body"
         near = suggestion(body, bodies) if body else None
         one = (

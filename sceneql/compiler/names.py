@@ -158,6 +158,13 @@ class Names:
             self._plain[id(expr)] = expr, tree
         return self._plain[id(expr)][1]
 
+    def part_of(self, name: str) -> tuple[str, str]:
+        """The longest part whose name this begins with, and the rest, ``deck`` and ``plank.0``; all, where none is."""
+        part = name
+        while part and part not in self.parts:
+            part = part.rpartition(".")[0]
+        return (part, name[len(part) + 1 :]) if part else (name, "")
+
     def _is_reported(self, parts: tuple[str, ...]) -> bool:
         """Whether the definition of the name, or of the part that would have it, was reported as unreadable."""
         wanted = ".".join(parts)

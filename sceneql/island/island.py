@@ -370,7 +370,8 @@ class IslandAssembly:
 
     def numbers(self) -> Floats:
         """The floats stored so far."""
-        return np.concatenate(self._numbers)
+        self._numbers[:] = [np.concatenate(self._numbers)]  # many words ask, each after it has stored a few
+        return self._numbers[0].copy()
 
     def _program(self, inputs: Inputs) -> list[int]:
         """The program that evaluates the values that vary."""

@@ -233,9 +233,11 @@ class Rigid(Body, Model):
 
     def _said(self, output: str) -> tuple[str, str, str]:
         """Body, point and output of a name as ``crate.hook.position``; empty where there is none."""
-        *names, what = output.split(".")
-        body = names.pop(0) if self.bodies is not None else ""
-        return body, names[0] if names else "", what
+        rest, _, what = output.rpartition(".")
+        body = rest if self.bodies is not None else ""
+        while body and body not in self._each:  # a copy's name has a dot, too: ``stone.0.hook.position``
+            body = body.rpartition(".")[0]
+        return body, rest[len(body) :].removeprefix("."), what
 
 
 def _joined(name: str, output: str) -> str:

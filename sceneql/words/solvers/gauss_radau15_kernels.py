@@ -38,6 +38,7 @@ TO_NEWTON = TO_POWERS + DEGREE * DEGREE
 BINOMIALS = TO_NEWTON + DEGREE * DEGREE
 
 MOST_SWEEPS = 12
+"""A step whose iteration takes more is taken again, shorter."""
 CONVERGED = 1e-14
 """Change of the last coefficient, relative to the rate, expected of the next pass by the last two: an eighth of it
 enters the velocity's change in the step, below its rounding error."""
@@ -205,6 +206,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     slope, seen = vectors[SLOPE * n : (SLOPE + 1) * n], vectors[SEEN * n : (SEEN + 1) * n]
     size = 0.0
     previous = 2.0
+    settled = False
     for sweep in range(MOST_SWEEPS):
         change = 0.0
         for i in range(DEGREE):
@@ -217,6 +219,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             size = max(size, max(abs(slope[k]), abs(rate0[k])))
         change = change / size if size > 0.0 else 0.0
         if sweep > 0 and (change * change < CONVERGED * previous or (sweep > 1 and change >= previous)):
+            settled = True
             break
         previous = change
     inside(DEGREE, h, y0, rate0, vectors, settings, numbers, y1, m, p)
@@ -225,6 +228,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         vectors[END * n + k] = y1[k]
     if numbers[CONTROLLED] == 0:
         return 0.0
+    if not settled and math.isfinite(previous):  # as a first step may, which has no prediction
+        work[NEXT] = SHRINKAGE * h
+        return 2.0
     square = shortest_square(n, m, p, groups, rate0, vectors, numbers)
     longest = h / SHRINKAGE
     work[NEXT] = min(longest, h * math.sqrt(square) * (5040.0 * settings[TOLERANCE]) ** (1.0 / 7.0))
