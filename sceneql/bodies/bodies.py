@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from sceneql.bodies.rigid.turning import momenta, rotation_energy
 from sceneql.kinds import Gives, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
@@ -165,8 +164,7 @@ def read(output: str, bodies: Bodies, state: ModelState, own_potential: float = 
         case "radii":
             return radii(bodies, state).copy()
         case "kinetic":
-            turning = 0.0 if bodies.turning is None else rotation_energy(bodies.turning, bodies.count, state)
-            return 0.5 * float(np.sum(m * np.sum(v * v, axis=1))) + turning
+            return 0.5 * float(np.sum(m * np.sum(v * v, axis=1))) + _of_turning("rotation_energy", bodies, state)
         case "potential":
             return own_potential + state.potential
         case "dissipated":
@@ -177,13 +175,21 @@ def read(output: str, bodies: Bodies, state: ModelState, own_potential: float = 
         case "momentum":
             return np.sum(m[:, None] * v, axis=0)
         case "angular_momentum":
-            own = 0.0 if bodies.turning is None else momenta(bodies.turning, bodies.count, state).sum(axis=0)
-            return np.sum(m[:, None] * np.cross(x, v), axis=0) + own
+            return np.sum(m[:, None] * np.cross(x, v), axis=0) + _of_turning("own_momentum", bodies, state)
         case "center":
             return np.average(x, axis=0, weights=m) if np.sum(m) > 0 else np.zeros(3)
         case "count":
             return float(bodies.count)
     raise KeyError(output)
+
+
+def _of_turning(what: str, bodies: Bodies, state: ModelState) -> Any:
+    """What the rotation of rigid bodies adds to a sum; 0 of masses."""
+    if bodies.turning is None:
+        return 0.0
+    from sceneql.bodies.rigid import turning
+
+    return getattr(turning, what)(bodies.turning, bodies.count, state)
 
 
 def numbered(names: Iterable[str]) -> dict[str, int]:

@@ -308,7 +308,7 @@ class _Checker:
         """The part that a field names; an entry written in place becomes a part of its own first."""
         if isinstance(node, Scalar):
             name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
-            if mark.bodies and name == WORLD and name not in self.entries:
+            if mark.bodies and name == WORLD:
                 return Ref("", node.span)
             model, body = self.names.part_of(name)
             if mark.bodies and body and self.family(model) == mark.family:

@@ -48,6 +48,14 @@ def must_be_points(bodies: Bodies, assembly: Assembly) -> None:
         raise ScriptError([Diagnostic("no-collider", message, assembly.line(), help)])
 
 
+def must_be_free(model: str, assembly: Assembly) -> None:
+    """Raise ScriptError for masses that ties hold: ties and contacts are not solved together."""
+    if assembly.tied(model):
+        message = f"ties hold masses of '{model}', and such masses do not collide yet"
+        help = "name under `between` what may touch, without it"
+        raise ScriptError([Diagnostic("no-collider", message, assembly.line(), help)])
+
+
 def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assembly: Assembly) -> None:
     """Raise ScriptError where a moving body's center starts inside an object; ``ints``: the contact's integers."""
     import numpy as np

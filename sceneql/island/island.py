@@ -273,6 +273,11 @@ class IslandAssembly:
         """Hold two bodies to conditions (system.Assembly)."""
         self.ties.append(tied)
 
+    def tied(self, model: str) -> bool:
+        """Whether ties hold a body of a model (system.Assembly)."""
+        movers = (mover for tie in self.ties for mover in tie.movers)
+        return any(isinstance(mover, Place) and mover.bodies.model == model for mover in movers)
+
     def body_count(self) -> int:
         """Number of bodies of the island so far; in a block that of the whole."""
         return max(self._bodies, self.whole)

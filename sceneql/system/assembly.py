@@ -153,5 +153,8 @@ class Assembly(Protocol):
     def tie(self, tied: Tied) -> None:
         """Hold two bodies to conditions; their forces are found together with those of all other ties."""
 
+    def tied(self, model: str) -> bool:
+        """Whether ties hold a body or mass of a model."""
+
     def body_count(self) -> int:
         """Number of bodies of the island (contacts choose their mode by it)."""

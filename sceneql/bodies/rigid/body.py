@@ -85,6 +85,16 @@ class Body(Record):
             moving = "velocity" if any(self.velocity) else "spin"
             yield Problem(f"a fixed body has no {moving}", (moving,))
 
+        for name in ("rotation", "axes"):
+            turn = getattr(self, name)
+            if turn is not None and turn.constant and not any(turn.number()):
+                yield Problem("a rotation is a quaternion that is not zero", (name,))
+        for name in self.points:
+            if not name.isidentifier():
+                yield Problem(
+                    f"'{name}' is no name that a link could say: take letters, digits and _", ("points", name)
+                )
+
     def _alone(self) -> bool:
         """Whether the fields describe a body, and not defaults for others."""
         return True

@@ -37,9 +37,11 @@ class Driven(Joint):
         none = assembly.floats([0.0])
         values = [none if value is None else assembly.value(value) for value in (force, stiffness, damping)]
         held = next(side.mover for side in (first, second) if isinstance(side.mover, Place))
-        law = (values[0], values[1], assembly.floats([rest]), values[2], held.bodies.work_at)
+        law = (values[0], values[1], assembly.floats([rest]), values[2], held.bodies.work_at, assembly.floats([0.0]))
         ints = (*integers(first.mover), *integers(second.mover), *row, scratch, *law)
         assembly.remember(*ints)
+        if kind == "turn":
+            assembly.after_step("sceneql.bodies.rigid.drive_kernels:follow", ints, samples=True)
         if any(value is not None for value in (force, stiffness, damping)):
             assembly.term("force", "sceneql.bodies.rigid.drive_kernels:drive", ints)
         return ints
@@ -54,17 +56,17 @@ class Driven(Joint):
     def _motion(self, state: ModelState) -> tuple[float, float]:
         import numpy as np
 
-        from sceneql.bodies.rigid.drive_kernels import WORK_AT, motion
+        from sceneql.bodies.rigid.drive_kernels import LAST_AT, motion
 
-        ints = np.array(state.ints[-(WORK_AT + 1) :], dtype=np.int64)
+        ints = np.array(state.ints[-(LAST_AT + 1) :], dtype=np.int64)
         far, fast = motion(state.y, np.array(state.floats), ints)
         return float(far), float(fast)
 
     def potential(self, bodies: Bodies, state: ModelState) -> float:
         """Half stiffness (s - rest)^2 [J], counted with one of the bodies."""
-        from sceneql.bodies.rigid.drive_kernels import REST_AT, STIFFNESS_AT, WORK_AT
+        from sceneql.bodies.rigid.drive_kernels import LAST_AT, REST_AT, STIFFNESS_AT, WORK_AT
 
-        own = state.ints[-(WORK_AT + 1) :]
+        own = state.ints[-(LAST_AT + 1) :]
         if bodies.work_at != own[WORK_AT] or self.read("broken", state):
             return 0.0
         far, _ = self._motion(state)

@@ -28,13 +28,14 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     write_row,
 )
 from sceneql.compiled.kernels import kernel, lean
-from sceneql.system.signatures_kernels import TERM, A, F, I
+from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I
 
 ROW_AT, SCRATCH_AT = 2 * MOVER, 2 * MOVER + ROW_INTS
-FORCE_AT, STIFFNESS_AT, REST_AT, DAMPING_AT, WORK_AT = range(SCRATCH_AT + 1, SCRATCH_AT + 6)
+FORCE_AT, STIFFNESS_AT, REST_AT, DAMPING_AT, WORK_AT, LAST_AT = range(SCRATCH_AT + 1, SCRATCH_AT + 7)
 """Behind two movers and a row (tie_rows_kernels): offsets of what `see` writes of both; of the force, of stiffness,
-rest and damping; of the work in y. The row's kind is POINT for a shift along n_b; else it is a turn about n_b, and its
-numbers are directions across that axis: one of a, one of b, and n_b."""
+rest and damping; of the work in y; of how far it was at the end of the last step, by which turns are counted. The row's
+kind is POINT for a shift along n_b; else it is a turn about n_b, and its numbers are directions across that axis: one of
+a, one of b, and n_b."""
 
 
 @lean(types.UniTuple(F, 2)(A, A, I))
@@ -57,7 +58,9 @@ def motion(y, floats, ints):
     sine = nx * (qy * pz - qz * py) + ny * (qz * px - qx * pz) + nz * (qx * py - qy * px)
     speed = nx * (floats[a + AT_W] - floats[b + AT_W]) + ny * (floats[a + AT_W + 1] - floats[b + AT_W + 1])
     speed += nz * (floats[a + AT_W + 2] - floats[b + AT_W + 2])
-    return math.atan2(sine, qx * px + qy * py + qz * pz), speed
+    angle = math.atan2(sine, qx * px + qy * py + qz * pz)
+    turns = math.floor((floats[ints[LAST_AT]] - angle) / (2.0 * math.pi) + 0.5)
+    return angle + 2.0 * math.pi * turns, speed
 
 
 @kernel(TERM, inner=True)
@@ -78,3 +81,11 @@ def drive(t, y, rate, floats, ints):
                 for c in range(3):
                     rate[ints[at + MOMENTUM] + c] += total * floats[to + 6 * side + 3 + c]
     rate[ints[WORK_AT]] += (lost - given) * fast
+
+
+@kernel(AFTER_STEP, inner=True)
+def follow(t0, t1, y0, rate0, y1, floats, ints):
+    """Keeps how far it is at the end of a step; nothing changes."""
+    if t1 > t0:
+        floats[ints[LAST_AT]], _ = motion(y1, floats, ints)
+    return False

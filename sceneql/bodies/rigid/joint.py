@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from sceneql.kinds import Gives, Object, Ref, Tie, Value, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.quantities.expression import Link, Type
+from sceneql.quantities.expression import Expr, Link, Type
 from sceneql.system import Led, Place, Tied, TieRow
 
 if TYPE_CHECKING:
@@ -79,7 +79,8 @@ class Joint(Tie):
         rows = self.rows(first, second, assembly)
         scratch, holds = assembly.floats(np.zeros(ROW * len(rows))), assembly.floats([1.0])
         assembly.tie(Tied((first.mover, second.mover), tuple(rows), scratch, holds))
-        assembly.remember(scratch, len(rows), holds, *integers(first.mover), *integers(second.mover))
+        arm = assembly.floats(rows[0].vectors[0] if rows[0].kind in ("point", "distance") else (0.0, 0.0, 0.0))
+        assembly.remember(scratch, len(rows), holds, arm, *integers(first.mover), *integers(second.mover))
         motion = self.assemble_motion(first, second, holds, assembly)
         if self.breaks is not None:
             ints = (scratch, len(rows), holds, assembly.floats([self.breaks]), *motion)
@@ -95,7 +96,7 @@ class Joint(Tie):
 
         from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, ROW
 
-        at, count, holds, *_ = state.ints
+        at, count, holds = state.ints[:3]
         if output == "broken":
             return float(state.floats[holds] == 0.0)
         rows = state.floats[at : at + ROW * count].reshape(count, ROW)
@@ -103,13 +104,18 @@ class Joint(Tie):
         force = parts[:, :3].sum(axis=0)
         if output == "force":
             return force
-        return parts[:, 3:].sum(axis=0) - np.cross(self.arm(state), force)
+        return parts[:, 3:].sum(axis=0) - np.cross(self._arm(state), force)
 
-    def arm(self, state: ModelState) -> Floats:
-        """From the center of mass of the first body to where the tie is (3,) [m]."""
-        import numpy as np
+    def _arm(self, state: ModelState) -> Floats:
+        """From the position of the first body to where the tie is (3,) [m]."""
+        from sceneql.bodies.rigid.tie_rows_kernels import ROTATION, TURN
+        from sceneql.shapes.placement import rotation_matrix
 
-        return np.zeros(3)
+        arm_at, mover = state.ints[3], state.ints[4:]
+        arm = state.floats[arm_at : arm_at + 3]
+        if mover[ROTATION] >= 0:
+            return rotation_matrix(state.y[mover[ROTATION] :][:4]) @ arm
+        return rotation_matrix(state.floats[mover[TURN] :][:4]) @ arm if mover[TURN] >= 0 else arm
 
 
 def sides_of(refs: Sequence[Ref], assembly: Assembly) -> tuple[Side, Side]:
@@ -143,7 +149,7 @@ def _led(ref: Ref, kind: Object, assembly: Assembly) -> Side:
     """An object that moves by itself; one that does not move is part of the world."""
     import numpy as np
 
-    from sceneql.bodies.time_shift import rate_of_change
+    from sceneql.bodies.time_shift import exact_rate, rate_of_change
     from sceneql.quantities.turned import spin
     from sceneql.shapes.placement import rotation_matrix
 
@@ -153,10 +159,14 @@ def _led(ref: Ref, kind: Object, assembly: Assembly) -> Side:
         raise ScriptError([Diagnostic("no-position", message, ref.span)])
     if position.constant and rotation.constant:
         return Side(None, np.zeros(3), np.eye(3))
+
+    def rate(expr: Expr) -> Expr:
+        return exact_rate(expr, assembly.formula) or rate_of_change(expr, assembly.formula)
+
     try:
-        velocity, turning = (rate_of_change(value.expr, assembly.formula) for value in (position, rotation))
+        velocity, turning = (rate(position.expr), rate(rotation.expr))
         spinning = spin(rotation.expr, turning)
-        exprs = (velocity, spinning, *(rate_of_change(one, assembly.formula) for one in (velocity, spinning)))
+        exprs = (velocity, spinning, rate(velocity), rate(spinning))
     except ValueError as error:
         message = f"a tie needs to know how '{ref.name}' moves: {error}"
         raise ScriptError([Diagnostic("no-velocity", message, ref.span)]) from None
@@ -204,8 +214,9 @@ def point_of(
     import numpy as np
 
     points = [side for side in sides if not side.turns]
-    if value is None and (points or center) and sides[0].mover is not None:
-        found: Floats = (points or list(sides))[0].position
+    bodies = points or [side for side in sides if center and side.mover is not None]
+    if value is None and bodies:
+        found: Floats = bodies[0].position
     elif value is None:
         message = "where the tie is at the start is not told"
         raise ScriptError(
@@ -216,9 +227,7 @@ def point_of(
     for ref, side in zip(refs, sides, strict=True):
         away = float(np.linalg.norm(found - side.position))
         if not side.turns and away > APART * (1.0 + float(np.abs(found).max())):
-            message = (
-                f"'{ref.name}{'.' if ref.within else ''}{ref.within}' is a mass, {away:.3g} m away from this place"
-            )
+            message = f"'{_named(ref)}' is a mass, {away:.3g} m away from this place"
             help = "leave the place out: a tie holds a mass where that is"
             raise ScriptError([Diagnostic("ties-apart", message, None if value is None else value.span, help)])
     return found

@@ -3,9 +3,11 @@
 
 With a' the accelerations by all other forces, M the masses and J the rows of ties, the accelerations are a' + T f, T =
 J^T / M, with J (a' + T f) + bias = 0. The matrix J T is positive semidefinite, sparse by the bodies that rows share. It
-is factored with EASE of its diagonal added, and the solution is corrected by what it leaves: so ties that say the same
-twice, or do so at one instant, share the force of least square (a proximal iteration: Rockafellar 1976).
+is factored with a little of its diagonal added, and the solution is corrected by what it leaves: so ties that say the
+same twice, or do so at one instant, share the force of least square (a proximal iteration: Rockafellar 1976).
 """
+
+import math
 
 from numba import types
 
@@ -46,18 +48,21 @@ from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
 MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, STARTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(10)
-MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, HEAD = range(10, 20)
+MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, EASE_AT, HEAD = range(10, 21)
 """Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where each
 begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes of
 what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels). A mover that ties
 share: their number n; of each its first row, how many it has, their floats at its side; then n x n places in a row of
 the first where the rows of the second begin, counted from that row's first value."""
 
-EASE = 1e-9
-"""Part of the diagonal that is added to it."""
+EASE, LITTLE = 1e-9, 1e-13
+"""Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: the less where no row follows from others at the
+start, so that light bodies may hold heavy ones."""
 LEFT = 1e-13
 """What may be left of an equation, against the numbers that it is a sum of."""
-MOST_CORRECTIONS = 6
+FEW, MOST_CORRECTIONS = 6, 50
+GAIN = 0.98
+"""After FEW corrections one that leaves more than this part is the last: the rest is of ties that cannot hold."""
 CLOSED = 1e-14
 """Gap of a row, against the numbers that it is the difference of, below which it is rounding."""
 MOST_CLOSINGS = 6
@@ -112,7 +117,7 @@ def factor(floats, ints):
     for k in range(ints[ROWS]):
         place = ints[ints[DIAGONAL_AT] + k]
         # A row that no mass can meet, as of two parts that are led, has no force.
-        values[place] = values[place] * (1.0 + EASE) if values[place] > 0.0 else 1.0
+        values[place] = values[place] * (1.0 + floats[ints[EASE_AT]]) if values[place] > 0.0 else 1.0
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
     return factor_symmetric(ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]], values, factors, work)
@@ -135,7 +140,8 @@ def balance(floats, ints, target):
         floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
     if not factor(floats, ints):
         return
-    for _ in range(MOST_CORRECTIONS):
+    last = math.inf
+    for corrections in range(MOST_CORRECTIONS):
         worst = 0.0
         for k in range(ints[ROWS]):
             row = ints[ROWS_AT] + ROW_INTS * k
@@ -150,8 +156,9 @@ def balance(floats, ints, target):
             right[k] = -left
             if abs(left) > worst * size:
                 worst = abs(left) / size
-        if worst <= LEFT:
+        if worst <= LEFT or (corrections >= FEW and worst > GAIN * last):
             break
+        last = worst
         solve(floats, ints)
         for k in range(ints[ROWS]):
             row = ints[ROWS_AT] + ROW_INTS * k
@@ -240,11 +247,6 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         balance(floats, ints, AT_C)
         shift(y1, floats, ints)
         changed = True
-    moving = 0.0
-    for m in range(ints[MOVERS]):
-        mover = ints[MOVED_AT] + MOVED * m
-        for c in range(3):
-            moving = max(moving, abs(floats[mover + AT_V + c]))
     worst = 0.0
     for k in range(ints[ROWS]):
         row = ints[ROWS_AT] + ROW_INTS * k

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 KERNELS = "sceneql.bodies.rigid.tie_kernels"
 KINDS = ("point", "angle", "distance", "gear")
 
+MOST = 600
+"""Conditions above which it is not looked for those that others imply."""
 LEAST = 7
 """Numbers of a row, of which the last may be left out where it is 0."""
 
@@ -90,9 +92,14 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     head = [len(movers), len(rows), begins[0], begins[1], len(shared), *begins[2:6], len(lists[5])]
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
     kept = assembly.floats(np.zeros(KEPT * len(rows) if free else 0))
-    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept]
+    ease = assembly.floats([kernels.EASE])
+    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept, ease]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     _add_pivots(assembly, ties)
+    numbers = assembly.numbers()
+    kernels.survey(0.0, assembly.start(), numbers, np.array(ints))
+    if redundant(ties, numbers)[1] == 0:
+        assembly.write(ease, [kernels.LITTLE])
     assembly.term("tie", f"{KERNELS}:hold", ints)
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
     if free:  # else where parts are led to is known at the end of a step alone
@@ -133,26 +140,30 @@ def _add_pivots(assembly: Assembly, ties: Sequence[Tied]) -> None:
         assembly.free_motion("sceneql.bodies.rigid.free_motion_kernels:pivot", ints, offsets[4], 4)
 
 
-def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int]:
-    """Conditions of ties, and how many of them the others imply, by what the last evaluation of the rate wrote."""
+def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int | None]:
+    """Conditions of ties, and how many of them the others imply, by their last evaluation; None where they are many."""
     import numpy as np
 
-    from sceneql.bodies.rigid.tie_rows_kernels import AT_J, AT_T, ROW
+    from sceneql.bodies.rigid.tie_rows_kernels import AT_J, ROW
 
-    of_mover: dict[tuple[int, ...], list[tuple[int, int, int]]] = {}
-    count = 0
+    count = sum(len(tie.rows) for tie in ties)
+    if count > MOST:
+        return count, None
+    columns: dict[tuple[int, ...], int] = {}
+    whole = np.zeros((count, 12 * len(ties)))
+    row = 0
     for tie in ties:
         for k in range(len(tie.rows)):
             for side, mover in enumerate(tie.movers):
-                of_mover.setdefault(integers(mover), []).append((count + k, tie.scratch_at + ROW * k, 6 * side))
-        count += len(tie.rows)
-    whole = np.zeros((count, count))
-    for some in of_mover.values():
-        rows = [row for row, _, _ in some]
-        j, t = (np.array([floats[to + at + side :][:6] for _, to, side in some]) for at in (AT_J, AT_T))
-        whole[np.ix_(rows, rows)] += j @ t.T
-    sizes = np.sqrt(np.maximum(np.diag(whole), 1e-300))
-    return count, count - int(np.linalg.matrix_rank(whole / np.outer(sizes, sizes), tol=1e-9, hermitian=True))
+                if isinstance(mover, Place) and floats[mover.ints[3]] > 0.0:
+                    at = 6 * columns.setdefault(integers(mover), len(columns))
+                    whole[row, at : at + 6] += floats[tie.scratch_at + ROW * k + AT_J + 6 * side :][:6]
+            row += 1
+    # Lengths against angles: by the longest arm. Masses do not matter.
+    turning = np.arange(whole.shape[1]) % 6 >= 3
+    whole[:, turning] /= max(1e-300, np.abs(whole[:, turning]).max(initial=0.0))
+    sizes = np.linalg.norm(whole, axis=1)
+    return count, count - int(np.linalg.matrix_rank(whole / np.where(sizes > 0, sizes, 1.0)[:, None], tol=1e-9))
 
 
 def integers(mover: Mover) -> tuple[int, ...]:

@@ -122,6 +122,12 @@ def momenta(turning: Turning, count: int, state: ModelState) -> Floats:
     return state.y[turning.momentum_at : turning.momentum_at + 3 * count].reshape(-1, 3)
 
 
+def own_momentum(turning: Turning, count: int, state: ModelState) -> Floats:
+    """(3,) the sum of the angular momenta about the centers of mass [kg m^2/s]."""
+    found: Floats = momenta(turning, count, state).sum(axis=0)
+    return found
+
+
 def body_spins(turning: Turning, count: int, state: ModelState) -> Floats:
     """(n, 3) angular velocities in the bodies' axes [rad/s]."""
     import numpy as np

@@ -36,9 +36,18 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             text = f"{tasks[force].word} acts on masses, and there are none in {' and '.join(targets)}"
             found.error("no-mass", text, tasks[force].span)
     driver = {name: t.name for t in models if isinstance(t.kind, Model) for name in t.kind.drives()}
+    inside = {ref.name: t.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
+    for task in models:
+        for name in task.kind.drives() if isinstance(task.kind, Model) and task.kind.turns else ():
+            if name in inside:
+                text = f"'{name}' is part of '{inside[name]}', in whose coordinates it stands: it is no body by itself"
+                found.error("no-body", text, task.span, help=f"let '{inside[name]}' be the body")
     for task in tasks.values():
         for ref in task.kind.between if isinstance(task.kind, Tie) else ():
-            if ref.name in driver:
+            if ref.name in inside:
+                text = f"'{ref.name}' is part of '{inside[ref.name]}', in whose coordinates it stands"
+                found.error("no-body", text, ref.span, help=f"name that: `{inside[ref.name]}`")
+            elif ref.name in driver:
                 text = f"'{ref.name}' is moved by '{driver[ref.name]}'"
                 found.error("no-body", text, ref.span, help=f"name that: `{driver[ref.name]}`")
     contacts = {t.name: _touching(t, tasks, names, found) for t in tasks.values() if isinstance(t.kind, Contact)}

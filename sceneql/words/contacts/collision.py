@@ -71,10 +71,11 @@ class Collision(Contact):
 
         from sceneql.compiled.compile_beside import compile_beside
         from sceneql.compiled.numba import lazy_kernels
-        from sceneql.contacts.colliders import OFTEN, must_be_outside, must_be_points, surfaces
+        from sceneql.contacts.colliders import OFTEN, must_be_free, must_be_outside, must_be_points, surfaces
         from sceneql.contacts.impact_kernels import MOST_CUTS
 
         must_be_points(bodies, assembly)
+        must_be_free(bodies.model, assembly)
         if not others:
             return
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)

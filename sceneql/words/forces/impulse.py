@@ -19,7 +19,7 @@ class Impulse(Interaction):
     """A blow at an instant: m dv = J, and the angular momentum of a rigid body changes by r x J (Newton 1687).
 
     It acts at the end of the solver's step that reaches its time; steps that a tolerance chooses end there. The energy
-    that it brings is counted, with negative sign, among the dissipated.
+    that it brings is counted, with negative sign, among the dissipated, as if no tie held what it strikes.
     """
 
     on: Position = field("What it strikes: a mass, `net.bob`, or a point of a rigid body, `crate.hook`.")

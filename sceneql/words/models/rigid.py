@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import PrivateAttr
@@ -11,6 +12,7 @@ from sceneql.bodies import bodies as masses
 from sceneql.bodies.rigid.body import INERTIA, Body, Made
 from sceneql.kinds import Gives, Model, Problem, Ref, field, quantity_type
 from sceneql.kinds.stable_step import StaticMass
+from sceneql.kinds.word import read_default
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Call, Expr, Link, Number, Type, Vector
 from sceneql.quantities.turned import rotated
@@ -43,6 +45,14 @@ POINT: Mapping[str, Gives] = {
 """Outputs of a point of a body."""
 
 
+class Member(Body):
+    """One of several bodies: what it does not say the model does, so that they are looked at together."""
+
+    def problems(self) -> Iterator[Problem]:
+        """None of its own."""
+        return iter(())
+
+
 class Rigid(Body, Model):
     """Rigid bodies: m dv/dt = F and dL/dt = torque (Euler 1776), L = R I R^T w being the angular momentum in the world.
 
@@ -53,9 +63,10 @@ class Rigid(Body, Model):
     `semi_implicit_euler` turn bodies by their exact free rotation between the forces' kicks.
     """
 
+    turns: ClassVar[bool] = True
     gives: ClassVar[Mapping[str, Gives]] = masses.BODY_OUTPUTS
 
-    bodies: dict[str, Body] | None = field("Several bodies by name.", None)
+    bodies: dict[str, Member] | None = field("Several bodies by name.", None)
 
     _made: dict[str, Made] = PrivateAttr(default_factory=dict)
 
@@ -68,14 +79,29 @@ class Rigid(Body, Model):
             )
         if self.bodies is not None and not self.bodies:
             yield Problem("there are no bodies in this list", ("bodies",))
+        for name, body in self._each.items() if self.bodies is not None else ():
+            for problem in Body.problems(body):
+                yield replace(problem, path=("bodies", name, *problem.path))
 
     def _alone(self) -> bool:
         return self.bodies is None
 
     @property
     def _each(self) -> Mapping[str, Body]:
-        """The bodies by name; one alone has an empty name."""
-        return {"": self} if self.bodies is None else self.bodies
+        """The bodies by name, with the model's fields where they say none; one alone has an empty name."""
+        if self.bodies is None:
+            return {"": self}
+        defaults = {name: read_default(info) for name, info in Body.model_fields.items()}
+        said = {name: value for name, default in defaults.items() if (value := getattr(self, name)) != default}
+
+        def whole(body: Body) -> Body:
+            density = body.mass is None and body.density is None
+            more = {name: value for name, value in said.items() if getattr(body, name) == defaults[name]}
+            if not density:  # one of the two is said
+                more = {name: value for name, value in more.items() if name not in ("mass", "density")}
+            return body.model_copy(update=more)
+
+        return {name: whole(body) for name, body in self.bodies.items()}
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:

@@ -19,7 +19,8 @@ class Verlet(Solver):
     the positions alone: the error of the energy stays bounded for ever, and an undamped oscillation is stable up to
     h = 2/omega. Forces that depend on the velocity (drag, damping, magnetism) see v0 + h a: the order stays 2, but
     the method is no longer symplectic or reversible. States without a velocity advance by Heun's method with the slope
-    handed on. Rigid bodies drift by their exact free rotation; ties are closed behind each step, with order 2.
+    handed on. Rigid bodies drift by their exact free rotation; on ties it is RATTLE (Andersen 1983), but for
+    islands with parts that move by themselves, where ties are closed behind each step.
     Source: Verlet (1967), Phys. Rev. 159, 98-103; Swope, Andersen, Berens & Wilson (1982), J. Chem. Phys. 76, 637-649,
     eq. 5; Hairer, Lubich & Wanner, Geometric Numerical Integration (2006), I.1.4.
     """

@@ -20,8 +20,8 @@ TORQUE = dim.FORCE * dim.LENGTH
 class Hinge(Driven):
     """Two bodies share a point and an axis, about which one turns against the other.
 
-    The angle is that of the first body against the second, 0 at the start and between -180 and 180 degrees; about the
-    axis it may have a spring, a damping and a torque in time: torque - stiffness (angle - rest) - damping speed.
+    The angle is that of the first body against the second, 0 at the start, over full turns too; about the axis it may
+    have a spring, a damping and a torque in time: torque - stiffness (angle - rest) - damping speed.
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {
