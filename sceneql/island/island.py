@@ -273,6 +273,10 @@ class IslandAssembly:
         """Hold two bodies to conditions (system.Assembly)."""
         self.ties.append(tied)
 
+    def tied(self) -> bool:
+        """Whether ties hold any of its bodies (system.Assembly)."""
+        return bool(self.ties)
+
     def body_count(self) -> int:
         """Number of bodies of the island so far; in a block that of the whole."""
         return max(self._bodies, self.whole)

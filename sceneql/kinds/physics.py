@@ -33,6 +33,8 @@ class Model(Kind):
     """Whether it is made of fields on a grid."""
     is_one_field: ClassVar[bool] = False
     """Whether it is a single one (system.Grid), for solvers that are for those alone."""
+    turns: ClassVar[bool] = False
+    """Whether its bodies are rigid: those of a contact are solved together."""
     has_bodies: ClassVar[bool] = True
     """Whether forces that name no model act on it."""
 
@@ -251,6 +253,12 @@ class Contact(Kind):
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
         """Add its terms for all models at once, where it is `mutual`."""
+        raise NotImplementedError
+
+    def assemble_rigid(
+        self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add its terms for all models of rigid bodies at once."""
         raise NotImplementedError
 
     def read(self, output: str, state: ModelState) -> Any:

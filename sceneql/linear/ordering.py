@@ -37,6 +37,7 @@ def grouped(pattern: Any) -> Groups:
     size = (len(members), len(members))
     graph = csr_array((np.ones(some.nnz), (some.row, group_of[some.col])), shape=size)
     graph.sum_duplicates()
+    graph.data[:] = 1.0
     return Groups(members, graph)
 
 

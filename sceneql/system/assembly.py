@@ -153,5 +153,8 @@ class Assembly(Protocol):
     def tie(self, tied: Tied) -> None:
         """Hold two bodies to conditions; their forces are found together with those of all other ties."""
 
+    def tied(self) -> bool:
+        """Whether ties hold any of its bodies."""
+
     def body_count(self) -> int:
         """Number of bodies of the island (contacts choose their mode by it)."""
