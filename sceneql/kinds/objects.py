@@ -90,6 +90,13 @@ class Object(Kind):
         """
         return None
 
+    def convex(self, moment: Moment, center: Floats) -> Any:
+        """Its shape for contacts of rigid bodies (contacts.distance.convex), in its own axes from ``center`` (3,) [m].
+
+        Raises TypeError or ValueError where it has none that is covered.
+        """
+        raise TypeError(f"`{self._word()}` has no convex shape that they know")
+
     def read(self, output: str, moment: Moment) -> Any:
         """An output of ``gives`` now, SI."""
         raise KeyError(output)

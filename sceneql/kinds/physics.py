@@ -255,6 +255,12 @@ class Contact(Kind):
         """Add its terms for all models at once, where it is `mutual`."""
         raise NotImplementedError
 
+    def assemble_rigid(
+        self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add its terms for all models of rigid bodies at once."""
+        raise NotImplementedError
+
     def read(self, output: str, state: ModelState) -> Any:
         """An output at a state."""
         raise TypeError(f"{type(self).__name__} gives no {output}")

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from sceneql.contacts import layout
 from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
+RIGID = ("points", "normals", "forces")
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
 EXACT = "sceneql.contacts.collision_kernels"
@@ -49,6 +51,9 @@ class Collision(Contact):
         "hits.last.time": Gives(quantity_type(dim.TIME), "Time of the latest impact; NaN before the first."),
         "hits.last.speed": Gives(quantity_type(dim.VELOCITY), "Speed of approach of the latest impact."),
         "rest.time": Gives(quantity_type(dim.TIME), "When the bouncing came to its end; NaN before."),
+        "points": Gives(quantity_type(dim.LENGTH, (None, 3)), "Where rigid bodies touch."),
+        "normals": Gives(Type((None, 3)), "Unit normals there, towards the first body of each pair."),
+        "forces": Gives(quantity_type(dim.FORCE, (None, 3)), "Forces there, on the first body of each pair."),
     }
 
     between: tuple[DrawnRef, ...] | None = field(
@@ -61,6 +66,16 @@ class Collision(Contact):
     thickness: FixedLength = field("Distance to keep besides the radius.", "0 m", at_least=0)
     mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
 
+    def _rigid(self, output: str, state: ModelState) -> Any:
+        """Points, normals and forces of the contacts of rigid bodies at the end of the latest step (n, 3)."""
+        import numpy as np
+
+        if -1 not in state.ints:
+            return np.zeros((0, 3))
+        count_at, *places = state.ints[state.ints.index(-1) + 1 :][:4]
+        count, at = int(state.floats[count_at]), places[RIGID.index(output)]
+        return state.floats[at : at + 3 * count].reshape(-1, 3).copy()
+
     def ties(self) -> tuple[Ref, ...]:
         """The models and objects of `between`."""
         return self.between or ()
@@ -71,10 +86,9 @@ class Collision(Contact):
 
         from sceneql.compiled.compile_beside import compile_beside
         from sceneql.compiled.numba import lazy_kernels
-        from sceneql.contacts.colliders import OFTEN, must_be_free, must_be_outside, must_be_points, surfaces
+        from sceneql.contacts.colliders import OFTEN, must_be_free, must_be_outside, surfaces
         from sceneql.contacts.impact_kernels import MOST_CUTS
 
-        must_be_points(bodies, assembly)
         must_be_free(bodies.model, assembly)
         if not others:
             return
@@ -121,11 +135,31 @@ class Collision(Contact):
         assembly.term("constrain", constrain, ints, held, apart=not exact)
         assembly.remember(tally_at)
 
+    def assemble_rigid(
+        self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add the contacts of rigid bodies with one another and with objects. Raises ScriptError for mode `exact`."""
+        from sceneql.contacts.colliders import OFTEN, must_be_free
+        from sceneql.contacts.distance.rigid_contact import assemble
+
+        if self.mode == "exact":
+            message = "rigid bodies collide in mode `local` so far"
+            raise ScriptError([Diagnostic("no-collider", message, assembly.line())])
+        for bodies in everyone:
+            must_be_free(bodies.model, assembly)
+        written = {ref.name: ref for ref in self.between or ()}
+        touched = [written.get(ref.name, ref) for ref in others]
+        assembly.step_at_most(OFTEN)
+        assembly.remember(-1, *assemble(assembly, everyone, touched, self.restitution, self.friction))
+
     def read(self, output: str, state: ModelState) -> Any:
         """An output over all its models: counts add up, the first time is the earliest, the last the latest."""
         import numpy as np
 
-        tallies = np.array([state.floats[at : at + len(TALLY)] for at in state.ints]).reshape(-1, len(TALLY))
+        if output in RIGID:
+            return self._rigid(output, state)
+        ints = state.ints[: state.ints.index(-1)] if -1 in state.ints else state.ints
+        tallies = np.array([state.floats[at : at + len(TALLY)] for at in ints]).reshape(-1, len(TALLY))
         column = tallies[:, TALLY.index(output)]
         if output == "hits.count":
             return float(column.sum())

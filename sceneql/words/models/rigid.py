@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies, ModelState
 
 MOST_TOLD = 6
@@ -244,6 +245,10 @@ class Rigid(Body, Model):
         arm = tuple(Number(float(c), Type((), dim.LENGTH)) for c in self._arm(body, point))
         place, turn = Link(name, _joined(body, "position"), PLACE), Link(name, _joined(body, "rotation"), TURN)
         return Call("add", (place, rotated(Call("normalize", (turn,), TURN), Vector(arm, PLACE))), PLACE)
+
+    def solids(self) -> list[tuple[Ref | None, Floats]]:
+        """The object of each body, and its center of mass in the object's own axes (3,) [m]."""
+        return [(body.of, self._made[name].center) for name, body in self._each.items()]
 
     def drives(self) -> Mapping[str, Mapping[str, str]]:
         """Position and rotation of the objects that are bodies."""

@@ -54,6 +54,17 @@ class Box(Solid):
         a, b, c = self._half(moment)
         return VolumeMoments.centered(8 * a * b * c, (a * a / 3, b * b / 3, c * c / 3)).mapped(self.local(moment))
 
+    def convex(self, moment: Moment, center: Floats) -> Any:
+        """A block."""
+        from itertools import product
+
+        import numpy as np
+
+        from sceneql.contacts.distance.convex import box, hull
+
+        half = self._half(moment)
+        return hull(np.array(list(product((-1, 1), repeat=3))) * half - center) if center.any() else box(half)
+
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A quadric without terms: its bounds alone."""
         surface = moment.surface(name, self.material, self.color)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import field_validator
 
@@ -18,6 +18,10 @@ from sceneql.shapes.read_mesh import Loaded, load
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
     from sceneql.system import Assembly
+
+
+CONVEX = 1e-6
+"""Part of its convex hull that a mesh may leave empty to count as convex."""
 
 
 class Mesh(Placed):
@@ -94,6 +98,20 @@ class Mesh(Placed):
 
         loaded = self._loaded
         return moments(loaded.vertices, loaded.triangles).mapped(self.local(moment))
+
+    def convex(self, moment: Moment, center: Floats) -> Any:
+        """The convex hull of its vertices, where it fills that. Raises ValueError where it does not."""
+        import numpy as np
+        from scipy.spatial import ConvexHull
+
+        from sceneql.contacts.distance.convex import hull
+        from sceneql.mesh.polyhedra import moments
+
+        points = self._loaded.vertices * np.asarray(moment.at(self.scale))
+        whole, own = ConvexHull(points).volume, moments(points, self._loaded.triangles).volume
+        if own < (1 - CONVEX) * whole:
+            raise ValueError(f"it fills {100 * own / whole:.3g}% of its convex hull")
+        return hull(points - center)
 
     def collider(self, assembly: Assembly) -> Collider:
         """Its triangles. Raises ValueError for a mesh that is open, or whose scale varies."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds import Collider, Direction, FieldBuilder, Length, Moment, Object, Position, Value, field
 from sceneql.quantities.dimension import LENGTH
@@ -36,6 +36,13 @@ class Plane(Object):
         n = np.asarray(moment.at(self.normal), dtype=float)
         n = n / np.linalg.norm(n)
         return n, float(n @ moment.at(self.position) + moment.at(self.height))
+
+    def convex(self, moment: Moment, center: Floats) -> Any:
+        """A half space, from its position."""
+        from sceneql.contacts.distance.convex import half_space
+
+        normal, _ = self._level(moment)
+        return half_space(normal, float(moment.at(self.height)))
 
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """Signed distance."""

@@ -50,6 +50,12 @@ class Sphere(Solid):
         r = positive(moment, self.radius, "radius")
         return VolumeMoments.centered(4 / 3 * pi * r**3, [r * r / 5] * 3).mapped(self.local(moment))
 
+    def convex(self, moment: Moment, center: Floats) -> Any:
+        """A ball."""
+        from sceneql.contacts.distance.convex import ball
+
+        return ball(positive(moment, self.radius, "radius"), -center)
+
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A quadric; under an uneven scale an ellipsoid."""
         r = positive(moment, self.radius, "radius")

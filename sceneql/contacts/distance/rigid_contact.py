@@ -1,0 +1,119 @@
+"""Contacts of rigid bodies with one another and with objects that stand: their shapes, and the arrays of the kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from sceneql.island.start import Start
+from sceneql.kinds import Ref, Value
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from sceneql.contacts.distance.convex import Convex
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, Bodies
+
+MOST = 64
+"""Bodies of one contact: all pairs of them are planned."""
+CONTACTS = 24
+"""Room for contacts by the body."""
+KERNEL = "sceneql.contacts.distance.rigid_local_kernels:back_off"
+
+
+def assemble(
+    assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref], restitution: Value, friction: Value
+) -> tuple[int, int, int, int]:
+    """Add the contacts of rigid bodies; the offsets of their count, points, normals and forces in the floats.
+
+    Raises ScriptError for a shape that is not covered.
+    """
+    import numpy as np
+
+    from sceneql.bodies.rigid.turning import packed, unpacked
+    from sceneql.contacts.distance import convex
+    from sceneql.contacts.distance import rigid_local_kernels as kernels
+    from sceneql.linear.cones import cone_program
+
+    numbers, shapes, fixed, rows = assembly.numbers(), [], [], []
+    start = assembly.start()
+    for bodies in everyone:
+        turning = bodies.turning
+        assert turning is not None
+        model: Any = assembly.object(Ref(bodies.model))
+        for k, (ref, center) in enumerate(model.solids()):
+            shape = _shape(ref, center, assembly)
+            x, q = bodies.position_at + 3 * k, turning.rotation_at + 4 * k
+            if numbers[bodies.inverse_at + k] == 0.0:
+                fixed.append((shape, np.concatenate([start[x : x + 3], start[q : q + 4]])))
+                continue
+            inertia = np.linalg.inv(unpacked(numbers[turning.inverse_at + 6 * k :][:6]))
+            rows.append(
+                (
+                    *(x, bodies.velocity_at + 3 * k, q, turning.momentum_at + 3 * k),
+                    *(bodies.mass_at + k, assembly.floats(packed(inertia)), bodies.work_at),
+                )
+            )
+            shapes.append(shape)
+    for ref in others:
+        shape = _shape(ref, np.zeros(3), assembly)
+        fixed.append((shape, _place(ref, assembly)))
+    n = len(rows)
+    if n > MOST:
+        message = f"{n} rigid bodies are too many for one contact: at most {MOST}"
+        raise ScriptError([Diagnostic("invalid", message, assembly.line())])
+    everything = [*shapes, *(shape for shape, _ in fixed)]
+    count, most = len(everything), CONTACTS * n + 64
+    places = np.zeros((count, kernels.PLACE))
+    for k, (_, place) in enumerate(fixed):
+        places[n + k] = place
+    pairs = [(a, b) for a in range(n) for b in range(a + 1, n)] + [(a, -1) for a in range(n)]
+    program = cone_program(n, pairs, most)
+    sizes = [places.size, 6 * count, 6 * count, convex.room_length(everything), len(program.floats)]
+    places_at = assembly.floats(places)
+    motions_at, boxes_at, room_at = (assembly.floats(np.zeros(size)) for size in sizes[1:4])
+    program_at = assembly.floats(program.floats)
+    found = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
+    shapes_at = kernels.HEAD
+    _, integers = convex.joined(everything, 0, 0)
+    data = assembly.floats(convex.joined(everything, 0, 0)[0])
+    _, integers = convex.joined(everything, data, shapes_at)
+    bodies_at = shapes_at + len(integers)
+    program_ints_at = bodies_at + kernels.BODY_INTS * n
+    head = [n, count, shapes_at, bodies_at, places_at, motions_at, boxes_at, room_at, sizes[3]]
+    head += [program_at, sizes[4], program_ints_at, len(program.ints), most]
+    head += [assembly.value(restitution), assembly.value(friction), *found, 0]
+    ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *program.ints.tolist()]
+    assembly.contact("local", (KERNEL,), [int(number) for number in ints], 0)
+    return found[0], found[1], found[2], found[3]
+
+
+def _shape(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex:
+    """The shape of an object in its own axes from a center. Raises ScriptError where it is not covered."""
+    if ref is None:
+        message = "a body without an object has no shape to touch with"
+        raise ScriptError([Diagnostic("no-collider", message, assembly.line())])
+    start: Any = Start(assembly)
+    try:
+        return assembly.object(ref).convex(start, center)
+    except (TypeError, ValueError) as error:
+        help = "spheres, boxes, tubes of one piece, planes and convex meshes do"
+        message = f"'{ref.name}' does not collide with rigid bodies yet: {error}"
+        raise ScriptError([Diagnostic("no-collider", message, ref.span, help)]) from None
+
+
+def _place(ref: Ref, assembly: Assembly) -> Floats:
+    """Position and quaternion (7,) of an object that stands. Raises ScriptError for one that moves."""
+    import numpy as np
+
+    kind = assembly.object(ref)
+    values = [getattr(kind, name, None) for name in ("position", "rotation")]
+    if any(isinstance(value, Value) and not value.constant for value in values):
+        message = f"'{ref.name}' moves by itself, and rigid bodies touch only what stands or what they are, so far"
+        raise ScriptError([Diagnostic("no-collider", message, ref.span)])
+    parts = [
+        assembly.initial(value) if isinstance(value, Value) else rest
+        for value, rest in zip(values, ((0, 0, 0), (1, 0, 0, 0)), strict=True)
+    ]
+    q = np.asarray(parts[1], dtype=float)
+    return np.concatenate([np.asarray(parts[0], dtype=float), q / np.linalg.norm(q)])

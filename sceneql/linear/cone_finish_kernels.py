@@ -1,0 +1,200 @@
+# mypy: ignore-errors
+"""The last digits of contact with friction: a semismooth Newton method on Coulomb's law itself.
+
+x = P(x - rho (A v + b + mu |u_T| n)) with P the projection to the cone and M (v - v_free) = A^T x are solved as one
+system by steps of the proximal method of multipliers (Rockafellar 1976; Alart & Curnier 1991): redundant contacts
+share impulses near those of the guess. Where contacts slide, the matrix is not symmetric, as the law is not.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.linear.cone_points_kernels import determinant, tail
+from sceneql.linear.cone_rows_kernels import (
+    AT_B,
+    AT_D,
+    AT_DS,
+    AT_DX,
+    AT_FORCE,
+    AT_FRAME,
+    AT_FRICTION,
+    AT_H,
+    AT_HEAVY,
+    AT_IMPULSE,
+    AT_LAMBDA,
+    AT_LEFT,
+    AT_S,
+    AT_SIZE,
+    AT_TORQUE,
+    AT_V,
+    AT_X,
+    BODIES,
+    BODIES_AT,
+    BODY,
+    CONTACT,
+    CONTACTS,
+    CONTACTS_AT,
+    FINISHES,
+    OVERLAP,
+    RESIDUAL,
+    RESULT_AT,
+    factor,
+    in_world,
+    momenta_left,
+    put,
+    sizes,
+    step,
+    to_contacts,
+    turned,
+)
+from sceneql.system.signatures_kernels import A, I, N
+
+STIFF = 1e8
+"""Stiffness of the proximal steps, of the contacts' effective masses (and as much more as their impulses are)."""
+EXACT = 5e-15
+"""What may be left at most, of the sizes of numbers, to need no further step."""
+POOR = 3
+ENOUGH = 1e-12
+"""What is taken for rounding where further steps make it no smaller."""
+
+
+@lean_inlined
+def roughness(floats, c):
+    """The coefficient of friction, 1 where there is none."""
+    return floats[c + AT_FRICTION] if floats[c + AT_FRICTION] > 0.0 else 1.0
+
+
+@lean_inlined
+def see(floats, c):
+    """Write the velocity s of a contact, corrected by its slip, from that in its frame; what is left of the law."""
+    x, s, mu = c + AT_X, c + AT_S, roughness(floats, c)
+    for j in range(3):
+        floats[s + j] += floats[c + AT_B + j]
+    normal, slip, rubbed = floats[s], tail(floats, s), tail(floats, x)
+    floats[s] = normal + slip
+    size = floats[c + AT_SIZE]
+    push = mu * floats[c + AT_HEAVY] * size
+    full = max(floats[x], push)
+    # Resting, open, sliding: the law holds by the best of the three.
+    resting = max(mu * abs(normal), slip) / size
+    opened = max(abs(floats[x]), rubbed) / push
+    sliding = mu * abs(normal) / size
+    if slip > 0.0:
+        by = floats[x] / slip
+        across = math.hypot(floats[x + 1] + by * floats[s + 1], floats[x + 2] + by * floats[s + 2])
+        sliding = max(sliding, across / full)
+    worst = min(resting, min(opened, sliding))
+    return max(worst, max(-mu * normal / size, (rubbed - floats[x]) / full))
+
+
+@lean_inlined
+def project(floats, c, stiff):
+    """Write P(x - rho s) to LAMBDA and rho times its derivative to H; whether H is symmetric."""
+    x, s, h, to, mu = c + AT_X, c + AT_S, c + AT_H, c + AT_LAMBDA, roughness(floats, c)
+    push = mu * floats[c + AT_HEAVY]
+    rho = stiff * push * max(1.0, max(abs(floats[x]), tail(floats, x)) / (push * floats[c + AT_SIZE]))
+    slip = tail(floats, s)
+    normal = floats[s] - slip
+    p, q, r = floats[x] - rho * floats[s], floats[x + 1] - rho * floats[s + 1], floats[x + 2] - rho * floats[s + 2]
+    length = math.sqrt(q * q + r * r)
+    for j in range(9):
+        floats[h + j] = 0.0
+    if p >= length:
+        # At rest, where the correction is nothing: the point is where no velocity is left.
+        put(floats, to, floats[x] - rho * normal, q, r)
+        floats[h] = floats[h + 4] = floats[h + 8] = rho
+        return True
+    above = p + length
+    if p < 0.0:
+        # |p_T|^2 - p^2 of terms that do not cancel.
+        cross = floats[x] * floats[s] - floats[x + 1] * floats[s + 1] - floats[x + 2] * floats[s + 2]
+        above = (2.0 * rho * cross - determinant(floats, x) - rho * rho * normal * (normal + 2.0 * slip)) / (length - p)
+    if above <= 0.0:
+        put(floats, to, 0.0, 0.0, 0.0)
+        return True
+    u, v = q / length, r / length
+    put(floats, to, 0.5 * above, 0.5 * above * u, 0.5 * above * v)
+    half, turn = 0.5 * rho, 0.5 * rho * above / length
+    put(floats, h, half, half * u, half * v)
+    put(floats, h + 3, half * u, half * u * u + turn * v * v, (half - turn) * u * v)
+    put(floats, h + 6, half * v, (half - turn) * u * v, half * v * v + turn * u * u)
+    if slip > 0.0:
+        d, e = floats[s + 1] / slip, floats[s + 2] / slip
+        for j in range(0, 9, 3):
+            floats[h + j + 1] += d * floats[h + j]
+            floats[h + j + 2] += e * floats[h + j]
+        return False
+    return True
+
+
+@lean(types.float64(A, I))
+def look(floats, ints):
+    """Write LEFT and all s; what is left of all equations, the largest against the size of the numbers in it."""
+    momenta_left(floats, ints)
+    sizes(floats, ints)
+    worst = 0.0
+    for body in range(ints[BODIES]):
+        at = ints[BODIES_AT] + BODY * body
+        for j in range(6):
+            size = floats[at + (AT_FORCE if j < 3 else AT_TORQUE)]
+            worst = max(worst, abs(floats[at + AT_LEFT + j]) / max(size, 1e-300))
+    to_contacts(floats, ints, AT_V, AT_S)
+    for k in range(ints[CONTACTS]):
+        worst = max(worst, see(floats, ints[CONTACTS_AT] + CONTACT * k))
+    floats[ints[RESULT_AT] + RESIDUAL] = worst
+    return worst
+
+
+@lean(types.boolean(A, I, N, N))
+def finish(floats, ints, most, near):
+    """Newton's steps from v and x to the solution, ``most`` at most; whether it is found."""
+    before, best, poor = math.inf, math.inf, 0
+    for number in range(most + 1):
+        worst = look(floats, ints)
+        if worst <= EXACT or (worst <= ENOUGH and worst > 0.5 * before):
+            return True
+        if worst > 0.3 * best:
+            poor += 1
+        if number == most or poor > POOR or not worst < math.inf:
+            return worst <= ENOUGH
+        before, best = worst, min(best, worst)
+        stiff = min(STIFF, max(1e-2 / worst, 1e2)) if near == 1 else STIFF
+        symmetric = 1
+        for k in range(ints[CONTACTS]):
+            if not project(floats, ints[CONTACTS_AT] + CONTACT * k, stiff):
+                symmetric = 0
+        ints[FINISHES] += 1
+        if not factor(floats, ints, symmetric):
+            return False
+        for k in range(ints[CONTACTS]):
+            c = ints[CONTACTS_AT] + CONTACT * k
+            for j in range(3):
+                floats[c + AT_DX + j] = floats[c + AT_LAMBDA + j] - floats[c + AT_X + j]
+        step(floats, ints, AT_LEFT, symmetric)
+        for body in range(ints[BODIES]):
+            at = ints[BODIES_AT] + BODY * body
+            for j in range(6):
+                floats[at + AT_V + j] += floats[at + AT_D + j]
+        for k in range(ints[CONTACTS]):
+            c = ints[CONTACTS_AT] + CONTACT * k
+            ds = c + AT_DS
+            x, y, z = turned(floats, c + AT_H, floats[ds], floats[ds + 1], floats[ds + 2])
+            floats[c + AT_X] += floats[c + AT_DX] - x
+            floats[c + AT_X + 1] += floats[c + AT_DX + 1] - y
+            floats[c + AT_X + 2] += floats[c + AT_DX + 2] - z
+    return False
+
+
+@lean(types.void(A, I))
+def tell(floats, ints):
+    """Write impulses and velocities of the contacts in the world, and how fast one still closes."""
+    look(floats, ints)
+    closing = 0.0
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        x, s = c + AT_X, c + AT_S
+        put(floats, c + AT_IMPULSE, *in_world(floats, c + AT_FRAME, floats[x], floats[x + 1], floats[x + 2]))
+        closing = max(closing, roughness(floats, c) * (tail(floats, s) - floats[s]))
+    floats[ints[RESULT_AT] + OVERLAP] = closing

@@ -1,0 +1,250 @@
+# mypy: ignore-errors
+"""Velocities and impulses of rigid bodies in contact, by Coulomb's law, all contacts together.
+
+With M the masses, J the contacts' rows, u = J v + given their velocities and r their impulses,
+
+    M (v - v_free) = J^T r,   u + mu |u_T| n in K*,   r in K,   r . (u + mu |u_T| n) = 0,   K: |r_T| <= mu r_N
+
+(Moreau 1988; mu |u_T| n is De Saxce & Feng's (1998) correction, without which the cones are those of Anitescu 2006).
+For a given correction this is a convex program. Mehrotra's interior-point method with Nesterov and Todd's scaling
+solves it, with the correction renewed at every iteration (as Acary, Armand, Nguyen & Shpakovych 2023). Its last digits
+are finish_kernels'.
+"""
+
+from numba import types
+
+from sceneql.compiled.kernels import lean
+from sceneql.linear.cone_finish_kernels import finish, roughness, tell
+from sceneql.linear.cone_points_kernels import aim, inner, scale, scaled, scaled_step, tail
+from sceneql.linear.cone_rows_kernels import (
+    AT_B,
+    AT_D,
+    AT_DS,
+    AT_DX,
+    AT_FORCE,
+    AT_FREE,
+    AT_H,
+    AT_HEAVY,
+    AT_LAMBDA,
+    AT_LEFT,
+    AT_Q,
+    AT_R,
+    AT_S,
+    AT_SIZE,
+    AT_SLIDE,
+    AT_TORQUE,
+    AT_V,
+    AT_X,
+    BODIES,
+    BODIES_AT,
+    BODY,
+    CONTACT,
+    CONTACTS,
+    CONTACTS_AT,
+    FINISHES,
+    ITERATIONS,
+    TRIES,
+    factor,
+    fetch,
+    keep,
+    momenta_left,
+    prepare,
+    put,
+    sizes,
+    step,
+    to_contacts,
+)
+from sceneql.system.signatures_kernels import A, I, N
+
+SOLVED, LOOSE = range(2)
+"""What a solution comes to: to rounding; not, as where contacts ask for what cannot be (then RESULT tells how far)."""
+
+SLIDEW = 1.0
+NEAR = 1e9
+MOST = 40
+"""Iterations of the interior-point method."""
+CLOSE = 1e-6
+"""What may be left, of the size of the numbers, when the finish is first tried; then a hundredth of it, and so on."""
+BACK = 0.99
+"""Part of the step to the boundary of the cones."""
+COLD = 12
+"""Most factorizations of the finish from an interior point."""
+
+
+@lean(types.void(A, I))
+def begin(floats, ints):
+    """The first point: springs of the contacts' effective masses in place of the cones, then moved into these."""
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        heavy = floats[c + AT_HEAVY]
+        for j in range(3):
+            put(floats, c + AT_H + 3 * j, 0.0, 0.0, 0.0)
+            floats[c + AT_H + 4 * j] = heavy
+            floats[c + AT_X + j] = 0.0
+    for body in range(ints[BODIES]):
+        at = ints[BODIES_AT] + BODY * body
+        for j in range(6):
+            floats[at + AT_V + j] = floats[at + AT_FREE + j]
+    to_contacts(floats, ints, AT_V, AT_S)
+    factor(floats, ints, 1)
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        for j in range(3):
+            floats[c + AT_DX + j] = -floats[c + AT_HEAVY] * (floats[c + AT_S + j] + floats[c + AT_B + j])
+    step(floats, ints, 0, 1)
+    fastest = 0.0
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        size = 0.0
+        for j in range(3):
+            size += abs(floats[c + AT_S + j]) + abs(floats[c + AT_B + j])
+            floats[c + AT_S + j] += floats[c + AT_B + j] + floats[c + AT_DS + j]
+        fastest = max(fastest, size)
+    for body in range(ints[BODIES]):
+        at = ints[BODIES_AT] + BODY * body
+        for j in range(6):
+            floats[at + AT_V + j] += floats[at + AT_D + j]
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        heavy = floats[c + AT_HEAVY]
+        slip = tail(floats, c + AT_S)
+        floats[c + AT_S] += slip
+        for j in range(3):
+            floats[c + AT_X + j] = -heavy * floats[c + AT_S + j]
+        floats[c + AT_S] = max(floats[c + AT_S], slip) + fastest
+        floats[c + AT_X] = max(floats[c + AT_X], heavy * slip) + heavy * fastest
+
+
+@lean(types.void(A, I, N))
+def direct(floats, ints, symmetric):
+    """The direction D, DX, DS for the right hand sides LEFT, R and Q."""
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        q, r = c + AT_Q, c + AT_R
+        x, y, z = scaled(floats, c, floats[r], floats[r + 1], floats[r + 2], -1.0)
+        put(floats, c + AT_DX, *scaled(floats, c, floats[q] + x, floats[q + 1] + y, floats[q + 2] + z, -1.0))
+    step(floats, ints, AT_LEFT, symmetric)
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        q, ds, slide = c + AT_Q, c + AT_DS, c + AT_SLIDE
+        if symmetric == 0:
+            floats[ds] += floats[slide] * floats[ds + 1] + floats[slide + 1] * floats[ds + 2]
+        for j in range(3):
+            floats[ds + j] -= floats[c + AT_R + j]
+        x, y, z = scaled(floats, c, floats[ds], floats[ds + 1], floats[ds + 2], -1.0)
+        put(floats, c + AT_DX, *scaled(floats, c, floats[q] - x, floats[q + 1] - y, floats[q + 2] - z, -1.0))
+
+
+@lean(types.float64(A, I))
+def longest(floats, ints):
+    """Longest step along the direction, 1 at most."""
+    found = 1.0
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        found = min(found, BACK * scaled_step(floats, c))
+    return found
+
+
+@lean(types.float64(A, I))
+def left(floats, ints):
+    """Write R and LEFT; what is left of all equations, the largest against the size of the numbers in it."""
+    momenta_left(floats, ints)
+    worst = 0.0
+    for body in range(ints[BODIES]):
+        at = ints[BODIES_AT] + BODY * body
+        for j in range(6):
+            size = floats[at + (AT_FORCE if j < 3 else AT_TORQUE)]
+            worst = max(worst, abs(floats[at + AT_LEFT + j]) / max(size, 1e-300))
+    to_contacts(floats, ints, AT_V, AT_R)
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        for j in range(3):
+            floats[c + AT_R + j] += floats[c + AT_B + j]
+        slip = tail(floats, c + AT_R)
+        floats[c + AT_R] += slip
+        by = SLIDEW / slip if slip > 0.0 else 0.0
+        floats[c + AT_SLIDE], floats[c + AT_SLIDE + 1] = by * floats[c + AT_R + 1], by * floats[c + AT_R + 2]
+        size = floats[c + AT_SIZE] / roughness(floats, c)
+        for j in range(3):
+            floats[c + AT_R + j] = floats[c + AT_S + j] - floats[c + AT_R + j]
+            worst = max(worst, abs(floats[c + AT_R + j]) / size)
+        full = max(floats[c + AT_HEAVY] * roughness(floats, c) * size, floats[c + AT_X])
+        worst = max(worst, inner(floats, c + AT_X, c + AT_S) / (full * size))
+    return worst
+
+
+@lean(types.float64(A, I, N))
+def iterate(floats, ints, symmetric):
+    """One iteration of the interior-point method; the part of the step that is taken, 0 where it cannot go on."""
+    total = 0.0
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        if not scale(floats, c):
+            return 0.0
+        total += inner(floats, c + AT_X, c + AT_S)
+        if symmetric == 0:
+            for j in range(0, 9, 3):
+                for i in range(2):
+                    floats[c + AT_H + j + 1 + i] += floats[c + AT_SLIDE + i] * floats[c + AT_H + j]
+    if not factor(floats, ints, symmetric):
+        return 0.0
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        point = c + AT_LAMBDA
+        put(floats, c + AT_Q, -floats[point], -floats[point + 1], -floats[point + 2])
+    direct(floats, ints, symmetric)
+    rest = 1.0 - longest(floats, ints)
+    centered = rest * rest * rest * total / ints[CONTACTS]
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        aim(floats, c, centered)
+    direct(floats, ints, symmetric)
+    part = longest(floats, ints)
+    for body in range(ints[BODIES]):
+        at = ints[BODIES_AT] + BODY * body
+        for j in range(6):
+            floats[at + AT_V + j] += part * floats[at + AT_D + j]
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        for j in range(3):
+            floats[c + AT_X + j] += part * floats[c + AT_DX + j]
+            floats[c + AT_S + j] += part * floats[c + AT_DS + j]
+    return part
+
+
+@lean(types.boolean(A, I))
+def inside(floats, ints):
+    """The interior-point method, from its own first point; whether the finish was reached."""
+    begin(floats, ints)
+    sizes(floats, ints)
+    close, symmetric = CLOSE, 1
+    for _ in range(MOST):
+        worst = left(floats, ints)
+        if worst <= close:
+            keep(floats, ints)
+            if finish(floats, ints, COLD, 1):
+                return True
+            fetch(floats, ints)
+            left(floats, ints)
+            close *= 1e-2
+        if symmetric == 1 and worst < NEAR:
+            symmetric = 0
+        part = iterate(floats, ints, symmetric)
+        if symmetric == 0 and part < 0.3:
+            symmetric = 2
+        elif symmetric == 2:
+            symmetric = 1
+        if part < 1e-8:
+            break
+        ints[ITERATIONS] += 1
+    return finish(floats, ints, COLD, 1)
+
+
+@lean(types.int64(A, I))
+def solve(floats, ints):
+    """Solve a program, whose given numbers are written, from the guesses of velocities and impulses in it."""
+    ints[ITERATIONS], ints[FINISHES] = 0, 0
+    prepare(floats, ints)
+    found = finish(floats, ints, ints[TRIES], 0) or inside(floats, ints)
+    tell(floats, ints)
+    return SOLVED if found else LOOSE
