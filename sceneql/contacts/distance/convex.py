@@ -38,7 +38,7 @@ class Convex:
     begins (f + 1), the loops, counterclockwise from outside, and the edges (e, 4): vertices and faces (-1: none)."""
 
 
-def ball(radius: float, center: Sequence[float] = (0.0, 0.0, 0.0)) -> Convex:
+def ball(radius: float, center: Sequence[float] | Floats = (0.0, 0.0, 0.0)) -> Convex:
     """A ball [m]."""
     # The edge without a length lets the vertex be found where edges are looked at.
     return _core(np.reshape(np.array(center, dtype=float), (1, 3)), [], radius, [(0, 0, -1, -1)])
@@ -83,7 +83,7 @@ def hull(points: Floats, radius: float = 0.0) -> Convex:
     return _core(points[kept], loops, radius)
 
 
-def half_space(normal: Sequence[float], offset: float) -> Convex:
+def half_space(normal: Sequence[float] | Floats, offset: float) -> Convex:
     """All points x with normal.x at most ``offset`` [m]; the normal points out of it, and has any length but 0."""
     length = float(np.linalg.norm(normal))
     numbers = np.array([0.0, np.inf, *(np.asarray(normal, dtype=float) / length), offset])

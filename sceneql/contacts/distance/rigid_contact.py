@@ -47,7 +47,7 @@ def assemble(
             if numbers[bodies.inverse_at + k] == 0.0:
                 fixed.append((shape, np.concatenate([start[x : x + 3], start[q : q + 4]])))
                 continue
-            inertia = np.linalg.inv(unpacked(numbers[turning.inverse_at + 6 * k :][:6]))
+            inertia: Floats = np.asarray(np.linalg.inv(unpacked(numbers[turning.inverse_at + 6 * k :][:6])))
             rows.append(
                 (
                     *(x, bodies.velocity_at + 3 * k, q, turning.momentum_at + 3 * k),
@@ -94,8 +94,10 @@ def _shape(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex:
         message = "a body without an object has no shape to touch with"
         raise ScriptError([Diagnostic("no-collider", message, assembly.line())])
     start: Any = Start(assembly)
+    kind: Any = assembly.object(ref)
     try:
-        return assembly.object(ref).convex(start, center)
+        found: Convex = kind.convex(start, center)
+        return found
     except (TypeError, ValueError) as error:
         help = "spheres, boxes, tubes of one piece, planes and convex meshes do"
         message = f"'{ref.name}' does not collide with rigid bodies yet: {error}"

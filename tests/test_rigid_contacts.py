@@ -1,0 +1,172 @@
+"""Rigid bodies in contact, mode `local`: what rests, slides, rolls, leans over and is thrown, against exact values."""
+
+import numpy as np
+import pytest
+
+import runs
+from runs import complaint
+
+SOLVER = "semi_implicit_euler: {step: 5 ms}"
+
+
+def watch(folder, objects, bodies, times, *outputs, more="", solver=SOLVER, law="restitution: 0, friction: 0.5"):
+    """Outputs of the model `it` of these bodies over a floor, unless the objects have one."""
+    lines = "\n".join(f"  {name}: {what}" for name, what in objects.items())
+    each = "\n".join(f"        {name}: {what}" for name, what in bodies.items())
+    script = f"""
+clock: {{end: {max(times)} s}}
+objects:
+{lines}
+models:
+  it:
+    rigid:
+      bodies:
+{each}
+forces: [gravity]
+contacts: {{touch: {{collision: {{{law}}}}}}}
+solvers: {{main: {{{solver}}}}}
+{more}
+"""
+    return runs.watch(folder, script, times, *outputs, pruned=False)
+
+
+def stack(masses, gap=0.0):
+    """Objects and bodies of unit cubes on one another."""
+    objects = {f"o{k}": f"{{box: {{position: 0 {k + 0.5 + gap * (k + 1)} 0 m}}}}" for k in range(len(masses))}
+    bodies = {f"b{k}": f"{{of: o{k}, mass: {mass} kg}}" for k, mass in enumerate(masses)}
+    return {**objects, "floor": "plane"}, bodies
+
+
+@pytest.mark.parametrize("solver", [SOLVER, "auto", "radau: {tolerance: 1e-6}", "verlet: {step: 5 ms}"])
+@pytest.mark.parametrize(
+    "masses", [[1] * 10, [1, 1000], [1, 10_000], [1] * 5 + [1000]], ids=["ten", "1:1000", "1:10000", "five under 1000"]
+)
+def test_what_stands_on_one_another_stays_to_rounding(tmp_path, masses, solver):
+    objects, bodies = stack(masses)
+    ((places, kinetic),) = watch(tmp_path, objects, bodies, [2], "it.positions", "it.kinetic", solver=solver)
+    exact = np.array([[0, k + 0.5, 0] for k in range(len(masses))])
+    assert np.abs(places - exact).max() < 1e-9
+    assert kinetic < 1e-9
+
+
+def test_cubes_that_fall_come_to_rest_on_one_another(tmp_path):
+    objects, bodies = stack([1, 5, 2], gap=0.03)
+    ((places, kinetic, energy),) = watch(tmp_path, objects, bodies, [1.5], "it.positions", "it.kinetic", "it.energy")
+    np.testing.assert_allclose(places, [[0, k + 0.5, 0] for k in range(3)], atol=1e-12)
+    assert kinetic < 1e-20
+    start = 9.81 * (0.53 + 5 * 1.56 + 2 * 2.59)
+    assert energy <= start + 1e-9
+
+
+@pytest.mark.parametrize("friction", [0.4, 0.49, 0.51, 0.6])
+def test_a_block_on_an_incline_slides_or_sticks(tmp_path, friction):
+    normal = np.array([-0.5, 1, 0]) / np.hypot(0.5, 1)
+    place = 0.25 * normal
+    turn = f"rotation: {{about: z, angle: {np.degrees(np.arctan(0.5))} deg}}"
+    objects = {
+        "block": f"{{box: {{size: 1 0.5 1 m, position: [{place[0]} m, {place[1]} m, 0 m], {turn}}}}}",
+        "ramp": "{plane: {normal: [-0.5, 1, 0]}}",
+    }
+    found = {}
+    for step in (5, 2.5):
+        law, solver = f"restitution: 0, friction: {friction}", f"semi_implicit_euler: {{step: {step} ms}}"
+        rows = watch(
+            tmp_path, objects, {"b": "{of: block, mass: 1 kg}"}, [1, 2], "it.b.position", law=law, solver=solver
+        )
+        for (x,) in rows:
+            assert abs((x - place) @ normal) < 1e-9
+        found[step] = np.linalg.norm(rows[-1][0] - place)
+    exact = max(0.0, 9.81 * 4 * (0.5 - friction) / np.sqrt(5))
+    if exact:  # the place is of order 1 in the step
+        assert abs(found[5] - exact) / abs(found[2.5] - exact) == pytest.approx(2, abs=0.1)
+        assert 2 * found[2.5] - found[5] == pytest.approx(exact, abs=1e-6)
+    else:
+        assert max(found.values()) < 1e-9
+
+
+@pytest.mark.parametrize(("part", "stands"), [(0.999, True), (1.001, False)])
+def test_blocks_stand_up_to_the_harmonic_overhang(tmp_path, part, stands):
+    places = [0.0]
+    for k in range(1, 4):
+        places.insert(0, places[0] - part * 0.5 / k)
+    edge = places[0] - part * 0.5 / 4 + 0.5
+    objects = {
+        f"o{k}": f"{{box: {{size: 1 0.25 0.5 m, position: {x} {0.25 * k + 0.125} 0 m}}}}" for k, x in enumerate(places)
+    }
+    objects["table"] = f"{{box: {{size: 2 1 2 m, position: {edge - 1} -0.5 0 m}}}}"
+    bodies = {f"b{k}": f"{{of: o{k}, mass: 1 kg}}" for k in range(4)}
+    law = "restitution: 0, friction: 0.6"
+    ((found,),) = watch(tmp_path, objects, bodies, [4], "it.positions", law=law)
+    moved = np.abs(found - [[x, 0.25 * k + 0.125, 0] for k, x in enumerate(places)]).max()
+    assert (moved < 1e-9) == stands
+    assert stands or moved > 0.1
+
+
+@pytest.mark.parametrize("spin", ["0 0 0", "100 30 0"])
+def test_a_small_box_of_500_m_a_second_stops_at_a_thin_wall(tmp_path, spin):
+    objects = {"o": "{box: {size: 0.01 0.01 0.01 m, position: -1 0 0 m}}", "wall": "{box: {size: 0.001 2 2 m}}"}
+    bodies = {"b": f"{{of: o, mass: 1 kg, velocity: 500 0 0 m/s, spin: {spin} rad/s}}"}
+    for step in (0.5, 5, 20):
+        solver = f"semi_implicit_euler: {{step: {step} ms}}"
+        ((x,),) = watch(tmp_path, objects, bodies, [0.06], "it.b.position", solver=solver)
+        assert -0.015 < x[0] < -0.0054
+
+
+def test_a_ball_slides_and_then_rolls(tmp_path):
+    objects = {"o": "{sphere: {radius: 0.5 m, position: 0 0.5 0 m}}", "floor": "plane"}
+    bodies = {"b": "{of: o, velocity: 3 0 0 m/s}"}
+    law = "restitution: 0, friction: 0.2"
+    start = 2 * 3 / (7 * 0.2 * 9.81)
+    exact = 12 * 9 / (49 * 0.2 * 9.81) + 5 / 7 * 3 * (2 - start)
+    errors = []
+    for step in (4, 2):
+        solver = f"semi_implicit_euler: {{step: {step} ms}}"
+        rows = watch(
+            tmp_path, objects, bodies, [2], "it.b.velocity", "it.b.spin", "it.b.position", law=law, solver=solver
+        )
+        velocity, spin, place = rows[0]
+        np.testing.assert_allclose(velocity, [5 / 7 * 3, 0, 0], atol=1e-12)
+        np.testing.assert_allclose(spin, [0, 0, -5 / 7 * 6], atol=1e-11)
+        errors.append(abs(place[0] - exact))
+    assert errors[0] / errors[1] == pytest.approx(2, abs=0.2)
+
+
+def test_a_ball_bounces_by_its_restitution(tmp_path):
+    objects = {"o": "{sphere: {radius: 0.1 m, position: 0 1.1 0 m}}", "floor": "plane"}
+    heights = [
+        row[0][1] - 0.1
+        for row in watch(
+            tmp_path,
+            objects,
+            {"b": "{of: o}"},
+            np.arange(0, 1.6, 0.002),
+            "it.b.position",
+            law="restitution: 0.8",
+            solver="semi_implicit_euler: {step: 0.5 ms}",
+        )
+    ]
+    highest = max(heights[300:600])
+    assert highest == pytest.approx(0.64, abs=0.01)
+
+
+def test_bodies_hand_momentum_on_and_rest_tells_its_forces(tmp_path):
+    objects, bodies = stack([2, 3])
+    outputs = ("touch.points", "touch.forces", "touch.normals")
+    ((points, forces, normals),) = watch(tmp_path, objects, bodies, [0.5], *outputs)
+    assert len(points) == 8
+    low = points[:, 1] < 0.5
+    assert forces[low].sum(axis=0)[1] == pytest.approx(5 * 9.81, rel=1e-9)
+    assert abs(forces[~low].sum(axis=0)[1]) == pytest.approx(3 * 9.81, rel=1e-9)
+    np.testing.assert_allclose(np.abs(normals[:, 1]), 1, atol=1e-12)
+
+
+def test_what_is_not_covered_is_told_at_its_place(tmp_path):
+    head = "models: {a: {rigid: {of: o}}}\nforces: [gravity]\noutputs: {t: {record: {of: [a.energy]}}}\n"
+    ring = "objects: {o: torus, floor: plane}\ncontacts: [collision]\n"
+    exact = "objects: {o: box, floor: plane}\ncontacts: {c: {collision: {mode: exact}}}\n"
+    for script, words in ((ring, "`torus` has no convex shape"), (exact, "mode `local`")):
+        path = tmp_path / "scene.yaml"
+        path.write_text(head + script)
+        assert not complaint(tmp_path, head + script)
+        with pytest.raises(Exception, match=words):
+            runs.watch(tmp_path, head + script, [0], "a.energy")
