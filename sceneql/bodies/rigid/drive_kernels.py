@@ -33,9 +33,9 @@ from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I
 ROW_AT, SCRATCH_AT = 2 * MOVER, 2 * MOVER + ROW_INTS
 FORCE_AT, STIFFNESS_AT, REST_AT, DAMPING_AT, WORK_AT, LAST_AT = range(SCRATCH_AT + 1, SCRATCH_AT + 7)
 """Behind two movers and a row (tie_rows_kernels): offsets of what `see` writes of both; of the force, of stiffness,
-rest and damping; of the work in y; of how far it was at the end of the last step, by which turns are counted. The row's
-kind is POINT for a shift along n_b; else it is a turn about n_b, and its numbers are directions across that axis: one of
-a, one of b, and n_b."""
+rest and damping; of the work in y; of how far it was at the end of the last step, by which turns are counted. A row of
+kind POINT is a shift along n_b; any other a turn about n_b, its numbers directions across that axis, one of a and one
+of b, and n_b."""
 
 
 @lean(types.UniTuple(F, 2)(A, A, I))
