@@ -99,7 +99,7 @@ def _shape(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex:
         found: Convex = kind.convex(start, center)
         return found
     except (TypeError, ValueError) as error:
-        help = "spheres, boxes, tubes of one piece, planes and convex meshes do"
+        help = "spheres, boxes, planes and convex meshes do"
         message = f"'{ref.name}' does not collide with rigid bodies yet: {error}"
         raise ScriptError([Diagnostic("no-collider", message, ref.span, help)]) from None
 
