@@ -41,9 +41,10 @@ class Collision(Contact):
     than a ten-thousandth of the object's size.
 
     Rigid bodies (spheres, boxes, convex meshes) collide with one another, with what stands of these shapes and with
-    planes, in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law to rounding
-    (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in the step. A
-    contact has up to 64 of them, none held by ties; `points`, `normals` and `forces` tell of it, hits and rest do not.
+    planes, in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law to
+    rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in
+    the step. A contact has up to 64 of them, none held by ties; `points`, `normals` and `forces` tell of it, hits and
+    rest do not.
 
     Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
     at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
