@@ -61,7 +61,9 @@ class Rigid(Body, Model):
     says no other. A body is an object with an inside (`of`), which it drives, of even density; or it has a mass and
     principal moments of inertia. Forces act at its center of mass, or at one of its `points`. The angular momentum is
     part of the state, so that every method keeps it to rounding where no torque acts; `verlet`, `blanes_moan` and
-    `semi_implicit_euler` turn bodies by their exact free rotation between the forces' kicks.
+    `semi_implicit_euler` turn bodies by their exact free rotation between the forces' kicks. A body tells its
+    `position`, `velocity`, `acceleration`, `origin`, `rotation`, `spin`, `body_spin` and `inertia`, as `crate.spin` or
+    `stones.first.spin`; a point its `position` and `velocity`, as `crate.hook.position`.
     """
 
     turns: ClassVar[bool] = True
