@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.passes.islands import pivots
 from sceneql.failure import RunFailure, Unsuitable
 from sceneql.graph import Island, SimulationGraph
-from sceneql.kinds import Model, Solver
+from sceneql.kinds import Model, Solver, Tie
 from sceneql.quantities.diagnostic import suggestion
 from sceneql.system import IslandFacts
 
@@ -95,10 +96,12 @@ def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dic
     given = {"step": step, "tolerance": tolerance}
     own = graph.tasks[island.solver]
     field = all(cast(Model, graph.tasks[name].kind).is_one_field for name in island.models)
+    ties = [name for name, _ in island.forces if isinstance(graph.tasks[name].kind, Tie)]
+    bound = not pivots(list(dict.fromkeys(ties)), graph.tasks)
     found: dict[str, Solver] = {own.word: cast(Solver, own.kind)}
     for word in catalogue.words("solvers"):
         cls = cast("type[Solver] | None", catalogue.load("solvers", word))
-        if cls is None or word in found or (cls.fields_only and not field):
+        if cls is None or word in found or (cls.fields_only and not field) or (cls.refuses_ties and bound):
             continue
         needed = {name for name, info in cls.model_fields.items() if info.is_required()}
         if needed <= set(given):

@@ -81,7 +81,7 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         solver, reason = _solver(group, tasks, found)
         tied = [f for f, targets in forces.items() if isinstance(tasks[f].kind, Tie) and set(targets) & set(group)]
         marching = tasks[solver].kind
-        if isinstance(marching, Solver) and marching.refuses_ties and not _pivots(tied, tasks):
+        if isinstance(marching, Solver) and marching.refuses_ties and not pivots(tied, tasks):
             word = tasks[solver].word
             message = f"{word} does not march bodies that ties hold, as '{tied[0]}' does: {marching.refuses_ties}"
             help = "choose auto, rk4, dop853 or verlet for them"
@@ -100,7 +100,7 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
     return tuple(result)
 
 
-def _pivots(ties: Sequence[str], tasks: Mapping[str, Task]) -> bool:
+def pivots(ties: Sequence[str], tasks: Mapping[str, Task]) -> bool:
     """Whether ties leave each body just its turning about one point of the world: that motion is known exactly."""
     kinds = [kind for name in ties if isinstance(kind := tasks[name].kind, Tie)]
     bodies = {(ref.name, ref.within) for kind in kinds if (ref := kind.pivot()) is not None}
