@@ -94,6 +94,8 @@ class March:
         self._clock[kernels.LARGEST] = min(stepper.control.largest_step, system.largest_step)
         self._clock[kernels.LEAST] = LEAST * end
         self._started = False
+        self.corrected: Floats | None = None
+        """(n,) what was taken from the state at the start, as velocities that ties forbid; None: nothing settles it."""
         self._floats_time = math.nan
         self._alone, self._sizes = np.zeros(n, dtype=bool), np.zeros(0)
         self._switch = None
@@ -269,7 +271,9 @@ class March:
         if self.system.pairs:
             self.driver.impact(0.0, y, -1, self.floats, self.system.ints)
         if self._counts[kernels.SETTLES]:
-            y[:] = self._settled(0.0, y)
+            settled = self._settled(0.0, y)
+            self.corrected = settled - y
+            y[:] = settled
         self._rate1[:] = self.rate(0.0, y)
         bad = np.flatnonzero(~(np.maximum(np.abs(y), np.abs(self._rate1)) <= LARGEST))
         if len(bad):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from sceneql.island.breakpoints import MOST
-from sceneql.kinds import Interaction, Model
+from sceneql.kinds import Interaction, Model, Tie
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.run.extremes import watched
 from sceneql.run.invariants import invariants_of
@@ -30,6 +30,8 @@ MOST_PAIRED = 256
 """Most bodies of an observed island with forces between all pairs."""
 GAINED = 0.5
 """Energy gained, in parts of the largest kinetic energy, that gives a warning."""
+FORBIDDEN = 1e-6
+"""Part of the velocities at the start above which ties are told to have changed them."""
 OVERSTRETCHED = 4.0
 """(L - L0)/L0 of a spring that gives a warning, unless half of it was there at the start."""
 
@@ -135,6 +137,7 @@ class Watch:
             help = "choose a solver of given steps, or bound its `largest_step`"
             found.append(Diagnostic("many-turns", message, span, help, severity="warning"))
         found += [warning for island in self._islands if (warning := _halved(island)) is not None]
+        found += [warning for island in self._islands if (warning := _forbidden(island)) is not None]
         for island, fields in self._fields:
             for extremes in fields:
                 found += extremes.warnings(island)
@@ -245,3 +248,25 @@ def _impulse(balance: Balance, moment: Instant) -> float:
         if state.bodies is not None:
             total += float(masses(state.bodies, state) @ np.linalg.norm(velocities(state.bodies, state), axis=1))
     return total
+
+
+def _forbidden(island: IslandRun) -> Diagnostic | None:
+    """A warning where ties left bodies other velocities at the start than the script gives."""
+    march, tasks = island.march, island.graph.tasks
+    ties = [name for name, _ in island.island.forces if isinstance(tasks[name].kind, Tie)]
+    if march.corrected is None or not ties:
+        return None
+    for name, bodies in island.bodies.items():
+        if bodies is None:
+            continue
+        own = slice(bodies.velocity_at, bodies.velocity_at + 3 * bodies.count)
+        change = np.linalg.norm(march.corrected[own].reshape(-1, 3), axis=1)
+        given = np.linalg.norm(march.system.y[own].reshape(-1, 3), axis=1)
+        k = int(np.argmax(change)) if bodies.count else 0
+        if bodies.count and change[k] > FORBIDDEN * (given.max() + change[k]):
+            x, y, z = march.system.y[own].reshape(-1, 3)[k] + march.corrected[own].reshape(-1, 3)[k]
+            which = f"body {k + 1} of '{name}'" if bodies.count > 1 else f"'{name}'"
+            text = f"ties forbid the velocities at the start: {which} starts at {x:.3g} {y:.3g} {z:.3g} m/s"
+            help = "give all bodies that ties hold the velocity and the spin that they have together"
+            return Diagnostic("forbidden-start", text, tasks[name].span, help, severity="warning")
+    return None
