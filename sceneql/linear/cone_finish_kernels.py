@@ -13,6 +13,8 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear.cone_points_kernels import determinant, tail
 from sceneql.linear.cone_rows_kernels import (
+    AT_ARM_A,
+    AT_ARM_B,
     AT_B,
     AT_D,
     AT_DS,
@@ -20,6 +22,7 @@ from sceneql.linear.cone_rows_kernels import (
     AT_FORCE,
     AT_FRAME,
     AT_FRICTION,
+    AT_GIVEN,
     AT_H,
     AT_HEAVY,
     AT_IMPULSE,
@@ -29,6 +32,7 @@ from sceneql.linear.cone_rows_kernels import (
     AT_SIZE,
     AT_TORQUE,
     AT_V,
+    AT_VELOCITY,
     AT_X,
     BODIES,
     BODIES_AT,
@@ -38,11 +42,15 @@ from sceneql.linear.cone_rows_kernels import (
     CONTACTS_AT,
     FINISHES,
     OVERLAP,
+    PAIR_A,
+    PAIR_B,
     RESIDUAL,
     RESULT_AT,
     factor,
     in_world,
     momenta_left,
+    pair_of,
+    point_speed,
     put,
     sizes,
     step,
@@ -53,9 +61,12 @@ from sceneql.system.signatures_kernels import A, I, N
 
 STIFF = 1e8
 """Stiffness of the proximal steps, of the contacts' effective masses (and as much more as their impulses are)."""
+FULL, LESS, LEAST = range(3)
+"""How stiff a finish begins, so that errors of velocity do not open contacts that have impulses; all end with STIFF."""
+POOR = 5
+"""Most steps that do not take what is left to 0.3 of its least."""
 EXACT = 5e-15
 """What may be left at most, of the sizes of numbers, to need no further step."""
-POOR = 3
 ENOUGH = 1e-12
 """What is taken for rounding where further steps make it no smaller."""
 
@@ -149,7 +160,7 @@ def look(floats, ints):
 
 @lean(types.boolean(A, I, N, N))
 def finish(floats, ints, most, near):
-    """Newton's steps from v and x to the solution, ``most`` at most; whether it is found."""
+    """Newton's steps from v and x to the solution, ``most`` at most, ``near``: how stiff; whether it is found."""
     before, best, poor = math.inf, math.inf, 0
     for number in range(most + 1):
         worst = look(floats, ints)
@@ -160,7 +171,11 @@ def finish(floats, ints, most, near):
         if number == most or poor > POOR or not worst < math.inf:
             return worst <= ENOUGH
         before, best = worst, min(best, worst)
-        stiff = min(STIFF, max(1e-2 / worst, 1e2)) if near == 1 else STIFF
+        stiff = STIFF
+        if near == LESS:
+            stiff = min(STIFF, max(1e-2 / worst, 1e2))
+        elif near == LEAST:
+            stiff = min(STIFF, max(1e-1 / worst, 1.0))
         symmetric = 1
         for k in range(ints[CONTACTS]):
             if not project(floats, ints[CONTACTS_AT] + CONTACT * k, stiff):
@@ -195,6 +210,11 @@ def tell(floats, ints):
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         x, s = c + AT_X, c + AT_S
+        pair, given = pair_of(ints, k), c + AT_GIVEN
+        ax, ay, az = point_speed(floats, ints, ints[pair + PAIR_A], AT_V, c + AT_ARM_A)
+        bx, by, bz = point_speed(floats, ints, ints[pair + PAIR_B], AT_V, c + AT_ARM_B)
+        ax, ay, az = ax + floats[given], ay + floats[given + 1], az + floats[given + 2]
+        put(floats, c + AT_VELOCITY, ax - bx, ay - by, az - bz)
         put(floats, c + AT_IMPULSE, *in_world(floats, c + AT_FRAME, floats[x], floats[x + 1], floats[x + 2]))
         closing = max(closing, roughness(floats, c) * (tail(floats, s) - floats[s]))
     floats[ints[RESULT_AT] + OVERLAP] = closing

@@ -6,15 +6,18 @@ With M the masses, J the contacts' rows, u = J v + given their velocities and r 
     M (v - v_free) = J^T r,   u + mu |u_T| n in K*,   r in K,   r . (u + mu |u_T| n) = 0,   K: |r_T| <= mu r_N
 
 (Moreau 1988; mu |u_T| n is De Saxce & Feng's (1998) correction, without which the cones are those of Anitescu 2006).
-For a given correction this is a convex program. Mehrotra's interior-point method with Nesterov and Todd's scaling
-solves it, with the correction renewed at every iteration (as Acary, Armand, Nguyen & Shpakovych 2023). Its last digits
-are finish_kernels'.
+First Newton's method of cone_finish_kernels is tried from the guess: what rests is there. Else Mehrotra's
+interior-point method with Nesterov and Todd's scaling goes near the solution, the correction renewed at every iteration
+(as Acary, Armand, Nguyen & Shpakovych 2023) and its derivative in the matrix, which is then not symmetric. Where that
+does not get there, the convex program without correction is solved.
 """
+
+import math
 
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.linear.cone_finish_kernels import finish, roughness, tell
+from sceneql.linear.cone_finish_kernels import FULL, LEAST, LESS, finish, roughness, tell
 from sceneql.linear.cone_points_kernels import aim, inner, scale, scaled, scaled_step, tail
 from sceneql.linear.cone_rows_kernels import (
     AT_B,
@@ -32,6 +35,8 @@ from sceneql.linear.cone_rows_kernels import (
     AT_S,
     AT_SIZE,
     AT_SLIDE,
+    AT_SLIP,
+    AT_SLOPE,
     AT_TORQUE,
     AT_V,
     AT_X,
@@ -57,22 +62,28 @@ from sceneql.linear.cone_rows_kernels import (
 from sceneql.system.signatures_kernels import A, I, N
 
 SOLVED, LOOSE = range(2)
-"""What a solution comes to: to rounding; not, as where contacts ask for what cannot be (then RESULT tells how far)."""
+"""What a solution comes to: to rounding; or not, as where contacts ask for what cannot be, or the method finds no way
+to a solution that is there: then RESULT tells what is left."""
 
-SLIDEW = 1.0
-NEAR = 1e9
-MOST = 40
+MOST = 50
 """Iterations of the interior-point method."""
-CLOSE = 1e-6
-"""What may be left, of the size of the numbers, when the finish is first tried; then a hundredth of it, and so on."""
+WATCHED, FALLS = 8, 0.3
+"""Iterations after which what is left must have fallen to this part, or the method has come to a stop."""
+CLOSE, CLOSED = 1e-6, 1e-9
+"""What may be left, of the size of the numbers, when the finish is first tried, then a hundredth of it, and so on; with
+no correction of slip."""
 BACK = 0.99
 """Part of the step to the boundary of the cones."""
-COLD = 12
+SHORTEST = 1e-10
+"""Part of a step below which the method has come to a stop."""
+CENTERED = 0.1
+"""Least part of the complementarity that a step aims at: the law is not convex, and long steps end at a boundary."""
+COLD = 16
 """Most factorizations of the finish from an interior point."""
 
 
-@lean(types.void(A, I))
-def begin(floats, ints):
+@lean(types.void(A, I, N))
+def begin(floats, ints, follow):
     """The first point: springs of the contacts' effective masses in place of the cones, then moved into these."""
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
@@ -108,7 +119,8 @@ def begin(floats, ints):
         c = ints[CONTACTS_AT] + CONTACT * k
         heavy = floats[c + AT_HEAVY]
         slip = tail(floats, c + AT_S)
-        floats[c + AT_S] += slip
+        floats[c + AT_SLIP] = slip if follow == 1 else 0.0
+        floats[c + AT_S] += floats[c + AT_SLIP]
         for j in range(3):
             floats[c + AT_X + j] = -heavy * floats[c + AT_S + j]
         floats[c + AT_S] = max(floats[c + AT_S], slip) + fastest
@@ -127,8 +139,10 @@ def direct(floats, ints, symmetric):
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         q, ds, slide = c + AT_Q, c + AT_DS, c + AT_SLIDE
+        floats[c + AT_SLOPE] = 0.0
         if symmetric == 0:
-            floats[ds] += floats[slide] * floats[ds + 1] + floats[slide + 1] * floats[ds + 2]
+            floats[c + AT_SLOPE] = floats[slide] * floats[ds + 1] + floats[slide + 1] * floats[ds + 2]
+            floats[ds] += floats[c + AT_SLOPE]
         for j in range(3):
             floats[ds + j] -= floats[c + AT_R + j]
         x, y, z = scaled(floats, c, floats[ds], floats[ds + 1], floats[ds + 2], -1.0)
@@ -145,8 +159,8 @@ def longest(floats, ints):
     return found
 
 
-@lean(types.float64(A, I))
-def left(floats, ints):
+@lean(types.float64(A, I, N))
+def left(floats, ints, follow):
     """Write R and LEFT; what is left of all equations, the largest against the size of the numbers in it."""
     momenta_left(floats, ints)
     worst = 0.0
@@ -161,9 +175,14 @@ def left(floats, ints):
         for j in range(3):
             floats[c + AT_R + j] += floats[c + AT_B + j]
         slip = tail(floats, c + AT_R)
-        floats[c + AT_R] += slip
-        by = SLIDEW / slip if slip > 0.0 else 0.0
+        if follow == 1:
+            # s moves with the correction, so far as it stays in its cone: what grows is the gap, and not what is left.
+            room = 0.5 * (floats[c + AT_S] - tail(floats, c + AT_S))
+            floats[c + AT_S] += max(slip - floats[c + AT_SLIP], -room)
+            floats[c + AT_SLIP] = slip
+        by = 1.0 / slip if slip > 0.0 else 0.0
         floats[c + AT_SLIDE], floats[c + AT_SLIDE + 1] = by * floats[c + AT_R + 1], by * floats[c + AT_R + 2]
+        floats[c + AT_R] += floats[c + AT_SLIP]
         size = floats[c + AT_SIZE] / roughness(floats, c)
         for j in range(3):
             floats[c + AT_R + j] = floats[c + AT_S + j] - floats[c + AT_R + j]
@@ -194,7 +213,7 @@ def iterate(floats, ints, symmetric):
         put(floats, c + AT_Q, -floats[point], -floats[point + 1], -floats[point + 2])
     direct(floats, ints, symmetric)
     rest = 1.0 - longest(floats, ints)
-    centered = rest * rest * rest * total / ints[CONTACTS]
+    centered = max(CENTERED, rest * rest * rest) * total / ints[CONTACTS]
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         aim(floats, c, centered)
@@ -209,35 +228,44 @@ def iterate(floats, ints, symmetric):
         for j in range(3):
             floats[c + AT_X + j] += part * floats[c + AT_DX + j]
             floats[c + AT_S + j] += part * floats[c + AT_DS + j]
+        floats[c + AT_SLIP] += part * floats[c + AT_SLOPE]
     return part
 
 
-@lean(types.boolean(A, I))
-def inside(floats, ints):
-    """The interior-point method, from its own first point; whether the finish was reached."""
-    begin(floats, ints)
+@lean(types.boolean(A, I, N))
+def inside(floats, ints, follow):
+    """The interior-point method, from its own first point; whether the finish found the solution from there.
+
+    The correction follows the slip; or (``follow`` 0) there is none, and the program is convex: what slides comes off
+    by mu |u_T| (Anitescu's cones), and nothing closes.
+    """
+    begin(floats, ints, follow)
     sizes(floats, ints)
-    close, symmetric = CLOSE, 1
-    for _ in range(MOST):
-        worst = left(floats, ints)
+    close, near, before = CLOSE if follow == 1 else CLOSED, LESS, math.inf
+    for number in range(MOST):
+        worst = left(floats, ints, follow)
         if worst <= close:
             keep(floats, ints)
-            if finish(floats, ints, COLD, 1):
+            if finish(floats, ints, COLD, near):
                 return True
             fetch(floats, ints)
-            left(floats, ints)
+            if follow == 0:
+                return False
+            left(floats, ints, follow)
             close *= 1e-2
-        if symmetric == 1 and worst < NEAR:
-            symmetric = 0
-        part = iterate(floats, ints, symmetric)
-        if symmetric == 0 and part < 0.3:
-            symmetric = 2
-        elif symmetric == 2:
-            symmetric = 1
-        if part < 1e-8:
+            near = LESS + LEAST - near
+        if number % WATCHED == 0:
+            if worst > FALLS * before:
+                break
+            before = worst
+        if iterate(floats, ints, 1 - follow) < SHORTEST:
             break
         ints[ITERATIONS] += 1
-    return finish(floats, ints, COLD, 1)
+    keep(floats, ints)
+    if finish(floats, ints, COLD, LESS):
+        return True
+    fetch(floats, ints)
+    return False
 
 
 @lean(types.int64(A, I))
@@ -245,6 +273,6 @@ def solve(floats, ints):
     """Solve a program, whose given numbers are written, from the guesses of velocities and impulses in it."""
     ints[ITERATIONS], ints[FINISHES] = 0, 0
     prepare(floats, ints)
-    found = finish(floats, ints, ints[TRIES], 0) or inside(floats, ints)
+    found = finish(floats, ints, ints[TRIES], FULL) or inside(floats, ints, 1) or inside(floats, ints, 0)
     tell(floats, ints)
     return SOLVED if found else LOOSE

@@ -20,7 +20,8 @@ BODIES, CONTACTS, PAIRS_AT, CONTACT_INTS_AT, DIAGONAL_AT, PLAN_AT, PLAN, BODIES_
 VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, RESULT_AT, TRIES, ITERATIONS, FINISHES, HEAD = range(10, 21)
 """Integers of a program: numbers of bodies and (to be written) of contacts; where its pairs, its contacts' pairs (to be
 written), the places of the diagonal's blocks and the plan begin; offsets into the floats, and sizes; how many
-factorizations may be tried from the guess (to be written); then what a solution took: iterations of the interior-point method, and factorizations at its end."""
+factorizations may be tried from the guess (to be written); then what a solution took: iterations of the interior-point
+method, and factorizations of Newton's method besides."""
 
 PAIR_A, PAIR_B, PAIR_AB, PAIR_BA, PAIR = range(5)
 """Integers of a pair: its bodies (-1: one that is fixed or led), the places of its two blocks beside the diagonal."""
@@ -35,14 +36,14 @@ equations, sizes of the momenta and angular momenta in these, the inverse inerti
 AT_NORMAL, AT_ARM_A, AT_ARM_B, AT_FRICTION, AT_GIVEN, AT_IMPULSE, AT_VELOCITY, AT_FRAME, AT_X, AT_S = (
     0, 3, 6, 9, 10, 13, 16, 19, 28, 31
 )  # fmt: skip
-AT_DX, AT_DS, AT_Q, AT_LAMBDA, AT_W, AT_ETA, AT_H, AT_B, AT_R, AT_HEAVY, AT_SIZE, AT_OLD_X, AT_SLIDE, CONTACT = (
-    34, 37, 40, 43, 46, 49, 50, 59, 62, 65, 66, 67, 73, 75
-)  # fmt: skip
+AT_DX, AT_DS, AT_Q, AT_LAMBDA, AT_W, AT_ETA, AT_H, AT_B, AT_R, AT_HEAVY = 34, 37, 40, 43, 46, 49, 50, 59, 62, 65
+AT_SIZE, AT_OLD_X, AT_SLIDE, AT_SLIP, AT_SLOPE, CONTACT = 66, 67, 73, 75, 76, 77
 """Floats of a contact. Given: normal from b to a, arms from the bodies' centers, coefficient of friction, what is added
 to the velocity of a against b: the gap over the step along the normal (or the velocity after a bounce, reversed), less
 the velocity of a led body. Found, in the world: impulse on a (given: a guess) and velocity with what was added.
 Scratch: frame (3, 3), x, s, their changes, right hand side, scaled point, scaling (3, 1), matrix (3, 3), given velocity
-in the frame, what is left of s, effective mass, size of the velocities, x and s to come back to, direction of slip."""
+in the frame, what is left of s, effective mass, size of the velocities, x and s to come back to, direction of slip (2),
+slip, its change."""
 
 RESIDUAL, OVERLAP, RESULT = range(3)
 """Floats that are found: what is left of the equations, of the size of the numbers in them; the largest velocity with

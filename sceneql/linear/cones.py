@@ -36,6 +36,7 @@ def cone_program(bodies: int, pairs: Sequence[tuple[int, int]], most: int) -> Co
     """The program of bodies that move, for at most so many contacts of these pairs (-1: what is fixed or led).
 
     Which contacts there are, and of which pairs, is written before each solution: pairs without contacts cost little.
+    Every pair has a body that moves, and there is at least one.
     """
     import numpy as np
     from scipy.sparse import csr_array
