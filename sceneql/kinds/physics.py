@@ -269,6 +269,10 @@ class Contact(Kind):
         """What `explain` says of it at the start of the run, as what it leaves out."""
         return ""
 
+    def trouble(self, state: ModelState) -> str:
+        """What a warning says of it at the end of a run; empty for nothing."""
+        return ""
+
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Methods:

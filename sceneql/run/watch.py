@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from sceneql.island.breakpoints import MOST
-from sceneql.kinds import Interaction, Model, Tie
+from sceneql.kinds import Contact, Interaction, Model, Tie
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.run.extremes import watched
 from sceneql.run.invariants import invariants_of
@@ -138,6 +139,7 @@ class Watch:
             found.append(Diagnostic("many-turns", message, span, help, severity="warning"))
         found += [warning for island in self._islands if (warning := _halved(island)) is not None]
         found += [warning for island in self._islands if (warning := _forbidden(island)) is not None]
+        found += [warning for island in self._islands for warning in _troubled(island)]
         for island, fields in self._fields:
             for extremes in fields:
                 found += extremes.warnings(island)
@@ -270,3 +272,11 @@ def _forbidden(island: IslandRun) -> Diagnostic | None:
             help = "give all bodies that ties hold the velocity and the spin that they have together"
             return Diagnostic("forbidden-start", text, tasks[name].span, help, severity="warning")
     return None
+
+
+def _troubled(island: IslandRun) -> Iterator[Diagnostic]:
+    """What contacts say of the run at its end."""
+    tasks = island.graph.tasks
+    for name in dict.fromkeys(contact for contact, _, _ in island.island.contacts):
+        if text := cast(Contact, tasks[name].kind).trouble(island.state(name)):
+            yield Diagnostic("contact-trouble", text, tasks[name].span, severity="warning")

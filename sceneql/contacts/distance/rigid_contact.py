@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.island.start import Start
 from sceneql.kinds import Ref, Value
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 
 if TYPE_CHECKING:
     from sceneql.contacts.distance.convex import Convex
@@ -18,15 +18,19 @@ MOST = 64
 """Bodies of one contact: all pairs of them are planned."""
 CONTACTS = 24
 """Room for contacts by the body."""
+DEEP = 1e-6
+"""Part of a body's size by which it may start inside another: rounding in a script."""
+SHAPE = 3
+"""Integers of a shape (convex.SHAPE)."""
 KERNEL = "sceneql.contacts.distance.rigid_local_kernels:back_off"
 
 
 def assemble(
     assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref], restitution: Value, friction: Value
-) -> tuple[int, int, int, int]:
-    """Add the contacts of rigid bodies; the offsets of their count, points, normals and forces in the floats.
+) -> tuple[int, ...]:
+    """Add the contacts of rigid bodies; the offsets of their count, points, normals, forces and loose steps.
 
-    Raises ScriptError for a shape that is not covered.
+    Raises ScriptError for a shape that is not covered, and for bodies that start inside each other.
     """
     import numpy as np
 
@@ -36,6 +40,8 @@ def assemble(
     from sceneql.linear.cones import cone_program
 
     numbers, shapes, fixed, rows = assembly.numbers(), [], [], []
+    moving: list[tuple[Ref | None, Floats]] = []
+    standing: list[Ref | None] = []
     start = assembly.start()
     for bodies in everyone:
         turning = bodies.turning
@@ -44,9 +50,12 @@ def assemble(
         for k, (ref, center) in enumerate(model.solids()):
             shape = _shape(ref, center, assembly)
             x, q = bodies.position_at + 3 * k, turning.rotation_at + 4 * k
+            place = np.concatenate([start[x : x + 3], start[q : q + 4]])
             if numbers[bodies.inverse_at + k] == 0.0:
-                fixed.append((shape, np.concatenate([start[x : x + 3], start[q : q + 4]])))
+                fixed.append((shape, place))
+                standing.append(ref)
                 continue
+            moving.append((ref, place))
             inertia: Floats = np.asarray(np.linalg.inv(unpacked(numbers[turning.inverse_at + 6 * k :][:6])))
             rows.append(
                 (
@@ -58,6 +67,7 @@ def assemble(
     for ref in others:
         shape = _shape(ref, np.zeros(3), assembly)
         fixed.append((shape, _place(ref, assembly)))
+        standing.append(ref)
     n = len(rows)
     if n > MOST:
         message = f"{n} rigid bodies are too many for one contact: at most {MOST}"
@@ -67,6 +77,8 @@ def assemble(
     places = np.zeros((count, kernels.PLACE))
     for k, (_, place) in enumerate(fixed):
         places[n + k] = place
+    names = [*(ref for ref, _ in moving), *standing]
+    _must_be_apart(everything, [*(place for _, place in moving), *(place for _, place in fixed)], n, names, assembly)
     pairs = [(a, b) for a in range(n) for b in range(a + 1, n)] + [(a, -1) for a in range(n)]
     program = cone_program(n, pairs, most)
     sizes = [places.size, 6 * count, 6 * count, convex.room_length(everything), len(program.floats)]
@@ -74,6 +86,7 @@ def assemble(
     motions_at, boxes_at, room_at = (assembly.floats(np.zeros(size)) for size in sizes[1:4])
     program_at = assembly.floats(program.floats)
     found = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
+    loose = assembly.floats([0.0])
     shapes_at = kernels.HEAD
     _, integers = convex.joined(everything, 0, 0)
     data = assembly.floats(convex.joined(everything, 0, 0)[0])
@@ -82,10 +95,32 @@ def assemble(
     program_ints_at = bodies_at + kernels.BODY_INTS * n
     head = [n, count, shapes_at, bodies_at, places_at, motions_at, boxes_at, room_at, sizes[3]]
     head += [program_at, sizes[4], program_ints_at, len(program.ints), most]
-    head += [assembly.value(restitution), assembly.value(friction), *found, 0]
+    head += [assembly.value(restitution), assembly.value(friction), *found, loose]
     ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *program.ints.tolist()]
     assembly.contact("local", (KERNEL,), [int(number) for number in ints], 0)
-    return found[0], found[1], found[2], found[3]
+    return (*found, loose)
+
+
+def _must_be_apart(
+    shapes: Sequence[Convex], places: Sequence[Floats], moving: int, refs: Sequence[Ref | None], assembly: Assembly
+) -> None:
+    """Raise ScriptError for bodies that start inside one another or inside what stands; all such pairs at once."""
+    import numpy as np
+
+    from sceneql.contacts.distance import convex
+    from sceneql.contacts.distance.gap_kernels import gap
+
+    floats, ints = convex.joined(shapes)
+    room, where = np.zeros(convex.room_length(shapes)), np.concatenate(places)
+    found = Diagnostics()
+    for a in range(moving):
+        for b in range(a + 1, len(shapes)):
+            depth = -gap(floats, ints, SHAPE * a, SHAPE * b, where, 7 * a, 7 * b, room)[0]
+            one, other = refs[a], refs[b]
+            if one is not None and other is not None and depth > DEEP * shapes[a].floats[1]:
+                message = f"'{one.name}' starts {depth:.3g} m inside '{other.name}'"
+                found.error("starts-inside", message, assembly.line(), help="move one of them away")
+    found.raise_errors()
 
 
 def _shape(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex:

@@ -18,7 +18,7 @@ from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.first_touch_kernels import first_touch
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT, manifold
 from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept_box
-from sceneql.linear.cone_kernels import solve
+from sceneql.linear.cone_kernels import SOLVED, solve
 from sceneql.linear.cone_rows_kernels import (
     AT_ARM_A,
     AT_ARM_B,
@@ -40,12 +40,12 @@ from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
 BODIES, SHAPES, SHAPES_AT, BODIES_AT, PLACES_AT, MOTIONS_AT, BOXES_AT, ROOM_AT, ROOM = range(9)
 PROGRAM_AT, PROGRAM, PROGRAM_INTS_AT, PROGRAM_INTS, MOST_CONTACTS, RESTITUTION_AT, FRICTION_AT = range(9, 16)
-COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, MASSES_AT, HEAD = range(16, 22)
+COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, LOOSE_AT, HEAD = range(16, 22)
 """Integers of an island's contacts: numbers of bodies that move and of shapes, of which theirs come first; where the
 shapes (contacts/distance/convex.py) and the bodies' integers begin; offsets into the floats of places (7 a shape),
 motions (6), boxes, working memory and its size; of the cone program's floats and their number, and where its integers
 begin and their number; room for contacts; offsets of the coefficients; of how many contacts there were, and of their
-points, normals and forces."""
+points, normals and forces; of the steps whose contacts were not solved to rounding."""
 
 PLACE, MOTION = 7, 6
 X_AT, V_AT, Q_AT, L_AT, MASS_AT, INERTIA_AT, WORK_AT, BODY_INTS = range(8)
@@ -244,7 +244,8 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     if contacts == 0:
         return
     plan[CONTACTS] = contacts
-    solve(program, plan)
+    if solve(program, plan) != SOLVED:
+        floats[ints[LOOSE_AT]] += 1.0
     touched = np.zeros(n)
     for k in range(contacts):
         c = plan[CONTACTS_AT] + CONTACT * k

@@ -72,6 +72,13 @@ class Collision(Contact):
     thickness: FixedLength = field("Distance to keep besides the radius.", "0 m", at_least=0)
     mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
 
+    def trouble(self, state: ModelState) -> str:
+        """Steps in which contacts of rigid bodies had no solution to rounding."""
+        loose = sum(state.floats[state.ints[k + 5]] for k, each in enumerate(state.ints) if each == -1)
+        if not loose:
+            return ""
+        return f"in {loose:.0f} steps contacts of rigid bodies were not solved to rounding: friction there is not exact"
+
     def _rigid(self, output: str, state: ModelState) -> Any:
         """Points, normals and forces of the contacts of rigid bodies at the end of the latest step (n, 3)."""
         import numpy as np
