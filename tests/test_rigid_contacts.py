@@ -170,3 +170,14 @@ def test_what_is_not_covered_is_told_at_its_place(tmp_path):
         assert not complaint(tmp_path, head + script)
         with pytest.raises(Exception, match=words):
             runs.watch(tmp_path, head + script, [0], "a.energy")
+
+
+@pytest.mark.parametrize("solver", ["semi_implicit_euler: {step: 8 ms}", "verlet: {step: 8 ms}"])
+def test_what_rests_is_read_where_it_is_held_between_steps_too(tmp_path, solver):
+    objects, bodies = stack([1])
+    times = [0.2, 0.202, 0.204, 0.2075]
+    seen = watch(tmp_path, objects, bodies, times, "it.positions", "it.velocities", "it.energy", solver=solver)
+    for places, velocities, energy in seen:
+        np.testing.assert_allclose(places, [[0, 0.5, 0]], rtol=0, atol=1e-14)
+        np.testing.assert_allclose(velocities, 0, atol=1e-14)
+        assert energy == pytest.approx(0.5 * 9.81, rel=1e-14)

@@ -236,12 +236,13 @@ class March:
             self._extend_step(t0, h)
             self._extended = t1
         y = np.empty_like(self._y1)
-        # What settles the end of a step takes errors away, which dense output has, too.
-        y1 = self._sample if self._counts[kernels.SETTLES] and not altered else self._y1
+        # What settles the end of a step takes errors away, which dense output has, too; what contacts change it has not.
+        settles, touched = bool(self._counts[kernels.SETTLES]) and not altered, bool(self._counts[kernels.LOCAL])
+        y1 = self._sample if settles and not touched else self._y1
         steps = (self._y0, self._rate0, y1, self._rate1, self._work, self._settings, self._numbers)
         dense = kernels.hermite if altered else self._dense
         dense((t - t0) / h, h, *steps, y)
-        if self._mixed:
+        if self._mixed or (settles and touched):
             changed = self._sample != self._y1
             if changed.any():
                 line = np.empty_like(y)
