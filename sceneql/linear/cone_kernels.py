@@ -11,6 +11,8 @@ solves it, with the correction renewed at every iteration (as Acary, Armand, Ngu
 are finish_kernels'.
 """
 
+import math
+
 from numba import types
 
 from sceneql.compiled.kernels import lean
@@ -147,14 +149,18 @@ def longest(floats, ints):
 
 @lean(types.float64(A, I))
 def left(floats, ints):
-    """Write R and LEFT; what is left of all equations, the largest against the size of the numbers in it."""
+    """Write R and LEFT; what is left of all equations, the largest against the size of the numbers in it.
+
+    Infinity where a number is none: `max` would pass over it.
+    """
     momenta_left(floats, ints)
-    worst = 0.0
+    worst = every = 0.0
     for body in range(ints[BODIES]):
         at = ints[BODIES_AT] + BODY * body
         for j in range(6):
             size = floats[at + (AT_FORCE if j < 3 else AT_TORQUE)]
             worst = max(worst, abs(floats[at + AT_LEFT + j]) / max(size, 1e-300))
+            every += floats[at + AT_LEFT + j]
     to_contacts(floats, ints, AT_V, AT_R)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
@@ -169,8 +175,10 @@ def left(floats, ints):
             floats[c + AT_R + j] = floats[c + AT_S + j] - floats[c + AT_R + j]
             worst = max(worst, abs(floats[c + AT_R + j]) / size)
         full = max(floats[c + AT_HEAVY] * roughness(floats, c) * size, floats[c + AT_X])
-        worst = max(worst, inner(floats, c + AT_X, c + AT_S) / (full * size))
-    return worst
+        gap = inner(floats, c + AT_X, c + AT_S) / (full * size)
+        worst = max(worst, gap)
+        every += gap + floats[c + AT_R] + floats[c + AT_R + 1] + floats[c + AT_R + 2]
+    return worst if abs(every) < math.inf else math.inf
 
 
 @lean(types.float64(A, I, N))
@@ -214,14 +222,21 @@ def iterate(floats, ints, symmetric):
 
 @lean(types.boolean(A, I))
 def inside(floats, ints):
-    """The interior-point method, from its own first point; whether the finish was reached."""
+    """The interior-point method, from its own first point; whether the finish was reached.
+
+    Where it was not, its best point is left: what a finish that fails leaves may be far from all or no number.
+    """
     begin(floats, ints)
     sizes(floats, ints)
-    close, symmetric = CLOSE, 1
+    close, symmetric, best = CLOSE, 1, math.inf
     for _ in range(MOST):
         worst = left(floats, ints)
-        if worst <= close:
+        if not worst < math.inf:
+            break
+        if worst < best:
             keep(floats, ints)
+            best = worst
+        if worst <= close:
             if finish(floats, ints, COLD, 1):
                 return True
             fetch(floats, ints)
@@ -237,7 +252,13 @@ def inside(floats, ints):
         if part < 1e-8:
             break
         ints[ITERATIONS] += 1
-    return finish(floats, ints, COLD, 1)
+    if best < math.inf:
+        fetch(floats, ints)
+    if finish(floats, ints, COLD, 1):
+        return True
+    if best < math.inf:
+        fetch(floats, ints)
+    return False
 
 
 @lean(types.int64(A, I))
