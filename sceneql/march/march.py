@@ -234,7 +234,7 @@ class March:
             self._extend_step(t0, h)
             self._extended = t1
         y = np.empty_like(self._y1)
-        # What settles the end of a step takes errors away, which dense output has, too; what contacts change it has not.
+        # What settles the end of a step takes errors away, which dense output has, too; what contacts do it has not.
         settles, touched = bool(self._counts[kernels.SETTLES]) and not altered, bool(self._counts[kernels.LOCAL])
         y1 = self._sample if settles and not touched else self._y1
         steps = (self._y0, self._rate0, y1, self._rate1, self._work, self._settings, self._numbers)
