@@ -142,18 +142,27 @@ def project(floats, c, stiff):
 
 @lean(types.float64(A, I))
 def look(floats, ints):
-    """Write LEFT and all s; what is left of all equations, the largest against the size of the numbers in it."""
+    """Write LEFT and all s; what is left of all equations, the largest against the size of the numbers in it.
+
+    Infinity where a number is none: `max` would pass over it.
+    """
     momenta_left(floats, ints)
     sizes(floats, ints)
-    worst = 0.0
+    worst = every = 0.0
     for body in range(ints[BODIES]):
         at = ints[BODIES_AT] + BODY * body
         for j in range(6):
             size = floats[at + (AT_FORCE if j < 3 else AT_TORQUE)]
             worst = max(worst, abs(floats[at + AT_LEFT + j]) / max(size, 1e-300))
+            every += floats[at + AT_LEFT + j]
     to_contacts(floats, ints, AT_V, AT_S)
     for k in range(ints[CONTACTS]):
-        worst = max(worst, see(floats, ints[CONTACTS_AT] + CONTACT * k))
+        c = ints[CONTACTS_AT] + CONTACT * k
+        worst = max(worst, see(floats, c))
+        for j in range(3):
+            every += floats[c + AT_X + j] + floats[c + AT_S + j]
+    if not abs(every) < math.inf:
+        worst = math.inf
     floats[ints[RESULT_AT] + RESIDUAL] = worst
     return worst
 

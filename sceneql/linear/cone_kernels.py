@@ -161,14 +161,18 @@ def longest(floats, ints):
 
 @lean(types.float64(A, I, N))
 def left(floats, ints, follow):
-    """Write R and LEFT; what is left of all equations, the largest against the size of the numbers in it."""
+    """Write R and LEFT; what is left of all equations, the largest against the size of the numbers in it.
+
+    Infinity where a number is none: `max` would pass over it.
+    """
     momenta_left(floats, ints)
-    worst = 0.0
+    worst = every = 0.0
     for body in range(ints[BODIES]):
         at = ints[BODIES_AT] + BODY * body
         for j in range(6):
             size = floats[at + (AT_FORCE if j < 3 else AT_TORQUE)]
             worst = max(worst, abs(floats[at + AT_LEFT + j]) / max(size, 1e-300))
+            every += floats[at + AT_LEFT + j]
     to_contacts(floats, ints, AT_V, AT_R)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
@@ -188,8 +192,10 @@ def left(floats, ints, follow):
             floats[c + AT_R + j] = floats[c + AT_S + j] - floats[c + AT_R + j]
             worst = max(worst, abs(floats[c + AT_R + j]) / size)
         full = max(floats[c + AT_HEAVY] * roughness(floats, c) * size, floats[c + AT_X])
-        worst = max(worst, inner(floats, c + AT_X, c + AT_S) / (full * size))
-    return worst
+        gap = inner(floats, c + AT_X, c + AT_S) / (full * size)
+        worst = max(worst, gap)
+        every += gap + floats[c + AT_R] + floats[c + AT_R + 1] + floats[c + AT_R + 2]
+    return worst if abs(every) < math.inf else math.inf
 
 
 @lean(types.float64(A, I, N))
@@ -241,11 +247,15 @@ def inside(floats, ints, follow):
     """
     begin(floats, ints, follow)
     sizes(floats, ints)
-    close, near, before = CLOSE if follow == 1 else CLOSED, LESS, math.inf
+    close, near, before, best = CLOSE if follow == 1 else CLOSED, LESS, math.inf, math.inf
     for number in range(MOST):
         worst = left(floats, ints, follow)
-        if worst <= close:
+        if not worst < math.inf:
+            break
+        if worst < best:
             keep(floats, ints)
+            best = worst
+        if worst <= close:
             if finish(floats, ints, COLD, near):
                 return True
             fetch(floats, ints)
@@ -261,10 +271,11 @@ def inside(floats, ints, follow):
         if iterate(floats, ints, 1 - follow) < SHORTEST:
             break
         ints[ITERATIONS] += 1
-    keep(floats, ints)
-    if finish(floats, ints, COLD, LESS):
-        return True
-    fetch(floats, ints)
+    if best < math.inf:
+        fetch(floats, ints)
+        if finish(floats, ints, COLD, LESS):
+            return True
+        fetch(floats, ints)
     return False
 
 
