@@ -37,6 +37,12 @@ class Convex:
     """Of a CORE: numbers v, f, e of vertices, faces and edges, length of all loops, then where the loop of each face
     begins (f + 1), the loops, counterclockwise from outside, and the edges (e, 4): vertices and faces (-1: none)."""
 
+    @property
+    def reach(self) -> float:
+        """Distance of its farthest point from the origin [m]."""
+        _, found, *_ = self.floats.tolist()
+        return float(found)
+
 
 def ball(radius: float, center: Sequence[float] | Floats = (0.0, 0.0, 0.0)) -> Convex:
     """A ball [m]."""
@@ -106,8 +112,8 @@ def room_length(shapes: Sequence[Convex]) -> int:
     """Numbers of working memory that the kernels of distances need for any two of the shapes."""
     from sceneql.contacts.distance.core_kernels import ROOM
 
-    cores = [shape.ints for shape in shapes if shape.kind == CORE]
-    longest = max((4 * int(ints[0]) + 3 * int(ints[1]) + 14 * (int(ints[3]) + 2) for ints in cores), default=0)
+    cores = [shape.ints.tolist() for shape in shapes if shape.kind == CORE]
+    longest = max((4 * vertices + 3 * faces + 14 * (loops + 2) for vertices, faces, _, loops, *_ in cores), default=0)
     return ROOM + 2 * longest
 
 

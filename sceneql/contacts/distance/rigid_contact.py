@@ -117,7 +117,7 @@ def _must_be_apart(
         for b in range(a + 1, len(shapes)):
             depth = -gap(floats, ints, SHAPE * a, SHAPE * b, where, 7 * a, 7 * b, room)[0]
             one, other = refs[a], refs[b]
-            if one is not None and other is not None and depth > DEEP * shapes[a].floats[1]:
+            if one is not None and other is not None and depth > DEEP * shapes[a].reach:
                 message = f"'{one.name}' starts {depth:.3g} m inside '{other.name}'"
                 found.error("starts-inside", message, assembly.line(), help="move one of them away")
     found.raise_errors()
