@@ -72,6 +72,7 @@ class Rigid(Body, Model):
     bodies: dict[str, Member] | None = field("Several bodies by name.", None)
 
     _made: dict[str, Made] = PrivateAttr(default_factory=dict)
+    _whole: dict[str, Body] = PrivateAttr(default_factory=dict)
 
     def problems(self) -> Iterator[Problem]:
         """Those of a body; one body and several, or none."""
@@ -94,6 +95,8 @@ class Rigid(Body, Model):
         """The bodies by name, with the model's fields where they say none; one alone has an empty name."""
         if self.bodies is None:
             return {"": self}
+        if self._whole:
+            return self._whole
         defaults = {name: read_default(info) for name, info in Body.model_fields.items()}
         said = {name: value for name, default in defaults.items() if (value := getattr(self, name)) != default}
 
@@ -104,7 +107,8 @@ class Rigid(Body, Model):
                 more = {name: value for name, value in more.items() if name not in ("mass", "density")}
             return body.model_copy(update=more)
 
-        return {name: whole(body) for name, body in self.bodies.items()}
+        self._whole = {name: whole(body) for name, body in self.bodies.items()}
+        return self._whole
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
