@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import runs
 from runs import complaint
+from sceneql.cli import cli
 
 SOLVER = "semi_implicit_euler: {step: 5 ms}"
 
@@ -181,3 +183,25 @@ def test_what_rests_is_read_where_it_is_held_between_steps_too(tmp_path, solver)
         np.testing.assert_allclose(places, [[0, 0.5, 0]], rtol=0, atol=1e-14)
         np.testing.assert_allclose(velocities, 0, atol=1e-14)
         assert energy == pytest.approx(0.5 * 9.81, rel=1e-14)
+
+
+def test_contacts_without_room_are_told(tmp_path):
+    tiles = "".join(
+        f"  t{i}_{j}: {{box: {{size: 0.1 0.1 0.1 m, position: {0.1 * i - 0.45:.2f} -0.05 {0.1 * j - 0.45:.2f} m}}}}\n"
+        for i in range(10)
+        for j in range(10)
+    )
+    path = tmp_path / "scene.yaml"
+    path.write_text(f"""
+clock: {{end: 0.1 s}}
+objects:
+  cube: {{box: {{position: 0 0.5 0 m}}}}
+{tiles}
+models: {{it: {{rigid: {{of: cube}}}}}}
+forces: [gravity]
+contacts: {{touch: {{collision: {{restitution: 0}}}}}}
+solvers: {{main: {{{SOLVER}}}}}
+outputs: {{table: {{record: {{of: [it.energy]}}}}}}
+""")
+    done = CliRunner().invoke(cli, ["render", str(path), "-o", str(tmp_path / "out")])
+    assert "more contacts than there is room for" in done.output

@@ -28,7 +28,7 @@ KERNEL = "sceneql.contacts.distance.rigid_local_kernels:back_off"
 def assemble(
     assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref], restitution: Value, friction: Value
 ) -> tuple[int, ...]:
-    """Add the contacts of rigid bodies; the offsets of their count, points, normals, forces and loose steps.
+    """Add the contacts of rigid bodies; the offsets of count, points, normals, forces, loose and crowded steps.
 
     Raises ScriptError for a shape that is not covered, and for bodies that start inside each other.
     """
@@ -86,19 +86,18 @@ def assemble(
     motions_at, boxes_at, room_at = (assembly.floats(np.zeros(size)) for size in sizes[1:4])
     program_at = assembly.floats(program.floats)
     found = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
-    loose = assembly.floats([0.0])
+    loose, crowded = assembly.floats([0.0]), assembly.floats([0.0])
     shapes_at = kernels.HEAD
-    _, integers = convex.joined(everything, 0, 0)
     data = assembly.floats(convex.joined(everything, 0, 0)[0])
     _, integers = convex.joined(everything, data, shapes_at)
     bodies_at = shapes_at + len(integers)
     program_ints_at = bodies_at + kernels.BODY_INTS * n
     head = [n, count, shapes_at, bodies_at, places_at, motions_at, boxes_at, room_at, sizes[3]]
     head += [program_at, sizes[4], program_ints_at, len(program.ints), most]
-    head += [assembly.value(restitution), assembly.value(friction), *found, loose]
+    head += [assembly.value(restitution), assembly.value(friction), *found, loose, crowded]
     ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *program.ints.tolist()]
     assembly.contact("local", (KERNEL,), [int(number) for number in ints], 0)
-    return (*found, loose)
+    return (*found, loose, crowded)
 
 
 def _must_be_apart(

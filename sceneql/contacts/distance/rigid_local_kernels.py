@@ -40,12 +40,12 @@ from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
 BODIES, SHAPES, SHAPES_AT, BODIES_AT, PLACES_AT, MOTIONS_AT, BOXES_AT, ROOM_AT, ROOM = range(9)
 PROGRAM_AT, PROGRAM, PROGRAM_INTS_AT, PROGRAM_INTS, MOST_CONTACTS, RESTITUTION_AT, FRICTION_AT = range(9, 16)
-COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, LOOSE_AT, HEAD = range(16, 22)
+COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, LOOSE_AT, CROWDED_AT, HEAD = range(16, 23)
 """Integers of an island's contacts: numbers of bodies that move and of shapes, of which theirs come first; where the
 shapes (contacts/distance/convex.py) and the bodies' integers begin; offsets into the floats of places (7 a shape),
 motions (6), boxes, working memory and its size; of the cone program's floats and their number, and where its integers
 begin and their number; room for contacts; offsets of the coefficients; of how many contacts there were, and of their
-points, normals and forces; of the steps whose contacts were not solved to rounding."""
+points, normals and forces; of the steps whose contacts were not solved to rounding, or had no room."""
 
 PLACE, MOTION = 7, 6
 X_AT, V_AT, Q_AT, L_AT, MASS_AT, INERTIA_AT, WORK_AT, BODY_INTS = range(8)
@@ -56,8 +56,8 @@ BOUNCES = 2.0
 """A contact bounces that approaches faster than the step's forces make it in so many steps."""
 
 
-@lean(types.void(A, N, A, N, I, A, N))
-def inertia_of(y, q, floats, at, ints, out, to):
+@lean(types.void(A, N, A, N, A, N))
+def inertia_of(y, q, floats, at, out, to):
     """Write the inertia in the world's axes (3, 3) to out[to:]."""
     for c in range(3):
         e = to_body(y, q, 1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2))
@@ -149,7 +149,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         for c in range(4):
             places[PLACE * k + 3 + c] = y0[q + c]
         program[body + AT_MASS] = floats[ints[own + MASS_AT]]
-        inertia_of(y0, q, floats, ints[own + INERTIA_AT], ints, program, body + AT_INERTIA)
+        inertia_of(y0, q, floats, ints[own + INERTIA_AT], program, body + AT_INERTIA)
         for y, to in ((y1, motions), (y0, before)):
             wx, wy, wz = spin_by(program, body + AT_INERTIA, y[momentum], y[momentum + 1], y[momentum + 2])
             to[MOTION * k + 3], to[MOTION * k + 4], to[MOTION * k + 5] = wx, wy, wz
@@ -171,7 +171,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         found = near_pairs(boxes, pairs)
     points, names = np.zeros(MOST * POINT), np.zeros(MOST * NAME, dtype=np.int64)
     friction, restitution = floats[ints[FRICTION_AT]], floats[ints[RESTITUTION_AT]]
-    contacts = 0
+    contacts, crowded = 0, 0.0
     for p in range(found):
         a, b = pairs[p, 0], pairs[p, 1]
         if a >= n:
@@ -185,7 +185,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
             floats, ints, head + SHAPE * a, head + SHAPE * b, places, PLACE * a, PLACE * b, margin, points, names, room
         )
         far = gap > 1e-3 * reach
-        if count == 0 or contacts + count > ints[MOST_CONTACTS]:
+        if count == 0:
             continue
         if far:
             touch = first_touch(
@@ -194,6 +194,9 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
             )  # fmt: skip
             if touch == math.inf:
                 continue
+        if contacts + count > ints[MOST_CONTACTS]:
+            crowded = 1.0
+            continue
         pair = a * n - a * (a + 1) // 2 + b - a - 1 if b < n else n * (n - 1) // 2 + a
         for k in range(count):
             at, c = POINT * k, plan[CONTACTS_AT] + CONTACT * contacts
@@ -241,6 +244,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
             floats[ints[NORMALS_AT] + 3 * contacts + 2] = nz
             contacts += 1
     floats[ints[COUNT_AT]] = contacts
+    floats[ints[CROWDED_AT]] += crowded
     if contacts == 0:
         return
     plan[CONTACTS] = contacts

@@ -73,8 +73,11 @@ class Collision(Contact):
     mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
 
     def trouble(self, state: ModelState) -> str:
-        """Steps in which contacts of rigid bodies had no solution to rounding."""
-        loose = sum(state.floats[state.ints[k + 5]] for k, each in enumerate(state.ints) if each == -1)
+        """Steps in which contacts of rigid bodies had no room, or no solution to rounding."""
+        at = [k for k, each in enumerate(state.ints) if each == -1]
+        loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
+        if crowded:
+            return f"in {crowded:.0f} steps rigid bodies had more contacts than there is room for: some were left out"
         if not loose:
             return ""
         return f"in {loose:.0f} steps contacts of rigid bodies were not solved to rounding: friction there is not exact"
