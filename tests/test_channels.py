@@ -2,6 +2,7 @@
 
 import ast
 import re
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -12,10 +13,18 @@ FILES = sorted(path for room in ("sceneql", "renderers") for path in (ROOT / roo
 TEXTS = {path: path.read_text(encoding="utf-8") for path in FILES}
 
 
+@cache
+def nodes(text):
+    """The subscripts and the differences of a text's syntax tree."""
+    found = list(ast.walk(ast.parse(text)))
+    differences = (node for node in found if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub))
+    return [node for node in found if isinstance(node, ast.Subscript)], list(differences)
+
+
 def subscripts(text, name):
     """What an array of this name, or an attribute of this name, is indexed by."""
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Subscript) and name in (getattr(node.value, "id", ""), getattr(node.value, "attr", "")):
+    for node in nodes(text)[0]:
+        if name in (getattr(node.value, "id", ""), getattr(node.value, "attr", "")):
             yield node.slice
 
 
@@ -31,9 +40,9 @@ def slots_without_a_name(text):
     found = re.findall(r"floats\[-?[0-9][^\]]*\]", text)
     found += [ast.unparse(index) for index in subscripts(text, "floats") if numbered(index)]
     found += [index.id for index in subscripts(text, "floats") if isinstance(index, ast.Name) and index.id.isupper()]
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.BinOp) and ast.unparse(node.left).endswith("floats.size"):
-            found += [ast.unparse(node)] * (isinstance(node.op, ast.Sub) and "channels." not in ast.unparse(node.right))
+    for node in nodes(text)[1]:
+        if getattr(node.left, "attr", "") == "size" and ast.unparse(node.left).endswith("floats.size"):
+            found += [ast.unparse(node)] * ("channels." not in ast.unparse(node.right))
     return found
 
 
@@ -66,8 +75,8 @@ def test_nobody_but_the_channels_says_where_a_slot_is():
 
 def read_by_number(text, *arrays):
     """Entries of arrays that a text reads by number."""
-    found = (node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Subscript))
-    found = (node for node in found if ast.unparse(node.value) in arrays and isinstance(node.slice, ast.Constant))
+    found = (node for node in nodes(text)[0] if isinstance(node.slice, ast.Constant))
+    found = (node for node in found if ast.unparse(node.value) in arrays)
     return [ast.unparse(node) for node in found]
 
 

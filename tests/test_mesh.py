@@ -73,7 +73,7 @@ def test_same_bytes_for_one_and_two_threads(monkeypatch):
     for threads in ("1", "2"):
         monkeypatch.setenv("SCENEQL_THREADS", threads)
         gyroid = "abs(sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x)) - 0.3"
-        made = cut(gyroid, 1.0, 50), cut_sharp(gyroid, 1.0, 24), cut_finer(PART, 1.0, 16)[0]
+        made = cut(gyroid, 1.0, 50), cut_sharp(gyroid, 1.0, 16), cut_finer(PART, 1.0, 10)[0]
         meshes.append([a.tobytes() for found in made for a in (found.vertices, found.triangles, found.normals)])
     assert meshes[0] == meshes[1]
 

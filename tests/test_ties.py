@@ -291,6 +291,17 @@ def test_two_hinges_of_one_door_share_its_weight_evenly(tmp_path):
     assert "ties: lower, upper, 10 conditions, of which the others imply 5" in said
 
 
+def test_of_many_conditions_those_that_others_imply_are_counted(tmp_path):
+    """Of a row of windows: its hinges leave one motion, in their plane, of all that the bodies have."""
+    count = 40
+    written = tmp_path / "scene.yaml"
+    written.write_text(windows(count, 1) + "outputs: {table: {record: {of: [links.energy]}}}\n")
+    said = text(explain(load(written)))
+    rows = 5 * (3 * count + 1)
+    implied = rows - (6 * (2 * count + 1) - 1)
+    assert f"{rows} conditions, of which the others imply {implied}:" in said
+
+
 def windows(count, end):
     """Cranks hinged to the ground a meter apart, upright, and couplers along their tops, which start at 1 m/s."""
     across = "inertia: 0.083333333333333333 1e-4 0.083333333333333333 kg*m^2"

@@ -169,7 +169,7 @@ def _model_remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
     return {model: remark for model, remark in found.items() if remark}
 
 
-def _redundant(run: IslandRun) -> list[int | None]:
+def _redundant(run: IslandRun) -> list[int]:
     """Conditions of ties at the start, and how many of them the others imply; none without ties."""
     if not run.assembly.ties:
         return []

@@ -60,6 +60,8 @@ EASE, LITTLE = 1e-9, 1e-13
 start, so that light bodies may hold heavy ones."""
 LEFT = 1e-13
 """What may be left of an equation, against the numbers that it is a sum of."""
+SHARE = 1e-2
+"""Part of LEFT that may be left of the numbers that a gap is the difference of."""
 FEW, MOST_CORRECTIONS = 6, 50
 GAIN = 0.98
 """After FEW corrections one that leaves more than this part is the last: the rest is of ties that cannot hold."""
@@ -132,9 +134,12 @@ def solve(floats, ints):
     solve_symmetric(ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]], factors, right, work)
 
 
-@lean(types.void(A, I, N))
-def balance(floats, ints, target):
-    """Forces of the rows, to AT_FORCE, by which J x + floats[target] = 0 for x the movers' AT_A, which they change."""
+@lean(types.void(A, I, N, N))
+def balance(floats, ints, target, size_at):
+    """Forces of the rows, to AT_FORCE, by which J x + floats[target] = 0 for x the movers' AT_A, which they change.
+
+    floats[size_at] is the size of the numbers that the target is a sum of, if it is to be 0 but for their rounding.
+    """
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     for k in range(ints[ROWS]):
         floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
@@ -146,7 +151,7 @@ def balance(floats, ints, target):
         for k in range(ints[ROWS]):
             row = ints[ROWS_AT] + ROW_INTS * k
             to = ints[row + SCRATCH]
-            left, size = floats[to + target], abs(floats[to + target])
+            left, size = floats[to + target], max(abs(floats[to + target]), SHARE * floats[to + size_at])
             for side in range(2):
                 mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_A
                 for c in range(6):
@@ -193,7 +198,7 @@ def hold(t, y, rate, floats, ints):
     survey(t, y, floats, ints)
     for m in range(ints[MOVERS]):
         press(y, rate, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
-    balance(floats, ints, AT_BIAS)
+    balance(floats, ints, AT_BIAS, AT_BIAS)
     add(rate, floats, ints)
 
 
@@ -244,7 +249,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         if open_by(floats, ints, AT_C) <= CLOSED:
             break
         clear(floats, ints)
-        balance(floats, ints, AT_C)
+        balance(floats, ints, AT_C, AT_SIZE)
         shift(y1, floats, ints)
         changed = True
     worst = 0.0
@@ -257,11 +262,12 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
             for c in range(3):
                 size += abs(floats[to + AT_J + 6 * side + c] * floats[mover + AT_V + c])
                 size += abs(floats[to + AT_J + 6 * side + 3 + c] * floats[mover + AT_W + c])
+        floats[to + AT_SIZE] = size
         if abs(floats[to + AT_SPEED]) > worst * size:
             worst = abs(floats[to + AT_SPEED]) / size
     if worst > CLOSED:
         clear(floats, ints)
-        balance(floats, ints, AT_SPEED)
+        balance(floats, ints, AT_SPEED, AT_SIZE)
         for m in range(ints[MOVERS]):
             at = ints[MOVERS_AT] + MOVER * m
             if ints[at + POSITION] >= 0:

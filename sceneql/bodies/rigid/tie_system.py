@@ -16,8 +16,9 @@ if TYPE_CHECKING:
 KERNELS = "sceneql.bodies.rigid.tie_kernels"
 KINDS = ("point", "angle", "distance", "gear")
 
-MOST = 600
-"""Conditions above which it is not looked for those that others imply."""
+IMPLIED, ROUNDING = 1e-10, 1e-13
+"""Square of a condition's part that the others do not imply, of all of it, below which it is one that they do; what is
+added to such squares for their factorization."""
 LEAST = 7
 """Numbers of a row, of which the last may be left out where it is 0."""
 
@@ -140,30 +141,38 @@ def _add_pivots(assembly: Assembly, ties: Sequence[Tied]) -> None:
         assembly.free_motion("sceneql.bodies.rigid.free_motion_kernels:pivot", ints, offsets[4], 4)
 
 
-def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int | None]:
-    """Conditions of ties, and how many of them the others imply, by their last evaluation; None where they are many."""
+def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int]:
+    """Conditions of ties, and how many of them the others imply, by their last evaluation."""
     import numpy as np
+    from scipy.sparse import csc_array, csr_array
+    from scipy.sparse.linalg import splu
 
     from sceneql.bodies.rigid.tie_rows_kernels import AT_J, ROW
 
-    count = sum(len(tie.rows) for tie in ties)
-    if count > MOST:
-        return count, None
-    columns: dict[tuple[int, ...], int] = {}
-    whole = np.zeros((count, 12 * len(ties)))
+    movers: dict[tuple[int, ...], int] = {}
+    parts: list[tuple[int, int, int]] = []
     row = 0
     for tie in ties:
-        for k in range(len(tie.rows)):
-            for side, mover in enumerate(tie.movers):
-                if isinstance(mover, Place) and floats[mover.ints[3]] > 0.0:
-                    at = 6 * columns.setdefault(integers(mover), len(columns))
-                    whole[row, at : at + 6] += floats[tie.scratch_at + ROW * k + AT_J + 6 * side :][:6]
-            row += 1
+        for side, mover in enumerate(tie.movers):
+            if isinstance(mover, Place) and floats[mover.ints[3]] > 0.0:
+                column = movers.setdefault(integers(mover), len(movers))
+                first = tie.scratch_at + AT_J + 6 * side
+                parts += [(row + k, 6 * column, first + ROW * k) for k in range(len(tie.rows))]
+        row += len(tie.rows)
+    six = np.arange(6)
+    rows, columns, places = (np.array([part[k] for part in parts], dtype=np.int64)[:, None] for k in range(3))
+    values = floats[places + six]
     # Lengths against angles: by the longest arm. Masses do not matter.
-    turning = np.arange(whole.shape[1]) % 6 >= 3
-    whole[:, turning] /= max(1e-300, np.abs(whole[:, turning]).max(initial=0.0))
-    sizes = np.linalg.norm(whole, axis=1)
-    return count, count - int(np.linalg.matrix_rank(whole / np.where(sizes > 0, sizes, 1.0)[:, None], tol=1e-9))
+    values[:, 3:] /= max(1e-300, np.abs(values[:, 3:]).max(initial=0.0))
+    shape = (row, 6 * len(movers))
+    whole = csr_array((values.ravel(), (np.repeat(rows, 6), (columns + six).ravel())), shape=shape)
+    sizes = np.sqrt((whole * whole).sum(axis=1))
+    whole = csr_array(whole.multiply(1.0 / np.where(sizes > 0, sizes, 1.0)[:, None]))
+    # A pivot is the square of what the rows before leave of a row of length 1.
+    squares = csc_array(whole @ whole.T)
+    squares.setdiag(squares.diagonal() + ROUNDING)
+    pivots = splu(squares, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    return row, int(np.count_nonzero(np.abs(pivots.U.diagonal()) < IMPLIED))
 
 
 def integers(mover: Mover) -> tuple[int, ...]:
