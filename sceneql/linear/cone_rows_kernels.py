@@ -49,6 +49,9 @@ RESIDUAL, OVERLAP, RESULT = range(3)
 """Floats that are found: what is left of the equations, of the size of the numbers in them; the largest velocity with
 which a contact still closes [m/s]."""
 
+USUAL_TRIES = 4
+"""Factorizations that are tried from the guess, by default."""
+
 OTHERS = 1e-2
 """Part of the largest velocity below which one counts as 0 when sizes are compared."""
 
