@@ -279,16 +279,5 @@ def test_nothing_closes_even_where_no_way_to_the_law_is_found(seed):
     assert np.isfinite(velocities(program)).all()
 
 
-def test_threads_do_not_change_the_bytes(monkeypatch):
-    made = []
-    for threads in (1, 3):
-        monkeypatch.setenv("SCENEQL_THREADS", str(threads))
-        monkeypatch.setattr("sceneql.linear.multifrontal.WORTH_THREADS", 0.0)
-        program = heap(5, 40, 160, 0.2)
-        solve(program, 160)
-        made.append(velocities(program).tobytes())
-    assert made[0] == made[1]
-
-
 def test_two_unknowns_tied_to_each_other_alone_are_planned():
     assert plan(csr_array(np.ones((2, 2)))).numbers[0] == 2

@@ -34,6 +34,7 @@ from sceneql.linear.cone_rows_kernels import (
     AT_V,
     AT_VELOCITY,
     AT_X,
+    BALANCE,
     BODIES,
     BODIES_AT,
     BODY,
@@ -63,7 +64,7 @@ STIFF = 1e8
 """Stiffness of the proximal steps, of the contacts' effective masses (and as much more as their impulses are)."""
 FULL, LESS, LEAST = range(3)
 """How stiff a finish begins, so that errors of velocity do not open contacts that have impulses; all end with STIFF."""
-POOR = 5
+POOR = 2
 """Most steps that do not take what is left to 0.3 of its least."""
 EXACT = 5e-15
 """What may be left at most, of the sizes of numbers, to need no further step."""
@@ -79,7 +80,11 @@ def roughness(floats, c):
 
 @lean_inlined
 def see(floats, c):
-    """Write the velocity s of a contact, corrected by its slip, from that in its frame; what is left of the law."""
+    """Write the velocity s of a contact, corrected by its slip, from that in its frame; what is left of the law.
+
+    Once of the case that holds best, and once of the cones and of the power alone, which it is the square of where a
+    contact is at the edge of two cases.
+    """
     x, s, mu = c + AT_X, c + AT_S, roughness(floats, c)
     for j in range(3):
         floats[s + j] += floats[c + AT_B + j]
@@ -97,7 +102,9 @@ def see(floats, c):
         across = math.hypot(floats[x + 1] + by * floats[s + 1], floats[x + 2] + by * floats[s + 2])
         sliding = max(sliding, across / full)
     worst = min(resting, min(opened, sliding))
-    return max(worst, max(-mu * normal / size, (rubbed - floats[x]) / full))
+    out = max(-mu * normal / size, (rubbed - floats[x]) / full)
+    power = floats[x] * floats[s] + floats[x + 1] * floats[s + 1] + floats[x + 2] * floats[s + 2]
+    return max(worst, out), max(abs(power) / (full * size), out)
 
 
 @lean_inlined
@@ -144,7 +151,8 @@ def project(floats, c, stiff):
 def look(floats, ints):
     """Write LEFT and all s; what is left of all equations, the largest against the size of the numbers in it.
 
-    Infinity where a number is none: `max` would pass over it.
+    Infinity where a number is none: `max` would pass over it. What is left with each contact's power in place of its
+    case is among what is found.
     """
     momenta_left(floats, ints)
     sizes(floats, ints)
@@ -155,15 +163,17 @@ def look(floats, ints):
             size = floats[at + (AT_FORCE if j < 3 else AT_TORQUE)]
             worst = max(worst, abs(floats[at + AT_LEFT + j]) / max(size, 1e-300))
             every += floats[at + AT_LEFT + j]
+    least = worst
     to_contacts(floats, ints, AT_V, AT_S)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
-        worst = max(worst, see(floats, c))
+        case, power = see(floats, c)
+        worst, least = max(worst, case), max(least, power)
         for j in range(3):
             every += floats[c + AT_X + j] + floats[c + AT_S + j]
     if not abs(every) < math.inf:
-        worst = math.inf
-    floats[ints[RESULT_AT] + RESIDUAL] = worst
+        worst = least = math.inf
+    floats[ints[RESULT_AT] + RESIDUAL], floats[ints[RESULT_AT] + BALANCE] = worst, least
     return worst
 
 

@@ -17,7 +17,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.linear.cone_finish_kernels import FULL, LEAST, LESS, finish, roughness, tell
+from sceneql.linear.cone_finish_kernels import FULL, LEAST, LESS, finish, look, roughness, tell
 from sceneql.linear.cone_points_kernels import aim, inner, scale, scaled, scaled_step, tail
 from sceneql.linear.cone_rows_kernels import (
     AT_B,
@@ -40,6 +40,7 @@ from sceneql.linear.cone_rows_kernels import (
     AT_TORQUE,
     AT_V,
     AT_X,
+    BALANCE,
     BODIES,
     BODIES_AT,
     BODY,
@@ -48,6 +49,7 @@ from sceneql.linear.cone_rows_kernels import (
     CONTACTS_AT,
     FINISHES,
     ITERATIONS,
+    RESULT_AT,
     TRIES,
     factor,
     fetch,
@@ -59,7 +61,7 @@ from sceneql.linear.cone_rows_kernels import (
     step,
     to_contacts,
 )
-from sceneql.system.signatures_kernels import A, I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 SOLVED, LOOSE = range(2)
 """What a solution comes to: to rounding; or not, as where contacts ask for what cannot be, or the method finds no way
@@ -69,9 +71,15 @@ MOST = 50
 """Iterations of the interior-point method."""
 WATCHED, FALLS = 8, 0.3
 """Iterations after which what is left must have fallen to this part, or the method has come to a stop."""
-CLOSE, CLOSED = 1e-6, 1e-9
-"""What may be left, of the size of the numbers, when the finish is first tried, then a hundredth of it, and so on; with
-no correction of slip."""
+CLOSE, CLOSED = 1e-6, 1e-12
+"""What may be left, of the size of the numbers, when the finish is first tried, and where the method ends."""
+GOOD = 1e-10
+"""What may be left with contacts' power in place of their law (cone_finish_kernels.see) in a solution: contacts whose
+slip or force is next to nothing are at the edge of sticking, sliding or leaving, where the law itself is ill-posed."""
+FAIR = 1e-7
+"""The same, up to which a solution that is not good is better than that of the program without correction."""
+NEAR, NEARLY = 1e-4, 1e-2
+"""What is left from which the method aims at less of the complementarity than CENTERED, and how much."""
 BACK = 0.99
 """Part of the step to the boundary of the cones."""
 SHORTEST = 1e-10
@@ -198,8 +206,8 @@ def left(floats, ints, follow):
     return worst if abs(every) < math.inf else math.inf
 
 
-@lean(types.float64(A, I, N))
-def iterate(floats, ints, symmetric):
+@lean(types.float64(A, I, N, F))
+def iterate(floats, ints, symmetric, least):
     """One iteration of the interior-point method; the part of the step that is taken, 0 where it cannot go on."""
     total = 0.0
     for k in range(ints[CONTACTS]):
@@ -219,7 +227,7 @@ def iterate(floats, ints, symmetric):
         put(floats, c + AT_Q, -floats[point], -floats[point + 1], -floats[point + 2])
     direct(floats, ints, symmetric)
     rest = 1.0 - longest(floats, ints)
-    centered = max(CENTERED, rest * rest * rest) * total / ints[CONTACTS]
+    centered = max(least, rest * rest * rest) * total / ints[CONTACTS]
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         aim(floats, c, centered)
@@ -238,6 +246,13 @@ def iterate(floats, ints, symmetric):
     return part
 
 
+@lean(types.boolean(A, I))
+def accepted(floats, ints):
+    """Whether v and x are the solution but for the least of slips."""
+    look(floats, ints)
+    return floats[ints[RESULT_AT] + BALANCE] <= GOOD
+
+
 @lean(types.boolean(A, I, N))
 def inside(floats, ints, follow):
     """The interior-point method, from its own first point; whether the finish found the solution from there.
@@ -247,7 +262,8 @@ def inside(floats, ints, follow):
     """
     begin(floats, ints, follow)
     sizes(floats, ints)
-    close, near, before, best = CLOSE if follow == 1 else CLOSED, LESS, math.inf, math.inf
+    before = best = math.inf
+    tried = False
     for number in range(MOST):
         worst = left(floats, ints, follow)
         if not worst < math.inf:
@@ -255,28 +271,29 @@ def inside(floats, ints, follow):
         if worst < best:
             keep(floats, ints)
             best = worst
-        if worst <= close:
-            if finish(floats, ints, COLD, near):
+        if worst <= CLOSED:
+            break
+        if worst <= CLOSE and not tried:
+            if follow == 1 and finish(floats, ints, COLD, LESS):
                 return True
             fetch(floats, ints)
-            if follow == 0:
-                return False
             left(floats, ints, follow)
-            close *= 1e-2
-            near = LESS + LEAST - near
+            tried = True
         if number % WATCHED == 0:
             if worst > FALLS * before:
                 break
             before = worst
-        if iterate(floats, ints, 1 - follow) < SHORTEST:
+        if iterate(floats, ints, 1 - follow, CENTERED if worst > NEAR else NEARLY) < SHORTEST:
             break
         ints[ITERATIONS] += 1
-    if best < math.inf:
-        fetch(floats, ints)
-        if finish(floats, ints, COLD, LESS):
-            return True
-        fetch(floats, ints)
-    return False
+    floats[ints[RESULT_AT] + BALANCE] = math.inf
+    if not best < math.inf:
+        return False
+    fetch(floats, ints)
+    if finish(floats, ints, COLD, LEAST):
+        return True
+    fetch(floats, ints)
+    return accepted(floats, ints)
 
 
 @lean(types.int64(A, I))
@@ -284,6 +301,12 @@ def solve(floats, ints):
     """Solve a program, whose given numbers are written, from the guesses of velocities and impulses in it."""
     ints[ITERATIONS], ints[FINISHES] = 0, 0
     prepare(floats, ints)
-    found = finish(floats, ints, ints[TRIES], FULL) or inside(floats, ints, 1) or inside(floats, ints, 0)
+    keep(floats, ints)
+    found = finish(floats, ints, ints[TRIES], FULL)
+    if not found:
+        fetch(floats, ints)
+        found = accepted(floats, ints) or inside(floats, ints, 1)
+    if not found and not floats[ints[RESULT_AT] + BALANCE] <= FAIR:
+        found = inside(floats, ints, 0)
     tell(floats, ints)
     return SOLVED if found else LOOSE

@@ -45,9 +45,12 @@ Scratch: frame (3, 3), x, s, their changes, right hand side, scaled point, scali
 in the frame, what is left of s, effective mass, size of the velocities, x and s to come back to, direction of slip (2),
 slip, its change."""
 
-RESIDUAL, OVERLAP, RESULT = range(3)
+RESIDUAL, OVERLAP, BALANCE, RESULT = range(4)
 """Floats that are found: what is left of the equations, of the size of the numbers in them; the largest velocity with
-which a contact still closes [m/s]."""
+which a contact still closes [m/s]; what is left with each contact's power in place of its law."""
+
+USUAL_TRIES = 4
+"""Factorizations that are tried from the guess, by default."""
 
 OTHERS = 1e-2
 """Part of the largest velocity below which one counts as 0 when sizes are compared."""

@@ -14,10 +14,8 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies
 
-MOST = 64
-"""Bodies of one contact: all pairs of them are planned."""
 CONTACTS = 24
-"""Room for contacts by the body."""
+"""Contacts by the body whose forces are told and kept."""
 DEEP = 1e-6
 """Part of a body's size by which it may start inside another: rounding in a script."""
 SHAPE = 3
@@ -37,7 +35,6 @@ def assemble(
     from sceneql.bodies.rigid.turning import packed, unpacked
     from sceneql.contacts.distance import convex
     from sceneql.contacts.distance import rigid_local_kernels as kernels
-    from sceneql.linear.cones import cone_program
 
     numbers, shapes, fixed, rows = assembly.numbers(), [], [], []
     moving: list[tuple[Ref | None, Floats]] = []
@@ -69,9 +66,6 @@ def assemble(
         fixed.append((shape, _place(ref, assembly)))
         standing.append(ref)
     n = len(rows)
-    if n > MOST:
-        message = f"{n} rigid bodies are too many for one contact: at most {MOST}"
-        raise ScriptError([Diagnostic("invalid", message, assembly.line())])
     everything = [*shapes, *(shape for shape, _ in fixed)]
     count, most = len(everything), CONTACTS * n + 64
     places = np.zeros((count, kernels.PLACE))
@@ -79,23 +73,19 @@ def assemble(
         places[n + k] = place
     names = [*(ref for ref, _ in moving), *standing]
     _must_be_apart(everything, [*(place for _, place in moving), *(place for _, place in fixed)], n, names, assembly)
-    pairs = [(a, b) for a in range(n) for b in range(a + 1, n)] + [(a, -1) for a in range(n)]
-    program = cone_program(n, pairs, most)
-    sizes = [places.size, 6 * count, 6 * count, convex.room_length(everything), len(program.floats)]
+    room = convex.room_length(everything)
     places_at = assembly.floats(places)
-    motions_at, boxes_at, room_at = (assembly.floats(np.zeros(size)) for size in sizes[1:4])
-    program_at = assembly.floats(program.floats)
+    room_at, kept_at = (assembly.floats(np.zeros(size)) for size in (room, 3 * most))
     found = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
     loose, crowded = assembly.floats([0.0]), assembly.floats([0.0])
-    shapes_at = kernels.HEAD
     data = assembly.floats(convex.joined(everything, 0, 0)[0])
-    _, integers = convex.joined(everything, data, shapes_at)
-    bodies_at = shapes_at + len(integers)
-    program_ints_at = bodies_at + kernels.BODY_INTS * n
-    head = [n, count, shapes_at, bodies_at, places_at, motions_at, boxes_at, room_at, sizes[3]]
-    head += [program_at, sizes[4], program_ints_at, len(program.ints), most]
+    _, integers = convex.joined(everything, data, kernels.HEAD)
+    bodies_at = kernels.HEAD + len(integers)
+    names_at = bodies_at + kernels.BODY_INTS * n
+    head = [n, count, kernels.HEAD, bodies_at, places_at, room_at, room, kept_at, names_at, most]
     head += [assembly.value(restitution), assembly.value(friction), *found, loose, crowded]
-    ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *program.ints.tolist()]
+    names_room = [0] * (kernels.WHO * most)
+    ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *names_room]
     assembly.contact("local", (KERNEL,), [int(number) for number in ints], 0)
     return (*found, loose, crowded)
 
