@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import sceneql.system.channels as channels
+from sceneql.bodies.mass_spring_slopes_kernels import HOLDS
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.march.driver import jacobian
 from sceneql.march.march import March
@@ -75,27 +76,28 @@ def test_the_jacobian_is_the_derivative_of_the_rate(tmp_path, scene):
     assert np.abs(expected).max() > 0.1
 
 
-def test_definite_slopes_leave_a_spring_what_inertia_holds(tmp_path):
+def test_positive_slopes_leave_a_spring_what_inertia_holds(tmp_path):
     """Pressed by a tenth, k = 500 N/m pushes across with 500 * 0.1/0.9 N/m, on the lighter mass of 2 kg."""
     march, bodies = lone_spring(tmp_path)
     y = march.system.y
     row, column = bodies.velocity_at + 4, bodies.position_at + 4
     march.floats[-channels.BEFORE * len(y) :] = np.concatenate([y, y])
-    for rate, expected in ((0.0, 500 / 9), (1e6, 500 / 9), (20.0, 40.0), (1e-300, 0.0)):
-        march.floats[channels.DEFINITE] = rate
+    for positive, rate, expected in ((0, 20, 500 / 9), (1, 1e6, 500 / 9), (1, 20.0, 40.0), (1, 1e-300, 0.0)):
+        march.floats[channels.POSITIVE] = positive
+        march.floats[channels.NEWTON] = HOLDS / rate
         found = dense(march, 0.0, y)
         assert found[row, column] == pytest.approx(expected / 2)
         assert found[row - 1, column - 1] == pytest.approx(-500 / 2)
 
 
-def test_definite_slopes_take_the_force_that_the_latest_change_foresaw(tmp_path):
+def test_slopes_of_newtons_method_take_the_force_that_the_latest_change_foresaw(tmp_path):
     """A spring of 0.9 m that a change moves by 0.3 m along and 0.4 m across: its linear length is 1.2 m."""
     march, bodies = lone_spring(tmp_path)
     old, new = march.system.y, march.system.y.copy()
     new[bodies.position_at + 3] += 0.3
     new[bodies.position_at + 4] += 0.4
     march.floats[-channels.BEFORE * len(old) :] = np.concatenate([old, new])
-    march.floats[channels.DEFINITE] = 1.0
+    march.floats[channels.NEWTON] = 1.0
     found = dense(march, 0.0, new)
     across = np.array([-0.4, 1.2, 0.0]) / np.hypot(0.4, 1.2)
     at = bodies.position_at + 3, bodies.velocity_at + 3

@@ -85,7 +85,7 @@ def reserve(
     assembly.inertia(velocity_at, bodies.inverse_at, n)
     places = np.arange(3 * n)
     slopes = Slopes("sceneql.bodies.bodies_slopes_kernels:close", position_at + places, velocity_at + places)
-    assembly.term("close", "sceneql.bodies.bodies_kernels:close", ints, slopes, apart=True)
+    assembly.term("close", "sceneql.bodies.bodies_kernels:close", ints, slopes, apart=True, energy="")
     return bodies
 
 

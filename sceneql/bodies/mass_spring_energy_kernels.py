@@ -5,9 +5,9 @@ import math
 
 from numba import types
 
-from sceneql.bodies.mass_spring_kernels import BLOCK
+from sceneql.bodies.mass_spring_kernels import BLOCK, BLOCKS_AT, COUNT, PAIRS_AT, POSITION_AT, STIFFNESS_AT
 from sceneql.compiled.kernels import kernel
-from sceneql.system.signatures_kernels import A, N
+from sceneql.system.signatures_kernels import ENERGY, A, N
 
 
 @kernel(types.float64(A, N, A, N, N, types.int64[:, ::1]))
@@ -21,3 +21,10 @@ def energy(y, position_at, floats, blocks_at, stiffness_at, pairs):
         stretch = math.sqrt(dx * dx + dy * dy + dz * dz) - floats[block]
         total += 0.5 * (floats[block + 1] + floats[block + 2] * floats[stiffness_at]) * stretch * stretch
     return total
+
+
+@kernel(ENERGY, inner=True)
+def potential(t, y, floats, ints):
+    """`energy`, of the term's integers."""
+    pairs = ints[PAIRS_AT : PAIRS_AT + 2 * ints[COUNT]].reshape(-1, 2)
+    return energy(y, ints[POSITION_AT], floats, ints[BLOCKS_AT], ints[STIFFNESS_AT], pairs)

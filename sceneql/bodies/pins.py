@@ -77,8 +77,8 @@ def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies)
         until = assembly.floats([float("inf") if pin.until is None else pin.until])
         ints = (*places, *shifts, assembly.floats([APART]), starts, until, len(masses), *masses.tolist())
         alone = Slopes("", (), ())
-        assembly.term("internal", f"{folder}:toil", ints, alone)
-        assembly.term("constrain", f"{folder}:lead", ints, alone)
+        assembly.term("internal", f"{folder}:toil", ints, alone, energy="")
+        assembly.term("constrain", f"{folder}:lead", ints, alone, energy="")
         assembly.after_step(f"{folder}:put", ints)
 
 

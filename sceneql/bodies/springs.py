@@ -175,8 +175,15 @@ class SpringModel(Model):
         ends = net.pairs.ravel().tolist()
         places = (bodies.position_at, bodies.velocity_at, bodies.work_at)
         ints = (*places, blocks_at, stiffness_at, damping_at, m, *ends, bodies.inverse_at)
-        kernel = "sceneql.bodies.mass_spring_kernels:springs"
-        assembly.term("internal", kernel, ints, lambda: _slopes(net, bodies, self.damped(blocks), ints[3:6]))
+        damped = self.damped(blocks)
+        assembly.term(
+            "internal",
+            "sceneql.bodies.mass_spring_kernels:springs",
+            ints,
+            lambda: _slopes(net, bodies, damped, ints[3:6]),
+            energy="sceneql.bodies.mass_spring_energy_kernels:potential",
+            damped=damped,
+        )
         torn_at = assembly.floats([0.0])
         if self.tear is not None:
             luck = draws(np.arange(m, dtype=np.uint64), 0, chance_key(name, self.tear.seed))
@@ -329,4 +336,5 @@ def _slopes(net: Net, bodies: Bodies, damped: bool, floats_at: Sequence[int]) ->
         np.concatenate([(*head, *threads(), tile_address(tile), *floats_at), net.pairs.ravel()]),
         np.concatenate([-1 - own, own, own, -1 - own], axis=1).ravel(),
         blocks=True,
+        positive="sceneql.bodies.mass_spring_slopes_kernels:positive",
     )

@@ -141,7 +141,7 @@ def hold(y, rate, floats, ints):
     firm = firmness(a, floats, ints)
     objects = ints[layout.OBJECTS]
     seen = np.empty(4 * objects)
-    fresh = floats[channels.DEFINITE] == 0.0  # ties must not change while slopes are evaluated
+    fresh = floats[channels.NEWTON] == 0.0  # ties must not change while slopes are evaluated
     first = begins(floats, ints)
     for i in range(int(floats[ints[layout.LAST] + layout.RESTING])):
         k = int(floats[ints[layout.LAST] + layout.LIST + i])

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 KERNELS = "sceneql.grids.drift_kernels:carry"
 SLOPES = "sceneql.grids.drift_slopes_kernels:carry"
+POSITIVE = "sceneql.grids.drift_positive_kernels:carry"
 LIMITERS = {"none": UPWIND, "van_leer": VAN_LEER, "koren": KOREN}
 
 
@@ -39,7 +40,8 @@ def add_drift(
         at, *cells.shape, ground.divisors_at, ground.volumes_at, *(*axes, axes[0])[:3], *map(int, periodic),
         LIMITERS[drift.limiter], strength, *exchange, at + ground.count,
     )  # fmt: skip
-    assembly.term("close", KERNELS, ints, lambda: Slopes(SLOPES, *_places(at, cells.shape, len(axes), periodic)))
+    places = (at, cells.shape, len(axes), periodic)
+    assembly.term("close", KERNELS, ints, lambda: Slopes(SLOPES, *_places(*places), positive=POSITIVE))
 
 
 def _places(

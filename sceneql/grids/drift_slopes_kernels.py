@@ -1,9 +1,6 @@
 # mypy: ignore-errors
 """The derivatives of advection by a flow."""
 
-import math
-
-import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.grids import drift_kernels as term
 from sceneql.system.signatures_kernels import TERM
@@ -24,14 +21,9 @@ def bends(kind, behind, ahead):
     return (0.0, 1.0) if size == b else (1.0 / 6.0, 1.0 / 3.0)
 
 
-@lean(TERM, inner=True)
-def carry(t, y, entries, floats, ints):
-    """Slopes of drift_kernels.carry: a cell's own entries, then for every axis eight for each face.
-
-    These are the rows of the cell before the face and the one behind it, each with the columns from one cell before
-    those two to one after. While DEFINITE is finite (system.Slopes) they are those of the scheme without a limiter,
-    whose kinks can keep Newton's method from converging.
-    """
+@lean_inlined
+def add(y, entries, floats, ints, limited):
+    """Add the slopes of `carry`; not ``limited``: of the scheme without a limiter."""
     at, nx, ny, nz = ints[term.AT], ints[term.NX], ints[term.NY], ints[term.NZ]
     divisors, volumes, kind = ints[term.DIVISORS], ints[term.VOLUMES], ints[term.LIMITER]
     strength = floats[ints[term.STRENGTH]]
@@ -60,7 +52,7 @@ def carry(t, y, entries, floats, ints):
                 up, down, up_column, down_column, behind_column = cell, before, 2, 1, 3
                 behind = term.beyond(cell, place, count, stride, 1, periodic, floats, volumes)
             by_behind = by_ahead = 0.0
-            if behind >= 0 and not 0.0 < floats[channels.DEFINITE] < math.inf:
+            if limited and behind >= 0:
                 by_behind, by_ahead = bends(kind, c[up] - c[behind], c[down] - c[up])
             for row in range(2):
                 weight = -flow / floats[divisors + before] if row == 0 else flow / floats[divisors + cell]
@@ -69,3 +61,13 @@ def carry(t, y, entries, floats, ints):
                 entries[place + down_column * n] += weight * by_ahead
                 entries[place + behind_column * n] -= weight * by_behind
         first += 8 * n
+
+
+@lean(TERM, inner=True)
+def carry(t, y, entries, floats, ints):
+    """Slopes of drift_kernels.carry: a cell's own entries, then for every axis eight for each face.
+
+    These are the rows of the cell before the face and the one behind it, each with the columns from one cell before
+    those two to one after.
+    """
+    add(y, entries, floats, ints, True)

@@ -31,6 +31,9 @@ class Block:
     span: Span | None = None
     model: str | None = None
     """The model that a force acts on."""
+    energy: str | None = None
+    """The kernel of its potential energy, as of Assembly.term."""
+    damped: bool = False
 
 
 def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...], int]]:

@@ -168,10 +168,12 @@ class IslandAssembly:
         ints: Sequence[int],
         jacobian: Slopes | Callable[[], Slopes | None] | None = None,
         apart: bool = False,
+        energy: str | None = None,
+        damped: bool = False,
     ) -> None:
         """Add a term to the rate."""
         self._apart = self._apart and apart
-        self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, *self._word))
+        self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, *self._word, energy, damped))
 
     def tied_drift(self, kernel: str, ints: Sequence[int]) -> None:
         """Add what lets drifts end where ties hold (system.Assembly)."""
@@ -342,6 +344,7 @@ class IslandAssembly:
             tied=names[4],
             varying=bool(self._varying),
             slopes=derived,
+            energies=self._energies(groups, blocks[1:first_exact]) if slopes is not None else None,
         )
         partner = np.full(len(y), -1, dtype=np.int64)
         for position, velocity, count in self._pairs:
@@ -367,7 +370,16 @@ class IslandAssembly:
             masses=tuple(self._masses),
             alike=tuple(self._alike),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
+            damped=any(block.damped for block in blocks[1:first_exact]),
         )
+
+    def _energies(self, groups: list[tuple[tuple[str, ...], int]], terms: list[Block]) -> tuple[str, ...] | None:
+        """The energies of groups of terms; None where one has none, or forces follow the state through values."""
+        energies = [block.energy for block in terms]
+        if None in energies or self._inputs().reading(self._varying):
+            return None
+        ends = accumulate(count for _, count in groups)
+        return tuple(energies[end - 1] or "" for end in ends)
 
     def start(self) -> Floats:
         """The state reserved so far, at the start of the run."""

@@ -46,7 +46,7 @@ def section(
     """
     by_kernel: dict[str, list[tuple[Slopes, Sequence[int]]]] = {}
     for one in slopes:
-        by_kernel.setdefault(one[0].kernel, []).append(one)
+        by_kernel.setdefault("|".join(filter(None, (one[0].kernel, one[0].positive))), []).append(one)
     ordered = [one for group in by_kernel.values() for one in group]
     from sceneql.compiled.threads_kernels import threads, tile_address
     from sceneql.island.jacobian_kernels import block_tile, single_tile

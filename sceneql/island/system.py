@@ -37,7 +37,11 @@ class Structure:
     varying: bool
     """Whether values vary in time."""
     slopes: tuple[str, ...] | None = None
-    """The kernels of the Jacobian; None: there is none, or it is found by differences."""
+    """The kernels of the Jacobian, of positive slopes too where those are others ("kernel|positive"); None: there is
+    none, or it is found by differences."""
+    energies: tuple[str, ...] | None = None
+    """For each of ``terms`` the kernel of its energy, empty where it moves nothing; None: the island has no potential,
+    or no slopes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +85,8 @@ class System:
     """Offset and number of further entries of y that are of one size."""
     terms: tuple[Origin, ...] = ()
     """The origins of the terms of the rate, in the order in which they act."""
+    damped: bool = False
+    """Whether forces depend on velocities besides: then the energies are those of forces at rest."""
 
     names: tuple[tuple[int, int, Callable[[int], str]], ...] = ()
     """Offset, count and names by number of entries that have names of their own."""

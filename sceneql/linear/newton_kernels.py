@@ -7,11 +7,12 @@ update, would hide the residual across the spring (Magisano, Leonetti & Garcea 2
 
 The Jacobian and its factors are kept from stage to stage and step to step as long as the iteration contracts well
 (Hairer & Wanner 1996, IV.8). Where the plain iteration fails, a careful one starts: slopes are definite, and
-evaluated anew for every update. Where its convergence is slow, the plain iteration is tried again from there.
+evaluated anew for every update. Where its convergence is slow, the plain iteration is tried again from there. Where
+that fails too, and on islands that have a potential at once, the way is searched (search_kernels.py).
 
 ``memory`` (MEMORY,): the factored matrix's a (0: none), the previous stage's contraction; the relative and absolute
 tolerance of the norm, and the share of it for the iteration's error; 1 while stages begin with the careful iteration
-(the last one ended with it), and 1 if definite slopes are factored.
+(the last one ended with it), and 1 if positive slopes are factored; how many systems were solved and factored so far.
 """
 
 import math
@@ -20,11 +21,12 @@ from numba import types
 
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
+from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.compiled.pointers_kernels import AT_ENERGY, AT_JACOBIAN, AT_LIMIT, AT_RATE, jacobian_at, rate_at
 from sceneql.linear.stage_kernels import POSITIONS, POSITIONS_AT, factor_stage, solve_stage
 from sceneql.system.signatures_kernels import A, F, I
 
-FACTORED, CONTRACTION, RELATIVE, ABSOLUTE, SHARE, CAREFUL, DEFINITE, MEMORY = range(8)
+FACTORED, CONTRACTION, RELATIVE, ABSOLUTE, SHARE, CAREFUL, POSITIVE, ITERATIONS, FACTORIZATIONS, MEMORY = range(10)
 
 MOST = 25
 """Largest number of plain iterations in a stage."""
@@ -42,11 +44,9 @@ UNSEEN = 0.05
 """Least contraction that is assumed before two updates measure it."""
 TINY = 0.01
 """Update, in units of the tolerance, below which a single one may end the iteration."""
-HOLDS = 0.02
-"""Negative stiffness that definite slopes keep for each spring, relative to the inertia's 1/a^2: two dozen springs of a
-mass stay within it. Without it buckled cloth converges only linearly; with more, updates grow without bound."""
-
 NEWTON = types.boolean(I, F, F, A, A, A, A, A, A, A, A, I, A, I)
+
+search = lazy("sceneql.linear.search_kernels:search", NEWTON)
 
 
 @lean_inlined
@@ -142,21 +142,26 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     foresee(y0, y0, floats)
     tell_stage(a, base, floats)
     careful = definite = memory[CAREFUL] > 0.0
-    stale = memory[FACTORED] == 0.0 or definite or memory[DEFINITE] > 0.0
+    stale = memory[FACTORED] == 0.0 or definite or memory[POSITIVE] > 0.0
+    searches = functions[AT_ENERGY] != 0 or functions[AT_LIMIT] != 0
     before, before_mean = 0.0, 0.0
     patience, limit = PLAIN_AFTER, 1.0
     iteration = since = 0
     leave(rate, t, a, base, y, residual, plan, floats, ints)
     while iteration < MOST or (careful and iteration < MOST_CAREFUL):
+        if definite and searches:
+            break
+        memory[ITERATIONS] += 1.0
         if stale:
-            floats[channels.DEFINITE] = HOLDS / (a * a) if definite else math.inf
+            floats[channels.NEWTON] = a * a
+            floats[channels.POSITIVE] = memory[POSITIVE] = 1.0 if definite else 0.0
             slopes(functions, t, y, jacobian, floats, ints)
-            floats[channels.DEFINITE] = 0.0
-            memory[DEFINITE] = 1.0 if definite else 0.0
+            floats[channels.NEWTON] = floats[channels.POSITIVE] = 0.0
         size = math.inf
         regular = True
         if stale or memory[FACTORED] != a:
             memory[FACTORED] = a
+            memory[FACTORIZATIONS] += 1.0
             regular = factor_stage(plan, a, jacobian, scales, store)
         contraction = max(UNSEEN, memory[CONTRACTION])
         if regular:
@@ -212,7 +217,10 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             limit = HELPS
             patience *= 2
         before, before_mean = size, mean
-    memory[FACTORED] = 0.0
+    for k in range(n):
+        y[k] = guess[k]
+    found = search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints)
     end_stage(floats)
-    fail(change, y)
-    return False
+    if not found:
+        fail(change, y)
+    return found

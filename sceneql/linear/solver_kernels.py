@@ -3,6 +3,7 @@
 
     factor(plan, values, factors, work, symmetric) -> False where the matrix is singular or not finite
     solve(plan, values, factors, b, work, symmetric) -> False where it does not converge; the solution in b's place
+    negatives(plan, values, factors, work) -> number of negative eigenvalues of symmetric values that are factored
 
 ``plan``: the solver's own integers, which it may change; ``symmetric``: the values are.
 """
@@ -18,4 +19,7 @@ SOLVE_SYSTEM = types.boolean(I, A, A, A, A, types.boolean)
 PRECONDITION = types.void(I, A, A, A)
 """Preconditioner of an iteration, (plan, factors, b, x): x approximates the solution of A x = b."""
 
+NEGATIVES = types.int64(I, A, A, A)
+
 factor_at, solve_at, precondition_at = map(kernel_at, (FACTOR_SYSTEM, SOLVE_SYSTEM, PRECONDITION))
+negatives_at = kernel_at(NEGATIVES)

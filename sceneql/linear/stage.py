@@ -31,6 +31,7 @@ MOST_OPERATIONS = 2e10
 SOLID = 16
 """Neighbors of a mass from which on a net counts as a solid, whose factors fill up."""
 SOLID_GROUPS = 3000
+COUNTING = ("sceneql.linear.dense_negatives_kernels", "sceneql.linear.multifrontal_negatives_kernels")
 TILE = 40_000
 """Values of the matrix that a thread puts together at a time; fewer are not worth threads."""
 
@@ -56,10 +57,11 @@ def stage_plan(system: System, exact: bool = False) -> StagePlan:
     """
     import numpy as np
 
+    from sceneql.compiled.generated import function
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.compiled.threads_kernels import threads, tile_address
     from sceneql.linear.elimination import kinds_of
-    from sceneql.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
+    from sceneql.linear.solver_kernels import FACTOR_SYSTEM, NEGATIVES, SOLVE_SYSTEM
     from sceneql.linear.stage_kernels import HEAD, assemble_tile, compare_tile
 
     if system.pattern is None:
@@ -82,7 +84,10 @@ def stage_plan(system: System, exact: bool = False) -> StagePlan:
     )
     tiles = square * pattern.nnz // TILE + 1
     shared = (tiles, *threads(), tile_address(assemble_tile), tile_address(compare_tile))
-    head = [*counts, *starts[:-1], solver.factors, 0, *kernels, left.unit, *shared]
+    negatives = (
+        number_of(function(solver.negatives), NEGATIVES) if system.structure.energies and solver.negatives else -1
+    )
+    head = [*counts, *starts[:-1], solver.factors, 0, *kernels, left.unit, *shared, negatives]
     assert len(head) == HEAD
     numbers = np.concatenate([np.asarray(part, dtype=np.int64) for part in (head, *lists)])
     store = square * pattern.nnz + solver.factors + solver.work + 2 * tiles + len(left.core)
@@ -97,6 +102,8 @@ class _Solver:
     factors: int
     work: int
     text: str
+    negatives: str = ""
+    """The kernel that counts negative eigenvalues (solver_kernels.py); empty: there is none."""
 
 
 def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solver]:
@@ -232,7 +239,14 @@ def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _S
         from sceneql.linear import dense_systems_kernels
 
         numbers = np.concatenate([[m], np.zeros(m)])
-        return _Solver(dense_systems_kernels, numbers, m * m, 0, f"dense LU factorization of {m} unknowns")
+        return _Solver(
+            dense_systems_kernels,
+            numbers,
+            m * m,
+            m * m,
+            f"dense LU factorization of {m} unknowns",
+            f"{COUNTING[0]}:negatives",
+        )
 
     from sceneql.linear import multifrontal, multifrontal_kernels
     from sceneql.linear.ordering import Groups, grouped
@@ -246,7 +260,7 @@ def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _S
     if plan.operations > MOST_OPERATIONS:
         return None
     text = f"sparse factorization of {m} unknowns, {plan.factors:.3g} numbers in its factors"
-    return _Solver(multifrontal_kernels, plan.numbers, plan.factors, plan.work, text)
+    return _Solver(multifrontal_kernels, plan.numbers, plan.factors, plan.work, text, f"{COUNTING[1]}:negatives")
 
 
 def _iterations(pattern: Any) -> _Solver:

@@ -6,7 +6,8 @@ then where these start: unknowns, positions (3 each), for each block of the matr
 places in the Jacobian of a first coefficient and of a second one, and the first position that one goes through; -1:
 none), diagonal, twins (the place of the transposed block), the solver's own, tallies; floats of the factors; 1 while
 the matrix is symmetric; the numbers of the solver's kernels; unknowns of a unit (1, or 3 of a mass: blocks are square,
-row by row); tiles of blocks, the numbers of threads_kernels.threads, the addresses of the tiles' kernels]. ``store``:
+row by row); tiles of blocks, the numbers of threads_kernels.threads, the addresses of the tiles' kernels; the number of
+the kernel that counts negative eigenvalues (-1: none)]. ``store``:
 values of the matrix, factors, scratch, two numbers a tile, and last a right side (unknowns,).
 """
 
@@ -14,13 +15,13 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.threads_kernels import TILE, over_threads
-from sceneql.linear.solver_kernels import factor_at, solve_at
+from sceneql.linear.solver_kernels import factor_at, negatives_at, solve_at
 from sceneql.system.signatures_kernels import A, F, I
 
 SIZE, UNKNOWNS, VALUES, POSITIONS, TALLIES = range(5)
 CORE_AT, POSITIONS_AT, PARTS_AT, DIAGONAL_AT, TWINS_AT, SOLVER_AT, TALLIES_AT = range(5, 12)
 FACTORS, SYMMETRIC, FACTOR, SOLVE, UNIT = range(12, 17)
-TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, HEAD = range(17, 23)
+TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, NEGATIVES, HEAD = range(17, 24)
 
 ROUNDING = 1e-13
 """Differences of transposed values up to this part of the largest value count as rounding."""
@@ -103,6 +104,15 @@ def factor_stage(plan, a, jacobian, scales, store):
     plan[SYMMETRIC] = 1 if symmetric else 0
     factors = store[count:]
     return factor_at(plan[FACTOR])(plan[plan[SOLVER_AT] :], store, factors, factors[plan[FACTORS] :], symmetric)
+
+
+@lean_inlined
+def indefinite(plan, store):
+    """Whether the factored matrix has a negative eigenvalue, as far as its solver can tell."""
+    if plan[SYMMETRIC] != 1 or plan[NEGATIVES] < 0:
+        return False
+    factors = store[plan[VALUES] :]
+    return negatives_at(plan[NEGATIVES])(plan[plan[SOLVER_AT] :], store, factors, factors[plan[FACTORS] :]) > 0
 
 
 @lean_inlined

@@ -60,41 +60,68 @@ def jacobian(system: System) -> Any:
     if system.pattern is None:
         return None
     if system.pattern.exact:
-        return _exact_jacobian(jacobian_text(system.structure))
+        return _slopes_module(jacobian_text(system.structure)).jacobian
     return load("sceneql.march.differences_kernels").differences
 
 
+def energy(system: System) -> Any:
+    """The potential energy of an island laid out with a Jacobian; None where it has none."""
+    if system.pattern is None or system.structure.energies is None:
+        return None
+    return _slopes_module(jacobian_text(system.structure)).energy
+
+
 @cache
-def _exact_jacobian(code: str) -> Any:
-    return load(write("jacobian", code)).jacobian
+def _slopes_module(code: str) -> Any:
+    return load(write("jacobian", code))
 
 
 def jacobian_text(structure: Structure) -> str:
     """The text of the Jacobian's module."""
-    names = {name: f"kernel_{k}" for k, name in enumerate(structure.slopes or ())}
+    pairs = [name.split("|") for name in structure.slopes or ()]
+    names = {pair[0]: f"kernel_{k}" for k, pair in enumerate(pairs)}
+    energies = structure.energies or ()
+    lazily = list(dict.fromkeys([*(pair[1] for pair in pairs if len(pair) > 1), *filter(None, energies)]))
     lines = [
         *_imports(names),
         "from sceneql.compiled.kernels import lean",
+        *(["from sceneql.compiled.numba.lazy_kernels import lazy"] if lazily else []),
         *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
         "from sceneql.island.jacobian_kernels import gather",
-        "from sceneql.system.signatures_kernels import JACOBIAN",
+        "from sceneql.system.signatures_kernels import ENERGY, JACOBIAN, TERM",
+        *(f'lazy_{k} = lazy("{name}", {"ENERGY" if name in energies else "TERM"})' for k, name in enumerate(lazily)),
         *("", "", "@lean(JACOBIAN)", "def jacobian(functions, t, y, values, floats, ints):"),
         *([REFRESH] if structure.varying else []),
         f"    s = ints[{layout.SLOPES_AT}]",
         "    for k in range(ints[s], ints[s] + ints[s + 1]):",
         "        values[k] = 0.0",
     ]
-    for group, short in enumerate(names.values(), layout.HEAD):
-        lines += [
-            f"    for b in range(ints[s + {group}], ints[s + {group + 1}], 4):",
-            f"        {short}(t, y, values[ints[b + 2] : ints[b + 3]], floats, ints[ints[b] : ints[b + 1]])",
-        ]
-    return "\n".join([*lines, "    gather(t, y, values, floats, ints)"]) + "\n"
+    for group, pair in enumerate(pairs, layout.HEAD):
+        lines.append(f"    for b in range(ints[s + {group}], ints[s + {group + 1}], 4):")
+        call = "(t, y, values[ints[b + 2] : ints[b + 3]], floats, ints[ints[b] : ints[b + 1]])"
+        if len(pair) > 1:
+            lines += [
+                f"        if floats[{channels.POSITIVE}] != 0.0:",
+                f"            lazy_{lazily.index(pair[1])}{call}",
+            ]
+            lines += ["            continue"]
+        lines.append(f"        {names[pair[0]]}{call}")
+    lines.append("    gather(t, y, values, floats, ints)")
+    if structure.energies is not None:
+        lines += ["", "", "@lean(ENERGY)", "def energy(t, y, floats, ints):", "    total = 0.0"]
+        for group, name in enumerate(structure.energies, layout.GROUPS_AT):
+            if name:
+                lines += _blocks(
+                    group, f"total += lazy_{lazily.index(name)}(t, y, floats, ints[ints[b] : ints[b + 1]])"
+                )
+        lines.append("    return total")
+    return "\n".join(lines) + "\n"
 
 
 def modules(structure: Structure) -> tuple[str, ...]:
     """The modules of an island's kernels; those of contacts, as a rule the largest, first."""
-    after = (*(structure.slopes or ()), *structure.after, *structure.settling, *structure.free, *structure.tied)
+    slopes = (name.partition("|")[0] for name in structure.slopes or ())
+    after = (*slopes, *structure.after, *structure.settling, *structure.free, *structure.tied)
     names = (*structure.local, *chain(*structure.exact), *after, *structure.terms)
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 

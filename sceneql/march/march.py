@@ -19,7 +19,7 @@ from sceneql.island.breakpoint_table import before, next_breakpoint
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
 from sceneql.march import march_kernels as kernels
-from sceneql.march.driver import driver, jacobian
+from sceneql.march.driver import driver, energy, jacobian
 from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
 from sceneql.march.first_step import first_step
 from sceneql.march.pace import Pace
@@ -127,7 +127,11 @@ class March:
         self._extended = math.nan
         # Islands without exact contacts have no events: the kernels that find them are not even loaded.
         event = function("sceneql.march.events_kernels:find_event") if system.pairs else None
-        self._functions = addresses(self._step, self._dense, *self.driver, self._jacobian, event)
+        self._energy = energy(system) if needs.newton and not system.damped else None
+        self._limit = None
+        self._functions = addresses(
+            self._step, self._dense, *self.driver, self._jacobian, event, self._energy, self._limit
+        )
         if needs.prepare is None:
             prepared = Prepared(method.settings, method.numbers, max(1, method.work) * len(system.y))
         else:

@@ -17,6 +17,8 @@ KERNELS = "sceneql.stepping.implicit_runge_kutta_kernels"
 NEWTON = 1e-10
 """Relative and absolute tolerance of Newton's method where steps are fixed."""
 UNSOLVED = "Newton's method finds no solution, not even of a thousandth of this step: take shorter ones"
+NO_MEMORY = (0.0,) * 4
+"""What Newton's method remembers behind its tolerances, at the start (newton_kernels)."""
 SHARE = 0.02
 """Part of the tolerance that Newton's method may leave as its own error."""
 
@@ -108,7 +110,7 @@ class ImplicitTableau:
                 step=f"{KERNELS}:step",
                 order=self.order,
                 dense=self.dense,
-                settings=(0.0, 1.0, *left, 0.0, 0.0, self.diagonal, *self.c, *self.b, *differences, *lower),
+                settings=(0.0, 1.0, *left, *NO_MEMORY, self.diagonal, *self.c, *self.b, *differences, *lower),
                 numbers=(self.stages, int(not self.a[0]), int(self.stiffly_accurate), int(adaptive), self.error_order),
                 last_stage=self.stages if self.stiffly_accurate else -1,
             ),

@@ -59,12 +59,20 @@ class Assembly(Protocol):
         ints: Sequence[int],
         jacobian: Slopes | Callable[[], Slopes | None] | None = None,
         apart: bool = False,
+        energy: str | None = None,
+        damped: bool = False,
     ) -> None:
         """Add a term to the rate; ``kernel`` is ``"package.module:function"``.
 
         ``jacobian``: its derivatives, or a function that gives them if a solver needs them; None: unknown, then the
         island takes differences of the whole rate. ``apart``: its force on a body depends on that body and the time
         alone, so that a large island may be solved in blocks of its bodies.
+
+        ``energy``: ``"package.module:function"``, ``(t, y, floats, ints) -> float``, with the term's integers: the
+        potential energy [J] of its force, called where the rate has been evaluated at this t; empty: of a term that
+        adds no force to what moves; None: there is none. Newton's method searches along its updates for less of the sum
+        where all terms of an island tell theirs. ``damped``: the force depends on velocities besides, and has this
+        potential where they are 0.
         """
 
     def tied_drift(self, kernel: str, ints: Sequence[int]) -> None:

@@ -5,7 +5,7 @@ memories of words follow. Where a solver needs slopes, three arrays of the state
 where they are.
 """
 
-RATES, STEP_END, HOLDS, CHANGED, SETTLED, DEFINITE, STAGE, STAGES, HEAD = range(9)
+RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, HEAD = range(10)
 """
 RATES: how many times the rate was evaluated.
 
@@ -20,9 +20,11 @@ CHANGED: not 0 where an exact contact, updating its resting pairs at the end of 
 SETTLED: not 0 where nothing but what settles it (Assembly.after_step of samples) has changed the state since the end of
 the last step: a method of several steps goes on with what it remembers.
 
-DEFINITE: above 0 while Newton's method evaluates slopes. A force that occurs in its own slopes is then the one that the
-latest Newton update predicted (BEFORE, AFTER). Finite far from a solution, where the matrix is to be positive definite:
-negative stiffness beyond DEFINITE [1/s^2] times the mass is left out (system.Slopes).
+NEWTON: above 0 while Newton's method evaluates slopes. A force that occurs in its own slopes is then the one that the
+latest Newton update predicted (BEFORE, AFTER). It is a^2 [s^2] of the stage: stiffness counts beside mass/a^2, beside
+nothing where it is infinite (statics).
+
+POSITIVE: not 0 where the Jacobian is asked for the positive slopes of terms (Slopes.positive), in their kernels' place.
 
 STAGE: the coefficient a [s] of an implicit stage y = base + a f(t, y), its base in BASE; else one of the three below.
 

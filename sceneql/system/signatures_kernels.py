@@ -18,6 +18,9 @@ TIED_DRIFT = types.void(I, F, A, A, A, A, I)
 TIED_DRIFT_OF = types.void(I, F, A, A, A, A, I, I)
 """One part of it, with its own integers last."""
 
+ENERGY = F(F, A, A, I)
+LIMIT = F(F, A, A, A, I)
+
 RATE_FUNCTION = types.FunctionType(TERM)
 GAP_FUNCTION = types.FunctionType(GAP)
 IMPACT_FUNCTION = types.FunctionType(IMPACT)
@@ -29,6 +32,9 @@ TIED_DRIFT_FUNCTION = types.FunctionType(TIED_DRIFT)
 JACOBIAN = types.void(I, F, A, A, A, I)
 STEP = types.float64(I, F, F, A, A, A, A, A, I, A, I)
 DENSE = types.void(F, F, A, A, A, A, A, A, I, A)
+
+ENERGY_FUNCTION = types.FunctionType(ENERGY)
+LIMIT_FUNCTION = types.FunctionType(LIMIT)
 
 EVENT = types.Tuple((N, F))(I, F, F, A, A, A, A, A, A, A, I, A, I, A, I, F)
 """events_kernels.find_event."""

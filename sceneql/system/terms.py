@@ -25,9 +25,8 @@ class Slopes:
     Derivatives through values that read the state are not the kernel's: the island takes them from differences of the
     term with respect to the floats of these values (island/value_slopes.py).
 
-    While channels.DEFINITE is above 0, the slopes serve Newton's method: a force that they contain is the one that the
-    latest Newton update predicted, and where DEFINITE is finite, a kernel that can leaves out negative stiffness, such
-    as the transverse part of a compressed spring's.
+    While channels.NEWTON is above 0, the slopes serve Newton's method: a force that they contain is the one that the
+    latest Newton update predicted.
     """
 
     kernel: str
@@ -44,6 +43,11 @@ class Slopes:
     blocks: bool = False
     """Whether entries are 3x3 blocks, row by row, with the first row and column of each in ``rows`` and ``columns``:
     three times as fast for forces between masses."""
+
+    positive: str = ""
+    """``"package.module:function"``: a kernel with the same integers and entries that leaves out negative stiffness,
+    such as the transverse part of a compressed spring's, so that Newton's matrix is positive definite far from a
+    solution, too; channels.NEWTON tells what inertia holds. It is compiled at its first use. Empty: the same slopes."""
 
     in_stages: bool = False
     """Whether the slopes are those of the term as it acts for implicit solvers, other than for explicit ones: within

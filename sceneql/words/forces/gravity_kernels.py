@@ -8,7 +8,7 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.system.signatures_kernels import TERM, A, N
 
-VELOCITY_AT, COUNT, MASS_AT, GIVEN, VECTOR_AT, STRENGTH_AT = range(6)
+VELOCITY_AT, COUNT, MASS_AT, GIVEN, VECTOR_AT, STRENGTH_AT, POSITION_AT, INVERSE_AT = range(8)
 
 
 @lean(types.UniTuple(types.float64, 3)(A, N, N, N))

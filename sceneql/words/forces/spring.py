@@ -91,7 +91,14 @@ class Spring(Force):
         else:
             ints = (*ends[0][:3], *ends[1][:3], *law, *speeds)
             more = (*ints, ends[0][3], ends[1][3])
-            assembly.term("force", "sceneql.words.forces.spring_kernels:spring", ints, lambda: _slopes(ends, more))
+            assembly.term(
+                "force",
+                "sceneql.words.forces.spring_kernels:spring",
+                ints,
+                lambda: _slopes(ends, more),
+                energy="sceneql.words.forces.spring_energy_kernels:energy",
+                damped=number(self.damping) != 0.0,
+            )
         assembly.remember(*ends[0], *ends[1], *law)
 
     def _place(self, value: Value, assembly: Assembly, everyone: Sequence[Bodies]) -> Place | None:
@@ -134,8 +141,9 @@ def _slopes(ends: Sequence[tuple[int, ...]], ints: Sequence[int]) -> Slopes:
 
     from sceneql.system import Slopes
 
+    kernels = "sceneql.words.forces.spring_slopes_kernels"
     i, j = np.divmod(np.arange(9), 3)
     masses = [end for end in ends if end[0] >= 0]
     pairs = [(one[1], other[which]) for one in masses for which in (0, 1) for other in masses]
     rows, columns = (np.concatenate(places) for places in zip(*((r + i, c + j) for r, c in pairs), strict=True))
-    return Slopes("sceneql.words.forces.spring_slopes_kernels:spring", rows, columns, ints)
+    return Slopes(f"{kernels}:spring", rows, columns, ints, positive=f"{kernels}:positive")

@@ -6,7 +6,8 @@ import math
 import numpy as np
 
 import sceneql.system.channels as channels
-from sceneql.compiled.kernels import kernel, lean_inlined
+from sceneql.bodies.mass_spring_slopes_kernels import HOLDS
+from sceneql.compiled.kernels import inlined, kernel
 from sceneql.system.signatures_kernels import TERM
 from sceneql.words.forces import spring_kernels as force
 
@@ -14,7 +15,7 @@ INVERSES_AT = force.SPEEDS_AT + 2
 """Behind the integers of the force, where each end has its inverse mass (-1: none)."""
 
 
-@lean_inlined
+@inlined
 def between(y, floats, ints, d, v):
     """Write the second end's place [m] and velocity [m/s] relative to the first to d and v."""
     for c in range(3):
@@ -26,12 +27,9 @@ def between(y, floats, ints, d, v):
             v[c] += sign * (y[velocity + c] if at >= 0 else floats[ints[force.SPEEDS_AT + end] + c])
 
 
-@kernel(TERM, inner=True)
-def spring(t, y, entries, floats, ints):
-    """Blocks of 3x3: for each end that is a mass, its force by the places of both masses, then by their velocities.
-
-    For Newton's method as mass_spring_slopes_kernels: without the damping's rotation, with the predicted force.
-    """
+@inlined
+def add(y, entries, floats, ints, kept):
+    """Add the blocks of `spring`; ``kept``: the most negative stiffness across it, over the lighter mass."""
     n, v = np.zeros(3), np.zeros(3)
     between(y, floats, ints, n, v)
     length = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
@@ -43,7 +41,7 @@ def spring(t, y, entries, floats, ints):
     stiffness, damping = floats[ints[force.STIFFNESS_AT]], floats[ints[force.DAMPING_AT]]
     rest = floats[ints[force.REST_AT]]
     across, turning = (stiffness * (length - rest) + damping * opening) / length, damping / length
-    if floats[channels.DEFINITE] > 0.0:
+    if floats[channels.NEWTON] > 0.0:
         old, d, w = np.zeros(3), np.zeros(3), np.zeros(3)
         between(floats[floats.size - channels.BEFORE * y.size :], floats, ints, old, w)
         between(floats[floats.size - channels.AFTER * y.size :], floats, ints, d, w)
@@ -57,7 +55,7 @@ def spring(t, y, entries, floats, ints):
         for end in range(2):
             if ints[INVERSES_AT + end] >= 0:
                 inverse = max(inverse, floats[ints[INVERSES_AT + end]])
-        across = max(-floats[channels.DEFINITE] / inverse if inverse > 0.0 else 0.0, across)
+        across = max(-kept / inverse if inverse > 0.0 else 0.0, across)
     block = 0
     for one in range(2):
         for by_velocity in range(2):
@@ -74,3 +72,18 @@ def spring(t, y, entries, floats, ints):
                             slope = (stiffness - across) * n[i] * n[j] + (across if i == j else 0.0) + turned
                         entries[block + 3 * i + j] += sign * slope
                 block += 9
+
+
+@kernel(TERM, inner=True)
+def spring(t, y, entries, floats, ints):
+    """Blocks of 3x3: for each end that is a mass, its force by the places of both masses, then by their velocities.
+
+    For Newton's method as mass_spring_slopes_kernels: without the damping's rotation, with the predicted force.
+    """
+    add(y, entries, floats, ints, math.inf)
+
+
+@kernel(TERM, inner=True)
+def positive(t, y, entries, floats, ints):
+    """As `spring`, with the negative stiffness across a compressed one bounded as in mass_spring_slopes_kernels."""
+    add(y, entries, floats, ints, HOLDS / floats[channels.NEWTON])

@@ -37,7 +37,7 @@ class Bdf2(Solver):
 
     def stepper(self) -> Stepper:
         """Fixed steps, or by the error."""
-        from sceneql.stepping.implicit_tableau import SHARE, UNSOLVED
+        from sceneql.stepping.implicit_tableau import NO_MEMORY, SHARE, UNSOLVED
 
         adaptive = self.step is None
         absolute = self.tolerance if self.absolute is None else self.absolute
@@ -46,7 +46,7 @@ class Bdf2(Solver):
             Method(
                 step="sceneql.words.solvers.bdf2_kernels:step",
                 order=2,
-                settings=(0.0, 1.0, *newton, 0.0, 0.0, float("-inf"), float("-inf"), 1.0),
+                settings=(0.0, 1.0, *newton, *NO_MEMORY, float("-inf"), float("-inf"), 1.0),
                 numbers=(int(adaptive), 0),
                 last_stage=1,
             ),

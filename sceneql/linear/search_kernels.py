@@ -1,0 +1,245 @@
+# mypy: ignore-errors
+"""Newton's method for one implicit stage where the plain iteration fails: updates are searched for less.
+
+Where an island has a potential E, the stage's solution is a stationary point of (v - base) M (v - base)/2 + E(x) on
+x = base + a v; elsewhere what falls is the residual, in the same norm of the masses M. A stiff spring that turns first
+stretches, and the next update repairs it: so whole updates are taken as long as one of a few brings less than the least
+so far (watchdog: Chamberlain, Powell, Lemarechal & Pedersen 1982). Where none does, the search goes back to the least
+and goes from there along an update by Armijo's rule (Nocedal & Wright, Numerical Optimization, 2006, ch. 3).
+
+Slopes are the positive ones (Slopes.positive); where these converge slowly, the true ones, as long as their matrix is
+positive definite, as the signs of its pivots tell.
+"""
+
+import math
+
+import sceneql.system.channels as channels
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.pointers_kernels import (
+    AT_ENERGY,
+    AT_JACOBIAN,
+    AT_LIMIT,
+    AT_RATE,
+    energy_at,
+    jacobian_at,
+    limit_at,
+    rate_at,
+)
+from sceneql.linear.newton_kernels import (
+    CAREFUL,
+    CONTRACTION,
+    FACTORED,
+    FACTORIZATIONS,
+    ITERATIONS,
+    NEWTON,
+    POSITIVE,
+    SHARE,
+    SLOW,
+    TINY,
+    UNSEEN,
+    foresee,
+    largest,
+    leave,
+    norm,
+)
+from sceneql.linear.stage_kernels import (
+    CORE_AT,
+    POSITIONS,
+    POSITIONS_AT,
+    UNKNOWNS,
+    factor_stage,
+    indefinite,
+    solve_stage,
+)
+
+MOST = 120
+"""Largest number of updates."""
+WATCHED = 20
+"""Whole updates that need not bring less."""
+SLOWED = 0.5
+"""Contraction from which on positive slopes are slow."""
+TRUE_AFTER = 3
+"""Slow updates after which true slopes are tried; twice as many after each time that these fail."""
+ENOUGH = 1e-4
+"""Part of the fall that the slope predicts which a step must bring (Armijo)."""
+SHORTEST = 1e-10
+"""Part of an update below which no shorter one is tried."""
+ROUNDING = 1e-13
+"""Relative rounding error of a potential."""
+UNMOVED = 1e-12
+"""Part of an update that a limit allows, below which nothing can move."""
+
+
+@lean_inlined
+def prescribe(change, residual, y, plan):
+    """Put entries that no unknown moves, as the velocities of guided pins, where they will be."""
+    for k in range(y.size):
+        change[k] = 1.0
+    for k in range(plan[CORE_AT], plan[CORE_AT] + plan[UNKNOWNS]):
+        change[plan[k]] = 0.0
+    at = plan[POSITIONS_AT]
+    for k in range(at, at + 3 * plan[POSITIONS], 3):
+        change[plan[k]] = 0.0
+    for k in range(y.size):
+        y[k] += change[k] * residual[k]
+
+
+@lean_inlined
+def inertial(base, y, scales, plan):
+    """The part of the stage's potential that masses have."""
+    total = 0.0
+    for k in range(plan[UNKNOWNS]):
+        away = y[plan[plan[CORE_AT] + k]] - base[plan[plan[CORE_AT] + k]]
+        total += 0.5 * scales[k] * away * away
+    return total
+
+
+@lean_inlined
+def along(residual, change, scales, plan):
+    """Scalar product of two changes of velocities, by the masses."""
+    total = 0.0
+    for k in range(plan[UNKNOWNS]):
+        entry = plan[plan[CORE_AT] + k]
+        total += scales[k] * residual[entry] * change[entry]
+    return total
+
+
+@lean_inlined
+def aim(y, change, floats):
+    """Store y and y + change as the states before and after an update (newton_kernels.foresee)."""
+    n = y.size
+    before, after = floats.size - channels.BEFORE * n, floats.size - channels.AFTER * n
+    for k in range(n):
+        floats[before + k] = y[k]
+        floats[after + k] = y[k] + change[k]
+
+
+@lean_inlined
+def go(y, change, part, floats):
+    """Move y from the state before to that after a part of an update."""
+    n = y.size
+    before, after = floats.size - channels.BEFORE * n, floats.size - channels.AFTER * n
+    for k in range(n):
+        y[k] = floats[after + k] = floats[before + k] + part * change[k]
+
+
+@lean_inlined
+def shorter(part, low, slope, value):
+    """The next part of an update to try: the least of the parabola through what is known, within a tenth and a half."""
+    bend = value - low - part * slope
+    found = -0.5 * slope * part * part / bend if math.isfinite(bend) and bend > 0.0 else 0.0
+    return min(0.5 * part, max(0.1 * part, found))
+
+
+@lean_inlined
+def measure(functions, t, base, y, residual, scales, plan, floats, ints):
+    """What is searched for less of, at a state whose residual is known; and its rounding error."""
+    if functions[AT_ENERGY] == 0:
+        return 0.5 * along(residual, residual, scales, plan), 0.0
+    kinetic, stored = inertial(base, y, scales, plan), energy_at(functions[AT_ENERGY])(t, y, floats, ints)
+    return kinetic + stored, ROUNDING * (kinetic + abs(stored))
+
+
+@lean(NEWTON, inner=True)
+def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints):
+    """Solve for y as newton_kernels.newton does."""
+    rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
+    has_potential, has_limit = functions[AT_ENERGY] != 0, functions[AT_LIMIT] != 0
+    n = y.size
+    change, residual, best = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n]
+    leave(rate, t, a, base, y, residual, plan, floats, ints)
+    prescribe(change, residual, y, plan)
+    leave(rate, t, a, base, y, residual, plan, floats, ints)
+    foresee(y0, y0, floats)
+    memory[FACTORED] = 0.0
+    lowest, rounding = measure(functions, t, base, y, residual, scales, plan, floats, ints)
+    for k in range(n):
+        best[k] = y[k]
+    positive, searching = True, False
+    stale = regular = True
+    slow = failing = since = 0
+    patience = TRUE_AFTER
+    before = before_mean = 0.0
+    for _ in range(MOST):
+        while stale:
+            floats[channels.NEWTON] = a * a
+            floats[channels.POSITIVE] = 1.0 if positive else 0.0
+            slopes(functions, t, y, jacobian, floats, ints)
+            floats[channels.NEWTON] = floats[channels.POSITIVE] = 0.0
+            memory[FACTORIZATIONS] += 1.0
+            regular = factor_stage(plan, a, jacobian, scales, store)
+            if positive or (regular and not indefinite(plan, store)):
+                break
+            positive, slow = True, 0
+            patience *= 2
+        for k in range(n):
+            change[k] = residual[k]
+        memory[ITERATIONS] += 1.0
+        if not regular or not solve_stage(plan, a, jacobian, scales, store, change):
+            break
+        slope = -along(residual, change, scales, plan) if has_potential else -2.0 * lowest
+        part = 1.0
+        aim(y, change, floats)
+        if has_limit:
+            old, new = floats[floats.size - channels.BEFORE * n :], floats[floats.size - channels.AFTER * n :]
+            part = limit_at(functions[AT_LIMIT])(t, old[:n], new[:n], floats, ints)
+            if part < UNMOVED:
+                break
+        longest = part
+        go(y, change, part, floats)
+        leave(rate, t, a, base, y, residual, plan, floats, ints)
+        value, _ = measure(functions, t, base, y, residual, scales, plan, floats, ints)
+        while searching and not value <= lowest + ENOUGH * part * slope + rounding and part > SHORTEST * longest:
+            part = shorter(part, lowest, slope, value)
+            go(y, change, part, floats)
+            leave(rate, t, a, base, y, residual, plan, floats, ints)
+            value, _ = measure(functions, t, base, y, residual, scales, plan, floats, ints)
+        if part <= SHORTEST * longest:
+            break
+        searching = False
+        for k in range(n):
+            change[k] *= part
+        # The tests of convergence are those of newton_kernels.newton.
+        size = largest(change, y0, y, memory)
+        mean = norm(change, y0, y, memory) if size < math.inf else math.inf
+        contraction = max(UNSEEN, memory[CONTRACTION])
+        if part < 1.0 or not size < math.inf:
+            foresee(y, y, floats)
+            since = 0
+        elif since > 0:
+            contraction = size / before if before > 0.0 else 0.0
+            memory[CONTRACTION] = max(contraction, 1e-3)
+        if part == 1.0 and size < math.inf:
+            done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
+            done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
+            if since > 0 and size <= memory[SHARE]:
+                done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
+            if done:
+                memory[FACTORED] = a
+                memory[POSITIVE] = memory[CAREFUL] = 1.0 if positive else 0.0
+                return True
+            since += 1
+        before, before_mean = size, mean
+        if value <= lowest + rounding:
+            failing = 0
+            lowest, rounding = measure(functions, t, base, y, residual, scales, plan, floats, ints)
+            for k in range(n):
+                best[k] = y[k]
+        else:
+            failing += 1
+            if failing > WATCHED or not math.isfinite(value):
+                for k in range(n):
+                    y[k] = best[k]
+                foresee(y, y, floats)
+                leave(rate, t, a, base, y, residual, plan, floats, ints)
+                positive = searching = stale = True
+                failing = since = slow = 0
+                continue
+        stale = positive or (since > 1 and contraction > SLOW)
+        slow = slow + 1 if contraction > SLOWED and since > 1 else 0
+        if positive and slow >= patience:
+            positive, slow, stale = False, 0, True
+        elif not positive and slow > 0 and contraction >= 1.0:
+            positive, slow, stale = True, 0, True
+            patience *= 2
+    return False
