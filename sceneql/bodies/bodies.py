@@ -57,9 +57,11 @@ def reserve(
     radii: Floats,
     fixed: Any,
     spans: Sequence[Span | None] | None = None,
+    inertia: Any = None,
 ) -> Bodies:
     """Put n masses into the state, with the closing term that turns newtons into accelerations.
 
+    ``inertia``: a sparse matrix (3 n, 3 n) in place of ``masses``, which then are lumped ones (consistent.py).
     ``positions`` and ``velocities`` (n, 3) [m], [m/s]; ``masses`` (n,) [kg]; ``radii`` (n,) [m]; ``fixed`` (n,) bool.
     """
     import numpy as np
@@ -81,6 +83,11 @@ def reserve(
         inverse_at=assembly.floats(np.divide(1.0, masses, out=np.zeros(n), where=~np.asarray(fixed))),
         radius_at=assembly.floats(radii),
     )
+    if inertia is not None:
+        from sceneql.bodies import consistent
+
+        consistent.close(assembly, bodies, inertia)
+        return bodies
     ints = (position_at, velocity_at, n, bodies.inverse_at)
     assembly.inertia(velocity_at, bodies.inverse_at, n)
     places = np.arange(3 * n)

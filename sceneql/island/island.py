@@ -72,6 +72,8 @@ class IslandAssembly:
     _pairs: list[tuple[int, int, int]] = field(default_factory=list)
     _alike: list[tuple[int, int]] = field(default_factory=list)
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
+    _matrices: dict[int, Any] = field(default_factory=dict)
+    """Inertia that is a matrix, by the offset of the velocities."""
     _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(channels.HEAD)])
     _stored: int = channels.HEAD
     _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
@@ -183,9 +185,11 @@ class IslandAssembly:
         """Say that entries share a scale of errors (system.Assembly)."""
         self._alike.append((at, count))
 
-    def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
+    def inertia(self, velocity_at: int, inverse_at: int, count: int, matrix: Any = None) -> None:
         """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
         self._masses.append((velocity_at, inverse_at, count))
+        if matrix is not None:
+            self._matrices[velocity_at] = matrix
 
     def contact(self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False) -> None:
         """Add contacts."""
@@ -331,7 +335,8 @@ class IslandAssembly:
         ints = lay_out(self._pairs, self._frees, bool(tied), blocks, first_blocks, pairs)
         found, derived = full(len(y)) if jacobian else None, None
         if slopes is not None:
-            found, derived, more = section(len(ints), len(y), slopes, self._masses, self._pairs)
+            masses = [(at, -1 if at in self._matrices else inverse_at, n) for at, inverse_at, n in self._masses]
+            found, derived, more = section(len(ints), len(y), slopes, masses, self._pairs)
             ints = np.concatenate([ints, more])
         names = [tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free, tied)]
         structure = Structure(
@@ -368,6 +373,7 @@ class IslandAssembly:
             unsloped=self._unsloped,
             grids=tuple(self.fields.values()),
             masses=tuple(self._masses),
+            inertia=tuple(self._matrices.items()),
             alike=tuple(self._alike),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
             damped=any(block.damped for block in blocks[1:first_exact]),

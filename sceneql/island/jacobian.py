@@ -41,7 +41,8 @@ def section(
 ) -> tuple[Pattern, tuple[str, ...], Numbers]:
     """The pattern of ``size`` rows, the kernels in order, and the section of integers that begins at ints[at].
 
-    ``slopes`` with the integers of each; ``masses``: (velocity_at, inverse_at, count) of each model of masses;
+    ``slopes`` with the integers of each; ``masses``: (velocity_at, inverse_at, count) of each model of masses, -1 where
+    their inertia is a matrix, which multiplies no rows;
     ``pairs``: (position_at, velocity_at, count of entries).
     """
     by_kernel: dict[str, list[tuple[Slopes, Sequence[int]]]] = {}
@@ -129,7 +130,7 @@ def _masses_of(size: int, masses: Triples, pairs: Triples) -> tuple[Numbers, Num
     for velocity_at, inverse_at, count in masses:
         own = np.arange(count).repeat(3)
         top[velocity_at : velocity_at + 3 * count] = velocity_at + 3 * own
-        inverse[velocity_at : velocity_at + 3 * count] = inverse_at + own
+        inverse[velocity_at : velocity_at + 3 * count] = inverse_at + own if inverse_at >= 0 else -1
     for position, velocity, count in pairs:
         if (top[velocity : velocity + count : 3] == np.arange(velocity, velocity + count, 3)).all() and count % 3 == 0:
             top[position : position + count] = position + 3 * np.arange(count // 3).repeat(3)

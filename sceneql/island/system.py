@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sceneql.island.breakpoint_table import BreakpointTable
 
@@ -81,6 +81,8 @@ class System:
     """The grids of all its fields."""
     masses: tuple[tuple[int, int, int], ...] = ()
     """For each model of masses: offset of velocities in y, offset of inverse masses in floats, number of masses."""
+    inertia: tuple[tuple[int, Any], ...] = ()
+    """Offset of the velocities and the sparse matrix of each of these whose inertia is one (Assembly.inertia)."""
     alike: tuple[tuple[int, int], ...] = ()
     """Offset and number of further entries of y that are of one size."""
     terms: tuple[Origin, ...] = ()

@@ -130,7 +130,7 @@ def leave(rate, t, a, base, y, residual, plan, floats, ints):
 
 @lean(NEWTON, inner=True)
 def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints):
-    """Solve for y, which comes as a guess; True if the iteration converged. ``scratch``: (3 n,).
+    """Solve for y, which comes as a guess; True if the iteration converged. ``scratch``: (4 n,).
 
     ``jacobian`` (room of the pattern) and ``store`` (of the plan) keep values and factors between calls.
     """

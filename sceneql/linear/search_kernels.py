@@ -47,6 +47,7 @@ from sceneql.linear.stage_kernels import (
     POSITIONS,
     POSITIONS_AT,
     UNKNOWNS,
+    along,
     factor_stage,
     indefinite,
     solve_stage,
@@ -85,26 +86,6 @@ def prescribe(change, residual, y, plan):
 
 
 @lean_inlined
-def inertial(base, y, scales, plan):
-    """The part of the stage's potential that masses have."""
-    total = 0.0
-    for k in range(plan[UNKNOWNS]):
-        away = y[plan[plan[CORE_AT] + k]] - base[plan[plan[CORE_AT] + k]]
-        total += 0.5 * scales[k] * away * away
-    return total
-
-
-@lean_inlined
-def along(residual, change, scales, plan):
-    """Scalar product of two changes of velocities, by the masses."""
-    total = 0.0
-    for k in range(plan[UNKNOWNS]):
-        entry = plan[plan[CORE_AT] + k]
-        total += scales[k] * residual[entry] * change[entry]
-    return total
-
-
-@lean_inlined
 def aim(y, change, floats):
     """Store y and y + change as the states before and after an update (newton_kernels.foresee)."""
     n = y.size
@@ -132,11 +113,14 @@ def shorter(part, low, slope, value):
 
 
 @lean_inlined
-def measure(functions, t, base, y, residual, scales, plan, floats, ints):
-    """What is searched for less of, at a state whose residual is known; and its rounding error."""
+def measure(functions, t, base, y, residual, change, scales, plan, floats, ints):
+    """What is searched for less of, at a state whose residual is known; and its rounding error. ``change``: scratch."""
     if functions[AT_ENERGY] == 0:
-        return 0.5 * along(residual, residual, scales, plan), 0.0
-    kinetic, stored = inertial(base, y, scales, plan), energy_at(functions[AT_ENERGY])(t, y, floats, ints)
+        return 0.5 * along(plan, scales, residual, residual), 0.0
+    for k in range(y.size):
+        change[k] = y[k] - base[k]
+    kinetic = 0.5 * along(plan, scales, change, change)
+    stored = energy_at(functions[AT_ENERGY])(t, y, floats, ints)
     return kinetic + stored, ROUNDING * (kinetic + abs(stored))
 
 
@@ -146,13 +130,14 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
     has_potential, has_limit = functions[AT_ENERGY] != 0, functions[AT_LIMIT] != 0
     n = y.size
-    change, residual, best = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n]
+    change, residual = scratch[:n], scratch[n : 2 * n]
+    best, moved = scratch[2 * n : 3 * n], scratch[3 * n : 4 * n]
     leave(rate, t, a, base, y, residual, plan, floats, ints)
     prescribe(change, residual, y, plan)
     leave(rate, t, a, base, y, residual, plan, floats, ints)
     foresee(y0, y0, floats)
     memory[FACTORED] = 0.0
-    lowest, rounding = measure(functions, t, base, y, residual, scales, plan, floats, ints)
+    lowest, rounding = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
     for k in range(n):
         best[k] = y[k]
     positive, searching = True, False
@@ -177,7 +162,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         memory[ITERATIONS] += 1.0
         if not regular or not solve_stage(plan, a, jacobian, scales, store, change):
             break
-        slope = -along(residual, change, scales, plan) if has_potential else -2.0 * lowest
+        slope = -along(plan, scales, residual, change) if has_potential else -2.0 * lowest
         part = 1.0
         aim(y, change, floats)
         if has_limit:
@@ -188,12 +173,12 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         longest = part
         go(y, change, part, floats)
         leave(rate, t, a, base, y, residual, plan, floats, ints)
-        value, _ = measure(functions, t, base, y, residual, scales, plan, floats, ints)
+        value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
         while searching and not value <= lowest + ENOUGH * part * slope + rounding and part > SHORTEST * longest:
             part = shorter(part, lowest, slope, value)
             go(y, change, part, floats)
             leave(rate, t, a, base, y, residual, plan, floats, ints)
-            value, _ = measure(functions, t, base, y, residual, scales, plan, floats, ints)
+            value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
         if part <= SHORTEST * longest:
             break
         searching = False
@@ -222,7 +207,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         before, before_mean = size, mean
         if value <= lowest + rounding:
             failing = 0
-            lowest, rounding = measure(functions, t, base, y, residual, scales, plan, floats, ints)
+            lowest, rounding = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
             for k in range(n):
                 best[k] = y[k]
         else:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.failure import LimitRefused
 from sceneql.island import layout
+from sceneql.linear.inertia import Inertia, inertia_places
 from sceneql.linear.species import one_grid
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class StagePlan:
     numbers: NDArray[int64]
     """Laid out as stage_kernels says; changed by the kernels (pivots, symmetry)."""
     scales: Floats
-    """(unknowns,) factor of each row."""
+    """(unknowns,) factor of each row; then what Inertia has."""
     store: int
     """Floats for the matrix, its factors and scratch."""
     text: str
@@ -75,7 +76,9 @@ def stage_plan(system: System, exact: bool = False) -> StagePlan:
     left, pattern, solver = _chosen(system, kinds_of(system, inverse), exact)
     square = left.unit**2
     parts, diagonal = _parts(left, pattern)
+    inertia = Inertia.of(system, left, pattern)
     lists = [left.core, left.positions.ravel(), parts.ravel(), diagonal, _twins(pattern), solver.numbers, left.tallies]
+    lists += [inertia.entries.ravel(), inertia.held]
     starts = list(accumulate((len(part) for part in lists), initial=HEAD))
     counts = [len(system.y), len(left.core), square * pattern.nnz, len(left.positions), len(left.tallies)]
     kernels = (
@@ -87,11 +90,13 @@ def stage_plan(system: System, exact: bool = False) -> StagePlan:
     negatives = (
         number_of(function(solver.negatives), NEGATIVES) if system.structure.energies and solver.negatives else -1
     )
-    head = [*counts, *starts[:-1], solver.factors, 0, *kernels, left.unit, *shared, negatives]
+    head = [*counts, *starts[:7], solver.factors, 0, *kernels, left.unit, *shared, negatives]
+    head += [len(inertia.entries), len(inertia.held), *starts[7:9]]
     assert len(head) == HEAD
     numbers = np.concatenate([np.asarray(part, dtype=np.int64) for part in (head, *lists)])
     store = square * pattern.nnz + solver.factors + solver.work + 2 * tiles + len(left.core)
-    return StagePlan(numbers, 1.0 / inverse[left.core], store, solver.text)
+    scales = np.concatenate([1.0 / inverse[left.core], inertia.numbers])
+    return StagePlan(numbers, scales, store, solver.text)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,12 +117,12 @@ def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solv
 
     by_masses = left_by_masses(system, kinds) if kinds.core.sum() > SMALL else None
     if by_masses is not None:
-        pattern = _pattern(by_masses)
+        pattern = _pattern(by_masses, inertia_places(system, by_masses))
         solver = _factored(pattern, 3, _points(system, by_masses), exact)
         if solver is not None:
             return by_masses, pattern, solver
     left = left_by_entries(system, kinds)
-    pattern = _pattern(left)
+    pattern = _pattern(left, inertia_places(system, left))
     if one_grid(system, left.core):
         return left, pattern, _over_grids(system, left.core, pattern)
     solver = None if by_masses is not None else _factored(pattern, 1, _points(system, left), exact)
@@ -140,12 +145,14 @@ def _parts(left: Left, pattern: Any) -> tuple[NDArray[int64], NDArray[int64]]:
 
 
 def _inverse_masses(system: System) -> Floats:
-    """(n,) factors of the rows of the Jacobian: the inverse mass of a velocity, 1 for other entries."""
+    """(n,) factors of the rows of the Jacobian: the inverse mass of a velocity, 1 for other entries and a matrix's."""
     import numpy as np
 
     assert system.pattern is not None
     inverse = np.ones(len(system.y))
     for velocity_at, inverse_at, count in _masses(system):
+        if inverse_at < 0:
+            continue
         inverse[velocity_at : velocity_at + 3 * count] = np.repeat(system.floats[inverse_at : inverse_at + count], 3)
     return inverse
 
@@ -172,8 +179,11 @@ class _Full:
         self.indices = np.tile(np.arange(units), units)
 
 
-def _pattern(left: Left) -> Any:
-    """The symmetric pattern of units as scipy CSR, indices sorted; where it is small, the full one."""
+def _pattern(left: Left, inertia: NDArray[int64]) -> Any:
+    """The symmetric pattern of units as scipy CSR, indices sorted; where it is small, the full one.
+
+    ``inertia`` (k, 2): the places of sparse inertia.
+    """
     import numpy as np
 
     units = len(left.core) // left.unit
@@ -183,6 +193,8 @@ def _pattern(left: Left) -> Any:
 
     own = np.arange(units)
     rows, columns = (np.concatenate([left.first[:, k], left.second[:, k], own]) for k in (1, 2))
+    if len(inertia):
+        rows, columns = np.concatenate([rows, inertia[:, 0]]), np.concatenate([columns, inertia[:, 1]])
     one_way = csr_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(units, units))
     one_way.sum_duplicates()
     one_way.data[:] = 1

@@ -7,8 +7,10 @@ places in the Jacobian of a first coefficient and of a second one, and the first
 none), diagonal, twins (the place of the transposed block), the solver's own, tallies; floats of the factors; 1 while
 the matrix is symmetric; the numbers of the solver's kernels; unknowns of a unit (1, or 3 of a mass: blocks are square,
 row by row); tiles of blocks, the numbers of threads_kernels.threads, the addresses of the tiles' kernels; the number of
-the kernel that counts negative eigenvalues (-1: none)]. ``store``:
-values of the matrix, factors, scratch, two numbers a tile, and last a right side (unknowns,).
+the kernel that counts negative eigenvalues (-1: none); numbers and places of the entries of inertia that is a matrix,
+and of the values that are held (inertia.py)]. ``scales``: factors of the rows, 1 for those of such inertia; then
+Inertia.numbers. ``store``: values of the matrix, factors, scratch, two numbers a tile, and last a right side
+(unknowns,).
 """
 
 from numba import types
@@ -21,7 +23,7 @@ from sceneql.system.signatures_kernels import A, F, I
 SIZE, UNKNOWNS, VALUES, POSITIONS, TALLIES = range(5)
 CORE_AT, POSITIONS_AT, PARTS_AT, DIAGONAL_AT, TWINS_AT, SOLVER_AT, TALLIES_AT = range(5, 12)
 FACTORS, SYMMETRIC, FACTOR, SOLVE, UNIT = range(12, 17)
-TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, NEGATIVES, HEAD = range(17, 24)
+TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, NEGATIVES, INERTIA, HELD, INERTIA_AT, HELD_AT, HEAD = range(17, 28)
 
 ROUNDING = 1e-13
 """Differences of transposed values up to this part of the largest value count as rounding."""
@@ -52,6 +54,46 @@ def assemble_tile(number, a, jacobian, values, scales, plan):
 
 
 @lean_inlined
+def add_inertia(plan, scales, values):
+    """Add inertia, of masses and of matrices."""
+    unit, at, m = plan[UNIT], plan[DIAGONAL_AT], plan[UNKNOWNS]
+    for k in range(plan[HELD_AT], plan[HELD_AT] + plan[HELD]):
+        values[plan[k]] = 0.0
+    for k in range(m):
+        if scales[m + k] < 0.0:
+            inside = k % unit
+            values[(plan[at + k // unit] * unit + inside) * unit + inside] += scales[k]
+    for k in range(plan[INERTIA]):
+        values[plan[plan[INERTIA_AT] + 3 * k]] += scales[2 * m + k]
+
+
+@lean_inlined
+def by_inertia(plan, scales, r, b):
+    """The residuals in b, multiplied by inertia that is a matrix: other rows are left."""
+    m, core = plan[UNKNOWNS], plan[CORE_AT]
+    for k in range(m):
+        if scales[m + k] >= 0.0:
+            b[k] = 0.0
+    for k in range(plan[INERTIA]):
+        at = plan[INERTIA_AT] + 3 * k
+        b[plan[at + 1]] += scales[2 * m + k] * r[plan[core + plan[at + 2]]]
+
+
+@lean_inlined
+def along(plan, scales, p, q):
+    """Scalar product of the unknowns' entries of p and q, by the inertia."""
+    m, core = plan[UNKNOWNS], plan[CORE_AT]
+    total = 0.0
+    for k in range(m):
+        if plan[INERTIA] == 0 or scales[m + k] < 0.0:
+            total += scales[k] * p[plan[core + k]] * q[plan[core + k]]
+    for k in range(plan[INERTIA]):
+        at = plan[INERTIA_AT] + 3 * k
+        total += scales[2 * m + k] * p[plan[core + plan[at + 1]]] * q[plan[core + plan[at + 2]]]
+    return total
+
+
+@lean_inlined
 def assemble(plan, a, jacobian, scales, values):
     """Assemble the reduced matrix, its rows scaled."""
     if plan[TILES] == 1:
@@ -59,6 +101,9 @@ def assemble(plan, a, jacobian, scales, values):
     else:
         over_threads(plan[ENTRY], plan[THREADS], plan[ASSEMBLE], plan[TILES], a, jacobian, values, scales, plan)
     unit, at = plan[UNIT], plan[DIAGONAL_AT]
+    if plan[INERTIA] > 0:
+        add_inertia(plan, scales, values)
+        return
     for k in range(plan[UNKNOWNS]):
         inside = k % unit
         values[(plan[at + k // unit] * unit + inside) * unit + inside] += scales[k]
@@ -143,7 +188,12 @@ def solve_stage(plan, a, jacobian, scales, store, r):
     core, positions = plan[CORE_AT], plan[POSITIONS_AT]
     for k in range(m):
         b[k] = r[plan[core + k]]
+    if plan[INERTIA] > 0:
+        by_inertia(plan, scales, r, b)
     through_positions(plan, a, jacobian, r, b)
+    for k in range(m if plan[INERTIA] > 0 else 0):
+        if scales[m + k] == 0.0:
+            b[k] = r[plan[core + k]]
     for k in range(m):
         b[k] *= scales[k]
     own, work = plan[plan[SOLVER_AT] :], factors[plan[FACTORS] :]

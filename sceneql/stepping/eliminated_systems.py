@@ -53,7 +53,9 @@ def _held(system: System) -> set[int]:
     masses_at, masses = ints[at + layout.MASSES_AT], ints[at + layout.MASSES]
     velocities = {int(v): x for x, v in enumerate(system.partner) if v >= 0}
     for velocity_at, inverse_at, count in ints[masses_at : masses_at + 3 * masses].reshape(-1, 3).tolist():
-        for k in np.flatnonzero(system.floats[inverse_at : inverse_at + count] == 0.0).tolist():
+        for k in (
+            [] if inverse_at < 0 else np.flatnonzero(system.floats[inverse_at : inverse_at + count] == 0.0).tolist()
+        ):
             for v in range(velocity_at + 3 * k, velocity_at + 3 * k + 3):
                 found |= {v, velocities[v]} if v in velocities else {v}
     return found

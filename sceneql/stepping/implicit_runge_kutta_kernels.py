@@ -4,7 +4,7 @@
 ``settings``: the memory of Newton's method (newton_kernels), then the diagonal g, c (s), b (s), b - b_hat (s), the rows
 of a below the diagonal, packed; then the scales of the stage plan. ``numbers``: [stages, 1 if the first is explicit,
 1 if y1 is the last stage, 1 if there is an embedded method, order of its error, where the scales start, entries of the
-Jacobian's room], then the stage plan. ``work``: the step to try next, in an array of y's size; the s slopes k; three
+Jacobian's room], then the stage plan. ``work``: the step to try next, in an array of y's size; the s slopes k; four
 arrays of scratch; the Jacobian; the store of the stage plan.
 """
 
@@ -38,9 +38,9 @@ def add_slopes(settings, at, count, h, y0, work, out):
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; the embedded error, filtered by the stage system (Hosea & Shampine 1996)."""
     n, stages = y0.size, numbers[STAGES]
-    base, scratch = work[:n], work[(1 + stages) * n : (4 + stages) * n]
-    jacobian = work[(4 + stages) * n : (4 + stages) * n + numbers[ROOM]]
-    store = work[(4 + stages) * n + numbers[ROOM] :]
+    base, scratch = work[:n], work[(1 + stages) * n : (5 + stages) * n]
+    jacobian = work[(5 + stages) * n : (5 + stages) * n + numbers[ROOM]]
+    store = work[(5 + stages) * n + numbers[ROOM] :]
     scales, plan = settings[numbers[SCALES_AT] :], numbers[HEAD:]
     diagonal = settings[MEMORY]
     c = MEMORY + 1

@@ -148,7 +148,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     return Prepared(
         settings=np.concatenate([settings, plan.scales]),
         numbers=np.concatenate([method.numbers, [len(method.settings), room], plan.numbers]),
-        work=(4 + stages) * len(system.y) + room + plan.store,
+        work=(5 + stages) * len(system.y) + room + plan.store,
         text=text,
     )
 

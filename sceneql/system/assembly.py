@@ -85,8 +85,13 @@ class Assembly(Protocol):
     def alike(self, at: int, count: int) -> None:
         """Say that y[at : at + count] are of one size: methods with a tolerance measure their errors by one scale."""
 
-    def inertia(self, velocity_at: int, inverse_at: int, count: int) -> None:
-        """Say that a close term scales rate[velocity_at + 3k : +3], and so its slopes, by floats[inverse_at + k]."""
+    def inertia(self, velocity_at: int, inverse_at: int, count: int, matrix: Any = None) -> None:
+        """Say that a close term scales rate[velocity_at + 3k : +3], and so its slopes, by floats[inverse_at + k].
+
+        ``matrix``: the close term solves with it instead (bodies/consistent.py), a scipy sparse symmetric positive
+        definite matrix (3 count, 3 count) [kg]; floats[inverse_at + k] then are of lumped masses, for contacts. Entries
+        that are held have a row and a column of zeros.
+        """
 
     def contact(self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False) -> None:
         """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (back_off,) for `local`.

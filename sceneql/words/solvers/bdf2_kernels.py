@@ -7,7 +7,7 @@ first step, and the first after the state was changed from outside (an event), i
 ``settings``: the memory of Newton's method (newton_kernels), then start and end [s] of the latest step and the length
 of the one before it; then the scales of the stage plan. ``numbers``: [1 if steps follow the error, 1 if there is a step
 before, entries of the Jacobian's room], then the stage plan. ``work``: the step to try next, in an array of y's size;
-the slope at the end; the state before; start and end of the latest step; base; scratch (3); the Jacobian; the store.
+the slope at the end; the state before; start and end of the latest step; base; scratch (4); the Jacobian; the store.
 """
 
 import math
@@ -21,7 +21,7 @@ from sceneql.system.signatures_kernels import STEP
 FOLLOWS_ERROR, HAS_BEFORE, ROOM, HEAD = range(4)
 START, END, LENGTH = MEMORY, MEMORY + 1, MEMORY + 2
 SCALES_AT = MEMORY + 3
-ARRAYS = 9
+ARRAYS = 10
 LONGEST = 2.0
 """Growth of a step: the formula is stable for sequences that grow by less than 1 + sqrt 2 (Grigorieff 1983)."""
 
@@ -55,7 +55,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; its error by Milne's device, filtered by the stage system."""
     n = y0.size
     slope, before, start = work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 4 * n]
-    end, base, scratch = work[4 * n : 5 * n], work[5 * n : 6 * n], work[6 * n : 9 * n]
+    end, base, scratch = work[4 * n : 5 * n], work[5 * n : 6 * n], work[6 * n : 10 * n]
     wrong = scratch[:n]
     jacobian = work[ARRAYS * n : ARRAYS * n + numbers[ROOM]]
     store = work[ARRAYS * n + numbers[ROOM] :]

@@ -1,0 +1,42 @@
+"""Masses whose inertia is a sparse matrix, as the consistent mass of finite elements (Archer 1963)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, Bodies
+
+KERNELS = "sceneql.bodies.consistent"
+
+
+def close(assembly: Assembly, bodies: Bodies, matrix: Any) -> None:
+    """Add the closing term of masses with this inertia, factored once: M dv/dt = F, and dx/dt = v.
+
+    ``matrix``: scipy sparse, symmetric, positive definite but for rows and columns of zeros of entries that are held,
+    (3 count, 3 count) [kg]; ``bodies.inverse_at`` tells lumped masses, to contacts.
+    """
+    import numpy as np
+    from scipy.sparse import csr_array, diags_array
+
+    from sceneql.linear import multifrontal, multifrontal_kernels
+    from sceneql.linear.multifrontal_layout import SINGLE_FACTOR
+    from sceneql.system import Slopes
+
+    size = 3 * bodies.count
+    matrix = csr_array(matrix, dtype=np.float64)
+    held = matrix.diagonal() == 0.0
+    whole = csr_array(matrix + diags_array(1.0 * held))
+    whole.sum_duplicates()
+    whole.sort_indices()
+    plan = multifrontal.plan(whole)
+    plan.numbers[SINGLE_FACTOR] = -1
+    factors, work = np.zeros(plan.factors), np.zeros(plan.work)
+    if not multifrontal_kernels.factor_system(plan.numbers, whole.data, factors, work, True):
+        raise ValueError("the inertia is singular")
+    floats = (assembly.floats(factors), len(factors), assembly.floats(work), len(work), assembly.floats(1.0 * held))
+    ints = np.concatenate([[bodies.position_at, bodies.velocity_at, size, *floats], plan.numbers])
+    assembly.inertia(bodies.velocity_at, bodies.inverse_at, bodies.count, matrix)
+    places = np.arange(size)
+    slopes = Slopes(f"{KERNELS}_slopes_kernels:close", bodies.position_at + places, bodies.velocity_at + places)
+    assembly.term("close", f"{KERNELS}_kernels:close", ints.tolist(), slopes, energy="")
