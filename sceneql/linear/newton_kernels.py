@@ -8,7 +8,7 @@ update, would hide the residual across the spring (Magisano, Leonetti & Garcea 2
 The Jacobian and its factors are kept from stage to stage and step to step as long as the iteration contracts well
 (Hairer & Wanner 1996, IV.8). Where the plain iteration fails, a careful one starts: slopes are definite, and
 evaluated anew for every update. Where its convergence is slow, the plain iteration is tried again from there. Where
-that fails too, and on islands that have a potential at once, the way is searched (search_kernels.py).
+that fails too, and on islands that have a potential at once, the way is searched (newton_search_kernels.py).
 
 ``memory`` (MEMORY,): the factored matrix's a (0: none), the previous stage's contraction; the relative and absolute
 tolerance of the norm, and the share of it for the iteration's error; 1 while stages begin with the careful iteration
@@ -46,7 +46,7 @@ TINY = 0.01
 """Update, in units of the tolerance, below which a single one may end the iteration."""
 NEWTON = types.boolean(I, F, F, A, A, A, A, A, A, A, A, I, A, I)
 
-search = lazy("sceneql.linear.search_kernels:search", NEWTON)
+search = lazy("sceneql.linear.newton_search_kernels:search", NEWTON)
 
 
 @lean_inlined
