@@ -44,14 +44,13 @@ class Gravity(Force):
         given = int(self.acceleration is not None)
         ints = (bodies.velocity_at, bodies.count, bodies.mass_at, given)
         parameters = (assembly.value(vector), assembly.value(self.strength))
-        kernels = "sceneql.words.forces.gravity"
         assembly.term(
             "force",
-            f"{kernels}_kernels:gravity",
+            "sceneql.words.forces.gravity_kernels:gravity",
             (*ints, *parameters, bodies.position_at, bodies.inverse_at),
             Slopes("", (), ()),
             apart=True,
-            energy=f"{kernels}_energy_kernels:energy",
+            energy="sceneql.words.forces.gravity_energy_kernels:energy",
         )
         assembly.remember(given, *parameters)
 
