@@ -63,21 +63,23 @@ from sceneql.linear.cone_rows_kernels import (
 )
 from sceneql.system.signatures_kernels import A, F, I, N
 
-SOLVED, LOOSE = range(2)
-"""What a solution comes to: to rounding; or not, as where contacts ask for what cannot be, or the method finds no way
+SOLVED, BALANCED, LOOSE = range(3)
+"""What a solution comes to: to rounding; all velocities in their cones and all power balanced to GOOD, where slips or
+forces next to nothing leave open which case of the law holds; or not, as where contacts ask for what cannot be, or the method finds no way
 to a solution that is there: then RESULT tells what is left."""
 
 MOST = 50
 """Iterations of the interior-point method."""
-WATCHED, FALLS = 8, 0.3
-"""Iterations after which what is left must have fallen to this part, or the method has come to a stop."""
+WATCHED, SURE, FALLS = 4, 10, 0.3
+"""Iterations after which what is left must have fallen to this part, or the method has come to a stop; those of the
+convex program, whose solution is sure."""
 CLOSE, CLOSED = 1e-6, 1e-12
 """What may be left, of the size of the numbers, when the finish is first tried, and where the method ends."""
-GOOD = 1e-10
+GOOD = 1e-9
 """What may be left with contacts' power in place of their law (cone_finish_kernels.see) in a solution: contacts whose
 slip or force is next to nothing are at the edge of sticking, sliding or leaving, where the law itself is ill-posed."""
-FAIR = 1e-7
-"""The same, up to which a solution that is not good is better than that of the program without correction."""
+FAIR = 1e-5
+"""The same, up to which a solution in which nothing closes is better than that of the program without correction."""
 NEAR, NEARLY = 1e-4, 1e-2
 """What is left from which the method aims at less of the complementarity than CENTERED, and how much."""
 BACK = 0.99
@@ -253,9 +255,19 @@ def accepted(floats, ints):
     return floats[ints[RESULT_AT] + BALANCE] <= GOOD
 
 
-@lean(types.boolean(A, I, N))
+@lean(types.boolean(A, I))
+def fair(floats, ints):
+    """Whether v and x, that were looked at, are better than what the program without correction gives."""
+    closing = 0.0
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        closing = max(closing, roughness(floats, c) * (tail(floats, c + AT_S) - floats[c + AT_S]) / floats[c + AT_SIZE])
+    return floats[ints[RESULT_AT] + BALANCE] <= FAIR and closing <= GOOD
+
+
+@lean(types.int64(A, I, N))
 def inside(floats, ints, follow):
-    """The interior-point method, from its own first point; whether the finish found the solution from there.
+    """The interior-point method, from its own first point; what the solution from there comes to.
 
     The correction follows the slip; or (``follow`` 0) there is none, and the program is convex: what slides comes off
     by mu |u_T| (Anitescu's cones), and nothing closes.
@@ -275,11 +287,11 @@ def inside(floats, ints, follow):
             break
         if worst <= CLOSE and not tried:
             if follow == 1 and finish(floats, ints, COLD, LESS):
-                return True
+                return SOLVED
             fetch(floats, ints)
             left(floats, ints, follow)
             tried = True
-        if number % WATCHED == 0:
+        if number % (WATCHED if follow == 1 else SURE) == 0:
             if worst > FALLS * before:
                 break
             before = worst
@@ -288,12 +300,12 @@ def inside(floats, ints, follow):
         ints[ITERATIONS] += 1
     floats[ints[RESULT_AT] + BALANCE] = math.inf
     if not best < math.inf:
-        return False
+        return LOOSE
     fetch(floats, ints)
     if finish(floats, ints, COLD, LEAST):
-        return True
+        return SOLVED
     fetch(floats, ints)
-    return accepted(floats, ints)
+    return BALANCED if accepted(floats, ints) else LOOSE
 
 
 @lean(types.int64(A, I))
@@ -302,11 +314,11 @@ def solve(floats, ints):
     ints[ITERATIONS], ints[FINISHES] = 0, 0
     prepare(floats, ints)
     keep(floats, ints)
-    found = finish(floats, ints, ints[TRIES], FULL)
-    if not found:
+    found = SOLVED
+    if not finish(floats, ints, ints[TRIES], FULL):
         fetch(floats, ints)
-        found = accepted(floats, ints) or inside(floats, ints, 1)
-    if not found and not floats[ints[RESULT_AT] + BALANCE] <= FAIR:
-        found = inside(floats, ints, 0)
+        found = BALANCED if accepted(floats, ints) else inside(floats, ints, 1)
+        if found == LOOSE and not fair(floats, ints):
+            found = inside(floats, ints, 0)
     tell(floats, ints)
-    return SOLVED if found else LOOSE
+    return found

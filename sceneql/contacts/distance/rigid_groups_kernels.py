@@ -11,7 +11,7 @@ import sceneql.contacts.distance.rigid_rows_kernels as points
 import sceneql.linear.cone_rows_kernels as rows
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts.distance.rigid_rows_kernels import BODY_A, BODY_B, WHERE, WHO
-from sceneql.linear.cone_kernels import SOLVED, solve
+from sceneql.linear.cone_kernels import LOOSE, solve
 from sceneql.linear.cone_layout_kernels import lay_out
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -97,7 +97,7 @@ def solve_groups(n, who, where, contacts, masses, free, found, friction):
     """Write the velocities with contacts of the n bodies to ``found`` (n, 6), and the impulses to ``where``.
 
     Both hold guesses before. ``masses`` (n, MASS), ``free`` (n, 6) or more: the velocities without contacts. The number
-    of groups that were not solved to rounding.
+    of groups that were not solved.
     """
     leader, of_group, bodies = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
     first_body, order = np.empty(n + 1, dtype=np.int64), np.empty(contacts, dtype=np.int64)
@@ -141,7 +141,7 @@ def solve_groups(n, who, where, contacts, masses, free, found, friction):
         ints[rows.CONTACTS] = end - begin
         for k in range(begin, end):
             ints[ints[rows.CONTACT_INTS_AT] + k - begin] = of_contact[k]
-        if solve(program, ints) != SOLVED:
+        if solve(program, ints) == LOOSE:
             loose += 1
         begin = end
     for k in range(first_body[groups]):
