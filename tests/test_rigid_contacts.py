@@ -185,7 +185,7 @@ def test_what_rests_is_read_where_it_is_held_between_steps_too(tmp_path, solver)
         assert energy == pytest.approx(0.5 * 9.81, rel=1e-14)
 
 
-def test_contacts_without_room_are_told(tmp_path):
+def test_more_contacts_than_outputs_have_room_for_all_act_and_are_told(tmp_path):
     tiles = "".join(
         f"  t{i}_{j}: {{box: {{size: 0.1 0.1 0.1 m, position: {0.1 * i - 0.45:.2f} -0.05 {0.1 * j - 0.45:.2f} m}}}}\n"
         for i in range(10)
@@ -204,4 +204,6 @@ solvers: {{main: {{{SOLVER}}}}}
 outputs: {{table: {{record: {{of: [it.energy]}}}}}}
 """)
     done = CliRunner().invoke(cli, ["render", str(path), "-o", str(tmp_path / "out")])
-    assert "more contacts than there is room for" in done.output
+    assert "more contacts than outputs have room for: all acted" in done.output
+    last = (tmp_path / "out.csv").read_text().split()[-1].split(",")
+    assert float(last[-1]) == pytest.approx(1000 * 9.81 * 0.5, rel=1e-14)

@@ -12,11 +12,28 @@ from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.system.signatures_kernels import I, N
 
 
+@kernel(I(N, N), inner=True)
+def filled(count, value):
+    """An array of equal integers."""
+    made = np.empty(count, dtype=np.int64)
+    for k in range(count):
+        made[k] = value
+    return made
+
+
+@kernel(I(I, N, N), inner=True)
+def longer(source, count, size):
+    """An array of so many integers that begins with the first ones of another."""
+    made = np.empty(size, dtype=np.int64)
+    for k in range(count):
+        made[k] = source[k]
+    return made
+
+
 @lean(types.void(I, I, I), inner=True)
 def neighbors(edges, starts, ends):
-    """Writes where each vertex's neighbors start (n + 1,), and the neighbors, for edges (a, b)."""
+    """Writes where each vertex's neighbors start (n + 1,), 0 before, and the neighbors, for edges (a, b)."""
     n = starts.size - 1
-    starts[:] = 0
     for k in range(edges.size):
         starts[edges[k] + 1] += 1
     for k in range(n):
@@ -78,7 +95,8 @@ def children_first(parents, order, work):
     """Writes the vertices of a forest, each after its children and every subtree in a row. ``work`` (3 n,)."""
     n = parents.size
     first, following, stack = work[:n], work[n : 2 * n], work[2 * n :]
-    first[:] = -1
+    for k in range(n):
+        first[k] = -1
     for k in range(n - 1, -1, -1):
         if parents[k] >= 0:
             following[k] = first[parents[k]]
@@ -107,12 +125,12 @@ def elimination(n, edges):
     Besides each vertex's parent in the tree (-1: a root); where its structure begins and ends (n 2,): the vertices
     eliminated after it that its row reaches; the structures.
     """
-    starts, lists = np.empty(n + 1, dtype=np.int64), np.empty(edges.size, dtype=np.int64)
+    starts, lists = filled(n + 1, 0), filled(edges.size, 0)
     neighbors(edges, starts, lists)
-    counts, degrees = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
-    parents, bounds = np.full(n, -1, dtype=np.int64), np.full(2 * n, -1, dtype=np.int64)
-    mark, stamp = np.full(n, -1, dtype=np.int64), 0
-    members, end = np.empty(4 * n + 2 * edges.size, dtype=np.int64), 0
+    counts, degrees = filled(n, 0), filled(n, 0)
+    parents, bounds = filled(n, -1), filled(2 * n, -1)
+    mark, stamp = filled(n, -1), 0
+    members, end = filled(4 * n + 2 * edges.size, 0), 0
     for v in range(n):
         counts[v] = degrees[v] = starts[v + 1] - starts[v]
     for done in range(n):
@@ -121,9 +139,7 @@ def elimination(n, edges):
             if bounds[2 * k] < 0 and (v < 0 or degrees[k] < degrees[v]):
                 v = k
         if end + n > members.size:
-            longer = np.empty(2 * members.size + n, dtype=np.int64)
-            longer[:end] = members[:end]
-            members = longer
+            members = longer(members, end, 2 * members.size + n)
         stamp += 1
         begin, end = end, tied(v, starts, counts, lists, bounds, members, parents, mark, stamp, members, end)
         bounds[2 * v], bounds[2 * v + 1] = begin, end
@@ -153,6 +169,6 @@ def elimination(n, edges):
         for k in range(begin, end):
             stamp += 1
             degrees[members[k]] = degree(members[k], starts, counts, lists, bounds, members, mark, stamp)
-    order = np.empty(n, dtype=np.int64)
-    children_first(parents, order, np.empty(3 * n, dtype=np.int64))
+    order = filled(n, 0)
+    children_first(parents, order, filled(3 * n, 0))
     return order, parents, bounds, members

@@ -5,12 +5,11 @@ As multifrontal.plan makes them for good, but on one thread and without single p
 diagonal's first, then of every edge (a, b) the block in row a and column b, and the one in row b and column a.
 """
 
-import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.block_order_kernels import elimination
+from sceneql.linear.block_order_kernels import elimination, filled
 from sceneql.system.signatures_kernels import I, N
 
 UNIT = 6
@@ -38,12 +37,12 @@ def place_in(front, first, beyond, vertices, place):
 def plan_blocks(n, edges):
     """The integers of the plan of n unknown blocks with these edges (m 2,); floats of factors and work."""
     order, parents, bounds, members = elimination(n, edges)
-    place = np.empty(n, dtype=np.int64)
+    place = filled(n, 0)
     for k in range(n):
         place[order[k]] = k
     # Fronts are runs of places; with each the places that its last one reaches.
-    first, fronts = np.empty(n + 1, dtype=np.int64), 0
-    owner = np.empty(n, dtype=np.int64)
+    first, fronts = filled(n + 1, 0), 0
+    owner = filled(n, 0)
     for k in range(n):
         v = order[k]
         joins = False
@@ -56,19 +55,21 @@ def plan_blocks(n, edges):
             fronts += 1
         owner[k] = fronts - 1
     first[fronts] = n
-    beyond = np.zeros(fronts + 1, dtype=np.int64)
+    beyond = filled(fronts + 1, 0)
     for s in range(fronts):
         v = order[first[s + 1] - 1]
         beyond[s + 1] = beyond[s] + bounds[2 * v + 1] - bounds[2 * v]
-    vertices = np.empty(beyond[fronts], dtype=np.int64)
-    above = np.full(fronts, -1, dtype=np.int64)
-    runs = np.zeros(fronts + 1, dtype=np.int64)
+    vertices = filled(beyond[fronts], 0)
+    above = filled(fronts, -1)
+    runs = filled(fronts + 1, 0)
     for s in range(fronts):
         v = order[first[s + 1] - 1]
-        own = vertices[beyond[s] : beyond[s + 1]]
-        for k in range(own.size):
-            own[k] = place[members[bounds[2 * v] + k]]
-        own.sort()
+        for k in range(beyond[s + 1] - beyond[s]):
+            to, at = place[members[bounds[2 * v] + k]], beyond[s] + k
+            while at > beyond[s] and vertices[at - 1] > to:
+                vertices[at] = vertices[at - 1]
+                at -= 1
+            vertices[at] = to
         if parents[v] >= 0:
             above[s] = owner[place[parents[v]]]
     for s in range(fronts):
@@ -79,13 +80,13 @@ def plan_blocks(n, edges):
             last = to
         runs[s + 1] = runs[s] + 2 * count
     # Updates wait in two stacks by turns, so that a front's own never lies over its children's.
-    updates, waiting, depth = np.empty(fronts, dtype=np.int64), np.zeros(fronts, dtype=np.int64), np.zeros(fronts)
-    tops, most = np.zeros(2, dtype=np.int64), np.zeros(2, dtype=np.int64)
+    updates, waiting, depth = filled(fronts, 0), filled(fronts, 0), filled(fronts, 0)
+    tops, most = filled(2, 0), filled(2, 0)
     for s in range(fronts - 1, -1, -1):
         depth[s] = depth[above[s]] + 1 if above[s] >= 0 else 0
     rows = largest = factors = 0
     for s in range(fronts):
-        stack, width, rest = int(depth[s]) % 2, UNIT * (first[s + 1] - first[s]), UNIT * (beyond[s + 1] - beyond[s])
+        stack, width, rest = depth[s] % 2, UNIT * (first[s + 1] - first[s]), UNIT * (beyond[s + 1] - beyond[s])
         updates[s] = tops[stack]
         tops[stack] += rest * rest
         most[stack] = max(most[stack], tops[stack])
@@ -96,7 +97,7 @@ def plan_blocks(n, edges):
         largest = max(largest, width + rest)
         factors += width * (width + 2 * rest) + layout.PAD
     for s in range(fronts):
-        updates[s] += most[0] * (int(depth[s]) % 2)
+        updates[s] += most[0] * (depth[s] % 2)
     room = most[0] + most[1]
 
     unknowns, values = UNIT * n, n + edges.size
@@ -106,7 +107,7 @@ def plan_blocks(n, edges):
     maps_at = rows_at + rows
     entries_at = maps_at + runs[fronts]
     pivots_at = entries_at + 2 * values
-    plan = np.zeros(pivots_at + unknowns, dtype=np.int64)
+    plan = filled(pivots_at + unknowns, 0)
     plan[0], plan[1], plan[2], plan[3], plan[4], plan[5], plan[6], plan[7] = (
         unknowns, fronts, order_at, rows_at, maps_at, entries_at, pivots_at, room,
     )  # fmt: skip
@@ -117,13 +118,12 @@ def plan_blocks(n, edges):
         for c in range(UNIT):
             plan[order_at + UNIT * k + c] = UNIT * order[k] + c
     # Entries by front, those of the upper triangle first.
-    starts = np.zeros(2 * fronts + 1, dtype=np.int64)
+    starts = filled(2 * fronts + 1, 0)
     for turn in range(2):
         for value in range(values):
             i = j = place[value] if value < n else 0
             if value >= n:
-                edge = n + (value - n) // 2 * 2 - n
-                side = (value - n) % 2
+                edge, side = (value - n) // 2 * 2, (value - n) % 2
                 i, j = place[edges[edge + side]], place[edges[edge + 1 - side]]
             s = owner[min(i, j)]
             kind = 2 * s + (i > j)

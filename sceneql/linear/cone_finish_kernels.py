@@ -62,7 +62,7 @@ from sceneql.system.signatures_kernels import A, I, N
 
 STIFF = 1e8
 """Stiffness of the proximal steps, of the contacts' effective masses (and as much more as their impulses are)."""
-FULL, LESS, LEAST = range(3)
+FULL, LESS = range(2)
 """How stiff a finish begins, so that errors of velocity do not open contacts that have impulses; all end with STIFF."""
 POOR = 2
 """Most steps that do not take what is left to 0.3 of its least."""
@@ -109,7 +109,7 @@ def see(floats, c):
 
 @lean_inlined
 def project(floats, c, stiff):
-    """Write P(x - rho s) to LAMBDA and rho times its derivative to H; whether H is symmetric."""
+    """Write P(x - rho s) to LAMBDA and rho times its derivative to H."""
     x, s, h, to, mu = c + AT_X, c + AT_S, c + AT_H, c + AT_LAMBDA, roughness(floats, c)
     push = mu * floats[c + AT_HEAVY]
     rho = stiff * push * max(1.0, max(abs(floats[x]), tail(floats, x)) / (push * floats[c + AT_SIZE]))
@@ -123,7 +123,7 @@ def project(floats, c, stiff):
         # At rest, where the correction is nothing: the point is where no velocity is left.
         put(floats, to, floats[x] - rho * normal, q, r)
         floats[h] = floats[h + 4] = floats[h + 8] = rho
-        return True
+        return
     above = p + length
     if p < 0.0:
         # |p_T|^2 - p^2 of terms that do not cancel.
@@ -131,7 +131,7 @@ def project(floats, c, stiff):
         above = (2.0 * rho * cross - determinant(floats, x) - rho * rho * normal * (normal + 2.0 * slip)) / (length - p)
     if above <= 0.0:
         put(floats, to, 0.0, 0.0, 0.0)
-        return True
+        return
     u, v = q / length, r / length
     put(floats, to, 0.5 * above, 0.5 * above * u, 0.5 * above * v)
     half, turn = 0.5 * rho, 0.5 * rho * above / length
@@ -143,8 +143,6 @@ def project(floats, c, stiff):
         for j in range(0, 9, 3):
             floats[h + j + 1] += d * floats[h + j]
             floats[h + j + 2] += e * floats[h + j]
-        return False
-    return True
 
 
 @lean(types.float64(A, I))
@@ -193,20 +191,16 @@ def finish(floats, ints, most, near):
         stiff = STIFF
         if near == LESS:
             stiff = min(STIFF, max(1e-2 / worst, 1e2))
-        elif near == LEAST:
-            stiff = min(STIFF, max(1e-1 / worst, 1.0))
-        symmetric = 1
         for k in range(ints[CONTACTS]):
-            if not project(floats, ints[CONTACTS_AT] + CONTACT * k, stiff):
-                symmetric = 0
+            project(floats, ints[CONTACTS_AT] + CONTACT * k, stiff)
         ints[FINISHES] += 1
-        if not factor(floats, ints, symmetric):
+        if not factor(floats, ints):
             return False
         for k in range(ints[CONTACTS]):
             c = ints[CONTACTS_AT] + CONTACT * k
             for j in range(3):
                 floats[c + AT_DX + j] = floats[c + AT_LAMBDA + j] - floats[c + AT_X + j]
-        step(floats, ints, AT_LEFT, symmetric)
+        step(floats, ints, AT_LEFT)
         for body in range(ints[BODIES]):
             at = ints[BODIES_AT] + BODY * body
             for j in range(6):

@@ -17,7 +17,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.linear.cone_finish_kernels import FULL, LEAST, LESS, finish, look, roughness, tell
+from sceneql.linear.cone_finish_kernels import FULL, LESS, finish, look, roughness, tell
 from sceneql.linear.cone_points_kernels import aim, inner, scale, scaled, scaled_step, tail
 from sceneql.linear.cone_rows_kernels import (
     AT_B,
@@ -107,12 +107,12 @@ def begin(floats, ints, follow):
         for j in range(6):
             floats[at + AT_V + j] = floats[at + AT_FREE + j]
     to_contacts(floats, ints, AT_V, AT_S)
-    factor(floats, ints, 1)
+    factor(floats, ints)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         for j in range(3):
             floats[c + AT_DX + j] = -floats[c + AT_HEAVY] * (floats[c + AT_S + j] + floats[c + AT_B + j])
-    step(floats, ints, 0, 1)
+    step(floats, ints, 0)
     fastest = 0.0
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
@@ -145,7 +145,7 @@ def direct(floats, ints, symmetric):
         q, r = c + AT_Q, c + AT_R
         x, y, z = scaled(floats, c, floats[r], floats[r + 1], floats[r + 2], -1.0)
         put(floats, c + AT_DX, *scaled(floats, c, floats[q] + x, floats[q + 1] + y, floats[q + 2] + z, -1.0))
-    step(floats, ints, AT_LEFT, symmetric)
+    step(floats, ints, AT_LEFT)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         q, ds, slide = c + AT_Q, c + AT_DS, c + AT_SLIDE
@@ -221,7 +221,7 @@ def iterate(floats, ints, symmetric, least):
             for j in range(0, 9, 3):
                 for i in range(2):
                     floats[c + AT_H + j + 1 + i] += floats[c + AT_SLIDE + i] * floats[c + AT_H + j]
-    if not factor(floats, ints, symmetric):
+    if not factor(floats, ints):
         return 0.0
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
@@ -302,7 +302,7 @@ def inside(floats, ints, follow):
     if not best < math.inf:
         return LOOSE
     fetch(floats, ints)
-    if finish(floats, ints, COLD, LEAST):
+    if finish(floats, ints, COLD, LESS):
         return SOLVED
     fetch(floats, ints)
     return BALANCED if accepted(floats, ints) else LOOSE

@@ -1,11 +1,11 @@
 # mypy: ignore-errors
 """Where the numbers of a cone program stand (cone_rows_kernels), with the plan of its factorization for given pairs."""
 
-import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import kernel
 from sceneql.linear import cone_rows_kernels as rows
+from sceneql.linear.block_order_kernels import filled
 from sceneql.linear.block_plan_kernels import BLOCK, plan_blocks
 from sceneql.system.signatures_kernels import I, N
 
@@ -17,7 +17,7 @@ def lay_out(bodies, most, pairs, bodies_at, contacts_at, scratch_at):
     ``pairs`` (m 2,): the bodies of each pair, -1 for one that is fixed or led. Bodies and contacts stand among the floats where it is said, and what is needed besides from ``scratch_at`` on.
     """
     count = pairs.size // 2
-    edges, both = np.empty(pairs.size, dtype=np.int64), 0
+    edges, both = filled(pairs.size, 0), 0
     for k in range(count):
         if pairs[2 * k] >= 0 and pairs[2 * k + 1] >= 0:
             edges[2 * both], edges[2 * both + 1] = pairs[2 * k], pairs[2 * k + 1]
@@ -26,8 +26,9 @@ def lay_out(bodies, most, pairs, bodies_at, contacts_at, scratch_at):
     contact_ints_at = rows.HEAD + rows.PAIR * count
     diagonal_at = contact_ints_at + most
     plan_at = diagonal_at + bodies
-    ints = np.zeros(plan_at + plan.size, dtype=np.int64)
-    ints[plan_at:] = plan
+    ints = filled(plan_at + plan.size, 0)
+    for k in range(plan.size):
+        ints[plan_at + k] = plan[k]
     place = BLOCK * bodies
     for k in range(count):
         at = rows.HEAD + rows.PAIR * k

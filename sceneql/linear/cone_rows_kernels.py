@@ -11,9 +11,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.multifrontal_kernels import factor_general, solve_general
-from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
-from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
+from sceneql.linear.multifrontal_general_kernels import factor_general, solve_general
 from sceneql.system.signatures_kernels import A, F, I, N
 
 BODIES, CONTACTS, PAIRS_AT, CONTACT_INTS_AT, DIAGONAL_AT, PLAN_AT, PLAN, BODIES_AT, CONTACTS_AT, VALUES_AT = range(10)
@@ -301,21 +299,19 @@ def assemble(floats, ints):
             add_block(values, ints[pair + PAIR_BA], c + AT_ARM_B, c + AT_ARM_A, -1.0, floats, world)
 
 
-@lean(types.boolean(A, I, N))
-def factor(floats, ints, symmetric):
-    """Assemble and factor the matrix of Newton's method; ``symmetric`` says that all H are."""
+@lean(types.boolean(A, I))
+def factor(floats, ints):
+    """Assemble and factor the matrix of Newton's method, which is symmetric where nothing slides, at most."""
     assemble(floats, ints)
     values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
     plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
-    if symmetric > 0:
-        return factor_symmetric(plan, values, factors, work)
     return factor_general(plan, values, factors, work)
 
 
-@lean(types.void(A, I, N, N))
-def step(floats, ints, left, symmetric):
+@lean(types.void(A, I, N))
+def step(floats, ints, left):
     """Solve for the bodies' D by the factors, with J^T DX (and their numbers ``left``) on the right; DS = J D."""
     for body in range(ints[BODIES]):
         at = ints[BODIES_AT] + BODY * body
@@ -329,10 +325,7 @@ def step(floats, ints, left, symmetric):
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
     plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
-    if symmetric > 0:
-        solve_symmetric(plan, factors, right, work)
-    else:
-        solve_general(plan, factors, right, work)
+    solve_general(plan, factors, right, work)
     for body in range(ints[BODIES]):
         for c in range(6):
             floats[ints[BODIES_AT] + BODY * body + AT_D + c] = right[6 * body + c]

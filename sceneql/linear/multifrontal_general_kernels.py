@@ -8,8 +8,7 @@ from numba import types
 from sceneql.compiled.arithmetic_kernels import fma, widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_kernels import FACTOR_GENERAL, SOLVE_GENERAL
-from sceneql.linear.multifrontal_symmetric_kernels import put
+from sceneql.linear.multifrontal_entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL, put
 from sceneql.system.signatures_kernels import A, N
 
 TILE = 256

@@ -16,22 +16,17 @@ where the matrix is not symmetric, L below it ((rows - width) x width). Symmetri
 the same block of rows alone.
 """
 
-from numba import types
-
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.linear import multifrontal_layout as layout
+from sceneql.linear.multifrontal_entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL
 from sceneql.linear.multifrontal_plan_kernels import factor_single_at, solve_single_at
 from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
 from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
 from sceneql.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
-from sceneql.system.signatures_kernels import A, I
 
 RESTS = 7
 """Factorizations in double precision after one in single precision was too inaccurate."""
-
-FACTOR_GENERAL = types.boolean(I, A, A, A)
-SOLVE_GENERAL = types.void(I, A, A, A)
 
 factor_general = lazy("sceneql.linear.multifrontal_general_kernels:factor_general", FACTOR_GENERAL)
 solve_general = lazy("sceneql.linear.multifrontal_general_kernels:solve_general", SOLVE_GENERAL)

@@ -16,6 +16,7 @@ from sceneql.compiled.arithmetic_kernels import fma, widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.threads_kernels import over_threads
 from sceneql.linear import multifrontal_layout as layout
+from sceneql.linear.multifrontal_entries_kernels import put
 from sceneql.linear.panel_update_kernels import MOST, ROWS, add_rows, coefficients
 from sceneql.system.signatures_kernels import A, I, N
 
@@ -133,19 +134,6 @@ def flush(panel, begin, end):
     tiny, zero = panel.dtype.type(TINY), panel.dtype.type(0.0)
     for k in range(begin, end):
         panel[k] = zero if abs(panel[k]) <= tiny else panel[k]
-
-
-@lean_inlined
-def put(plan, values, scale, front, height, begin, end):
-    """Add blocks of the matrix, times ``scale``, at their places in a front."""
-    unit = plan[layout.UNIT]
-    for e in range(begin, end, 2):
-        k, place = plan[e], plan[e + 1]
-        for _ in range(unit):
-            for j in range(unit):
-                front[place + j] += scale * values[k + j]
-            k += unit
-            place += height
 
 
 @lean_inlined

@@ -98,17 +98,19 @@ def _must_be_apart(
 
     from sceneql.contacts.distance import convex
     from sceneql.contacts.distance.gap_kernels import gap
+    from sceneql.contacts.distance.rigid_local_kernels import standing_pairs
 
     floats, ints = convex.joined(shapes)
     room, where = np.zeros(convex.room_length(shapes)), np.concatenate(places)
     found = Diagnostics()
-    for a in range(moving):
-        for b in range(a + 1, len(shapes)):
-            depth = -gap(floats, ints, SHAPE * a, SHAPE * b, where, 7 * a, 7 * b, room)[0]
-            one, other = refs[a], refs[b]
-            if one is not None and other is not None and depth > DEEP * shapes[a].reach:
-                message = f"'{one.name}' starts {depth:.3g} m inside '{other.name}'"
-                found.error("starts-inside", message, assembly.line(), help="move one of them away")
+    for a, b in standing_pairs(floats, ints, len(shapes), where, room).tolist():
+        if a >= moving:
+            break
+        depth = -gap(floats, ints, SHAPE * a, SHAPE * b, where, 7 * a, 7 * b, room)[0]
+        one, other = refs[a], refs[b]
+        if one is not None and other is not None and depth > DEEP * shapes[a].reach:
+            message = f"'{one.name}' starts {depth:.3g} m inside '{other.name}'"
+            found.error("starts-inside", message, assembly.line(), help="move one of them away")
     found.raise_errors()
 
 

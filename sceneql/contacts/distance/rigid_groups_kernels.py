@@ -11,6 +11,7 @@ import sceneql.contacts.distance.rigid_rows_kernels as points
 import sceneql.linear.cone_rows_kernels as rows
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts.distance.rigid_rows_kernels import BODY_A, BODY_B, WHERE, WHO
+from sceneql.linear.block_order_kernels import filled
 from sceneql.linear.cone_kernels import LOOSE, solve
 from sceneql.linear.cone_layout_kernels import lay_out
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -99,10 +100,10 @@ def solve_groups(n, who, where, contacts, masses, free, found, friction):
     Both hold guesses before. ``masses`` (n, MASS), ``free`` (n, 6) or more: the velocities without contacts. The number
     of groups that were not solved.
     """
-    leader, of_group, bodies = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
-    first_body, order = np.empty(n + 1, dtype=np.int64), np.empty(contacts, dtype=np.int64)
+    leader, of_group, bodies = filled(n, 0), filled(n, 0), filled(n, 0)
+    first_body, order = filled(n + 1, 0), filled(contacts, 0)
     groups = grouped(n, who, contacts, leader, of_group, bodies, first_body, order)
-    slot = np.full(n, -1, dtype=np.int64)
+    slot = filled(n, -1)
     for k in range(first_body[groups]):
         slot[bodies[k]] = k
     contacts_at = rows.BODY * first_body[groups]
@@ -118,7 +119,7 @@ def solve_groups(n, who, where, contacts, masses, free, found, friction):
     for k in range(contacts):
         write_contact(where, WHERE * order[k], program, contacts_at + rows.CONTACT * k, friction)
     loose, begin = 0, 0
-    pairs, of_contact = np.empty(2 * contacts, dtype=np.int64), np.empty(contacts, dtype=np.int64)
+    pairs, of_contact = filled(2 * contacts, 0), filled(contacts, 0)
     for g in range(groups):
         end, count, first = leader[g], 0, first_body[g]
         for k in range(begin, end):
@@ -136,7 +137,8 @@ def solve_groups(n, who, where, contacts, masses, free, found, friction):
         )
         if needed > program.size:
             wider = np.empty(needed + needed // 2)
-            wider[:scratch_at] = program[:scratch_at]
+            for k in range(scratch_at):
+                wider[k] = program[k]
             program = wider
         ints[rows.CONTACTS] = end - begin
         for k in range(begin, end):

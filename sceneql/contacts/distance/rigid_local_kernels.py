@@ -35,6 +35,7 @@ from sceneql.contacts.distance.rigid_rows_kernels import (
     with_room,
 )
 from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept_box
+from sceneql.linear.block_order_kernels import filled
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
 BODIES, SHAPES, SHAPES_AT, BODIES_AT, PLACES_AT, ROOM_AT, ROOM, KEPT_AT, KEPT_NAMES_AT, MOST_KEPT = range(10)
@@ -129,12 +130,21 @@ def pairs_of(boxes, shapes):
     return pairs[:found]
 
 
+@kernel(types.int64[:, ::1](A, I, N, A, A))
+def standing_pairs(floats, ints, shapes, places, room):
+    """The pairs of shapes at rest whose boxes meet (m, 2), ascending; the shapes begin the integers."""
+    boxes, still = np.empty(BOX * shapes), np.zeros(MOTION)
+    for k in range(shapes):
+        swept_box(floats, ints, SHAPE * k, places, PLACE * k, still, 0, 0.0, 0.0, room, boxes, BOX * k)
+    return pairs_of(boxes, shapes)
+
+
 @kernel(types.Tuple((I, A, N))(F, A, I, A, A, A, types.int64[:, ::1], A), inner=True)
 def contacts_at_start(h, floats, ints, places, motions, before, pairs, room):
     """The points where bodies touch, or would in the step by their motions without contacts."""
     n, head = ints[BODIES], ints[SHAPES_AT]
-    who, where = np.empty(0, dtype=np.int64), np.empty(0)
-    points, names = np.zeros(MOST * POINT), np.zeros(MOST * NAME, dtype=np.int64)
+    who, where = filled(0, 0), np.empty(0)
+    points, names = np.empty(MOST * POINT), filled(MOST * NAME, 0)
     contacts = 0
     for p in range(pairs.shape[0]):
         a, b = pairs[p, 0], pairs[p, 1]
@@ -172,7 +182,7 @@ def contacts_at_end(h, floats, ints, places, motions, before, boxes, ends, touch
     n, head = ints[BODIES], ints[SHAPES_AT]
     sweep(h, floats, ints, places, motions, motions, 1e-3, boxes, room)
     pairs = pairs_of(boxes, ints[SHAPES])
-    points, names = np.zeros(MOST * POINT), np.zeros(MOST * NAME, dtype=np.int64)
+    points, names = np.empty(MOST * POINT), filled(MOST * NAME, 0)
     for p in range(pairs.shape[0]):
         a, b = pairs[p, 0], pairs[p, 1]
         if a >= n:
@@ -246,18 +256,24 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         return
     names = ints[ints[KEPT_NAMES_AT] : ints[KEPT_NAMES_AT] + WHO * ints[MOST_KEPT]]
     recall(who, where, contacts, names, floats[ints[KEPT_AT] : ints[KEPT_AT] + 3 * ints[MOST_KEPT]], kept)
-    found, ends, touched = before.copy(), places.copy(), np.zeros(shapes, dtype=np.int64)
+    found, ends, touched = np.empty(before.size), np.empty(places.size), filled(shapes, 0)
+    for k in range(before.size):
+        found[k] = before[k]
+    for k in range(places.size):
+        ends[k] = places[k]
     first, loose, friction = contacts, 0, floats[ints[FRICTION_AT]]
     for number in range(ROUNDS):
         loose = solve_groups(n, who, where, contacts, masses, motions, found, friction)
-        touched[:] = 0
+        for k in range(shapes):
+            touched[k] = 0
         for k in range(contacts):
             at, w = WHERE * k + AT_PUSH, WHO * k
             if where[at] != 0.0 or where[at + 1] != 0.0 or where[at + 2] != 0.0:
                 touched[who[w + BODY_A]] = touched[who[w + BODY_B]] = 1
         for k in range(n):
             if touched[k] == 0:
-                found[MOTION * k : MOTION * k + MOTION] = motions[MOTION * k : MOTION * k + MOTION]
+                for c in range(MOTION):
+                    found[MOTION * k + c] = motions[MOTION * k + c]
             place_after(places, PLACE * k, found, MOTION * k, h, ends, PLACE * k)
         if number == ROUNDS - 1:
             break

@@ -12,6 +12,7 @@ from numba import types
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT
+from sceneql.linear.block_order_kernels import longer
 from sceneql.system.signatures_kernels import A, F, I, N
 
 PLACE, MOTION = 7, 6
@@ -31,10 +32,10 @@ def with_room(who, where, count):
     if (count + MOST) * WHO <= who.size:
         return who, where
     more = 2 * count + 8 * MOST
-    longer, wider = np.empty(WHO * more, dtype=np.int64), np.empty(WHERE * more)
-    longer[: WHO * count] = who[: WHO * count]
-    wider[: WHERE * count] = where[: WHERE * count]
-    return longer, wider
+    wider = np.empty(WHERE * more)
+    for k in range(WHERE * count):
+        wider[k] = where[k]
+    return longer(who, WHO * count, WHO * more), wider
 
 
 @lean_inlined

@@ -73,14 +73,14 @@ class Collision(Contact):
     mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
 
     def trouble(self, state: ModelState) -> str:
-        """Steps in which contacts of rigid bodies had no room, or no solution to rounding."""
+        """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
         at = [k for k, each in enumerate(state.ints) if each == -1]
         loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
         if crowded:
-            return f"in {crowded:.0f} steps rigid bodies had more contacts than there is room for: some were left out"
+            return f"in {crowded:.0f} steps rigid bodies had more contacts than outputs have room for: all acted"
         if not loose:
             return ""
-        return f"in {loose:.0f} steps contacts of rigid bodies were not solved to rounding: friction there is not exact"
+        return f"in {loose:.0f} steps contacts of rigid bodies were not solved: friction there is not exact"
 
     def _rigid(self, output: str, state: ModelState) -> Any:
         """Points, normals and forces of the contacts of rigid bodies at the end of the latest step (n, 3)."""
