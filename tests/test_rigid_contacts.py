@@ -5,6 +5,7 @@ import pytest
 from click.testing import CliRunner
 
 import runs
+from cube_pile import SIDE, deepest, script
 from runs import complaint
 from sceneql.cli import cli
 
@@ -207,3 +208,37 @@ outputs: {{table: {{record: {{of: [it.energy]}}}}}}
     assert "more contacts than outputs have room for: all acted" in done.output
     last = (tmp_path / "out.csv").read_text().split()[-1].split(",")
     assert float(last[-1]) == pytest.approx(1000 * 9.81 * 0.5, rel=1e-14)
+
+
+def test_cubes_thrown_into_a_bin_are_never_in_each_other(tmp_path):
+    times = np.arange(1, 161) * 5e-3
+    turns = [f"pile.c.{k}.rotation" for k in range(8)]
+    rows = runs.watch(tmp_path, script(2, 5, 0.8), times, "pile.positions", *turns, pruned=False)
+    assert max(deepest(2, row[0], np.array(row[1:])) for row in rows) < 1e-6 * SIDE
+
+
+def test_groups_that_do_not_touch_move_as_if_each_were_alone(tmp_path):
+    """A tower and, far off, a cube that slides: together as apart, to the last bit."""
+    objects, bodies = stack([1, 4, 2], gap=0.01)
+    slider = {"s": "{box: {position: 40 0.5 0 m}}"}
+    moved = {"t": "{of: s, mass: 3 kg, velocity: 2 0 0.5 m/s}"}
+    ((tower,),) = watch(tmp_path, objects, bodies, [0.7], "it.positions")
+    ((alone,),) = watch(tmp_path, {**slider, "floor": "plane"}, moved, [0.7], "it.positions")
+    ((both,),) = watch(tmp_path, {**objects, **slider}, {**bodies, **moved}, [0.7], "it.positions")
+    assert both.tobytes() == np.concatenate([tower, alone]).tobytes()
+
+
+def test_more_bodies_than_pairs_could_be_planned_for_rest_on_a_floor(tmp_path):
+    script = """
+clock: {end: 0.2 s}
+objects:
+  stone: {repeat: {count: 300, as: i}, box: {size: 0.1 0.1 0.1 m, position: ["0.1 m*mod(i, 20)", "0.05 m", "0.12 m*floor(i/20)"]}}
+  floor: plane
+models: {it: {rigid: {bodies: {b: {repeat: {count: 300, as: i}, of: "stone.{i}"}}}}}
+forces: [gravity]
+contacts: {touch: {collision: {restitution: 0, friction: 0.4}}}
+solvers: {main: {semi_implicit_euler: {step: 5 ms}}}
+"""
+    ((start,), (end,)) = runs.watch(tmp_path, script, [0, 0.2], "it.positions", pruned=False)
+    assert len(start) == 300
+    assert np.abs(end - start).max() < 1e-12
