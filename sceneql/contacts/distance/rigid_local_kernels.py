@@ -50,7 +50,7 @@ X_AT, V_AT, Q_AT, L_AT, MASS_AT, INERTIA_AT, WORK_AT, BODY_INTS = range(8)
 """Integers of a body: offsets of position, velocity, quaternion and angular momentum in y, of its mass and of its
 inertia (xx, yy, zz, yz, xz, xy) in the floats, of the work in y."""
 
-ROUNDS = 6
+ROUNDS = 12
 """Most solutions of a step."""
 DEEP = 1e-7
 """Part of a body's reach by which it may be inside another at the end of a step without another solution."""
@@ -176,9 +176,9 @@ def contacts_at_start(h, floats, ints, places, motions, before, pairs, room):
     return who, where, contacts
 
 
-@kernel(types.Tuple((I, A, N))(F, A, I, A, A, A, A, A, I, I, A, N, A), inner=True)
-def contacts_at_end(h, floats, ints, places, motions, before, boxes, ends, touched, who, where, contacts, room):
-    """The list with points added where bodies, moved by contacts, would be too deep in others or have crossed them."""
+@kernel(types.Tuple((I, A, N))(F, A, I, A, A, A, A, A, I, A, N, A), inner=True)
+def contacts_at_end(h, floats, ints, places, motions, before, boxes, ends, who, where, contacts, room):
+    """The list with points added where bodies would be too deep in others at the end of the step."""
     n, head = ints[BODIES], ints[SHAPES_AT]
     sweep(h, floats, ints, places, motions, motions, 1e-3, boxes, room)
     pairs = pairs_of(boxes, ints[SHAPES])
@@ -187,8 +187,6 @@ def contacts_at_end(h, floats, ints, places, motions, before, boxes, ends, touch
         a, b = pairs[p, 0], pairs[p, 1]
         if a >= n:
             break
-        if touched[a] == 0 and (b >= n or touched[b] == 0):
-            continue
         one, two, reach = head + SHAPE * a, head + SHAPE * b, floats[ints[head + SHAPE * a + 1] + 1]
         if b < n:
             reach = min(reach, floats[ints[head + SHAPE * b + 1] + 1])
@@ -247,12 +245,11 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
             wx, wy, wz = spin_by(masses, MASS * k + 1, y[momentum], y[momentum + 1], y[momentum + 2])
             to[MOTION * k + 3], to[MOTION * k + 4], to[MOTION * k + 5] = wx, wy, wz
     sweep(h, floats, ints, places, motions, before, 1e-3, boxes, room)
-    who, where, contacts = contacts_at_start(
-        h, floats, ints, places, motions, before, pairs_of(boxes, shapes), room
-    )
+    pairs = pairs_of(boxes, shapes)
+    who, where, contacts = contacts_at_start(h, floats, ints, places, motions, before, pairs, room)
     kept = int(floats[ints[COUNT_AT]])
     floats[ints[COUNT_AT]] = 0.0
-    if contacts == 0:
+    if pairs.shape[0] == 0:
         return
     names = ints[ints[KEPT_NAMES_AT] : ints[KEPT_NAMES_AT] + WHO * ints[MOST_KEPT]]
     recall(who, where, contacts, names, floats[ints[KEPT_AT] : ints[KEPT_AT] + 3 * ints[MOST_KEPT]], kept)
@@ -272,14 +269,19 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
                 touched[who[w + BODY_A]] = touched[who[w + BODY_B]] = 1
         for k in range(n):
             if touched[k] == 0:
+                x, q = ints[ints[BODIES_AT] + BODY_INTS * k + X_AT], ints[ints[BODIES_AT] + BODY_INTS * k + Q_AT]
+                whole = math.sqrt(y1[q] ** 2 + y1[q + 1] ** 2 + y1[q + 2] ** 2 + y1[q + 3] ** 2)
                 for c in range(MOTION):
                     found[MOTION * k + c] = motions[MOTION * k + c]
-            place_after(places, PLACE * k, found, MOTION * k, h, ends, PLACE * k)
+                for c in range(PLACE):
+                    ends[PLACE * k + c] = y1[x + c] if c < 3 else y1[q + c - 3] / whole
+            else:
+                place_after(places, PLACE * k, found, MOTION * k, h, ends, PLACE * k)
         if number == ROUNDS - 1:
             break
         last = contacts
         who, where, contacts = contacts_at_end(
-            h, floats, ints, places, found, before, boxes, ends, touched, who, where, contacts, room
+            h, floats, ints, places, found, before, boxes, ends, who, where, contacts, room
         )
         if contacts == last:
             break
