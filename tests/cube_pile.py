@@ -26,7 +26,10 @@ clock: {{end: {end} s}}
 objects:
   cube:
     repeat: {{count: {edge**3}, as: i}}
-    box: {{size: {SIDE} {SIDE} {SIDE} m, position: {place}, rotation: {{about: y, angle: "40 deg*(random(i, 3) - 0.5)"}}}}
+    box:
+      size: {SIDE} {SIDE} {SIDE} m
+      position: {place}
+      rotation: {{about: y, angle: "40 deg*(random(i, 3) - 0.5)"}}
   floor: {{box: {{size: 6 0.2 6 m, position: 0 -0.1 0 m}}}}
   left: {{box: {{size: 0.2 3 3 m, position: {-width} 1.5 0 m}}}}
   right: {{box: {{size: 0.2 3 3 m, position: {width} 1.5 0 m}}}}
@@ -36,7 +39,12 @@ models:
   pile:
     rigid:
       bodies:
-        c: {{repeat: {{count: {edge**3}, as: i}}, of: "cube.{{i}}", density: 600 kg/m^3, velocity: {velocity}, spin: {spin}}}
+        c:
+          repeat: {{count: {edge**3}, as: i}}
+          of: "cube.{{i}}"
+          density: 600 kg/m^3
+          velocity: {velocity}
+          spin: {spin}
 forces: [gravity]
 contacts: {{touch: {{collision: {{restitution: 0.1, friction: 0.4, mode: local}}}}}}
 solvers: {{main: {{semi_implicit_euler: {{step: {step} ms}}}}}}

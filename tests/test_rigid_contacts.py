@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import cube_pile
 import runs
-from cube_pile import SIDE, deepest, script
 from runs import complaint
 from sceneql.cli import cli
 
@@ -213,8 +213,8 @@ outputs: {{table: {{record: {{of: [it.energy]}}}}}}
 def test_cubes_thrown_into_a_bin_are_never_in_each_other(tmp_path):
     times = np.arange(1, 161) * 5e-3
     turns = [f"pile.c.{k}.rotation" for k in range(8)]
-    rows = runs.watch(tmp_path, script(2, 5, 0.8), times, "pile.positions", *turns, pruned=False)
-    assert max(deepest(2, row[0], np.array(row[1:])) for row in rows) < 1e-6 * SIDE
+    rows = runs.watch(tmp_path, cube_pile.script(2, 5, 0.8), times, "pile.positions", *turns, pruned=False)
+    assert max(cube_pile.deepest(2, row[0], np.array(row[1:])) for row in rows) < 1e-6 * cube_pile.SIDE
 
 
 def test_groups_that_do_not_touch_move_as_if_each_were_alone(tmp_path):
@@ -232,7 +232,9 @@ def test_more_bodies_than_pairs_could_be_planned_for_rest_on_a_floor(tmp_path):
     script = """
 clock: {end: 0.2 s}
 objects:
-  stone: {repeat: {count: 300, as: i}, box: {size: 0.1 0.1 0.1 m, position: ["0.1 m*mod(i, 20)", "0.05 m", "0.12 m*floor(i/20)"]}}
+  stone:
+    repeat: {count: 300, as: i}
+    box: {size: 0.1 0.1 0.1 m, position: ["0.1 m*mod(i, 20)", 0.05 m, "0.12 m*floor(i/20)"]}
   floor: plane
 models: {it: {rigid: {bodies: {b: {repeat: {count: 300, as: i}, of: "stone.{i}"}}}}}
 forces: [gravity]

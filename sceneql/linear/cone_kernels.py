@@ -65,8 +65,8 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 SOLVED, BALANCED, LOOSE = range(3)
 """What a solution comes to: to rounding; all velocities in their cones and all power balanced to GOOD, where slips or
-forces next to nothing leave open which case of the law holds; or not, as where contacts ask for what cannot be, or the method finds no way
-to a solution that is there: then RESULT tells what is left."""
+forces next to nothing leave open which case of the law holds; or neither, as where contacts ask for what cannot be, or
+the method finds no way to a solution that is there: then RESULT tells what is left."""
 
 MOST = 50
 """Iterations of the interior-point method."""

@@ -14,7 +14,8 @@ from sceneql.system.signatures_kernels import I, N
 def lay_out(bodies, most, pairs, bodies_at, contacts_at, scratch_at):
     """The integers of a program of so many bodies and at most so many contacts, and where its floats end.
 
-    ``pairs`` (m 2,): the bodies of each pair, -1 for one that is fixed or led. Bodies and contacts stand among the floats where it is said, and what is needed besides from ``scratch_at`` on.
+    ``pairs`` (m 2,): the bodies of each pair, -1 for one that is fixed or led. Bodies and contacts stand among the
+    floats where it is said, and what is needed besides from ``scratch_at`` on.
     """
     count = pairs.size // 2
     edges, both = filled(pairs.size, 0), 0

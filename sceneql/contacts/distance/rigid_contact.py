@@ -35,6 +35,7 @@ def assemble(
     from sceneql.bodies.rigid.turning import packed, unpacked
     from sceneql.contacts.distance import convex
     from sceneql.contacts.distance import rigid_local_kernels as kernels
+    from sceneql.contacts.distance.rigid_rows_kernels import PLACE, WHO
 
     numbers, shapes, fixed, rows = assembly.numbers(), [], [], []
     moving: list[tuple[Ref | None, Floats]] = []
@@ -68,7 +69,7 @@ def assemble(
     n = len(rows)
     everything = [*shapes, *(shape for shape, _ in fixed)]
     count, most = len(everything), CONTACTS * n + 64
-    places = np.zeros((count, kernels.PLACE))
+    places = np.zeros((count, PLACE))
     for k, (_, place) in enumerate(fixed):
         places[n + k] = place
     names = [*(ref for ref, _ in moving), *standing]
@@ -84,7 +85,7 @@ def assemble(
     names_at = bodies_at + kernels.BODY_INTS * n
     head = [n, count, kernels.HEAD, bodies_at, places_at, room_at, room, kept_at, names_at, most]
     head += [assembly.value(restitution), assembly.value(friction), *found, loose, crowded]
-    names_room = [0] * (kernels.WHO * most)
+    names_room = [0] * (WHO * most)
     ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *names_room]
     assembly.contact("local", (KERNEL,), [int(number) for number in ints], 0)
     return (*found, loose, crowded)

@@ -190,7 +190,7 @@ def contacts_at_end(h, floats, ints, places, motions, before, boxes, ends, who, 
         one, two, reach = head + SHAPE * a, head + SHAPE * b, floats[ints[head + SHAPE * a + 1] + 1]
         if b < n:
             reach = min(reach, floats[ints[head + SHAPE * b + 1] + 1])
-        count, gap, nx, ny, nz = manifold(
+        count, _, nx, ny, nz = manifold(
             floats, ints, one, two, ends, PLACE * a, PLACE * b, -DEEP * reach, points, names, room
         )
         if count > 0:

@@ -4,13 +4,10 @@
 The list grows as it needs. A point is known from step to step by its pair and its name (manifold_kernels).
 """
 
-import math
-
 import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
-from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT
 from sceneql.linear.block_order_kernels import longer
 from sceneql.system.signatures_kernels import A, F, I, N
