@@ -27,7 +27,6 @@ LAZY = {
         "grids.embedded_kernels": "for steps that a tolerance chooses",
         "grids.iterate_kernels": "for stages that are not solved to rounding at once",
     },
-    "linear.multifrontal_kernels": {"linear.multifrontal_general_kernels": "when a matrix comes that is not symmetric"},
     "linear.newton_kernels": {"linear.newton_search_kernels": "where plain iterations fail"},
     "march.events_kernels": {"march.locate_kernels": "when the first event is met"},
     "stepping.radau_kernels": {"stepping.radau_tallies_kernels": "when the first tally changes"},
