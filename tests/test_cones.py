@@ -113,9 +113,9 @@ def power(program, contacts):
     """What is left of each contact's cone and of its power, with the velocities that slip corrects: relative."""
     worst = 0.0
     fastest = np.abs(program.contacts[:contacts, rows.AT_VELOCITY : rows.AT_VELOCITY + 3]).max()
-    fastest += 1e-2 * np.abs(program.bodies[:, rows.AT_FREE : rows.AT_FREE + 6]).max()
+    fastest += np.abs(program.bodies[:, rows.AT_FREE : rows.AT_FREE + 6]).max()
     momenta = program.bodies[:, rows.AT_MASS, None] * program.bodies[:, rows.AT_FREE : rows.AT_FREE + 3]
-    largest = np.abs(impulses(program, contacts)).max() + 1e-2 * np.abs(momenta).max()
+    largest = np.abs(impulses(program, contacts)).max() + np.abs(momenta).max()
     for contact, force in zip(program.contacts, impulses(program, contacts), strict=False):
         normal, friction = contact[:3], contact[rows.AT_FRICTION]
         speed = contact[rows.AT_VELOCITY : rows.AT_VELOCITY + 3]
