@@ -59,32 +59,43 @@ class ElementMesh:
 
     def at(self, places: Any) -> Floats:
         """(e, q, 3) where barycentric places (q, 4) of every element are."""
-        found: Floats = np.einsum("qn,eni->eqi", self.element.functions(places), self.points[self.cells])
+        found: Floats = self.element.functions(places) @ self.points[self.cells]
         return found
 
-    def gradients(self, places: Any) -> tuple[Floats, Floats]:
-        """(e, q, nodes, 3) gradients of the functions [1/m] at barycentric places (q, 4), and (e, q) dX/dL [m^3]."""
+    def _sides(self, places: Any) -> tuple[Floats, Floats]:
+        """(e, q, 3, 3) dX by three barycentric coordinates at places (q, 4), and these slopes of functions."""
         slopes = self.element.slopes(np.asarray(places, dtype=float))
         local = slopes[:, :, 1:] - slopes[:, :, :1]
-        jacobian = np.einsum("eni,qnk->eqik", self.points[self.cells] - self.points[self.cells[:, :1]], local)
-        with np.errstate(all="ignore"):
-            size = np.linalg.det(jacobian)
-            inverse = np.linalg.inv(np.where((size > 0.0)[..., None, None], jacobian, np.eye(3)))
-        return np.einsum("qnk,eqki->eqni", local, inverse), size
+        corner = self.points[self.cells] - self.points[self.cells[:, :1]]
+        sides = np.stack([np.swapaxes(corner, 1, 2) @ one for one in local], axis=1)
+        return sides, local
+
+    def sizes(self, places: Any) -> Floats:
+        """(e, q) volume over that of the barycentric coordinates, six times its own [m^3]; below 0 if turned."""
+        sides, _ = self._sides(places)
+        a, b, c = (sides[..., k] for k in range(3))
+        found: Floats = np.sum(a * np.cross(b, c), axis=-1)
+        return found
+
+    def gradients(self, places: Any) -> Floats:
+        """(e, q, nodes, 3) gradients of the functions [1/m] at barycentric places (q, 4) of upright elements."""
+        sides, local = self._sides(places)
+        found: Floats = local @ np.linalg.inv(sides)
+        return found
 
     def tables(self) -> tuple[Floats, Floats]:
         """Gradients (e, q, nodes, 3) at the element's points, and the volumes (e, q) [m^3] that these stand for."""
         places, weights = self.element.rule
-        gradients, size = self.gradients(places)
-        return gradients, size * np.asarray(weights) / 6.0
+        return self.gradients(places), self.sizes(places) * np.asarray(weights) / 6.0
 
     def mass(self, density: Callable[[Floats], Floats]) -> Floats:
         """(e, nodes, nodes) integrals of density [kg/m^3], a function of places (k, 3), times two functions [kg]."""
         places, weights = fine_rule()
         shapes = self.element.functions(places)
-        _, size = self.gradients(places)
+        size = self.sizes(places)
         held = density(self.at(places).reshape(-1, 3)).reshape(size.shape) * size * weights / 6.0
-        found: Floats = np.einsum("eq,qa,qb->eab", held, shapes, shapes)
+        products = shapes[:, :, None] * shapes[:, None, :]
+        found: Floats = (held @ products.reshape(len(places), -1)).reshape(len(held), *products.shape[1:])
         return found
 
 
@@ -137,10 +148,10 @@ def _curved(straight: ElementMesh, onto: Callable[[Floats, Floats], Floats]) -> 
     along = np.divide(normals[outer], length, out=np.zeros((len(outer), 3)), where=length > 0)
     moved[outer] = onto(points[outer], along)
     places = np.concatenate([fine_rule()[0], np.eye(4), np.asarray(straight.element.rule[0])])
-    least = LEAST_BENT * straight.gradients(places[:1])[1]
+    least = LEAST_BENT * straight.sizes(places[:1])
     for _ in range(len(outer)):
         mesh = ElementMesh(straight.element, moved, straight.cells, straight.corners)
-        bad = (mesh.gradients(places)[1] < least).any(axis=1)
+        bad = (mesh.sizes(places) < least).any(axis=1)
         if not bad.any():
             return mesh
         back = np.unique(straight.cells[bad, 4:])

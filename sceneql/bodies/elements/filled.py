@@ -36,6 +36,8 @@ A_PLACE = 6
 """Tetrahedra for each corner and middle of the lattice."""
 THIN = 1.0
 """What lies in the object farther than so many spacings from all nodes is lost."""
+FINE, MOST_LOOKED_AT = 0.25, 3e6
+"""It is looked for at places so many spacings apart, and half a spacing where these are too many."""
 
 
 def bounded_by(spacing: float) -> Callable[[Floats, Floats], None]:
@@ -106,7 +108,9 @@ def _whole(inside: Inside, spacing: float, points: Floats) -> None:
     """Raise ScriptError where a part of the object is too thin for the lattice to have a node there."""
     from scipy.spatial import cKDTree
 
-    counts = np.ceil((inside.high - inside.low) / (0.5 * spacing)).astype(int) + 1
+    counts = np.ceil((inside.high - inside.low) / (FINE * spacing)).astype(int) + 1
+    if np.prod(counts, dtype=float) > MOST_LOOKED_AT:
+        counts = np.ceil((inside.high - inside.low) / (0.5 * spacing)).astype(int) + 1
     axes = [np.linspace(low, high, n) for low, high, n in zip(inside.low, inside.high, counts, strict=True)]
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     places = places[np.asarray(inside.holds(places))]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -73,10 +73,18 @@ def _writable(floats: Floats) -> Floats:
 
 
 def add_strain(
-    assembly: Assembly, bodies: Bodies, mesh: ElementMesh, law: Law, retardation: float, held: Any, masses: Floats
+    assembly: Assembly,
+    bodies: Bodies,
+    mesh: ElementMesh,
+    places: Floats,
+    law: Law,
+    retardation: float,
+    held: Any,
+    masses: Floats,
 ) -> Strain:
-    """Add the forces of strain; ``held`` (n, 3) bool: components of nodes that do not move freely.
+    """Add the forces of strain from places (n, 3) of the nodes, which may be those of the mesh moved and turned.
 
+    ``held`` (n, 3) bool: components of nodes that do not move freely.
     ``retardation`` [s], 0: none; ``masses`` (e, nodes) [kg]. Raises ScriptError for numbers out of their range.
     """
     from sceneql.bodies.elements import law_kernels, strain_kernels, strain_slopes_kernels
@@ -84,13 +92,13 @@ def add_strain(
     from sceneql.compiled.threads_kernels import threads, tile_address, uncompiled
     from sceneql.system import Slopes
 
-    gradients, volumes = mesh.tables()
+    gradients, volumes = replace(mesh, points=places).tables()
     elements, points, nodes, _ = gradients.shape
     if mesh.element.mean or points == 1:
-        places = np.repeat(mesh.at(((0.25,) * 4,)), points, axis=1)
+        material = np.repeat(mesh.at(((0.25,) * 4,)), points, axis=1)
     else:
-        places = mesh.at(mesh.element.rule[0])
-    flat = places.reshape(-1, 3)
+        material = mesh.at(mesh.element.rule[0])
+    flat = material.reshape(-1, 3)
     numbers = np.column_stack([law.numbers(flat), *law.moduli(flat)])
     module = import_module(law.kernels)
     kinds = (law_kernels.STRESS_FUNCTION, law_kernels.STIFFNESS_FUNCTION, law_kernels.ENERGY_FUNCTION)
@@ -115,6 +123,7 @@ def add_strain(
         *(tiles, node_tiles, tile_address(strain_kernels.element_tile), tile_address(strain_kernels.node_tile)),
         *(several, count),
         strain_kernels.NODES_AT + mesh.cells.size,
+        assembly.floats(places),
     ]
     ints = np.concatenate([np.array(head, dtype=np.int64), mesh.cells.ravel().astype(np.int64), gather])
     slopes_room = assembly.floats(np.zeros(tiles * strain_slopes_kernels.ROOM))

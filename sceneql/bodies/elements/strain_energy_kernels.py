@@ -13,13 +13,12 @@ from sceneql.bodies.elements.strain_kernels import (
     NUMBERS_AT,
     POINT,
     POINTS,
-    POSITION_AT,
     ROOM_AT,
     WEIGHTS_AT,
     D,
     M,
     P,
-    gradient,
+    deformation,
     look,
 )
 from sceneql.compiled.kernels import kernel
@@ -38,7 +37,7 @@ def energy(y, floats, ints):
         for q in range(points):
             law, weight = ints[NUMBERS_AT] + numbers * (points * e + q), floats[ints[WEIGHTS_AT] + points * e + q]
             f = floats[room : room + 9]
-            gradient(y, ints[POSITION_AT], ints, floats, e, q, f)
+            deformation(y, ints, floats, e, q, f)
             law_energy(f, floats[law : law + numbers], out, floats[room + LAW : room + LAW + SCRATCH])
             total += weight * out[0]
             volume += weight

@@ -18,9 +18,9 @@ GRADIENTS_AT, WEIGHTS_AT, NUMBERS_AT, NUMBERS, RETARDATION_AT = range(8, 13)
 STRESS, STIFFNESS, ENERGY, FORCES_AT, ROOM_AT, TILES, NODE_TILES, TILE_AT, NODE_TILE_AT, ENTRY, THREADS = range(13, 24)
 """Addresses of the law's kernels; offsets of the forces of elements on nodes (element, node, 3), followed by the power
 lost (element,), and of ROOM numbers of scratch for each tile; tiles, their addresses, threads."""
-GATHER_AT, NODES_AT = 24, 25
+GATHER_AT, PLACES_AT, NODES_AT = 24, 25, 26
 """ints[GATHER_AT]: where the table begins of which forces act on each node: COUNT + 1 starts, then indices of forces.
-From NODES_AT on the nodes (element, NODES)."""
+PLACES_AT: offset of the places of nodes without strain (COUNT, 3) [m]. From NODES_AT on the nodes (element, NODES)."""
 MOST_POINTS = 4
 F, RATE, P, M, STRAIN, D, POINT = 0, 9, 18, 27, 36, 42, 43
 """In a tile's scratch of each point: F and its rate, the stress, the derivative of d, the rate of strain E', d."""
@@ -29,9 +29,26 @@ ROOM = LAW + SCRATCH
 
 
 @lean_inlined
-def gradient(y, at, ints, floats, e, q, out):
-    """Write sum of y[at + 3 node : +3] (gradient of the node's function): dy/dX (9,); places from the first node's."""
-    nodes = ints[NODES]
+def deformation(y, ints, floats, e, q, out):
+    """Write F (9,) = 1 + sum of displacement (gradient of the node's function): without displacements 1 exactly."""
+    nodes, at, rest = ints[NODES], ints[POSITION_AT], ints[PLACES_AT]
+    first, slopes = NODES_AT + nodes * e, ints[GRADIENTS_AT] + 3 * nodes * (ints[POINTS] * e + q)
+    for k in range(9):
+        out[k] = 1.0 if k % 4 == 0 else 0.0
+    o = 3 * ints[first]
+    for n in range(1, nodes):
+        here, g = 3 * ints[first + n], slopes + 3 * n
+        for i in range(3):
+            part = (y[at + here + i] - floats[rest + here + i]) - (y[at + o + i] - floats[rest + o + i])
+            out[3 * i] += part * floats[g]
+            out[3 * i + 1] += part * floats[g + 1]
+            out[3 * i + 2] += part * floats[g + 2]
+
+
+@lean_inlined
+def deformation_rate(y, ints, floats, e, q, out):
+    """Write F' (9,), from the velocities."""
+    nodes, at = ints[NODES], ints[VELOCITY_AT]
     first, slopes = NODES_AT + nodes * e, ints[GRADIENTS_AT] + 3 * nodes * (ints[POINTS] * e + q)
     for k in range(9):
         out[k] = 0.0
@@ -72,7 +89,7 @@ def look(y, floats, ints, e, room):
     for q in range(points):
         at, law = room + POINT * q, ints[NUMBERS_AT] + numbers * (points * e + q)
         f, weight = floats[at : at + 9], floats[ints[WEIGHTS_AT] + points * e + q]
-        gradient(y, ints[POSITION_AT], ints, floats, e, q, f)
+        deformation(y, ints, floats, e, q, f)
         floats[at + D] = stress(
             f,
             floats[law : law + numbers],
@@ -84,7 +101,7 @@ def look(y, floats, ints, e, room):
         dilatation += weight * floats[at + D]
         if ints[RETARDATION_AT] >= 0:
             rate = floats[at + RATE : at + RATE + 9]
-            gradient(y, ints[VELOCITY_AT], ints, floats, e, q, rate)
+            deformation_rate(y, ints, floats, e, q, rate)
             swelling += weight * strain_rate(f, rate, floats[at + STRAIN : at + STRAIN + 6])
     return dilatation / volume, swelling / volume
 

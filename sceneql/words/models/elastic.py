@@ -185,7 +185,7 @@ class Elastic(Model):
             velocities[np.ix_(some, hold.axes())] = holding.start_velocity(hold, assembly)[hold.axes()]
         radii = np.full(count, self.radius)
         bodies = masses.reserve(name, assembly, places, velocities, weights.astype(float), radii, whole)
-        strain = add_strain(assembly, bodies, mesh, self.law.law, self.retardation, held, shares)
+        strain = add_strain(assembly, bodies, mesh, places, self.law.law, self.retardation, held, shares)
         for called, load in self.loads.items():
             load.assemble(called, mesh, held, assembly, bodies, line)
         if self.mass_damping > 0.0:

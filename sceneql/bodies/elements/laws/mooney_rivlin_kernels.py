@@ -19,13 +19,15 @@ def stress(f, numbers, p, m, scratch):
     j = cofactor(f, m)
     xx, yy, zz = cauchy(f, 0, 0), cauchy(f, 1, 1), cauchy(f, 2, 2)
     yz, xz, xy = cauchy(f, 1, 2), cauchy(f, 0, 2), cauchy(f, 0, 1)
-    one, two, both = numbers[1], numbers[2], numbers[1] * (2.0 - j) + 2.0 * numbers[2]
-    trace = xx + yy + zz
+    one, two, trace = numbers[1], numbers[2], xx + yy + zz
     for k in range(0, 9, 3):
         a, b, c = f[k], f[k + 1], f[k + 2]
-        p[k] = (one + two * trace) * a - two * (a * xx + b * xy + c * xz) - both * m[k]
-        p[k + 1] = (one + two * trace) * b - two * (a * xy + b * yy + c * yz) - both * m[k + 1]
-        p[k + 2] = (one + two * trace) * c - two * (a * xz + b * yz + c * zz) - both * m[k + 2]
+        x = trace * a - (a * xx + b * xy + c * xz) - 2.0 * m[k]
+        y = trace * b - (a * xy + b * yy + c * yz) - 2.0 * m[k + 1]
+        z = trace * c - (a * xz + b * yz + c * zz) - 2.0 * m[k + 2]
+        p[k] = one * (a + (j - 2.0) * m[k]) + two * x
+        p[k + 1] = one * (b + (j - 2.0) * m[k + 1]) + two * y
+        p[k + 2] = one * (c + (j - 2.0) * m[k + 2]) + two * z
     return j - 1.0
 
 
