@@ -21,9 +21,8 @@ def test_what_holds_a_solid_carries_its_weight(tmp_path):
 
 
 def test_a_part_held_across_slides_along(tmp_path):
-    holds = ", ".join(
-        f"{axis}: {{where: {axis} < -0.09 - 0.4*{int(axis == 'x')}, components: {axis}}}" for axis in "xyz"
-    )
+    low = {"x": -0.49, "y": -0.09, "z": -0.09}
+    holds = ", ".join(f"{axis}: {{where: {axis} < {end}, components: {axis}}}" for axis, end in low.items())
     solid = Solid(
         tmp_path,
         f"{{{BAR}, element: p1, hold: {{{holds}}}, loads: {{pull: {{where: x > 0.49, traction: 2 0 0 kPa}}}}}}",

@@ -70,9 +70,15 @@ def laid(block: Block, element: type[Element], assembly: Assembly) -> ElementMes
 def filled(ref: Ref, spacing: float | None, element: type[Element], assembly: Assembly) -> ElementMesh:
     """The mesh of an object. Raises ScriptError where it cannot be filled, LimitRefused for too many elements."""
     with doing(f"filling {ref.name}"):
-        inside = Inside(ref, assembly)
-        side = float((inside.high - inside.low).max()) / PARTS if spacing is None else spacing
-        return _filled(inside, side, element)
+        return _filled(Inside(ref, assembly), spacing_of(ref, spacing, assembly), element)
+
+
+def spacing_of(ref: Ref, spacing: float | None, assembly: Assembly) -> float:
+    """Side of the cubes in an object [m]: what is given, or a part of its size."""
+    if spacing is not None:
+        return spacing
+    box = Inside(ref, assembly)
+    return float((box.high - box.low).max()) / PARTS
 
 
 def _filled(inside: Inside, spacing: float, element: type[Element]) -> ElementMesh:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from functools import cache, partial
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import PrivateAttr
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
     from sceneql.bodies.elements.element import Element
     from sceneql.bodies.elements.element_mesh import ElementMesh
+    from sceneql.bodies.elements.skin import Carried
     from sceneql.bodies.elements.strain import Strain
     from sceneql.frame import Floats, Shape
     from sceneql.system import Assembly, Bodies, ModelState
@@ -48,6 +50,8 @@ class Made:
     """Offset of each hold's force in the floats."""
     angles: tuple[float, float]
     """Least and largest angle [rad] between faces of an element."""
+    polygons: Callable[[], Carried] | None
+    """What it is drawn by in place of its faces; made at the first call."""
 
 
 class Elastic(Model):
@@ -89,6 +93,10 @@ class Elastic(Model):
         "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
     )
     radius: kinds.FixedLength = field("Radius of its nodes in contacts.", "1 mm", at_least=0)
+    look: Literal["object", "elements"] = field(
+        "How it draws itself: as the object's own polygons, which its elements carry, or as the faces of these.",
+        "object",
+    )
     material: kinds.MaterialRef | None = field("How it looks where no object draws it.", None)
     color: kinds.Color | None = field("Color in place of the material's.", None)
 
@@ -196,7 +204,13 @@ class Elastic(Model):
         }
         probes = {called: probe(mesh, np.asarray(place)) for called, place in self.probes.items()}
         angles = worst_angle(mesh.points, mesh.cells[:, :4])
-        self._made = Made(strain, probes, forces, angles)
+        polygons = None
+        if self.of is not None and self.look == "object":
+            from sceneql.bodies.elements.filled import spacing_of
+            from sceneql.bodies.elements.skin import carried
+
+            polygons = cache(partial(carried, self.of, spacing_of(self.of, self.spacing, assembly), mesh, assembly))
+        self._made = Made(strain, probes, forces, angles, polygons)
         period = 2.0 * np.pi / strain.squared**0.5
         return replace(bodies, period=period, tied=edges(mesh.cells[:, :4])[0])
 
@@ -234,9 +248,14 @@ class Elastic(Model):
         return masses.places(output, state.bodies)
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
-        """Its outer faces."""
+        """Its outer faces, or the polygons of its object."""
         from sceneql.bodies.elements.skin import skin
 
         assert state.bodies is not None
         surface = moment.surface(name, self.material, self.color)
-        yield skin(name, surface, self.solid.mesh, masses.positions(state.bodies, state))
+        places = masses.positions(state.bodies, state)
+        assert self._made is not None
+        if self._made.polygons is None:
+            yield skin(name, surface, self.solid.mesh, places)
+        else:
+            yield self._made.polygons().drawn(name, surface, places)
