@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, eye_array, kron
 from scipy.sparse.linalg import splu
 
 import sceneql.system.channels as channels
@@ -33,7 +33,8 @@ class Solid:
         self.mesh = self.kind.solid.mesh
         self.time = time
         self.count = 3 * self.bodies.count
-        self.masses = np.repeat(self.march.floats[self.bodies.mass_at :][: self.bodies.count], 3)
+        self.inertia = kron(self.kind.solid.inertia.matrix, eye_array(3)).tocsr()
+        self.masses = self.inertia.sum(axis=1)
 
     def state(self, places: Any, speeds: Any = None) -> Any:
         """The island's state with nodes at places (n, 3)."""
@@ -49,22 +50,23 @@ class Solid:
         return self.march.system.y[self.bodies.position_at :][: self.count].reshape(-1, 3).copy()
 
     def forces(self, places: Any, speeds: Any = None) -> Any:
-        """(n, 3) on the nodes [N]."""
+        """(n, 3) on the nodes [N], where nothing holds them."""
         rate = self.march.rate(self.time, self.state(places, speeds))
-        return (self.masses * rate[self.bodies.velocity_at :][: self.count]).reshape(-1, 3)
+        return (self.inertia @ rate[self.bodies.velocity_at :][: self.count]).reshape(-1, 3)
 
-    def stiffness(self, places: Any, speeds: Any = None, definite: float = 0.0, by: str = "position") -> Any:
+    def stiffness(self, places: Any, speeds: Any = None, positive: bool = False, by: str = "position") -> Any:
         """Minus the derivative of the forces by the places or velocities, sparse [N/m]."""
         system, y = self.march.system, self.state(places, speeds)
         values = np.full(system.pattern.room, np.nan)
-        self.march.floats[channels.DEFINITE] = definite
+        self.march.floats[channels.POSITIVE] = float(positive)
         jacobian(system)(self.march._functions, self.time, y, values, self.march.floats, system.ints)
-        self.march.floats[channels.DEFINITE] = 0.0
+        self.march.floats[channels.POSITIVE] = 0.0
         n = len(y)
         matrix = coo_matrix((values[: system.pattern.count], (system.pattern.rows, system.pattern.columns)), (n, n))
         at = {"position": self.bodies.position_at, "velocity": self.bodies.velocity_at}[by]
         rows = matrix.tocsr()[self.bodies.velocity_at : self.bodies.velocity_at + self.count]
-        return -rows[:, at : at + self.count].multiply(self.masses[:, None]).tocsr()
+        found = -rows[:, at : at + self.count]
+        return found.tocsr() if self.kind.solid.inertia.consistent else (self.inertia @ found).tocsr()
 
     def model_state(self, places: Any) -> Any:
         """What outputs are read from."""

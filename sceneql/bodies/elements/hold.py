@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sceneql import kinds
@@ -85,33 +86,56 @@ def chosen(name: str, hold: Part, places: Floats, assembly: Assembly, line: Span
     return found
 
 
-def add_hold(hold: Hold, nodes: Any, starts: Floats, assembly: Assembly, bodies: Bodies) -> int:
-    """Add the terms of a hold of nodes (k,) from places (k, 3); the offset of its force [N] in the floats.
+@dataclass(frozen=True, slots=True, eq=False)
+class Held:
+    """What a hold holds."""
 
-    The work that moves them is counted, with negative sign, among the dissipated energy. Velocity and acceleration are
-    central differences. Raises ScriptError for a shift that is no function of time.
+    nodes: Any
+    """(k,) nodes."""
+    starts: Floats
+    """(k, 3) where they start [m]."""
+    near: Any
+    """(n,) nodes whose acceleration their inertia feels, themselves among them."""
+    weights: Floats
+    """(n,) by how much [kg]."""
+    free: Any
+    """(n, 3) bool: components of these that nothing holds."""
+
+
+def add_holds(
+    holds: Mapping[str, Hold], held: Mapping[str, Held], assembly: Assembly, bodies: Bodies
+) -> dict[str, int]:
+    """Add the terms of holds; the offset of each one's force [N] in the floats.
+
+    The work that moves what is held is counted, with negative sign, among the dissipated energy. Velocity and
+    acceleration are central differences. Raises ScriptError for a shift that is no function of time.
     """
     import numpy as np
 
     from sceneql.system import Slopes
 
     folder = "sceneql.bodies.elements.hold_kernels"
-    still, alone = hold.still(assembly), Slopes("", (), ())
-    shifts = [assembly.value(_moved(hold.shift, by, assembly)) for by in (-APART, 0.0, APART)]
-    places = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
-    held = [int(axis in hold.components) for axis in AXES]
-    force_at = assembly.floats(np.zeros(3))
-    numbers = (*shifts, assembly.floats([APART]), assembly.floats(starts), force_at, *held)
-    ints = (*places, *numbers, len(nodes), *np.asarray(nodes).tolist())
-    assembly.term("tie", f"{folder}:feel", ints, alone)
-    if still and all(held):
-        return force_at
-    if not still:
-        # What holds all of a node takes no part in forces from outside, whose potential leaves it out.
-        assembly.term("internal" if all(held) else "tie", f"{folder}:toil", ints, alone)
-        assembly.after_step(f"{folder}:put", ints)
-    assembly.term("constrain", f"{folder}:lead", ints, alone)
-    return force_at
+    alone, each, found = Slopes("", (), ()), [], {}
+    for name, hold in holds.items():
+        part = held[name]
+        shifts = [assembly.value(_moved(hold.shift, by, assembly)) for by in (-APART, 0.0, APART)]
+        found[name] = assembly.floats(np.zeros(9))
+        axes = [int(axis in hold.components) for axis in AXES]
+        places = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
+        numbers = (*shifts, assembly.floats([APART]), assembly.floats(part.starts), found[name], *axes, int(all(axes)))
+        counts = (len(part.nodes), len(part.near), assembly.floats(part.weights))
+        lists = (np.ravel(one).astype(int).tolist() for one in (part.nodes, part.near, part.free))
+        each.append((hold.still(assembly), (*places, *numbers, *counts, *(k for one in lists for k in one))))
+    for still, ints in each:
+        if not still:
+            assembly.term("internal", f"{folder}:feel_strain", ints, alone, energy="")
+            assembly.after_step(f"{folder}:put", ints)
+        # The inertia of what is led pulls on its neighbors by a matrix of masses.
+        assembly.term("tie", f"{folder}:feel", ints, alone, energy="" if still else None)
+        assembly.term("constrain", f"{folder}:lead", ints, alone, energy="")
+    for _, ints in each:
+        assembly.term("constrain", f"{folder}:tell", ints, alone, energy="")
+    return found
 
 
 def start_velocity(hold: Hold, assembly: Assembly) -> Floats:

@@ -1,51 +1,45 @@
 # mypy: ignore-errors
 """Nodes that are held in some components, and moved."""
 
-from sceneql.bodies.pins_kernels import (
-    MASS_AT,
-    NOW,
-    POSITION_AT,
-    STARTS,
-    VELOCITY_AT,
-    WORK_AT,
-    acceleration,
-    rounding,
-    velocity,
-)
-from sceneql.compiled.kernels import kernel
+from sceneql.bodies.pins_kernels import NOW, POSITION_AT, STARTS, VELOCITY_AT, WORK_AT, acceleration, rounding, velocity
+from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM
 
-FORCE_AT, HELD, COUNT, NODES = 10, 11, 14, 15
-"""Behind the integers of a pin up to STARTS: offset of the force [N], whether each of three components is held, how
-many nodes, and these."""
+FORCE_AT, HELD, WHOLE, COUNT, NEAR, WEIGHTS_AT, NODES = 10, 11, 14, 15, 16, 17, 18
+"""Behind the integers of a pin up to STARTS: offset of the force [N], followed by the sums of all other forces on the
+nodes and of those of the solid itself; whether each of three components is held, and whether all; how many nodes; how
+many nodes whose acceleration their inertia feels, offset of their weights [kg]; the nodes, those, and for each of those
+whether its three components are free."""
 
 
-@kernel(TERM, inner=True)
-def feel(t, y, rate, floats, ints):
-    """Store the force of the hold: what its nodes need besides all other forces; runs when these are added up."""
+@lean_inlined
+def add_up(rate, floats, ints, to):
+    """Store the sum of the forces so far on the nodes."""
     for c in range(3):
-        total = 0.0
-        if ints[HELD + c] == 1:
-            for k in range(ints[COUNT]):
-                node = ints[NODES + k]
-                total += floats[ints[MASS_AT] + node] * acceleration(floats, ints, c)
-                total -= rate[ints[VELOCITY_AT] + 3 * node + c]
-        floats[ints[FORCE_AT] + c] = total
+        floats[to + c] = 0.0
+        for k in range(ints[COUNT]):
+            floats[to + c] += rate[ints[VELOCITY_AT] + 3 * ints[NODES + k] + c]
 
 
-@kernel(TERM, inner=True)
-def toil(t, y, rate, floats, ints):
-    """Subtract the power that moves the nodes against the forces so far from the work."""
-    for k in range(ints[COUNT]):
-        node = ints[NODES + k]
+@lean(TERM, inner=True)
+def feel_strain(t, y, rate, floats, ints):
+    """Store the sum of the solid's own forces on the nodes; runs right after these."""
+    add_up(rate, floats, ints, ints[FORCE_AT] + 6)
+
+
+@lean(TERM, inner=True)
+def feel(t, y, rate, floats, ints):
+    """Store the sum of all other forces on the nodes; what is led by its inertia pulls on its neighbors."""
+    add_up(rate, floats, ints, ints[FORCE_AT] + 3)
+    near = NODES + ints[COUNT]
+    for k in range(ints[NEAR]):
         for c in range(3):
-            if ints[HELD + c] == 1:
-                at = ints[VELOCITY_AT] + 3 * node + c
-                need = floats[ints[MASS_AT] + node] * acceleration(floats, ints, c)
-                rate[ints[WORK_AT]] += (rate[at] - need) * y[at]
+            if ints[HELD + c] == 1 and ints[near + ints[NEAR] + 3 * k + c] == 1:
+                pull = floats[ints[WEIGHTS_AT] + k] * acceleration(floats, ints, c)
+                rate[ints[VELOCITY_AT] + 3 * ints[near + k] + c] -= pull
 
 
-@kernel(TERM, inner=True)
+@lean(TERM, inner=True)
 def lead(t, y, rate, floats, ints):
     """The prescribed velocity and acceleration."""
     for k in range(ints[COUNT]):
@@ -54,6 +48,24 @@ def lead(t, y, rate, floats, ints):
                 at = 3 * ints[NODES + k] + c
                 rate[ints[POSITION_AT] + at] = velocity(floats, ints, c)
                 rate[ints[VELOCITY_AT] + at] = acceleration(floats, ints, c)
+
+
+@lean(TERM, inner=True)
+def tell(t, y, rate, floats, ints):
+    """Store the force of the hold, and subtract its power from the work; runs when accelerations are known.
+
+    Of nodes that it holds whole, forces from outside have no potential (bodies.moving_masses), and are left out.
+    """
+    near, force = NODES + ints[COUNT], ints[FORCE_AT]
+    for c in range(3):
+        if ints[HELD + c] == 0:
+            continue
+        needed = 0.0
+        for k in range(ints[NEAR]):
+            needed += floats[ints[WEIGHTS_AT] + k] * rate[ints[VELOCITY_AT] + 3 * ints[near + k] + c]
+        floats[force + c] = needed - floats[force + 3 + c]
+        others = floats[force + 6 + c] if ints[WHOLE] == 1 else floats[force + 3 + c]
+        rate[ints[WORK_AT]] -= (needed - others) * velocity(floats, ints, c)
 
 
 @kernel(AFTER_STEP, inner=True)

@@ -94,7 +94,8 @@ class Load(Part):
         value = self.traction if self.force is None else self.force
         assert value is not None
         ints = (*head, assembly.value(value), assembly.floats(weights[nodes]), len(nodes), *nodes.tolist())
-        assembly.term("internal", "sceneql.bodies.elements.load_kernels:dead", ints, Slopes("", (), ()))
+        energy = "sceneql.bodies.elements.load_energy_kernels:dead"
+        assembly.term("internal", "sceneql.bodies.elements.load_kernels:dead", ints, Slopes("", (), ()), energy=energy)
 
 
 def _add_pressure(

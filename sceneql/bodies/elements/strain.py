@@ -28,15 +28,49 @@ POINTS_A_TILE = 2000
 """Points in a tile: a thread evaluates the strains of one tile at a time."""
 
 
-def lumped(mesh: ElementMesh, density: Callable[[Floats], Floats]) -> Floats:
-    """(e, nodes) masses of each element's nodes [kg]: the diagonal of its mass matrix, scaled to what it holds.
+@dataclass(frozen=True, slots=True, eq=False)
+class Inertia:
+    """The mass of a solid at its nodes."""
 
-    Hinton, Rock & Zienkiewicz (1976).
-    """
-    whole = mesh.mass(density)
-    own = np.einsum("eaa->ea", whole)
-    found: Floats = own * (whole.sum(axis=(1, 2)) / own.sum(axis=1))[:, None]
-    return found
+    matrix: Any
+    """Sparse, (n, n) [kg]: of elements with nodes on edges the consistent one (Archer 1963), else diagonal."""
+    lumped: Floats
+    """(n,) [kg] the diagonal of each element's matrix, scaled to what it holds (Hinton, Rock & Zienkiewicz 1976)."""
+    least: Floats
+    """(e,) the least eigenvalue of each element's own matrix [kg]."""
+
+    @classmethod
+    def of(cls, mesh: ElementMesh, density: Callable[[Floats], Floats]) -> Inertia:
+        """That of a mesh with a density [kg/m^3] by places (k, 3) of its material."""
+        from scipy.sparse import coo_array, diags_array
+
+        whole, count, nodes = mesh.mass(density), len(mesh.points), mesh.cells.shape[1]
+        own = np.einsum("eaa->ea", whole)
+        own = own * (whole.sum(axis=(1, 2)) / own.sum(axis=1))[:, None]
+        lumped: Floats = np.bincount(mesh.cells.ravel(), own.ravel(), count).astype(np.float64)
+        if not mesh.element.edges:
+            return cls(diags_array(lumped).tocsr(), lumped, own.min(axis=1))
+        rows, columns = np.repeat(mesh.cells, nodes, axis=1).ravel(), np.tile(mesh.cells, nodes).ravel()
+        matrix = coo_array((whole.ravel(), (rows, columns)), (count, count)).tocsr()
+        least: Floats = np.linalg.eigvalsh(whole)[:, 0].astype(np.float64)
+        return cls(matrix, lumped, least)
+
+    @property
+    def consistent(self) -> bool:
+        """Whether it is more than a diagonal."""
+        return bool(self.matrix.nnz > len(self.lumped))
+
+    @property
+    def sums(self) -> Floats:
+        """(n,) of its rows [kg]: what uniform gravity weighs at each node, which may be below 0 at corners."""
+        return np.asarray(self.matrix.sum(axis=1)).ravel()
+
+    def freed(self, held: Any) -> Any:
+        """(3 n, 3 n) sparse, with rows and columns of zeros where components (n, 3) bool are held."""
+        from scipy.sparse import csr_array, diags_array, eye_array, kron
+
+        free = diags_array(1.0 * ~np.ravel(held))
+        return csr_array(free @ kron(self.matrix, eye_array(3), format="csr") @ free)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,12 +85,13 @@ class Strain:
     """Kernels that are called by their addresses."""
     squared: float
     """Bound of the squared angular frequencies [1/s^2] of small motions: that of an element alone (Irons 1970)."""
+    inertia: Inertia
 
     def energy(self, state: ModelState) -> float:
         """The energy of strain [J]."""
         from sceneql.bodies.elements.strain_energy_kernels import energy
 
-        return float(energy(state.y, _writable(state.floats), self.ints))
+        return float(energy(state.t, state.y, _writable(state.floats), self.ints))
 
     def looked_at(self, state: ModelState) -> tuple[Floats, Floats]:
         """(e, q, 3, 3) the deformation gradients, and the first Piola stresses [Pa] of strain, at the points."""
@@ -80,12 +115,12 @@ def add_strain(
     law: Law,
     retardation: float,
     held: Any,
-    masses: Floats,
+    inertia: Inertia,
 ) -> Strain:
     """Add the forces of strain from places (n, 3) of the nodes, which may be those of the mesh moved and turned.
 
     ``held`` (n, 3) bool: components of nodes that do not move freely.
-    ``retardation`` [s], 0: none; ``masses`` (e, nodes) [kg]. Raises ScriptError for numbers out of their range.
+    ``retardation`` [s], 0: none. Raises ScriptError for numbers out of their range.
     """
     from sceneql.bodies.elements import law_kernels, strain_kernels, strain_slopes_kernels
     from sceneql.compiled.kernels import address, compiles
@@ -140,13 +175,21 @@ def add_strain(
             np.concatenate([columns + start for start in by]),
             np.concatenate([ints, np.ravel(held).astype(np.int64), own]),
             blocks=True,
+            positive="sceneql.bodies.elements.strain_slopes_kernels:positive",
         )
 
-    assembly.term("internal", "sceneql.bodies.elements.strain_kernels:strain", ints.tolist(), slopes)
+    assembly.term(
+        "internal",
+        "sceneql.bodies.elements.strain_kernels:strain",
+        ints.tolist(),
+        slopes,
+        energy="sceneql.bodies.elements.strain_energy_kernels:energy",
+        damped=retardation > 0.0,
+    )
     stiffest = numbers[:, -2] + 2.0 * numbers[:, -1]
     steep = np.einsum("eqni,eqni->eq", gradients, gradients).ravel() * stiffest * volumes.ravel()
-    bound = float(np.max(steep.reshape(elements, points).sum(axis=1) / masses.min(axis=1)))
-    return Strain(mesh, ints, volumes, kernels, bound)
+    bound = float(np.max(steep.reshape(elements, points).sum(axis=1) / inertia.least))
+    return Strain(mesh, ints, volumes, kernels, bound, inertia)
 
 
 def density_of(formula: Formula | None, default: float) -> Callable[[Floats], Floats]:
@@ -166,12 +209,25 @@ def density_of(formula: Formula | None, default: float) -> Callable[[Floats], Fl
     return at
 
 
-def add_mass_damping(assembly: Assembly, bodies: Bodies, damping: float) -> None:
-    """Add a force against the velocity of every node, of ``damping`` [1/s] times its mass."""
-    from sceneql.bodies.bodies import own_blocks
+def add_mass_damping(assembly: Assembly, bodies: Bodies, damping: float, inertia: Any) -> None:
+    """Add a force against the momentum M v, ``damping`` [1/s] times; ``inertia`` M: sparse (n, n) [kg]."""
     from sceneql.system import Slopes
 
     folder = "sceneql.bodies.elements.mass_damping_kernels"
-    ints = (bodies.velocity_at, bodies.work_at, bodies.count, bodies.mass_at, assembly.floats([damping]))
-    slopes = Slopes(f"{folder}:slopes", *own_blocks(bodies, bodies.velocity_at), blocks=True)
-    assembly.term("internal", f"{folder}:force", ints, slopes)
+    matrix = inertia.tocsr()
+    numbers = (assembly.floats([damping]), assembly.floats(matrix.data))
+    ints = (
+        bodies.velocity_at,
+        bodies.work_at,
+        bodies.count,
+        *numbers,
+        *matrix.indptr.tolist(),
+        *matrix.indices.tolist(),
+    )
+
+    def slopes() -> Slopes:
+        found = matrix.tocoo()
+        rows, columns = (bodies.velocity_at + 3 * one.astype(np.int64) for one in (found.row, found.col))
+        return Slopes(f"{folder}:slopes", rows, columns, blocks=True)
+
+    assembly.term("internal", f"{folder}:force", ints, slopes, energy=f"{folder}:potential", damped=True)

@@ -22,11 +22,12 @@ from sceneql.bodies.elements.strain_kernels import (
     look,
 )
 from sceneql.compiled.kernels import kernel
+from sceneql.system.signatures_kernels import ENERGY as ENERGY_OF_TERM
 from sceneql.system.signatures_kernels import A, I
 
 
-@kernel(types.float64(A, A, I))
-def energy(y, floats, ints):
+@kernel(ENERGY_OF_TERM)
+def energy(t, y, floats, ints):
     """Sum over the points of volume (shape energy + bulk d^2 / 2) [J]; of elements with one d of that."""
     points, numbers, room = ints[POINTS], ints[NUMBERS], ints[ROOM_AT]
     law_energy = energy_at(ints[ENERGY])

@@ -46,6 +46,27 @@ OF_HOLD: Mapping[str, Gives] = {
 """Outputs of a hold, under its name."""
 
 
+BY_INERTIA = ("kinetic", "momentum", "angular_momentum")
+"""Outputs of all masses that are sums over pairs of nodes here."""
+
+
+def by_inertia(output: str, solid: Strain, state: ModelState) -> Any:
+    """An output of BY_INERTIA."""
+    import numpy as np
+
+    from sceneql.bodies.bodies import positions, velocities
+
+    assert state.bodies is not None
+    speeds = velocities(state.bodies, state)
+    momenta = solid.inertia.matrix @ speeds
+    match output:
+        case "kinetic":
+            return 0.5 * float(np.sum(speeds * momenta))
+        case "momentum":
+            return momenta.sum(axis=0)
+    return np.cross(positions(state.bodies, state), momenta).sum(axis=0)
+
+
 def read(output: str, solid: Strain, state: ModelState) -> Any:
     """An output of OUTPUTS."""
     import numpy as np

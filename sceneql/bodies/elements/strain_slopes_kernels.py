@@ -1,7 +1,6 @@
 # mypy: ignore-errors
 """The derivatives of the forces of strain, in 3x3 blocks of two nodes of an element."""
 
-import sceneql.system.channels as channels
 from sceneql.bodies.elements.law_kernels import SCRATCH, stiffness_at
 from sceneql.bodies.elements.strain_kernels import (
     ELEMENTS,
@@ -145,14 +144,14 @@ def hold_rows(ints, held, e, entries, to):
 
 
 @lean(TILE)
-def slopes_tile(number, t, y, entries, floats, ints):
-    """The blocks of the elements of one tile."""
+def slopes_tile(number, positive, y, entries, floats, ints):
+    """The blocks of the elements of one tile; ``positive``: not 0 where what is negative is left out."""
     own = ints.size - 4
     nodes, points, numbers = ints[NODES], ints[POINTS], ints[NUMBERS]
     tiles, room = ints[own + SLOPES_TILES], ints[own + SLOPES_ROOM_AT] + ROOM * number
     damped, mean = ints[RETARDATION_AT] >= 0, ints[MEAN] == 1
     tau = floats[ints[RETARDATION_AT]] if damped else 0.0
-    definite = 1 if floats[channels.DEFINITE] > 0.0 else 0
+    definite = 1 if positive > 0.0 else 0
     stiffness = stiffness_at(ints[STIFFNESS])
     size, elements = 9 * nodes * nodes, ints[ELEMENTS]
     c = floats[room + C : room + C + 81]
@@ -210,16 +209,25 @@ def slopes_tile(number, t, y, entries, floats, ints):
         hold_rows(ints, ints[own + HELD_AT], e, entries, to)
 
 
+@lean_inlined
+def over_tiles(positive, y, entries, floats, ints):
+    """The blocks of all elements."""
+    own = ints.size - 4
+    if ints[own + SLOPES_TILES] == 1:
+        slopes_tile(0, positive, y, entries, floats, ints)
+    else:
+        tiles, address = ints[own + SLOPES_TILES], ints[own + SLOPES_TILE_AT]
+        over_threads(ints[ENTRY], ints[THREADS], address, tiles, positive, y, entries, floats, ints)
+
+
 @lean(TERM, inner=True)
 def strain(t, y, entries, floats, ints):
     """Of each element the blocks of pairs of its nodes (nodes, nodes, 3, 3): derivatives of forces by places and, where
-    damped, behind those of all elements, by velocities.
+    damped, behind those of all elements, by velocities."""
+    over_tiles(0.0, y, entries, floats, ints)
 
-    While Newton's method wants them definite, the law's are, and the viscous forces count as if places stayed.
-    """
-    own = ints.size - 4
-    if ints[own + SLOPES_TILES] == 1:
-        slopes_tile(0, t, y, entries, floats, ints)
-    else:
-        tiles, address = ints[own + SLOPES_TILES], ints[own + SLOPES_TILE_AT]
-        over_threads(ints[ENTRY], ints[THREADS], address, tiles, t, y, entries, floats, ints)
+
+@lean(TERM, inner=True)
+def positive(t, y, entries, floats, ints):
+    """As `strain`, but by the law's positive stiffness, and as if viscous forces did not depend on places."""
+    over_tiles(1.0, y, entries, floats, ints)

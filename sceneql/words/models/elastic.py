@@ -166,16 +166,14 @@ class Elastic(Model):
 
         from sceneql.bodies.elements import hold as holding
         from sceneql.bodies.elements.element_mesh import worst_angle
-        from sceneql.bodies.elements.strain import add_mass_damping, add_strain, density_of, lumped
+        from sceneql.bodies.elements.strain import Inertia, add_mass_damping, add_strain, density_of
         from sceneql.bodies.elements.strain_outputs import probe
         from sceneql.bodies.filling.tetrahedra import edges
         from sceneql.shapes.placement import rotation_matrix
 
         mesh, line = self.mesh(assembly), assembly.line()
-        count = len(mesh.points)
-        shares = lumped(mesh, density_of(self.density, WATER))
-        weights = np.bincount(mesh.cells.ravel(), shares.ravel(), count)
-        center = np.average(mesh.points, axis=0, weights=weights)
+        inertia, count = Inertia.of(mesh, density_of(self.density, WATER)), len(mesh.points)
+        center = np.average(mesh.points, axis=0, weights=inertia.sums)
         arms = mesh.points - center
         if self.rotation is not None:
             arms = arms @ rotation_matrix(assembly.initial(self.rotation)).T
@@ -191,17 +189,21 @@ class Elastic(Model):
             held[np.ix_(some, hold.axes())] = True
             whole[some] |= len(hold.axes()) == len(AXES)
             velocities[np.ix_(some, hold.axes())] = holding.start_velocity(hold, assembly)[hold.axes()]
+        matrix = inertia.freed(held) if inertia.consistent else None
         radii = np.full(count, self.radius)
-        bodies = masses.reserve(name, assembly, places, velocities, weights.astype(float), radii, whole)
-        strain = add_strain(assembly, bodies, mesh, places, self.law.law, self.retardation, held, shares)
+        bodies = masses.reserve(name, assembly, places, velocities, inertia.lumped, radii, whole, inertia=matrix)
+        assembly.write(bodies.mass_at, inertia.sums)
+        strain = add_strain(assembly, bodies, mesh, places, self.law.law, self.retardation, held, inertia)
         for called, load in self.loads.items():
             load.assemble(called, mesh, held, assembly, bodies, line)
         if self.mass_damping > 0.0:
-            add_mass_damping(assembly, bodies, self.mass_damping)
-        forces = {
-            called: holding.add_hold(hold, nodes[called], places[nodes[called]], assembly, bodies)
-            for called, hold in self.hold.items()
-        }
+            add_mass_damping(assembly, bodies, self.mass_damping, inertia.matrix)
+        parts = {}
+        for called, some in nodes.items():
+            weights = np.asarray(inertia.matrix[some].sum(axis=0)).ravel()
+            near = np.flatnonzero(weights)
+            parts[called] = holding.Held(some, places[some], near, weights[near], ~held[near])
+        forces = holding.add_holds(self.hold, parts, assembly, bodies)
         probes = {called: probe(mesh, np.asarray(place)) for called, place in self.probes.items()}
         angles = worst_angle(mesh.points, mesh.cells[:, :4])
         polygons = None
@@ -231,8 +233,12 @@ class Elastic(Model):
 
         assert self._made is not None
         assert state.bodies is not None
+        if output in strain_outputs.BY_INERTIA:
+            return strain_outputs.by_inertia(output, self.solid, state)
         if output in masses.BODY_OUTPUTS:
-            own = self.solid.energy(state) if output in ("potential", "energy") else 0.0
+            own = self.solid.energy(state) if output == "potential" else 0.0
+            if output == "energy":
+                return sum(self.read(part, state) for part in ("kinetic", "potential", "dissipated"))
             return masses.read(output, state.bodies, state, own)
         if output in OUTPUTS:
             return strain_outputs.read(output, self.solid, state)
