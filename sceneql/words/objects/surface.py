@@ -2,28 +2,78 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from sceneql.kinds import Length, ModelRef, Moment, Object, field
+from sceneql.grids.maps.map_names import ColorMap
+from sceneql.grids.maps.seen import Bounds, Field, unfit
+from sceneql.kinds import Length, ModelRef, Moment, Object, Problem, Value, field
+from sceneql.quantities.dimension import PLAIN
+from sceneql.quantities.expression import Call, Type
 from sceneql.shapes.checked_values import positive
 from sceneql.shapes.placement import apply
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
+    from sceneql.grids.maps.key import ColorKey
 
 
 class Surface(Object):
     """The sheet of a cloth as a closed slab, smooth on both sides; cells with a torn side are left open.
 
-    Of a solid of tetrahedra the outer faces, smooth; those with a torn edge are left out.
+    Of a solid of tetrahedra the outer faces, smooth; those with a torn edge are left out. With `shows` it has the
+    colors of a number of each mass, or of each node of an `elastic` solid, which a `legend` explains.
     """
 
     of: ModelRef = field("The cloth, or the solid.")
     thickness: Length = field("Thickness of a sheet.", "5 mm", above=0)
+    shows: Field | None = field("What its colors show, a number for each of its masses: `beam.von_mises`.", None)
+    colors: ColorMap = field("The map of colors, from the low to the high end.", "viridis")
+    range: Bounds | None = field("The values at the ends of the map; by default the extremes of the whole run.", None)
+
+    def problems(self) -> Iterator[Problem]:
+        """Bounds of another dimension, or of nothing."""
+        if self.shows is not None:
+            for problem in unfit(self.shows, {"range": self.range}):
+                yield replace(problem, path=("shows",)) if problem.path == ("of",) else problem
+        elif self.range is not None:
+            yield Problem("a range is of the colors of what it `shows`", ("range",), at_key=True)
+
+    @cached_property
+    def _ends(self) -> tuple[Value, Value]:
+        """The least and the largest value at an instant."""
+        assert self.shows is not None
+        of = Type((), self.shows.expr.type.dimension)
+        least, largest = (Value(Call(name, (self.shows.expr,), of), self.shows.span) for name in ("min", "max"))
+        return least, largest
+
+    def courses(self, start: Moment) -> Iterable[Value]:
+        """The extremes, where they give the range."""
+        if self.shows is not None and self.range is None:
+            yield from self._ends
+
+    def scale(self, moment: Moment) -> tuple[float, float]:
+        """The values at the ends of the map. Raises ValueError where they are not in order."""
+        if self.range is not None:
+            low, high = (float(c) for c in moment.at(self.range))
+            if not high > low:
+                raise ValueError(f"the range ends at {high:g}, which is not above {low:g}")
+            return low, high
+        low, high = (float(pick(moment.course(end)[1])) for end, pick in zip(self._ends, (min, max), strict=True))
+        return (low, high) if high > low else (low, low + 1.0)
+
+    def color_key(self, moment: Moment) -> ColorKey:
+        """What its colors mean, for a legend. Raises ValueError where they mean nothing."""
+        from sceneql.grids.maps.key import ColorKey
+
+        if self.shows is None:
+            raise ValueError("this surface has one color; say what it `shows`")
+        return ColorKey(self.colors, *self.scale(moment), self.shows.expr.type.dimension or PLAIN, ())
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
-        """A smooth mesh. Raises ValueError for a model that has no surface."""
+        """A smooth mesh. Raises ValueError for a model that has no surface, or for numbers that are none of it."""
         from sceneql.bodies.spring_look import skin
 
         cloth: Any = moment.object(self.of)
@@ -33,4 +83,18 @@ class Surface(Object):
         if len(triangles):
             points = apply(place, moment.read(self.of.name, "positions"))
             half = 0.5 * positive(moment, self.thickness, "thickness")
-            yield skin(name, moment.surface(name, self.material, self.color), points, triangles, half)
+            drawn = skin(name, moment.surface(name, self.material, self.color), points, triangles, half)
+            yield drawn if self.shows is None else replace(drawn, colors=self._colors(len(points), drawn, moment))
+
+    def _colors(self, count: int, drawn: Any, moment: Moment) -> Floats:
+        """(v, 3) of the vertices; a sheet has two for each mass."""
+        import numpy as np
+
+        from sceneql.grids.maps.colors import colored
+
+        assert self.shows is not None
+        values = np.asarray(moment.at(self.shows), dtype=float)
+        if values.shape != (count,):
+            raise ValueError(f"'{self.of.name}' has {count} masses, but it shows {values.size} numbers")
+        found: Floats = colored(np.resize(values, len(drawn.vertices)), self.scale(moment), self.colors)
+        return found

@@ -1,0 +1,1 @@
+"""Finite elements: shapes, meshes, forces."""

@@ -1,0 +1,182 @@
+"""Meshes of elements: nodes on edges, outer faces, and the numbers of their points. Imports numpy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import permutations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.bodies.filling.tetrahedra import ENDS, boundary, edges
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.bodies.elements.element import Element
+    from sceneql.frame import Floats, Ints
+
+FACE_EDGES = ((0, 1), (1, 2), (2, 0))
+"""The edges of a face by its corners; its further nodes stand on them in this order."""
+FINE: tuple[tuple[float, float], ...] = (
+    (0.09273525031089123, 0.07349304311636194),
+    (0.3108859192633006, 0.11268792571801585),
+)
+"""Of a rule exact to fifth order the points near corners and near faces: a coordinate and a weight; with those of
+FINE_EDGES (Walkington 2000)."""
+FINE_EDGES = (0.04550370412564964, 0.04254602077708147)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ElementMesh:
+    """Elements with their nodes."""
+
+    element: type[Element]
+    points: Floats
+    """(n, 3) nodes [m], corners first: the places of the material."""
+    cells: Ints
+    """(e, nodes) those of each element."""
+    corners: int
+    """How many nodes are corners."""
+
+    @property
+    def faces(self) -> Ints:
+        """(f, 3 or 6) nodes of the outer faces: corners counterclockwise from outside, then those on FACE_EDGES."""
+        faces = boundary(self.cells[:, :4])
+        if not self.element.edges:
+            return faces
+        ends, which = edges(self.cells[:, :4])
+        middle = np.empty(len(ends), dtype=np.int64)
+        middle[which.ravel()] = self.cells[:, 4:].ravel()
+        size = int(ends.max()) + 1
+        keys = ends @ (size, 1)
+        sides = np.sort(faces[:, FACE_EDGES].astype(np.int64), axis=2) @ (size, 1)
+        found: Ints = np.concatenate([faces, middle[np.searchsorted(keys, sides)]], axis=1).astype(np.int32)
+        return found
+
+    def at(self, places: Any) -> Floats:
+        """(e, q, 3) where barycentric places (q, 4) of every element are."""
+        found: Floats = self.element.functions(places) @ self.points[self.cells]
+        return found
+
+    def _sides(self, places: Any) -> tuple[Floats, Floats]:
+        """(e, q, 3, 3) dX by three barycentric coordinates at places (q, 4), and these slopes of functions."""
+        slopes = self.element.slopes(np.asarray(places, dtype=float))
+        local = slopes[:, :, 1:] - slopes[:, :, :1]
+        corner = self.points[self.cells] - self.points[self.cells[:, :1]]
+        sides = np.stack([np.swapaxes(corner, 1, 2) @ one for one in local], axis=1)
+        return sides, local
+
+    def sizes(self, places: Any) -> Floats:
+        """(e, q) volume over that of the barycentric coordinates, six times its own [m^3]; below 0 if turned."""
+        sides, _ = self._sides(places)
+        a, b, c = (sides[..., k] for k in range(3))
+        found: Floats = np.sum(a * np.cross(b, c), axis=-1)
+        return found
+
+    def gradients(self, places: Any) -> Floats:
+        """(e, q, nodes, 3) gradients of the functions [1/m] at barycentric places (q, 4) of upright elements."""
+        sides, local = self._sides(places)
+        found: Floats = local @ np.linalg.inv(sides)
+        return found
+
+    def tables(self) -> tuple[Floats, Floats]:
+        """Gradients (e, q, nodes, 3) at the element's points, and the volumes (e, q) [m^3] that these stand for."""
+        places, weights = self.element.rule
+        return self.gradients(places), self.sizes(places) * np.asarray(weights) / 6.0
+
+    def mass(self, density: Callable[[Floats], Floats]) -> Floats:
+        """(e, nodes, nodes) integrals of density [kg/m^3], a function of places (k, 3), times two functions [kg]."""
+        places, weights = fine_rule()
+        shapes = self.element.functions(places)
+        size = self.sizes(places)
+        held = density(self.at(places).reshape(-1, 3)).reshape(size.shape) * size * weights / 6.0
+        products = shapes[:, :, None] * shapes[:, None, :]
+        found: Floats = (held @ products.reshape(len(places), -1)).reshape(len(held), *products.shape[1:])
+        return found
+
+
+def fine_rule() -> tuple[Floats, Floats]:
+    """(14, 4) places and (14,) weights, exact to fifth order."""
+    places, weights = [], []
+    for one, weight in FINE:
+        for k in range(4):
+            place = [one] * 4
+            place[k] = 1.0 - 3.0 * one
+            places.append(place)
+            weights.append(weight)
+    one, weight = FINE_EDGES
+    edges = sorted(set(permutations((one, one, 0.5 - one, 0.5 - one))))
+    return np.array([*places, *edges]), np.array([*weights, *(weight for _ in edges)])
+
+
+def meshed(
+    element: type[Element], points: Floats, tetrahedra: Ints, onto: Callable[[Floats, Floats], Floats] | None = None
+) -> ElementMesh:
+    """The mesh of elements on tetrahedra (t, 4) of points (n, 3).
+
+    ``onto`` moves places (k, 3) near the surface along directions (k, 3) onto it: with it, outer edges are curved where
+    no element is turned by that.
+    """
+    if not element.edges:
+        return ElementMesh(element, points, tetrahedra.astype(np.int32), len(points))
+    ends, which = edges(tetrahedra)
+    middles = 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])
+    cells = np.concatenate([tetrahedra, len(points) + which], axis=1).astype(np.int32)
+    straight = ElementMesh(element, np.concatenate([points, middles]), cells, len(points))
+    return straight if onto is None else _curved(straight, onto)
+
+
+LEAST_BENT = 0.2
+"""An element is bent no more than to this part of its straight size at any place that is looked at."""
+
+
+def _curved(straight: ElementMesh, onto: Callable[[Floats, Floats], Floats]) -> ElementMesh:
+    """With the nodes on outer edges moved onto the surface, but those that would bend an element too much."""
+    faces, points = straight.faces, straight.points
+    normals = np.zeros_like(points)
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    for k in range(6):
+        np.add.at(normals, faces[:, k], across)
+    outer = np.unique(faces[:, 3:])
+    length = np.linalg.norm(normals[outer], axis=1, keepdims=True)
+    moved = points.copy()
+    along = np.divide(normals[outer], length, out=np.zeros((len(outer), 3)), where=length > 0)
+    moved[outer] = onto(points[outer], along)
+    places = np.concatenate([fine_rule()[0], np.eye(4), np.asarray(straight.element.rule[0])])
+    least = LEAST_BENT * straight.sizes(places[:1])
+    for _ in range(len(outer)):
+        mesh = ElementMesh(straight.element, moved, straight.cells, straight.corners)
+        bad = (mesh.sizes(places) < least).any(axis=1)
+        if not bad.any():
+            return mesh
+        back = np.unique(straight.cells[bad, 4:])
+        moved[back] = points[back]
+    return straight
+
+
+def gathered(cells: Ints, count: int) -> NDArray[int64]:
+    """For each of ``count`` nodes at which places of ``cells`` (e, nodes), flat, it stands: starts, then these."""
+    flat = cells.ravel().astype(np.int64)
+    starts = np.concatenate([[0], np.cumsum(np.bincount(flat, minlength=count))])
+    return np.concatenate([starts, np.argsort(flat, kind="stable")])
+
+
+def worst_angle(points: Floats, tetrahedra: Ints) -> tuple[float, float]:
+    """Least and largest angle [rad] between two faces of a tetrahedron."""
+    corner = points[tetrahedra]
+    least, largest = np.pi, 0.0
+    for a, b in ENDS:
+        c, d = (k for k in range(4) if k not in (a, b))
+        along = corner[:, b] - corner[:, a]
+        along = along / np.linalg.norm(along, axis=1, keepdims=True)
+        sides = [corner[:, k] - corner[:, a] for k in (c, d)]
+        one, two = (side - np.sum(side * along, axis=1, keepdims=True) * along for side in sides)
+        cosine = np.sum(one * two, axis=1) / (np.linalg.norm(one, axis=1) * np.linalg.norm(two, axis=1))
+        angle = np.arccos(np.clip(cosine, -1.0, 1.0))
+        least, largest = min(least, float(angle.min())), max(largest, float(angle.max()))
+    return least, largest

@@ -1,0 +1,156 @@
+"""Parts of a solid that are held, in all components or some, and moved by keys."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from sceneql import kinds
+from sceneql.bodies.time_shift import APART, later
+from sceneql.kinds import Formula, Position, Problem, Record, Symbols, Value, field
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Symbol
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.quantities.span import Span
+    from sceneql.system import Assembly, Bodies
+
+AXES = ("x", "y", "z")
+
+
+class Part(Record):
+    """A part of a solid by places of its material: where these stand before it is moved or turned."""
+
+    where: Annotated[Formula, Symbols(AXES)] | None = field(
+        "A formula of the place [m] that holds there, `x < 0.1`.", None
+    )
+    near: kinds.FixedPosition | None = field("A place: what is nearest to it, or all `within` a distance.", None)
+    within: kinds.FixedLength | None = field("Distance from `near`.", None, above=0)
+    object: kinds.ObjectRef | None = field("An object: what lies in it.", None)
+
+    def problems(self) -> Iterator[Problem]:
+        """Several ways to say it or none, and a distance from nothing."""
+        given = [name for name in ("where", "near", "object") if getattr(self, name) is not None]
+        if len(given) != 1:
+            said = f", not {' and '.join(given)}" if given else ""
+            yield Problem(f"a part of a solid is told by one of `where`, `near` and `object`{said}", tuple(given[1:2]))
+        elif self.within is not None and self.near is None:
+            yield Problem("a distance is from a place: say `near`", ("within",), at_key=True)
+
+    def place(self) -> Span | None:
+        """Where it stands in the script."""
+        told = self.where or self.object
+        return None if told is None else told.span
+
+    def holds(self, places: Floats, assembly: Assembly) -> Any:
+        """(n,) bool: which of places (n, 3) lie in it; by `near` alone the nearest."""
+        import numpy as np
+
+        if self.where is not None:
+            known = {Symbol(axis): places[:, k] for k, axis in enumerate(AXES)}
+            return np.broadcast_to(evaluate(self.where.expr, known, arrays=True), len(places)).astype(bool)
+        if self.object is not None:
+            from sceneql.bodies.filling.fill import Inside
+
+            return np.asarray(Inside(self.object, assembly).holds(places))
+        away = np.linalg.norm(places - np.asarray(self.near), axis=1)
+        return away <= self.within if self.within is not None else away == away.min()
+
+
+class Hold(Part):
+    """What holds nodes of a solid, and moves them."""
+
+    components: Literal["xyz", "x", "y", "z", "xy", "xz", "yz"] = field("In which directions it holds.", "xyz")
+    shift: Position = field("How far what is held has been moved from where it starts.", "0 0 0 m")
+
+    def axes(self) -> list[int]:
+        """The numbers of its components."""
+        return [AXES.index(axis) for axis in self.components]
+
+    def still(self, assembly: Assembly) -> bool:
+        """Whether it never moves what it holds."""
+        return self.shift.constant and not any(assembly.initial(self.shift))
+
+
+def chosen(name: str, hold: Part, places: Floats, assembly: Assembly, line: Span | None) -> Any:
+    """(k,) numbers of the nodes of places (n, 3) that a part holds. Raises ScriptError where there is none."""
+    import numpy as np
+
+    found = np.flatnonzero(hold.holds(places, assembly))
+    if not len(found):
+        help = None if hold.within is None else "the nodes stand a spacing apart: take a larger `within`"
+        raise ScriptError([Diagnostic("no-mass", f"'{name}' holds no node", hold.place() or line, help)])
+    return found
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Held:
+    """What a hold holds."""
+
+    nodes: Any
+    """(k,) nodes."""
+    starts: Floats
+    """(k, 3) where they start [m]."""
+    near: Any
+    """(n,) nodes whose acceleration their inertia feels, themselves among them."""
+    weights: Floats
+    """(n,) by how much [kg]."""
+    free: Any
+    """(n, 3) bool: components of these that nothing holds."""
+
+
+def add_holds(
+    holds: Mapping[str, Hold], held: Mapping[str, Held], assembly: Assembly, bodies: Bodies
+) -> dict[str, int]:
+    """Add the terms of holds; the offset of each one's force [N] in the floats.
+
+    The work that moves what is held is counted, with negative sign, among the dissipated energy. Velocity and
+    acceleration are central differences. Raises ScriptError for a shift that is no function of time.
+    """
+    import numpy as np
+
+    from sceneql.system import Slopes
+
+    folder = "sceneql.bodies.elements.hold_kernels"
+    alone, each, found = Slopes("", (), ()), [], {}
+    for name, hold in holds.items():
+        part = held[name]
+        shifts = [assembly.value(_moved(hold.shift, by, assembly)) for by in (-APART, 0.0, APART)]
+        found[name] = assembly.floats(np.zeros(9))
+        axes = [int(axis in hold.components) for axis in AXES]
+        places = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
+        numbers = (*shifts, assembly.floats([APART]), assembly.floats(part.starts), found[name], *axes, int(all(axes)))
+        counts = (len(part.nodes), len(part.near), assembly.floats(part.weights))
+        lists = (np.ravel(one).astype(int).tolist() for one in (part.nodes, part.near, part.free))
+        each.append((hold.still(assembly), (*places, *numbers, *counts, *(k for one in lists for k in one))))
+    for still, ints in each:
+        if not still:
+            assembly.term("internal", f"{folder}:feel_strain", ints, alone, energy="")
+            assembly.after_step(f"{folder}:put", ints)
+        # The inertia of what is led pulls on its neighbors by a matrix of masses.
+        assembly.term("tie", f"{folder}:feel", ints, alone, energy="" if still else None)
+        assembly.term("constrain", f"{folder}:lead", ints, alone, energy="")
+    for _, ints in each:
+        assembly.term("constrain", f"{folder}:tell", ints, alone, energy="")
+    return found
+
+
+def start_velocity(hold: Hold, assembly: Assembly) -> Floats:
+    """(3,) [m/s] of what it holds at the start."""
+    import numpy as np
+
+    ends = [np.asarray(assembly.initial(_moved(hold.shift, by, assembly))) for by in (-APART, APART)]
+    velocity: Floats = (ends[1] - ends[0]) / (2 * APART)
+    return velocity
+
+
+def _moved(shift: Value, by: float, assembly: Assembly) -> Value:
+    """The shift a little later."""
+    try:
+        return Value(later(shift.expr, by, assembly.formula), shift.span)
+    except ValueError as error:
+        message = f"a hold is moved by a function of time: {error}"
+        raise ScriptError([Diagnostic("unsupported-link", message, shift.span)]) from None

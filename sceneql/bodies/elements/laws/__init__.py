@@ -1,0 +1,1 @@
+"""Elastic laws: energy of strain, stress and stiffness."""

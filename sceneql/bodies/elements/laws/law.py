@@ -1,0 +1,135 @@
+"""What an elastic law is: its fields in a script, and its numbers at places of the material."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+from pydantic import create_model
+
+from sceneql.bodies.elements.named import named
+from sceneql.kinds import Formula, Problem, Record, Symbols, field
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import Symbol, walk
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+AXES = ("x", "y", "z")
+POISSON = 0.3
+"""Poisson's ratio where the script tells none."""
+MATERIAL = "at the place x, y, z [m] of the material before it moves"
+Modulus = Annotated[Formula, Symbols(AXES, dim.PRESSURE, at_start=True)]
+Ratio = Annotated[Formula, Symbols(AXES, dim.PLAIN, at_start=True)]
+
+
+class Law(Record):
+    """An elastic law of two numbers: the energy of strain is shape(F) + bulk d(F)^2 / 2.
+
+    F is the deformation gradient and d a measure of dilatation, 0 without strain. So `bulk` may act on the mean of d.
+    """
+
+    kernels: ClassVar[str]
+    """The module of its kernels (law_kernels.py)."""
+    recovers: ClassVar[bool] = True
+    """Whether what is turned inside out is pushed back."""
+    turns: ClassVar[bool] = True
+    """Whether a rotation makes no stress."""
+
+    modulus: Modulus = field(f"Young's modulus, {MATERIAL}.")
+    poisson: Ratio | None = field(
+        f"Poisson's ratio, above -1 and below 0.5, likewise; by default {POISSON}.",
+        None,
+    )
+
+    def problems(self) -> Iterator[Problem]:
+        """Numbers out of their range, where they are the same everywhere."""
+        for name in type(self).model_fields:
+            formula = getattr(self, name)
+            if isinstance(formula, Formula) and not _varies(formula):
+                wrong = self.wrong(name, float(evaluate(formula.expr, {})))
+                if wrong:
+                    yield Problem(wrong, (name,), code="out-of-range")
+
+    @classmethod
+    def wrong(cls, name: str, number: float) -> str:
+        """Why a field cannot have this value; empty where it can."""
+        if name != "poisson":
+            return "" if 0.0 < number < float("inf") else f"{name} must be above 0 Pa, not {number:g} Pa"
+        if number == 0.5:
+            return "a Poisson ratio of 0.5 leaves no volume to change; write 0.4999, with `element: p2_mean`"
+        return "" if -1.0 < number < 0.5 else f"poisson must be above -1 and below 0.5, not {number:g}"
+
+    def at(self, name: str, places: Floats) -> Floats:
+        """(n,) a field at places (n, 3) of the material. Raises ScriptError where it is out of its range."""
+        import numpy as np
+
+        formula = getattr(self, name)
+        if formula is None:
+            return np.full(len(places), POISSON)
+        known = {Symbol(axis): places[:, k] for k, axis in enumerate(AXES)}
+        values = np.broadcast_to(np.asarray(evaluate(formula.expr, known, arrays=True), dtype=float), len(places))
+        for k in (int(np.argmin(values)), int(np.argmax(values))):
+            if wrong := self.wrong(name, float(values[k])):
+                where = ", ".join(f"{c:.4g}" for c in places[k])
+                raise ScriptError([Diagnostic("out-of-range", f"at ({where}) m {wrong}", formula.span)])
+        return values.copy()
+
+    def most_poisson(self) -> float:
+        """Poisson's ratio, where it is the same everywhere; else 0.5, since it may come near that."""
+        if self.poisson is None:
+            return POISSON
+        return 0.5 if _varies(self.poisson) else float(evaluate(self.poisson.expr, {}))
+
+    def warning(self) -> str:
+        """What it cannot do, for `explain`."""
+        lost = [] if self.turns else ["rotation makes a false stress"]
+        lost += [] if self.recovers else ["what is turned inside out does not come back"]
+        return f"; by this law {', and '.join(lost)}" if lost else ""
+
+    def moduli(self, places: Floats) -> tuple[Floats, Floats]:
+        """(n,) Lame's first number and the shear modulus [Pa]."""
+        modulus, poisson = self.at("modulus", places), self.at("poisson", places)
+        shear = modulus / (2.0 * (1.0 + poisson))
+        return 2.0 * shear * poisson / (1.0 - 2.0 * poisson), shear
+
+    def numbers(self, places: Floats) -> Floats:
+        """(n, k) what the kernels read at places (n, 3): the bulk number [Pa], then the law's own."""
+        import numpy as np
+
+        return np.column_stack(self.moduli(places))
+
+
+def _varies(formula: Formula) -> bool:
+    return any(isinstance(node, Symbol) for node in walk(formula.expr))
+
+
+class OneLaw(Record):
+    """A law by its name."""
+
+    def problems(self) -> Iterator[Problem]:
+        """Several or none."""
+        given = [name for name in type(self).model_fields if getattr(self, name) is not None]
+        if len(given) != 1:
+            known = ", ".join(type(self).model_fields)
+            said = f", not {' and '.join(given)}" if given else ""
+            yield Problem(f"a solid has one law of {known}{said}", tuple(given[1:2]), at_key=True)
+
+    @property
+    def law(self) -> Law:
+        """The one that is given."""
+        found: Law = next(value for name in type(self).model_fields if (value := getattr(self, name)) is not None)
+        return found
+
+
+def _laws() -> dict[str, Any]:
+    found = named("sceneql.bodies.elements.laws", "Law")
+    return {name: (cls | None, field(str(cls.__doc__).partition("\n")[0], None)) for name, cls in found.items()}
+
+
+if TYPE_CHECKING:
+    Laws = OneLaw
+else:
+    Laws = create_model("Laws", __base__=OneLaw, __doc__=OneLaw.__doc__, **_laws())

@@ -1,0 +1,122 @@
+"""Loads on the surface of a solid: traction, pressure, force."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any
+
+from sceneql.bodies.elements.hold import Part
+from sceneql.kinds import Problem, Quantity, Value, field
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.bodies.elements.element_mesh import ElementMesh
+    from sceneql.bodies.elements.on_faces import Spread
+    from sceneql.quantities.span import Span
+    from sceneql.system import Assembly, Bodies, Slopes
+
+HOW = ("traction", "pressure", "force")
+
+
+class Load(Part):
+    """What presses or pulls on a part of the surface: faces with all corners in it, or what is `within` a distance."""
+
+    traction: Annotated[Value, Quantity(dim.PRESSURE, (3,))] | None = field(
+        "Force over the area that the part has at rest; it keeps its direction.", None
+    )
+    pressure: Annotated[Value, Quantity(dim.PRESSURE)] | None = field(
+        "Force over the area that it has, against its outer side: it follows the surface.", None
+    )
+    force: Annotated[Value, Quantity(dim.FORCE, (3,))] | None = field(
+        "The force in all, spread evenly, or at the point of the surface that is nearest to `near`.", None
+    )
+
+    def problems(self) -> Iterator[Problem]:
+        """Several loads or none, and an area that is a point."""
+        yield from super().problems()
+        given = [name for name in HOW if getattr(self, name) is not None]
+        if len(given) != 1:
+            said = f", not {' and '.join(given)}" if given else ""
+            yield Problem(f"a load is one of `traction`, `pressure` and `force`{said}", tuple(given[1:2]), at_key=True)
+        elif self.near is not None and self.within is None and given != ["force"]:
+            yield Problem(f"a {given[0]} acts on an area: say `within`, how far from there", ("near",), at_key=True)
+
+    def spread(self, name: str, mesh: ElementMesh, assembly: Assembly, line: Span | None) -> Spread:
+        """Where it acts. Raises ScriptError where that is no part of the surface."""
+        import numpy as np
+
+        from sceneql.bodies.elements.on_faces import nearest, spread
+
+        faces, points = mesh.faces, mesh.points
+        if self.near is not None and self.within is None:
+            return nearest(points, faces, np.asarray(self.near))
+        if self.within is not None:
+            found = spread(np.arange(len(faces)), finely=True)
+            found = found.some(self.holds(found.at(points, faces), assembly))
+        else:
+            inside = self.holds(points, assembly)
+            found = spread(np.flatnonzero(inside[faces[:, :3]].all(axis=1)), finely=False)
+        if not len(found.faces):
+            message = f"'{name}' acts on no part of the surface"
+            help = "a face of the surface is loaded where all its corners lie in the part"
+            raise ScriptError(
+                [Diagnostic("no-mass", message, self.place() or line, None if self.within is not None else help)]
+            )
+        return found
+
+    def assemble(
+        self, name: str, mesh: ElementMesh, held: Any, assembly: Assembly, bodies: Bodies, line: Span | None
+    ) -> None:
+        """Add its term; ``held`` (n, 3) bool: components of nodes.
+
+        Its work is counted, with negative sign, among the dissipated energy.
+        """
+        import numpy as np
+
+        from sceneql.bodies.elements.on_faces import functions
+        from sceneql.system import Slopes
+
+        faces = mesh.faces
+        where = self.spread(name, mesh, assembly, line)
+        head = (bodies.position_at, bodies.velocity_at, bodies.work_at)
+        if self.pressure is not None:
+            _add_pressure(self.pressure, where, faces, held, head, assembly)
+            return
+        shapes = functions(where.places, faces.shape[1])
+        areas = where.areas(mesh.points, faces)
+        shares = areas if self.force is None else areas / areas.sum()
+        weights = np.bincount(faces[where.faces].ravel(), (shares[:, None] * shapes).ravel(), len(mesh.points))
+        nodes = np.flatnonzero(weights)
+        value = self.traction if self.force is None else self.force
+        assert value is not None
+        ints = (*head, assembly.value(value), assembly.floats(weights[nodes]), len(nodes), *nodes.tolist())
+        energy = "sceneql.bodies.elements.load_energy_kernels:dead"
+        assembly.term("internal", "sceneql.bodies.elements.load_kernels:dead", ints, Slopes("", (), ()), energy=energy)
+
+
+def _add_pressure(
+    pressure: Value, where: Spread, faces: Any, held: Any, head: tuple[int, int, int], assembly: Assembly
+) -> None:
+    """Add the term of a pressure that follows the surface."""
+    import numpy as np
+
+    from sceneql.bodies.elements.on_faces import functions, slopes
+    from sceneql.system import Slopes
+
+    nodes = faces[where.faces].astype(np.int64)
+    count, each = nodes.shape
+    tables = (functions(where.places, each), slopes(where.places, each), where.shares)
+    numbers = [assembly.floats(np.ravel(table)) for table in tables]
+    ints: NDArray[int64] = np.concatenate([[*head, assembly.value(pressure), *numbers, count, each], nodes.ravel()])
+
+    def derivatives() -> Slopes:
+        at = 3 * nodes
+        rows, columns = np.repeat(at, each, axis=1).ravel() + head[1], np.tile(at, each).ravel() + head[0]
+        own = np.concatenate([ints, np.ravel(held)])
+        return Slopes("sceneql.bodies.elements.load_slopes_kernels:pressure", rows, columns, own, blocks=True)
+
+    assembly.term("internal", "sceneql.bodies.elements.load_kernels:pressure", ints.tolist(), derivatives)

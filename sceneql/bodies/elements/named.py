@@ -1,0 +1,27 @@
+"""The elements and laws of a folder by their names: a file that defines the class that its name asks for."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+
+@cache
+def named(package: str, family: str) -> dict[str, Any]:
+    """The classes of a family in a package by the names of their files, in alphabetical order.
+
+    ``p2_mean.py`` defines ``class P2Mean(Element)``.
+    """
+    spec = find_spec(package)
+    assert spec is not None
+    assert spec.origin is not None
+    found = {}
+    for path in sorted(Path(spec.origin).parent.glob("*.py")):
+        called = "".join(part.capitalize() for part in path.stem.split("_"))
+        if re.search(rf"^class {called}\({family}\):", path.read_text(encoding="utf-8"), re.MULTILINE):
+            found[path.stem] = getattr(import_module(f"{package}.{path.stem}"), called)
+    return found

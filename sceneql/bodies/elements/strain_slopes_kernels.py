@@ -1,0 +1,233 @@
+# mypy: ignore-errors
+"""The derivatives of the forces of strain, in 3x3 blocks of two nodes of an element."""
+
+from sceneql.bodies.elements.law_kernels import SCRATCH, stiffness_at
+from sceneql.bodies.elements.strain_kernels import (
+    ELEMENTS,
+    ENTRY,
+    GRADIENTS_AT,
+    LAW,
+    MEAN,
+    NODES,
+    NODES_AT,
+    NUMBERS,
+    NUMBERS_AT,
+    POINT,
+    POINTS,
+    RATE,
+    RETARDATION_AT,
+    STIFFNESS,
+    STRAIN,
+    THREADS,
+    WEIGHTS_AT,
+    D,
+    M,
+    look,
+)
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.threads_kernels import TILE, over_threads
+from sceneql.system.signatures_kernels import TERM
+
+SLOPES_ROOM_AT, SLOPES_TILES, SLOPES_TILE_AT, HELD_AT = range(4)
+"""From the end of the integers, four: offset of ROOM numbers a tile; tiles, their address; ints[HELD_AT + 3 node + k]
+says whether a component is held, whose rows are 0."""
+MOST_NODES = 10
+C = LAW + SCRATCH
+T = C + 81
+OWN = T + 27
+OTHER = OWN + 3 * MOST_NODES
+ROOM = OTHER + 3 * MOST_NODES
+"""In a tile's scratch behind that of forces: the stiffness c, a third of it by one gradient, and the derivatives of
+the mean of d and of tr E' by the nodes' places and velocities."""
+
+
+@lean_inlined
+def add_blocks(floats, ints, e, q, weight, room, entries, to, symmetric):
+    """Subtract weight G c G from the blocks of an element; where c is symmetric half of them is enough."""
+    nodes = ints[NODES]
+    g = ints[GRADIENTS_AT] + 3 * nodes * (ints[POINTS] * e + q)
+    c, t = floats[room + C : room + C + 81], floats[room + T : room + T + 27]
+    for b in range(nodes):
+        x, y, z = weight * floats[g + 3 * b], weight * floats[g + 3 * b + 1], weight * floats[g + 3 * b + 2]
+        for k in range(27):
+            t[k] = c[3 * k] * x + c[3 * k + 1] * y + c[3 * k + 2] * z
+        for a in range(b + 1 if symmetric else nodes):
+            x, y, z = floats[g + 3 * a], floats[g + 3 * a + 1], floats[g + 3 * a + 2]
+            at = to + 9 * (nodes * a + b)
+            for i in range(3):
+                for k in range(3):
+                    entries[at + 3 * i + k] -= x * t[9 * i + k] + y * t[9 * i + 3 + k] + z * t[9 * i + 6 + k]
+
+
+@lean_inlined
+def mirror(entries, to, nodes):
+    """Write the blocks below the diagonal from those above."""
+    for a in range(nodes):
+        for b in range(a):
+            at, other = to + 9 * (nodes * a + b), to + 9 * (nodes * b + a)
+            for i in range(3):
+                for k in range(3):
+                    entries[at + 3 * i + k] = entries[other + 3 * k + i]
+
+
+@lean_inlined
+def damped_by_velocity(f, first, shear, own, c):
+    """Write the derivative of F S by F': shear (F F^T 1 + F F) + first F F, the last where ``own``."""
+    for i in range(3):
+        for k in range(3):
+            square = f[3 * i] * f[3 * k] + f[3 * i + 1] * f[3 * k + 1] + f[3 * i + 2] * f[3 * k + 2]
+            for j in range(3):
+                for l in range(3):
+                    value = shear * f[3 * i + l] * f[3 * k + j]
+                    if j == l:
+                        value += shear * square
+                    if own:
+                        value += first * f[3 * i + j] * f[3 * k + l]
+                    c[9 * (3 * i + j) + 3 * k + l] = value
+
+
+@lean_inlined
+def damped_by_place(f, rate, strain, trace, first, shear, own, c):
+    """Write the derivative of F S by F: S 1 + shear (F F' + F F'^T 1) + first F F', the last where ``own``."""
+    for i in range(3):
+        for k in range(3):
+            square = f[3 * i] * rate[3 * k] + f[3 * i + 1] * rate[3 * k + 1] + f[3 * i + 2] * rate[3 * k + 2]
+            for j in range(3):
+                for l in range(3):
+                    value = shear * f[3 * i + l] * rate[3 * k + j]
+                    if j == l:
+                        value += shear * square
+                    if own:
+                        value += first * f[3 * i + j] * rate[3 * k + l]
+                    if i == k:  # the place of the component in strain: xx, yy, zz, yz, xz, xy
+                        value += 2.0 * shear * strain[j if j == l else 6 - j - l] + (first * trace if j == l else 0.0)
+                    c[9 * (3 * i + j) + 3 * k + l] = value
+
+
+@lean_inlined
+def add_means(floats, ints, e, first, out):
+    """Write the sum over the points of volume (the 3x3 from floats[first + POINT q] on) gradient: (node, 3)."""
+    nodes, points = ints[NODES], ints[POINTS]
+    for k in range(3 * nodes):
+        out[k] = 0.0
+    for q in range(points):
+        weight, at = floats[ints[WEIGHTS_AT] + points * e + q], first + POINT * q
+        g = ints[GRADIENTS_AT] + 3 * nodes * (points * e + q)
+        for n in range(nodes):
+            x, y, z = weight * floats[g + 3 * n], weight * floats[g + 3 * n + 1], weight * floats[g + 3 * n + 2]
+            for i in range(3):
+                out[3 * n + i] += floats[at + 3 * i] * x + floats[at + 3 * i + 1] * y + floats[at + 3 * i + 2] * z
+
+
+@lean_inlined
+def add_products(entries, to, nodes, factor, left, right):
+    """Subtract factor left right from the blocks of an element."""
+    for a in range(nodes):
+        for b in range(nodes):
+            at = to + 9 * (nodes * a + b)
+            for i in range(3):
+                for k in range(3):
+                    entries[at + 3 * i + k] -= factor * left[3 * a + i] * right[3 * b + k]
+
+
+@lean_inlined
+def hold_rows(ints, held, e, entries, to):
+    """Rows of held components are 0."""
+    nodes = ints[NODES]
+    for a in range(nodes):
+        node = ints[NODES_AT + nodes * e + a]
+        for i in range(3):
+            if ints[held + 3 * node + i] == 1:
+                for b in range(nodes):
+                    for k in range(3):
+                        entries[to + 9 * (nodes * a + b) + 3 * i + k] = 0.0
+
+
+@lean(TILE)
+def slopes_tile(number, positive, y, entries, floats, ints):
+    """The blocks of the elements of one tile; ``positive``: not 0 where what is negative is left out."""
+    own = ints.size - 4
+    nodes, points, numbers = ints[NODES], ints[POINTS], ints[NUMBERS]
+    tiles, room = ints[own + SLOPES_TILES], ints[own + SLOPES_ROOM_AT] + ROOM * number
+    damped, mean = ints[RETARDATION_AT] >= 0, ints[MEAN] == 1
+    tau = floats[ints[RETARDATION_AT]] if damped else 0.0
+    definite = 1 if positive > 0.0 else 0
+    stiffness = stiffness_at(ints[STIFFNESS])
+    size, elements = 9 * nodes * nodes, ints[ELEMENTS]
+    c = floats[room + C : room + C + 81]
+    left, right = floats[room + OWN : room + OWN + 3 * nodes], floats[room + OTHER : room + OTHER + 3 * nodes]
+    for e in range(elements * number // tiles, elements * (number + 1) // tiles):
+        to, moving = size * e, size * (elements + e)
+        dilatation, swelling = look(y, floats, ints, e, room)
+        volume = 0.0
+        for q in range(points):
+            volume += floats[ints[WEIGHTS_AT] + points * e + q]
+            for k in range(size if q == 0 else 0):
+                entries[to + k] = 0.0
+                if damped:
+                    entries[moving + k] = 0.0
+        for q in range(points):
+            at, law = room + POINT * q, ints[NUMBERS_AT] + numbers * (points * e + q)
+            weight, f = floats[ints[WEIGHTS_AT] + points * e + q], floats[at : at + 9]
+            pressure = floats[law] * (dilatation if mean else floats[at + D])
+            stiffness(
+                f,
+                floats[law : law + numbers],
+                pressure,
+                0.0 if mean else floats[law],
+                definite,
+                c,
+                floats[room + LAW : room + LAW + SCRATCH],
+            )
+            add_blocks(floats, ints, e, q, weight, room, entries, to, True)
+        mirror(entries, to, nodes)
+        bulk = floats[ints[NUMBERS_AT] + numbers * points * e]
+        if mean:
+            add_means(floats, ints, e, room + M, left)
+            add_products(entries, to, nodes, (max(bulk, 0.0) if definite == 1 else bulk) / volume, left, left)
+        if damped:
+            for q in range(points):
+                at, law = room + POINT * q, ints[NUMBERS_AT] + numbers * (points * e + q)
+                weight, f = floats[ints[WEIGHTS_AT] + points * e + q], floats[at : at + 9]
+                first, shear = tau * floats[law + numbers - 2], tau * floats[law + numbers - 1]
+                damped_by_velocity(f, first, shear, not mean, c)
+                add_blocks(floats, ints, e, q, weight, room, entries, moving, True)
+                if definite == 0:
+                    strain = floats[at + STRAIN : at + STRAIN + 6]
+                    trace = swelling if mean else strain[0] + strain[1] + strain[2]
+                    damped_by_place(f, floats[at + RATE : at + RATE + 9], strain, trace, first, shear, not mean, c)
+                    add_blocks(floats, ints, e, q, weight, room, entries, to, False)
+            mirror(entries, moving, nodes)
+            if mean:
+                first = tau * floats[ints[NUMBERS_AT] + numbers * points * e + numbers - 2]
+                add_means(floats, ints, e, room, left)
+                add_products(entries, moving, nodes, first / volume, left, left)
+                if definite == 0:
+                    add_means(floats, ints, e, room + RATE, right)
+                    add_products(entries, to, nodes, first / volume, left, right)
+            hold_rows(ints, ints[own + HELD_AT], e, entries, moving)
+        hold_rows(ints, ints[own + HELD_AT], e, entries, to)
+
+
+@lean_inlined
+def over_tiles(positive, y, entries, floats, ints):
+    """The blocks of all elements."""
+    own = ints.size - 4
+    if ints[own + SLOPES_TILES] == 1:
+        slopes_tile(0, positive, y, entries, floats, ints)
+    else:
+        tiles, address = ints[own + SLOPES_TILES], ints[own + SLOPES_TILE_AT]
+        over_threads(ints[ENTRY], ints[THREADS], address, tiles, positive, y, entries, floats, ints)
+
+
+@lean(TERM, inner=True)
+def strain(t, y, entries, floats, ints):
+    """Of each element the blocks of pairs of its nodes (nodes, nodes, 3, 3): derivatives of forces by places and, where
+    damped, behind those of all elements, by velocities."""
+    over_tiles(0.0, y, entries, floats, ints)
+
+
+@lean(TERM, inner=True)
+def positive(t, y, entries, floats, ints):
+    """As `strain`, but by the law's positive stiffness, and as if viscous forces did not depend on places."""
+    over_tiles(1.0, y, entries, floats, ints)

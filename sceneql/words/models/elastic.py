@@ -1,0 +1,267 @@
+"""elastic: solids of finite elements, that deform as much as they like."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import PrivateAttr
+
+from sceneql import kinds
+from sceneql.bodies import bodies as masses
+from sceneql.bodies.elements import strain_outputs
+from sceneql.bodies.elements.block import Block
+from sceneql.bodies.elements.element import elements
+from sceneql.bodies.elements.hold import Hold
+from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
+from sceneql.bodies.elements.load import Load
+from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
+from sceneql.kinds import Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import suggestion
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.bodies.elements.element import Element
+    from sceneql.bodies.elements.element_mesh import ElementMesh
+    from sceneql.bodies.elements.skin import Carried
+    from sceneql.bodies.elements.strain import Strain
+    from sceneql.frame import Floats, Shape
+    from sceneql.system import Assembly, Bodies, ModelState
+
+LOCKS = 0.4
+"""Poisson's ratio above which elements have one mean dilatation, where the script does not say."""
+WATER = 1000.0
+"""Density where the script tells none [kg/m^3]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Made:
+    """The solid of a run."""
+
+    strain: Strain
+    probes: Mapping[str, tuple[Any, Any]]
+    """Nodes (k,) and weights (k,) of each probe."""
+    forces: Mapping[str, int]
+    """Offset of each hold's force in the floats."""
+    angles: tuple[float, float]
+    """Least and largest angle [rad] between faces of an element."""
+    polygons: Callable[[], Carried] | None
+    """What it is drawn by in place of its faces; made at the first call."""
+
+
+class Elastic(Model):
+    """A solid of finite elements: density x'' = div P + forces, P the stress of its strain by its law (Cauchy 1827).
+
+    It is an object filled with tetrahedra, or a `block`. Its nodes are masses, on which forces and contacts act. Places
+    in `hold`, `loads`, `probes` and formulas are those of the material, before the solid is moved or turned.
+    """
+
+    gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS}
+
+    of: kinds.ObjectRef | None = field("The object that it fills; usually a hidden one.", None)
+    spacing: kinds.FixedLength | None = field(
+        "Of an object: side of the cubes of the lattice that its tetrahedra are of; by default a tenth of its size.",
+        None,
+        above=0,
+    )
+    block: Block | None = field("A brick in place of an object.", None)
+    element: str | None = field(
+        "Its elements, p1, p2 or p2_mean: of 4 or 10 nodes; the last, of one dilatation each, do not lock. By default "
+        f"p2_mean above a Poisson ratio of {LOCKS}, else p2.",
+        None,
+    )
+    law: Laws = field("How it resists strain.")
+    density: Annotated[Formula, Symbols(AXES, dim.DENSITY, at_start=True)] | None = field(
+        f"Its density, {MATERIAL}; by default {WATER:g} kg/m^3.", None
+    )
+    retardation: kinds.FixedTime = field(
+        "Viscosity over elastic modulus (Kelvin & Voigt), of the rate of strain: rotation is free.", "0 s", at_least=0
+    )
+    mass_damping: kinds.FixedFrequency = field("Damping force over momentum.", "0 Hz", at_least=0)
+    hold: dict[str, Hold] = field("Parts that are held, by name.", {})
+    loads: dict[str, Load] = field("What acts on parts of its surface, by name.", {})
+    probes: dict[str, kinds.FixedPosition] = field("Places of the material by name, which outputs tell of.", {})
+    position: kinds.FixedPosition | None = field("Where its center of mass starts; by default where it is drawn.", None)
+    rotation: kinds.Rotation | None = field("How it is turned at the start, about its center of mass.", None)
+    velocity: kinds.FixedVelocity = field("Velocity at the start.", "0 0 0 m/s")
+    spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,))] = field(
+        "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
+    )
+    radius: kinds.FixedLength = field("Radius of its nodes in contacts.", "1 mm", at_least=0)
+    look: Literal["object", "elements"] = field(
+        "How it draws itself: as the object's own polygons, which its elements carry, or as the faces of these.",
+        "object",
+    )
+    material: kinds.MaterialRef | None = field("How it looks where no object draws it.", None)
+    color: kinds.Color | None = field("Color in place of the material's.", None)
+
+    _made: Made | None = PrivateAttr(None)
+
+    def problems(self) -> Iterator[Problem]:
+        """An object and a block or none; elements that are none; names that two parts have."""
+        if (self.of is None) == (self.block is None):
+            yield Problem("an elastic solid is either `of` an object or a `block`", ("block",) if self.of else ())
+        if self.of is None and self.spacing is not None:
+            yield Problem("a block has `cells`, not a spacing", ("spacing",), at_key=True)
+        if self.element is not None and self.element not in elements():
+            near = suggestion(self.element, elements())
+            known = f"; {near}" if near else f"; there are {', '.join(elements())}"
+            yield Problem(f"no element is called '{self.element}'{known}", ("element",), code="unknown-choice")
+        for name in self.probes:
+            if name in self.hold:
+                yield Problem(
+                    f"'{name}' is the name of a hold, too: outputs could not tell them apart", ("probes", name)
+                )
+
+    @classmethod
+    def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
+        """Those of all solids; `tip.position` of probes, `wall.force` of holds."""
+        found = dict(cls.gives)
+        for names, gives in ((written.get("probes"), OF_PROBE), (written.get("hold"), OF_HOLD)):
+            for name in names if isinstance(names, Mapping) else ():
+                found |= {f"{name}.{output}": one for output, one in gives.items()}
+        return found
+
+    def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
+        """The object."""
+        from sceneql.bodies.elements.filled import bounded_by
+
+        return () if self.of is None or self.spacing is None else ((self.of, bounded_by(self.spacing)),)
+
+    def insides(self) -> Iterable[Ref]:
+        """The object, and those that tell parts."""
+        told = [part.object for part in (*self.hold.values(), *self.loads.values())]
+        return [ref for ref in (self.of, *told) if ref is not None]
+
+    @property
+    def solid(self) -> Strain:
+        """Its elements in the run; there are none before the island is assembled."""
+        assert self._made is not None
+        return self._made.strain
+
+    def chosen_element(self) -> type[Element]:
+        """The element that the script names, or that suits its law."""
+        if self.element is not None:
+            return elements()[self.element]
+        return elements()["p2_mean" if self.law.law.most_poisson() > LOCKS else "p2"]
+
+    def mesh(self, assembly: Assembly) -> ElementMesh:
+        """Its mesh. Raises ScriptError for an object that cannot be filled, LimitRefused for too many elements."""
+        from sceneql.bodies.elements.filled import filled, laid
+
+        element = self.chosen_element()
+        if self.block is not None:
+            return laid(self.block, element, assembly)
+        assert self.of is not None
+        return filled(self.of, self.spacing, element, assembly)
+
+    def assemble(self, name: str, assembly: Assembly) -> Bodies:
+        """Reserve the nodes as masses; add the forces of strain, of loads, of damping, and what holds it."""
+        import numpy as np
+
+        from sceneql.bodies.elements import hold as holding
+        from sceneql.bodies.elements.element_mesh import worst_angle
+        from sceneql.bodies.elements.strain import Inertia, add_mass_damping, add_strain, density_of
+        from sceneql.bodies.elements.strain_outputs import probe
+        from sceneql.bodies.filling.tetrahedra import edges
+        from sceneql.shapes.placement import rotation_matrix
+
+        mesh, line = self.mesh(assembly), assembly.line()
+        inertia, count = Inertia.of(mesh, density_of(self.density, WATER)), len(mesh.points)
+        center = np.average(mesh.points, axis=0, weights=inertia.sums)
+        arms = mesh.points - center
+        if self.rotation is not None:
+            arms = arms @ rotation_matrix(assembly.initial(self.rotation)).T
+        places = arms + (center if self.position is None else np.asarray(self.position))
+        velocities = np.asarray(self.velocity) + np.cross(self.spin, arms)
+        if self.rotation is None and self.position is None:
+            places = mesh.points
+        held: Any = np.zeros((count, 3), dtype=bool)
+        nodes, whole = {}, np.zeros(count, dtype=bool)
+        for called, hold in self.hold.items():
+            some = holding.chosen(called, hold, mesh.points, assembly, line)
+            some = nodes[called] = some[~held[some][:, hold.axes()].any(axis=1)]
+            held[np.ix_(some, hold.axes())] = True
+            whole[some] |= len(hold.axes()) == len(AXES)
+            velocities[np.ix_(some, hold.axes())] = holding.start_velocity(hold, assembly)[hold.axes()]
+        matrix = inertia.freed(held) if inertia.consistent else None
+        radii = np.full(count, self.radius)
+        bodies = masses.reserve(name, assembly, places, velocities, inertia.lumped, radii, whole, inertia=matrix)
+        assembly.write(bodies.mass_at, inertia.sums)
+        strain = add_strain(assembly, bodies, mesh, places, self.law.law, self.retardation, held, inertia)
+        for called, load in self.loads.items():
+            load.assemble(called, mesh, held, assembly, bodies, line)
+        if self.mass_damping > 0.0:
+            add_mass_damping(assembly, bodies, self.mass_damping, inertia.matrix)
+        parts = {}
+        for called, some in nodes.items():
+            weights = np.asarray(inertia.matrix[some].sum(axis=0)).ravel()
+            near = np.flatnonzero(weights)
+            parts[called] = holding.Held(some, places[some], near, weights[near], ~held[near])
+        forces = holding.add_holds(self.hold, parts, assembly, bodies)
+        probes = {called: probe(mesh, np.asarray(place)) for called, place in self.probes.items()}
+        angles = worst_angle(mesh.points, mesh.cells[:, :4])
+        polygons = None
+        if self.of is not None and self.look == "object":
+            from sceneql.bodies.elements.filled import spacing_of
+            from sceneql.bodies.elements.skin import carried
+
+            polygons = cache(partial(carried, self.of, spacing_of(self.of, self.spacing, assembly), mesh, assembly))
+        self._made = Made(strain, probes, forces, angles, polygons)
+        period = 2.0 * np.pi / strain.squared**0.5
+        return replace(bodies, period=period, tied=edges(mesh.cells[:, :4])[0])
+
+    def remark(self, state: ModelState) -> str:
+        """Its elements, their worst angle, and what its law cannot do."""
+        import numpy as np
+
+        assert self._made is not None
+        mesh, (least, largest) = self.solid.mesh, self._made.angles
+        called = next(name for name, one in elements().items() if one is mesh.element)
+        told = f"{len(mesh.cells)} elements {called} of {len(mesh.points)} nodes"
+        told += f", angles between faces {np.degrees(least):.0f} to {np.degrees(largest):.0f} degrees"
+        told += f"; no oscillation is faster than {self.solid.squared**0.5 / (2 * np.pi):.4g} Hz in the small"
+        return f"{told}{self.law.law.warning()}"
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """Any output of the manual, those of probes and of holds."""
+
+        assert self._made is not None
+        assert state.bodies is not None
+        if output in strain_outputs.BY_INERTIA:
+            return strain_outputs.by_inertia(output, self.solid, state)
+        if output in masses.BODY_OUTPUTS:
+            own = self.solid.energy(state) if output == "potential" else 0.0
+            if output == "energy":
+                return sum(self.read(part, state) for part in ("kinetic", "potential", "dissipated"))
+            return masses.read(output, state.bodies, state, own)
+        if output in OUTPUTS:
+            return strain_outputs.read(output, self.solid, state)
+        name, _, what = output.rpartition(".")
+        if name in self._made.forces:
+            at = self._made.forces[name]
+            return state.floats[at : at + 3].copy()
+        return strain_outputs.read_probe(what, *self._made.probes[name], self.solid, state)
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of the nodes."""
+        assert state.bodies is not None
+        return masses.places(output, state.bodies)
+
+    def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
+        """Its outer faces, or the polygons of its object."""
+        from sceneql.bodies.elements.skin import skin
+
+        assert state.bodies is not None
+        surface = moment.surface(name, self.material, self.color)
+        places = masses.positions(state.bodies, state)
+        assert self._made is not None
+        if self._made.polygons is None:
+            yield skin(name, surface, self.solid.mesh, places)
+        else:
+            yield self._made.polygons().drawn(name, surface, places)
