@@ -237,9 +237,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
             wx, wy, wz = spin_by(masses, MASS * k + 1, y[momentum], y[momentum + 1], y[momentum + 2])
             to[MOTION * k + 3], to[MOTION * k + 4], to[MOTION * k + 5] = wx, wy, wz
     sweep(h, floats, ints, places, motions, before, 1e-3, boxes, room)
-    who, where, contacts = contacts_at_start(
-        h, floats, ints, places, motions, before, pairs_of(boxes, shapes), room
-    )
+    who, where, contacts = contacts_at_start(h, floats, ints, places, motions, before, pairs_of(boxes, shapes), room)
     kept = int(floats[ints[COUNT_AT]])
     floats[ints[COUNT_AT]] = 0.0
     if contacts == 0:
