@@ -302,6 +302,8 @@ class Solver(Kind):
     family: ClassVar[str] = "solvers"
     fields_only: ClassVar[bool] = False
     """Whether it marches fields on grids and nothing else."""
+    static: ClassVar[bool] = False
+    """Whether it finds rests, without motion in time."""
     refuses_ties: ClassVar[str] = ""
     """Why it does not march bodies that ties hold; empty where it does."""
 

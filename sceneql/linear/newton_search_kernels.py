@@ -60,7 +60,8 @@ WATCHED = 20
 SLOWED = 0.5
 """Contraction from which on positive slopes are slow."""
 TRUE_AFTER = 3
-"""Slow updates after which true slopes are tried; twice as many after each time that these fail."""
+"""Slow updates after which true slopes are tried; twice as many after each time that these fail, RARELY at most."""
+RARELY = 8
 ENOUGH = 1e-4
 """Part of the fall that the slope predicts which a step must bring (Armijo)."""
 SHORTEST = 1e-10
@@ -156,7 +157,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             if positive or (regular and not indefinite(plan, store)):
                 break
             positive, slow = True, 0
-            patience *= 2
+            patience = min(2 * patience, RARELY)
         for k in range(n):
             change[k] = residual[k]
         memory[ITERATIONS] += 1.0
@@ -226,5 +227,5 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             positive, slow, stale = False, 0, True
         elif not positive and slow > 0 and contraction >= 1.0:
             positive, slow, stale = True, 0, True
-            patience *= 2
+            patience = min(2 * patience, RARELY)
     return False

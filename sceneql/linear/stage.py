@@ -51,10 +51,11 @@ class StagePlan:
     """How the systems are solved, for `explain`."""
 
 
-def stage_plan(system: System, exact: bool = False) -> StagePlan:
+def stage_plan(system: System, exact: bool = False, signs: bool = False) -> StagePlan:
     """Analyze an island whose Jacobian was requested. Raises LimitRefused where it is unavailable.
 
-    Not ``exact``: solutions may have errors of some percent, which Newton's method repairs.
+    Not ``exact``: solutions may have errors of some percent, which Newton's method repairs. ``signs``: negative
+    eigenvalues are asked for, on islands without a potential, too.
     """
     import numpy as np
 
@@ -87,9 +88,8 @@ def stage_plan(system: System, exact: bool = False) -> StagePlan:
     )
     tiles = square * pattern.nnz // TILE + 1
     shared = (tiles, *threads(), tile_address(assemble_tile), tile_address(compare_tile))
-    negatives = (
-        number_of(function(solver.negatives), NEGATIVES) if system.structure.energies and solver.negatives else -1
-    )
+    signs = solver.negatives and (signs or system.structure.energies is not None)
+    negatives = number_of(function(solver.negatives), NEGATIVES) if signs else -1
     head = [*counts, *starts[:7], solver.factors, 0, *kernels, left.unit, *shared, negatives]
     head += [len(inertia.entries), len(inertia.held), *starts[7:9]]
     assert len(head) == HEAD

@@ -127,7 +127,7 @@ class March:
         self._extended = math.nan
         # Islands without exact contacts have no events: the kernels that find them are not even loaded.
         event = function("sceneql.march.events_kernels:find_event") if system.pairs else None
-        self._energy = energy(system) if needs.newton and not system.damped else None
+        self._energy = energy(system) if needs.newton and (needs.at_rest or not system.damped) else None
         self._limit = None
         self._functions = addresses(
             self._step, self._dense, *self.driver, self._jacobian, event, self._energy, self._limit

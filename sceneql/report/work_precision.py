@@ -101,7 +101,13 @@ def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dic
     found: dict[str, Solver] = {own.word: cast(Solver, own.kind)}
     for word in catalogue.words("solvers"):
         cls = cast("type[Solver] | None", catalogue.load("solvers", word))
-        if cls is None or word in found or (cls.fields_only and not field) or (cls.refuses_ties and bound):
+        if (
+            cls is None
+            or word in found
+            or (cls.fields_only and not field)
+            or cls.static
+            or (cls.refuses_ties and bound)
+        ):
             continue
         needed = {name for name, info in cls.model_fields.items() if info.is_required()}
         if needed <= set(given):

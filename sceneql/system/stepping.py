@@ -89,6 +89,8 @@ class Needs:
     """Whether the step calls the island's Jacobian (System.pattern)."""
     newton: bool = False
     """Whether linear/newton_kernels.py solves all its stages (Slopes.in_stages)."""
+    at_rest: bool = False
+    """Whether it is for states of rest alone, where forces that are damped have their potentials, too."""
     prepare: str | None = None
     """Called with (System, Stepper) -> Prepared, which replaces settings, numbers and work where these depend on the
     island, as the ordering of a factorization does."""

@@ -1,0 +1,143 @@
+"""The march of rests: static at each instant's loads."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.failure import LimitRefused, RunFailure
+from sceneql.island import layout
+from sceneql.march import march_kernels as kernels
+from sceneql.march.march import March
+from sceneql.stepping.equilibrium_kernels import ENDED, REACHED, UNSTABLE, relax
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.march.pace import Pace
+
+MOTIONS = ("move along x", "move along y", "move along z", "turn about x", "turn about y", "turn about z")
+FREE = 1e-7
+"""Stiffness against a motion, relative to the largest, below which it is free."""
+MOVED = 1e-6
+"""Part of its size by which a model is moved to see that."""
+JUMPED = 1e-6
+"""Force on a rest, relative to the largest of the loads, from which on these have jumped."""
+
+
+class EquilibriumMarch(March):
+    """Finds the rest of the start, then follows it through the run."""
+
+    def _start(self) -> None:
+        """Come to rest. Raises LimitRefused where models are held nowhere, RunFailure where there is no rest."""
+        super()._start()
+        self._refuse_free_motions()
+        self._relax(0.0)
+
+    def _relax(self, t: float) -> None:
+        y = self._y1.copy()
+        found = relax(self._functions, t, y, self._work, self._settings, self._numbers, self.floats, self.system.ints)
+        if found == UNSTABLE:
+            raise self._failure("the rest that was found is unstable: the least push would leave it")
+        if found != REACHED:
+            raise self._failure("no rest was found: forces have none, or move on without end")
+        self._y1[:] = y
+        self._rate1[:] = self.rate(t, y)
+
+    def _march(self, target: float, pace: Pace) -> None:
+        """Steps end at the instants that are asked for."""
+        self._step_end = min(self._step_end, target)
+        super()._march(target, pace)
+        self._look_for_breakpoint(self.time)
+
+    def _goes_on(self, status: int) -> bool:
+        """Where loads have jumped, rest is found anew; a path that has turned back ends the run."""
+        if status != kernels.STEP_TOO_SMALL:
+            return False
+        t = self.time
+        after = t + 4.0 * float(np.spacing(t))
+        change = np.abs(self._forces(after, self._y1) - self._forces(t, self._y1)).max(initial=0.0)
+        if change > JUMPED * max(self._load(t), self._load(after)):
+            self._clock[kernels.T1] = after
+            self._relax(after)
+            return True
+        if self._settings[ENDED] == UNSTABLE:
+            raise self._failure("a rest beyond this is unstable, as of a column that buckles", t)
+        raise self._failure("a limit load is reached: no rest beyond it is near", t)
+
+    def _failure(self, message: str, t: float = 0.0) -> RunFailure:
+        """The failure, at the entry of the largest force."""
+        forces = np.abs(self._forces(t, self._y1))
+        origin = self.system.origin(int(forces.argmax()) if len(forces) else 0)
+        return RunFailure(f"{message} (loads of {self._load(t):.6g} N)", part=origin.part, time=t, span=origin.span)
+
+    def _forces(self, t: float, y: Floats) -> Floats:
+        """(n,) accelerations by all forces [m/s^2], 0 for other entries."""
+        found = np.zeros(len(y))
+        rate = self.rate(t, y)
+        for velocity_at, _, count in self.system.masses:
+            mine = slice(velocity_at, velocity_at + 3 * count)
+            found[mine] = rate[mine]
+        return found
+
+    def _load(self, t: float) -> float:
+        """Sum of the forces on masses, in size, that are no model's own [N]."""
+        system, ints, floats = self.system, self.system.ints.copy(), self.floats.copy()
+        firsts = ints[layout.GROUPS_AT : layout.GROUPS_AT + len(system.structure.terms) + 1].copy()
+        models = {part for _, _, part, _ in system.ranges}
+        before, total = np.zeros(len(system.y)), np.zeros(len(system.y))
+        for count, term in enumerate(system.terms, 1):
+            ints[layout.GROUPS_AT : layout.GROUPS_AT + len(firsts)] = np.minimum(firsts, firsts[0] + count)
+            rate = np.empty_like(before)
+            self.driver.rate(t, self._y1, rate, floats, ints)
+            if term.part not in models:
+                total += rate - before
+            before = rate
+        parts = [total[at : at + 3 * count].reshape(-1, 3) for at, _, count in system.masses]
+        moving = [self.floats[inverse_at : inverse_at + count] > 0.0 for _, inverse_at, count in system.masses]
+        return float(sum(np.linalg.norm(each[free], axis=1).sum() for each, free in zip(parts, moving, strict=True)))
+
+    def _refuse_free_motions(self) -> None:
+        """Raise LimitRefused for models that nothing resists to move as they are."""
+        system = self.system
+        position_of = np.full(len(system.y), -1)
+        paired = np.flatnonzero(system.partner >= 0)
+        position_of[system.partner[paired]] = paired
+        if not system.masses:
+            part, span = system.ranges[0][2], system.ranges[0][3][0]
+            raise LimitRefused(f"rest is found of masses, and '{part}' has none", span, "let auto march it")
+        some = np.random.Generator(np.random.Philox(1))
+        for velocity_at, inverse_at, count in system.masses:
+            places = position_of[velocity_at : velocity_at + 3 * count]
+            if not (self.floats[inverse_at : inverse_at + count] > 0.0).all():
+                continue
+            at = self._y1[places].reshape(-1, 3)
+            size = max(float(np.ptp(at, axis=0).max()), 1.0)
+            random = some.standard_normal(at.shape)
+            shaken = at + 0.01 * size * some.standard_normal(at.shape)
+            scale = np.abs(self._resisted(places, at, random, size)).max()
+            free: list[str] = []
+            for k, name in enumerate(MOTIONS):
+                axis = np.eye(3)[k % 3]
+                motion = np.tile(axis, (count, 1)) if k < 3 else np.cross(axis, at - at.mean(axis=0))
+                if k >= 3 and (len(free) < 3 or not motion.any()):
+                    continue
+                resisted = np.abs(self._resisted(places, shaken if k < 3 else at, motion, size)).max()
+                if resisted <= FREE * scale:
+                    free.append(name)
+            if free:
+                origin = system.origin(velocity_at)
+                raise LimitRefused(
+                    f"nothing holds '{origin.part}': it is free to {', '.join(free)}",
+                    origin.span,
+                    "fix some of its masses, or let `auto` march it in time",
+                )
+
+    def _resisted(self, places: Any, at: Floats, motion: Floats, size: float) -> Floats:
+        """Change of all accelerations by a motion, from central differences."""
+        ends = []
+        for sign in (1.0, -1.0):
+            y = self._y1.copy()
+            y[places] = (at + sign * MOVED * size * motion).ravel()
+            ends.append(self._forces(0.0, y))
+        return ends[0] - ends[1]

@@ -1,0 +1,249 @@
+# mypy: ignore-errors
+"""Rest: the places where all forces are zero, as the loads change in time.
+
+A state of rest is a step of implicit Euler from rest that is long beside all periods, x = x0 + a^2 F(x)/m, whose
+inertia m/a^2 keeps motions that nothing resists where they are; repeated until nothing moves. `relax` comes to rest
+from afar by steps that grow: each goes down the potential (pseudo-transient continuation: Kelley & Keyes 1998, SIAM J.
+Numer. Anal. 35, 508-523). `step` follows a path of rests: it takes plain updates from the rest before and accepts
+none that leaves its tangent, so that it does not leap to another branch where a path has turned back.
+
+``settings``: the memory of Newton's method (newton_kernels), a [s] at which the matrix's inertia outweighs its rounding
+alone, what ended the latest step; then the scales of the stage plan. ``numbers``: [entries of the Jacobian's room, where
+the plan starts, numbers of velocities, of tallies], velocities, tallies, the stage plan. ``work``: the step to try next,
+in an array of y's size; base; the rest before; scratch (4); the Jacobian; the store.
+"""
+
+import math
+
+from numba import types
+
+import sceneql.system.channels as channels
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
+from sceneql.linear.newton_kernels import CAREFUL, FACTORED, MEMORY, foresee, largest, leave, newton
+from sceneql.linear.stage_kernels import (
+    CORE_AT,
+    POSITIONS,
+    POSITIONS_AT,
+    UNKNOWNS,
+    factor_stage,
+    indefinite,
+    solve_stage,
+)
+from sceneql.system.signatures_kernels import STEP, A, F, I
+
+ROOM, PLAN_AT, VELOCITIES, TALLIES, HEAD = range(5)
+SIGN, ENDED = MEMORY, MEMORY + 1
+SCALES_AT = MEMORY + 2
+ARRAYS = 7
+REACHED, ASTRAY, UNSTABLE = range(3)
+"""What ended a step: a rest; updates that did not converge near the tangent; a rest that is unstable."""
+
+FIRST, LONG = 0.01, 100.0
+"""First and last a [s] of the steps to a rest."""
+LONGEST = 1e6
+"""The largest a [s], where motions are so slow that LONG is not beside their periods."""
+FASTER = 4.0
+FAILURES = 40
+PUSH, PUSHES = 1e-3, 3
+"""Part of its size by which what is at an unstable rest is moved, and how often."""
+PASSES = 30
+MOST = 12
+"""Updates of a step along a path."""
+CONVERGES = 0.6
+"""Largest contraction of its updates."""
+BENDS = 0.5
+"""Part of the first update by which all later ones together may change it."""
+COARSE = 1e3
+"""Update, in units of the tolerance, below which its direction is rounding."""
+
+RELAX = types.int64(I, F, A, A, A, I, A, I)
+
+
+@lean_inlined
+def at_rest(y, kept, numbers):
+    """Set velocities to 0 and tallies to what they were."""
+    for k in range(HEAD, HEAD + numbers[VELOCITIES]):
+        y[numbers[k]] = 0.0
+    for k in range(HEAD + numbers[VELOCITIES], HEAD + numbers[VELOCITIES] + numbers[TALLIES]):
+        y[numbers[k]] = kept[numbers[k]]
+
+
+@lean_inlined
+def from_rest(a, rest, velocity, plan, base):
+    """The base of a stage from rest; ``velocity``: rates there, of places that are led among them, which stay.
+
+    Of an entry that no unknown moves x = base + a v is its place, whatever the velocity v that leads it.
+    """
+    at = plan[POSITIONS_AT]
+    for k in range(base.size):
+        base[k] = rest[k]
+    for k in range(at, at + 3 * plan[POSITIONS], 3):
+        base[plan[k]] -= a * velocity[plan[k]]
+        base[plan[k + 1]] = velocity[plan[k]] - a * velocity[plan[k + 1]]
+    for k in range(plan[CORE_AT], plan[CORE_AT] + plan[UNKNOWNS]):
+        base[plan[k]] = 0.0
+    for k in range(at, at + 3 * plan[POSITIONS], 3):
+        if base[plan[k + 1]] == 0.0:
+            base[plan[k]] = rest[plan[k]]
+
+
+@lean_inlined
+def unstable(functions, t, y, jacobian, store, settings, plan, floats, ints):
+    """Whether a rest is no least of the potential: a negative eigenvalue, beyond rounding."""
+    scales = settings[SCALES_AT:]
+    jacobian_at(functions[AT_JACOBIAN])(functions, t, y, jacobian, floats, ints)
+    settings[FACTORED] = 0.0
+    if settings[SIGN] == 0.0:
+        most = 0.0
+        for k in range(jacobian.size):
+            most = max(most, abs(jacobian[k]))
+        settings[SIGN] = 1.0 / math.sqrt(1e-9 * max(most, 1e-200))
+    return not factor_stage(plan, settings[SIGN], jacobian, scales, store) or indefinite(plan, store)
+
+
+@lean_inlined
+def push(rest, plan):
+    """Move places a little, ever the same, off a rest that is unstable."""
+    at, count, size = plan[POSITIONS_AT], plan[POSITIONS], 0.0
+    core = plan[CORE_AT]
+    for k in range(at, at + 3 * count, 3):
+        size = max(size, abs(rest[plan[k]] - rest[plan[at]]))
+    k = 0
+    for i in range(plan[UNKNOWNS]):
+        while k < count and plan[at + 3 * k + 1] != plan[core + i]:
+            k += 1
+        if k == count:
+            k = 0
+            continue
+        rest[plan[at + 3 * k]] += PUSH * size * math.sin(12.9898 * (i + 1.0) * (i + 1.0))
+
+
+@lean(RELAX)
+def relax(functions, t, y, work, settings, numbers, floats, ints):
+    """Come to rest from any state; REACHED, ASTRAY or UNSTABLE."""
+    n = y.size
+    base, rest, scratch = work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 7 * n]
+    jacobian = work[ARRAYS * n : ARRAYS * n + numbers[ROOM]]
+    store = work[ARRAYS * n + numbers[ROOM] :]
+    scales, plan = settings[SCALES_AT:], numbers[numbers[PLAN_AT] :]
+    led = scratch[:n]
+    for k in range(n):
+        rest[k] = y[k]
+    at_rest(rest, rest, numbers)
+    a = FIRST
+    failures = passes = pushes = 0
+    while passes < PASSES:
+        if a < LONG:
+            settings[CAREFUL] = 1.0  # plain updates may come to rest on a saddle
+        rate_at(functions[AT_RATE])(t, rest, led, floats, ints)
+        from_rest(a, rest, led, plan, base)
+        for k in range(n):
+            y[k] = rest[k]
+        if newton(functions, t, a, base, rest, y, scratch, jacobian, store, scales, settings, plan, floats, ints):
+            at_rest(y, rest, numbers)
+            for k in range(n):
+                scratch[k] = y[k] - rest[k]
+            moved = largest(scratch[:n], rest, y, settings)
+            for k in range(n):
+                rest[k] = y[k]
+            if a < LONG:
+                a *= FASTER
+                continue
+            if moved <= 1.0:
+                if not unstable(functions, t, y, jacobian, store, settings, plan, floats, ints):
+                    return REACHED
+                if pushes == PUSHES:
+                    return UNSTABLE
+                push(rest, plan)
+                pushes += 1
+                passes, a = 0, FIRST
+                continue
+            passes += 1
+            if passes > 4:
+                a = min(LONGEST, FASTER * a)
+        else:
+            failures += 1
+            a /= FASTER
+            if failures > FAILURES:
+                return ASTRAY
+    return ASTRAY
+
+
+@lean(STEP, inner=True)
+def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+    """y1, the rest at t + h on the path of y0; infinite where it is not found there."""
+    n = y0.size
+    base, rest, scratch = work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 7 * n]
+    jacobian = work[ARRAYS * n : ARRAYS * n + numbers[ROOM]]
+    store = work[ARRAYS * n + numbers[ROOM] :]
+    scales, plan = settings[SCALES_AT:], numbers[numbers[PLAN_AT] :]
+    rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
+    change, residual, tangent, led = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n], scratch[3 * n :]
+    end = t + h
+    settings[FACTORED] = settings[CAREFUL] = 0.0
+    settings[ENDED] = ASTRAY
+    # Places that are led go on by their own velocities (Simpson's rule).
+    for k in range(n):
+        rest[k] = y0[k]
+    for part in range(3):
+        rate(t + 0.5 * part * h, y0, led, floats, ints)
+        weight = h / 6.0 if part != 1 else 4.0 * h / 6.0
+        at = plan[POSITIONS_AT]
+        for k in range(at, at + 3 * plan[POSITIONS], 3):
+            rest[plan[k]] += weight * led[plan[k]]
+    a = LONG
+    for passes in range(PASSES):
+        rate(end, rest, led, floats, ints)
+        from_rest(a, rest, led, plan, base)
+        for k in range(n):
+            y1[k] = rest[k]
+        leave(rate, end, a, base, y1, residual, plan, floats, ints)
+        before = first = 0.0
+        reached = False
+        for update in range(MOST):
+            foresee(y1, y1, floats)
+            floats[channels.NEWTON] = a * a
+            slopes(functions, end, y1, jacobian, floats, ints)
+            floats[channels.NEWTON] = 0.0
+            for k in range(n):
+                change[k] = residual[k]
+            if not factor_stage(plan, a, jacobian, scales, store) or not solve_stage(
+                plan, a, jacobian, scales, store, change
+            ):
+                break
+            for k in range(n):
+                y1[k] += change[k]
+            leave(rate, end, a, base, y1, residual, plan, floats, ints)
+            size = largest(change, y0, y1, settings)
+            if update == 0:
+                first = size
+                for k in range(n):
+                    tangent[k] = y1[k]
+            elif size > COARSE:
+                for k in range(n):
+                    change[k] = y1[k] - tangent[k]
+                if size > CONVERGES * before or largest(change, y0, y1, settings) > BENDS * first:
+                    break
+            if size <= 1.0 or not size < math.inf:
+                reached = size <= 1.0
+                break
+            before = size
+        if not reached:
+            work[0] = 0.5 * h
+            return math.inf
+        at_rest(y1, y0, numbers)
+        for k in range(n):
+            change[k] = y1[k] - rest[k]
+            rest[k] = y1[k]
+        if passes > 0 and largest(change, y0, y1, settings) <= 1.0:
+            break
+        if passes > 4:
+            a = min(LONGEST, FASTER * a)
+    if unstable(functions, end, y1, jacobian, store, settings, plan, floats, ints):
+        settings[ENDED] = UNSTABLE
+        work[0] = 0.5 * h
+        return math.inf
+    settings[ENDED] = REACHED
+    work[0] = 2.0 * h
+    return 0.0
