@@ -62,6 +62,8 @@ class IslandAssembly:
     """The grids by model and output."""
     ties: list[Tied] = field(default_factory=list)
     """What its ties hold, for the term that finds all their forces."""
+    tie_ints: tuple[int, ...] = ()
+    driven: bool = False
     changes: list[tuple[int, int]] = field(default_factory=list)
     """(offset, count) of floats that change as bodies come and go."""
     _starts: list[Floats] = field(default_factory=list)

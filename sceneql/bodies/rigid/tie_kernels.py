@@ -19,6 +19,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_INVERSE,
     AT_J,
     AT_MASS,
+    AT_OPEN,
     AT_SIZE,
     AT_SPEED,
     AT_T,
@@ -68,6 +69,8 @@ GAIN = 0.98
 CLOSED = 1e-14
 """Gap of a row, against the numbers that it is the difference of, below which it is rounding."""
 MOST_CLOSINGS = 6
+OPENED = 1e-6
+"""Such a gap from which a tie counts as one that cannot be held."""
 
 
 @lean(types.void(F, A, A, I))
@@ -252,6 +255,11 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         balance(floats, ints, AT_C, AT_SIZE)
         shift(y1, floats, ints)
         changed = True
+    if t1 > t0 and open_by(floats, ints, AT_C) > OPENED:
+        for k in range(ints[ROWS]):
+            to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]
+            if abs(floats[to + AT_C]) > OPENED * floats[to + AT_SIZE]:
+                floats[to + AT_OPEN] = max(floats[to + AT_OPEN], abs(floats[to + AT_C]))
     worst = 0.0
     for k in range(ints[ROWS]):
         row = ints[ROWS_AT] + ROW_INTS * k

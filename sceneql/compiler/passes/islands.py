@@ -50,6 +50,10 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             elif ref.name in driver:
                 text = f"'{ref.name}' is moved by '{driver[ref.name]}'"
                 found.error("no-body", text, ref.span, help=f"name that: `{driver[ref.name]}`")
+        if isinstance(task.kind, Tie) and task.kind.targets() and not set(forces[task.name]) & set(names):
+            text = "a tie needs a body that it can hold: neither of these is moved by forces"
+            if not {ref.name for ref in task.kind.between} & {*inside, *driver}:
+                found.error("no-mass", text, task.kind.between[0].span)
     contacts = {t.name: _touching(t, tasks, names, found) for t in tasks.values() if isinstance(t.kind, Contact)}
     for task in models:
         for other in reads(task.name, tasks):

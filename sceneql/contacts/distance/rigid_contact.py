@@ -32,12 +32,14 @@ def assemble(
     """
     import numpy as np
 
-    from sceneql.bodies.rigid.turning import packed, unpacked
+    from sceneql.bodies.rigid.point_list import WHO
+    from sceneql.bodies.rigid.tied_step import body_integers, tied_step
+    from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS
     from sceneql.contacts.distance import convex
     from sceneql.contacts.distance import rigid_local_kernels as kernels
-    from sceneql.contacts.distance.rigid_rows_kernels import PLACE, WHO
+    from sceneql.contacts.distance.rigid_rows_kernels import PLACE
 
-    numbers, shapes, fixed, rows = assembly.numbers(), [], [], []
+    numbers, shapes, fixed, rows, still = assembly.numbers(), [], [], [], []
     moving: list[tuple[Ref | None, Floats]] = []
     standing: list[Ref | None] = []
     start = assembly.start()
@@ -52,15 +54,10 @@ def assemble(
             if numbers[bodies.inverse_at + k] == 0.0:
                 fixed.append((shape, place))
                 standing.append(ref)
+                still.append(x)
                 continue
             moving.append((ref, place))
-            inertia: Floats = np.asarray(np.linalg.inv(unpacked(numbers[turning.inverse_at + 6 * k :][:6])))
-            rows.append(
-                (
-                    *(x, bodies.velocity_at + 3 * k, q, turning.momentum_at + 3 * k),
-                    *(bodies.mass_at + k, assembly.floats(packed(inertia)), bodies.work_at),
-                )
-            )
+            rows.append(body_integers(bodies, k, assembly))
             shapes.append(shape)
     for ref in others:
         shape = _shape(ref, np.zeros(3), assembly)
@@ -73,7 +70,15 @@ def assemble(
     for k, (_, place) in enumerate(fixed):
         places[n + k] = place
     names = [*(ref for ref, _ in moving), *standing]
-    _must_be_apart(everything, [*(place for _, place in moving), *(place for _, place in fixed)], n, names, assembly)
+    ties = tied_step(assembly, rows, not assembly.driven)
+    shape_of = {at: k for k, at in enumerate([*(row[0] for row in rows), *still])}
+    between = [] if ties is None else [[shape_of.get(at, -1) for at in pair] for pair in ties.joined]
+    joined = {(min(pair), max(pair)) for pair in between if min(pair) >= 0}
+    starts = [*(place for _, place in moving), *(place for _, place in fixed)]
+    _must_be_apart(everything, starts, n, names, joined, assembly)
+    held = []
+    if ties is not None:
+        assembly.driven, rows, held = True, ties.bodies, ties.ints(assembly)
     room = convex.room_length(everything)
     places_at = assembly.floats(places)
     room_at, kept_at = (assembly.floats(np.zeros(size)) for size in (room, 3 * most))
@@ -82,17 +87,26 @@ def assemble(
     data = assembly.floats(convex.joined(everything, 0, 0)[0])
     _, integers = convex.joined(everything, data, kernels.HEAD)
     bodies_at = kernels.HEAD + len(integers)
-    names_at = bodies_at + kernels.BODY_INTS * n
+    ties_at = bodies_at + BODY_INTS * len(rows)
+    joined_at = ties_at + len(held)
+    names_at = joined_at + 1 + 2 * len(joined)
     head = [n, count, kernels.HEAD, bodies_at, places_at, room_at, room, kept_at, names_at, most]
     head += [assembly.value(restitution), assembly.value(friction), *found, loose, crowded]
+    head += [len(rows), ties_at, len(held), joined_at]
     names_room = [0] * (WHO * most)
-    ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *names_room]
+    ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *held]
+    ints += [len(joined), *(number for pair in sorted(joined) for number in pair), *names_room]
     assembly.contact("local", (KERNEL,), [int(number) for number in ints], 0)
     return (*found, loose, crowded)
 
 
 def _must_be_apart(
-    shapes: Sequence[Convex], places: Sequence[Floats], moving: int, refs: Sequence[Ref | None], assembly: Assembly
+    shapes: Sequence[Convex],
+    places: Sequence[Floats],
+    moving: int,
+    refs: Sequence[Ref | None],
+    joined: set[tuple[int, int]],
+    assembly: Assembly,
 ) -> None:
     """Raise ScriptError for bodies that start inside one another or inside what stands; all such pairs at once."""
     import numpy as np
@@ -107,6 +121,8 @@ def _must_be_apart(
     for a, b in standing_pairs(floats, ints, len(shapes), where, room).tolist():
         if a >= moving:
             break
+        if (a, b) in joined:
+            continue
         depth = -gap(floats, ints, SHAPE * a, SHAPE * b, where, 7 * a, 7 * b, room)[0]
         one, other = refs[a], refs[b]
         if one is not None and other is not None and depth > DEEP * shapes[a].reach:

@@ -7,18 +7,25 @@ The list grows as it needs. A point is known from step to step by its pair and i
 import numpy as np
 from numba import types
 
+from sceneql.bodies.rigid.point_list import (
+    AT_ARM_A,
+    AT_ARM_B,
+    AT_GIVEN,
+    AT_POINT,
+    AT_PUSH,
+    BODY_A,
+    BODY_B,
+    FIRST_NAME,
+    LAST_NAME,
+    WHERE,
+    WHO,
+)
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT
 from sceneql.linear.block_order_kernels import longer
 from sceneql.system.signatures_kernels import A, F, I, N
 
 PLACE, MOTION = 7, 6
-BODY_A, BODY_B, FIRST_NAME, LAST_NAME, WHO = range(5)
-"""Integers of a point: its two shapes, the first one moves; its name."""
-AT_NORMAL, AT_ARM_A, AT_ARM_B, AT_GIVEN, AT_PUSH, AT_POINT, WHERE = 0, 3, 6, 9, 10, 13, 16
-"""Floats of a point: normal from b to a, arms from the centers, the normal velocity that is added (cone_rows_kernels),
-the impulse on a, the point on a."""
-
 BOUNCES = 2.0
 """A contact bounces that approaches faster than the step's forces make it in so many steps."""
 

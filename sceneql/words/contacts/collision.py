@@ -43,8 +43,8 @@ class Collision(Contact):
     Rigid bodies (spheres, boxes, convex meshes) collide with one another, with what stands of these shapes and with
     planes, in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law to
     rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in
-    the step. A contact has up to 64 of them, none held by ties; `points`, `normals` and `forces` tell of it, hits and
-    rest do not.
+    the step. A contact has up to 64 of them. Bodies may be held by ties, which are found together with the contacts;
+    those that a tie joins do not touch each other. `points`, `normals` and `forces` tell of it, hits and rest do not.
 
     Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
     at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
@@ -155,14 +155,12 @@ class Collision(Contact):
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
         """Add the contacts of rigid bodies with one another and with objects. Raises ScriptError for mode `exact`."""
-        from sceneql.contacts.colliders import OFTEN, must_be_free
+        from sceneql.contacts.colliders import OFTEN
         from sceneql.contacts.distance.rigid_contact import assemble
 
         if self.mode == "exact":
             message = "rigid bodies collide in mode `local` so far"
             raise ScriptError([Diagnostic("no-collider", message, assembly.line())])
-        for bodies in everyone:
-            must_be_free(bodies.model, assembly)
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
         assembly.step_at_most(OFTEN)
