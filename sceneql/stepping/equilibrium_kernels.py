@@ -8,9 +8,9 @@ Numer. Anal. 35, 508-523). `step` follows a path of rests: it takes plain update
 none that leaves its tangent, so that it does not leap to another branch where a path has turned back.
 
 ``settings``: the memory of Newton's method (newton_kernels), a [s] at which the matrix's inertia outweighs its rounding
-alone, what ended the latest step; then the scales of the stage plan. ``numbers``: [entries of the Jacobian's room, where
-the plan starts, numbers of velocities, of tallies], velocities, tallies, the stage plan. ``work``: the step to try next,
-in an array of y's size; base; the rest before; scratch (4); the Jacobian; the store.
+alone, what ended the latest step; then the scales of the stage plan. ``numbers``: [entries of the Jacobian's room,
+where the plan starts, numbers of velocities, of tallies], velocities, tallies, the stage plan. ``work``: the step to
+try next, in an array of y's size; base; the rest before; scratch (4); the Jacobian; the store.
 """
 
 import math
@@ -208,6 +208,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             floats[channels.NEWTON] = 0.0
             for k in range(n):
                 change[k] = residual[k]
+            for k in range(HEAD + numbers[VELOCITIES], HEAD + numbers[VELOCITIES] + numbers[TALLIES]):
+                change[numbers[k]] = 0.0
             if not factor_stage(plan, a, jacobian, scales, store) or not solve_stage(
                 plan, a, jacobian, scales, store, change
             ):
