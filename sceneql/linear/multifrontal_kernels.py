@@ -21,8 +21,7 @@ import numpy as np
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL
-from sceneql.linear.multifrontal_plan_kernels import factor_single_at, solve_single_at
+from sceneql.linear.multifrontal_entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL, factor_single_at, solve_single_at
 from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
 from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
 from sceneql.linear.solver_kernels import FACTOR_SYSTEM, NEGATIVES, SOLVE_SYSTEM
