@@ -15,11 +15,36 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.bodies.rigid.rigid_kernels import times_symmetric, to_body, to_world
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
-from sceneql.contacts.distance.convex import SHAPE
+from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts.distance.convex import SHAPE, SKINNED
 from sceneql.contacts.distance.first_touch_kernels import first_touch
 from sceneql.contacts.distance.first_touch_kernels import move as place_after
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT, manifold
 from sceneql.contacts.distance.rigid_groups_kernels import MASS, solve_groups
+from sceneql.contacts.distance.rigid_layout import (
+    BODIES,
+    BODIES_AT,
+    COUNT_AT,
+    CROWDED_AT,
+    FORCES_AT,
+    FRICTION_AT,
+    KEPT_AT,
+    KEPT_NAMES_AT,
+    LED,
+    LEDS,
+    LEDS_AT,
+    LOOSE_AT,
+    MOST_KEPT,
+    NORMALS_AT,
+    PLACES_AT,
+    POINTS_AT,
+    RESTITUTION_AT,
+    ROOM,
+    ROOM_AT,
+    SHAPES,
+    SHAPES_AT,
+    SKINS_AT,
+)
 from sceneql.contacts.distance.rigid_rows_kernels import (
     AT_NORMAL,
     AT_POINT,
@@ -38,13 +63,12 @@ from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept
 from sceneql.linear.block_order_kernels import filled
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
-BODIES, SHAPES, SHAPES_AT, BODIES_AT, PLACES_AT, ROOM_AT, ROOM, KEPT_AT, KEPT_NAMES_AT, MOST_KEPT = range(10)
-RESTITUTION_AT, FRICTION_AT, COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, LOOSE_AT, CROWDED_AT, HEAD = range(10, 19)
-"""Integers of an island's contacts: numbers of bodies that move and of shapes, of which theirs come first; where the
-shapes (contacts/distance/convex.py) and the bodies' integers begin; offsets into the floats of places (7 a shape), of
-working memory and its size; where impulses are kept from step to step among the floats, their names among the integers,
-and how many at most; offsets of the coefficients; of how many contacts there were, and of their points, normals and
-forces; of the steps whose contacts were not solved to rounding, or were more than can be kept."""
+lead = lazy("sceneql.contacts.distance.led_kernels:lead", types.void(F, F, A, I, N, A, N, A, N))
+skin_points = lazy(
+    "sceneql.contacts.distance.skin_pair_kernels:skin_points",
+    types.Tuple((I, A, N))(F, A, I, N, N, A, A, A, F, N, I, A, N),
+)
+cut = lazy("sceneql.contacts.distance.skin_pair_kernels:cut", F(F, A, I, N, N, A, A, F))
 
 X_AT, V_AT, Q_AT, L_AT, MASS_AT, INERTIA_AT, WORK_AT, BODY_INTS = range(8)
 """Integers of a body: offsets of position, velocity, quaternion and angular momentum in y, of its mass and of its
@@ -82,6 +106,15 @@ def reach_of(motions, of, reach):
     """The largest speed of any point of a body."""
     v = math.sqrt(motions[of] ** 2 + motions[of + 1] ** 2 + motions[of + 2] ** 2)
     return v + reach * math.sqrt(motions[of + 3] ** 2 + motions[of + 4] ** 2 + motions[of + 5] ** 2)
+
+
+@lean(F(A, A, N, N, F))
+def speed_at(places, motions, a, b, reach):
+    """The largest speed that the motion of shape b gives a point within a reach of the center of shape a."""
+    far = 0.0
+    for c in range(3):
+        far += (places[PLACE * a + c] - places[PLACE * b + c]) ** 2
+    return reach_of(motions, MOTION * b, math.sqrt(far) + reach)
 
 
 @lean(types.void(F, A, A, A, I, N, A, N, A, N, A, N))
@@ -139,6 +172,31 @@ def standing_pairs(floats, ints, shapes, places, room):
     return pairs_of(boxes, shapes)
 
 
+@lean_inlined
+def is_skinned(ints, a, b):
+    """Whether a pair of shapes touches by skins."""
+    head = ints[SHAPES_AT]
+    return ints[head + SHAPE * a] == SKINNED or ints[head + SHAPE * b] == SKINNED
+
+
+@lean(F(F, A, I, A, A, A, types.int64[:, ::1]), inner=True)
+def shortened(h, floats, ints, places, motions, before, pairs):
+    """How much of a step pairs of skins may do at once [s]."""
+    n, head, least = ints[BODIES], ints[SHAPES_AT], h
+    for p in range(pairs.shape[0]):
+        a, b = pairs[p, 0], pairs[p, 1]
+        if a < n and is_skinned(ints, a, b):
+            reach = floats[ints[head + SHAPE * a + 1] + 1]
+            fast = reach_of(motions, MOTION * a, reach) + reach_of(before, MOTION * a, reach)
+            if b < n:
+                other = floats[ints[head + SHAPE * b + 1] + 1]
+                fast += reach_of(motions, MOTION * b, other) + reach_of(before, MOTION * b, other)
+            else:
+                fast += speed_at(places, motions, a, b, reach)
+            least = min(least, cut(h, floats, ints, a, b, places, motions, fast))
+    return least
+
+
 @kernel(types.Tuple((I, A, N))(F, A, I, A, A, A, types.int64[:, ::1], A), inner=True)
 def contacts_at_start(h, floats, ints, places, motions, before, pairs, room):
     """The points where bodies touch, or would in the step by their motions without contacts."""
@@ -155,6 +213,13 @@ def contacts_at_start(h, floats, ints, places, motions, before, pairs, room):
         if b < n:
             other = floats[ints[head + SHAPE * b + 1] + 1]
             margin += h * (reach_of(motions, MOTION * b, other) + reach_of(before, MOTION * b, other))
+        else:
+            margin += h * speed_at(places, motions, a, b, reach)
+        if is_skinned(ints, a, b):
+            who, where, contacts = skin_points(
+                h, floats, ints, a, b, places, motions, before, margin, 0, who, where, contacts
+            )
+            continue
         count, gap, nx, ny, nz = manifold(
             floats, ints, head + SHAPE * a, head + SHAPE * b, places, PLACE * a, PLACE * b, margin, points, names, room
         )
@@ -190,6 +255,11 @@ def contacts_at_end(h, floats, ints, places, motions, before, boxes, ends, who, 
         one, two, reach = head + SHAPE * a, head + SHAPE * b, floats[ints[head + SHAPE * a + 1] + 1]
         if b < n:
             reach = min(reach, floats[ints[head + SHAPE * b + 1] + 1])
+        if is_skinned(ints, a, b):
+            who, where, contacts = skin_points(
+                h, floats, ints, a, b, ends, motions, before, -DEEP * reach, 1, who, where, contacts
+            )
+            continue
         count, _, nx, ny, nz = manifold(
             floats, ints, one, two, ends, PLACE * a, PLACE * b, -DEEP * reach, points, names, room
         )
@@ -222,8 +292,9 @@ def tell(floats, ints, who, where, contacts, h):
 
 @kernel(BACK_OFF, inner=True)
 def back_off(t0, t1, y0, rate0, y1, floats, ints):
-    """Resolve the contacts of the step in y1."""
-    if floats[channels.STEP_END] > 0.0:
+    """Resolve the contacts of the step in y1; while STEP_END is above 0, only lower it where skins come too fast."""
+    asked = floats[channels.STEP_END] > 0.0
+    if asked and ints[SKINS_AT] == 0:
         return
     h = t1 - t0
     n, shapes = ints[BODIES], ints[SHAPES]
@@ -244,8 +315,19 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         for y, to in ((y1, motions), (y0, before)):
             wx, wy, wz = spin_by(masses, MASS * k + 1, y[momentum], y[momentum + 1], y[momentum + 2])
             to[MOTION * k + 3], to[MOTION * k + 4], to[MOTION * k + 5] = wx, wy, wz
+    for k in range(ints[LEDS]):
+        own = ints[LEDS_AT] + LED * k
+        at = ints[own]
+        lead(t0, t1, floats, ints, own + 1, places, PLACE * at, motions, MOTION * at)
+        for c in range(MOTION):
+            before[MOTION * at + c] = motions[MOTION * at + c]
     sweep(h, floats, ints, places, motions, before, 1e-3, boxes, room)
     pairs = pairs_of(boxes, shapes)
+    if asked:
+        most = shortened(h, floats, ints, places, motions, before, pairs)
+        if most < 0.999 * h:
+            floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + most)
+        return
     who, where, contacts = contacts_at_start(h, floats, ints, places, motions, before, pairs, room)
     kept = int(floats[ints[COUNT_AT]])
     floats[ints[COUNT_AT]] = 0.0
@@ -259,6 +341,9 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     for k in range(places.size):
         ends[k] = places[k]
     first, loose, friction = contacts, 0, floats[ints[FRICTION_AT]]
+    for k in range(ints[LEDS]):
+        at = ints[ints[LEDS_AT] + LED * k]
+        place_after(places, PLACE * at, motions, MOTION * at, h, ends, PLACE * at)
     for number in range(ROUNDS):
         loose = solve_groups(n, who, where, contacts, masses, motions, found, friction)
         for k in range(shapes):
