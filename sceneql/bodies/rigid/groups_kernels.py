@@ -104,6 +104,7 @@ def write_contact(where, at, program, c, friction):
         program[c + rows.AT_ARM_A + j] = where[at + points.AT_ARM_A + j]
         program[c + rows.AT_ARM_B + j] = where[at + points.AT_ARM_B + j]
         program[c + rows.AT_GIVEN + j] = where[at + points.AT_GIVEN] * where[at + points.AT_NORMAL + j]
+        program[c + rows.AT_GIVEN + j] -= where[at + points.AT_LED + j]
         program[c + rows.AT_IMPULSE + j] = where[at + points.AT_PUSH + j]
     program[c + rows.AT_FRICTION] = friction
 

@@ -132,8 +132,15 @@ def _touching(
         if why is not None:
             help = f"name under `between` what may touch, without '{ref.name}'"
             found.error("no-collider", f"'{ref.name}': {why}", ref.span, help=help)
-    ties = [driver.get(name, name) for name in ties]
+    ties = list(dict.fromkeys(driver.get(name, name) for name in ties))
     targets = [name for name in ties if name in models]
+    turning = [name for name in targets if getattr(tasks[name].kind, "turns", False)]
+    for ref in task.kind.ties() if turning and not task.kind.mutual else ():
+        name = driver.get(ref.name, ref.name)
+        if name in targets and name not in turning:
+            text = f"masses do not touch rigid bodies, and '{ref.name}' has masses, '{turning[0]}' bodies"
+            help = f"give '{ref.name}' a contact of its own, with the objects that it may touch"
+            found.error("no-collider", text, ref.span, help=help)
     surfaces = [name for name in ties if isinstance(tasks[name].kind, Object)]
     if not targets:
         targets = [n for n in models if getattr(tasks[n].kind, "has_bodies", False)]

@@ -18,26 +18,52 @@ from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_POINT, AT_PUSH, BODY_A
 from sceneql.bodies.rigid.tied_rows_kernels import ROW_BODIES_AT, ROWS, begin_ties, first_stop, rouse, write_ties
 from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tied_to
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, Q_AT, X_AT, gather
-from sceneql.compiled.kernels import kernel, lean
-from sceneql.contacts.distance.convex import SHAPE
+from sceneql.compiled.kernels import kernel, lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts.distance.convex import SHAPE, SKINNED
 from sceneql.contacts.distance.first_touch_kernels import first_touch
+from sceneql.contacts.distance.first_touch_kernels import move as place_after
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT, manifold
+from sceneql.contacts.distance.rigid_layout import (
+    ALL_BODIES,
+    BODIES,
+    BODIES_AT,
+    COUNT_AT,
+    CROWDED_AT,
+    FORCES_AT,
+    FRICTION_AT,
+    JOINED_AT,
+    KEPT_AT,
+    KEPT_NAMES_AT,
+    LED,
+    LEDS,
+    LEDS_AT,
+    LOOSE_AT,
+    MOST_KEPT,
+    NORMALS_AT,
+    PLACES_AT,
+    POINTS_AT,
+    RESTITUTION_AT,
+    ROOM,
+    ROOM_AT,
+    SHAPES,
+    SHAPES_AT,
+    SKINS_AT,
+    TIES,
+    TIES_AT,
+)
 from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, recall, with_room
 from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept_box
 from sceneql.linear.block_order_kernels import filled
 from sceneql.linear.bounded_rows_kernels import ROW
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
-BODIES, SHAPES, SHAPES_AT, BODIES_AT, PLACES_AT, ROOM_AT, ROOM, KEPT_AT, KEPT_NAMES_AT, MOST_KEPT = range(10)
-RESTITUTION_AT, FRICTION_AT, COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, LOOSE_AT, CROWDED_AT = range(10, 18)
-ALL_BODIES, TIES_AT, TIES, JOINED_AT, HEAD = range(18, 23)
-"""Integers of an island's contacts: numbers of bodies that move and of shapes, of which theirs come first; where the
-shapes (contacts/distance/convex.py) and the bodies' integers begin; offsets into the floats of places (7 a shape), of
-working memory and its size; where impulses are kept from step to step among the floats, their names among the integers,
-and how many at most; offsets of the coefficients; of how many contacts there were, and of their points, normals and
-forces; of the steps whose contacts were not solved to rounding, or were more than can be kept; the number of
-bodies with those that ties alone bring in, behind the others; where the integers of ties begin, and their number (0: no
-ties); where the pairs begin that ties join, so that they do not touch, after their number."""
+lead = lazy("sceneql.contacts.distance.led_kernels:lead", types.void(F, F, A, I, N, A, N, A, N))
+skin_points = lazy(
+    "sceneql.contacts.distance.skin_pair_kernels:skin_points",
+    types.Tuple((I, A, N))(F, A, I, N, N, A, A, A, F, N, I, A, N),
+)
+cut = lazy("sceneql.contacts.distance.skin_pair_kernels:cut", F(F, A, I, N, N, A, A, F))
 
 ROUNDS = 12
 """Most solutions of a step."""
@@ -50,6 +76,15 @@ def reach_of(motions, of, reach):
     """The largest speed of any point of a body."""
     v = math.sqrt(motions[of] ** 2 + motions[of + 1] ** 2 + motions[of + 2] ** 2)
     return v + reach * math.sqrt(motions[of + 3] ** 2 + motions[of + 4] ** 2 + motions[of + 5] ** 2)
+
+
+@lean(F(A, A, N, N, F))
+def speed_at(places, motions, a, b, reach):
+    """The largest speed that the motion of shape b gives a point within a reach of the center of shape a."""
+    far = 0.0
+    for c in range(3):
+        far += (places[PLACE * a + c] - places[PLACE * b + c]) ** 2
+    return reach_of(motions, MOTION * b, math.sqrt(far) + reach)
 
 
 @kernel(A(A), inner=True)
@@ -110,6 +145,31 @@ def standing_pairs(floats, ints, shapes, places, room):
     return pairs_of(boxes, shapes)
 
 
+@lean_inlined
+def is_skinned(ints, a, b):
+    """Whether a pair of shapes touches by skins."""
+    head = ints[SHAPES_AT]
+    return ints[head + SHAPE * a] == SKINNED or ints[head + SHAPE * b] == SKINNED
+
+
+@lean(F(F, A, I, A, A, A, types.int64[:, ::1]), inner=True)
+def shortened(h, floats, ints, places, motions, before, pairs):
+    """How much of a step pairs of skins may do at once [s]."""
+    n, head, least = ints[BODIES], ints[SHAPES_AT], h
+    for p in range(pairs.shape[0]):
+        a, b = pairs[p, 0], pairs[p, 1]
+        if a < n and is_skinned(ints, a, b) and not joined(ints, a, b):
+            reach = floats[ints[head + SHAPE * a + 1] + 1]
+            fast = reach_of(motions, MOTION * a, reach) + reach_of(before, MOTION * a, reach)
+            if b < n:
+                other = floats[ints[head + SHAPE * b + 1] + 1]
+                fast += reach_of(motions, MOTION * b, other) + reach_of(before, MOTION * b, other)
+            else:
+                fast += speed_at(places, motions, a, b, reach)
+            least = min(least, cut(h, floats, ints, a, b, places, motions, fast))
+    return least
+
+
 @kernel(types.Tuple((I, A, N))(F, A, I, A, A, A, types.int64[:, ::1], A), inner=True)
 def contacts_at_start(h, floats, ints, places, motions, before, pairs, room):
     """The points where bodies touch, or would in the step by their motions without contacts."""
@@ -128,6 +188,13 @@ def contacts_at_start(h, floats, ints, places, motions, before, pairs, room):
         if b < n:
             other = floats[ints[head + SHAPE * b + 1] + 1]
             margin += h * (reach_of(motions, MOTION * b, other) + reach_of(before, MOTION * b, other))
+        else:
+            margin += h * speed_at(places, motions, a, b, reach)
+        if is_skinned(ints, a, b):
+            who, where, contacts = skin_points(
+                h, floats, ints, a, b, places, motions, before, margin, 0, who, where, contacts
+            )
+            continue
         count, gap, nx, ny, nz = manifold(
             floats, ints, head + SHAPE * a, head + SHAPE * b, places, PLACE * a, PLACE * b, margin, points, names, room
         )
@@ -165,6 +232,11 @@ def contacts_at_end(h, floats, ints, places, motions, before, boxes, ends, who, 
         one, two, reach = head + SHAPE * a, head + SHAPE * b, floats[ints[head + SHAPE * a + 1] + 1]
         if b < n:
             reach = min(reach, floats[ints[head + SHAPE * b + 1] + 1])
+        if is_skinned(ints, a, b):
+            who, where, contacts = skin_points(
+                h, floats, ints, a, b, ends, motions, before, -DEEP * reach, 1, who, where, contacts
+            )
+            continue
         count, _, nx, ny, nz = manifold(
             floats, ints, one, two, ends, PLACE * a, PLACE * b, -DEEP * reach, points, names, room
         )
@@ -197,14 +269,19 @@ def tell(floats, ints, who, where, contacts, h):
 
 @kernel(BACK_OFF, inner=True)
 def back_off(t0, t1, y0, rate0, y1, floats, ints):
-    """Resolve the contacts of the step in y1, with the ties of what touches."""
+    """Resolve the contacts of the step in y1, with the ties of what touches.
+
+    While STEP_END is above 0, only lower it: to where a tie comes to its stop, or where skins would come too fast.
+    """
     h, n, shapes, every, bodies_at = t1 - t0, ints[BODIES], ints[SHAPES], ints[ALL_BODIES], ints[BODIES_AT]
     ties = ints[ints[TIES_AT] : ints[TIES_AT] + ints[TIES]]
     tied = ties.size > 0
-    if floats[channels.STEP_END] > 0.0:
-        part = first_stop(h, y0, y1, floats, ties) if tied else 1.0
+    asked = floats[channels.STEP_END] > 0.0
+    if asked and tied:
+        part = first_stop(h, y0, y1, floats, ties)
         if part < 1.0:
             floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + part * h)
+    if asked and ints[SKINS_AT] == 0:
         return
     places = floats[ints[PLACES_AT] : ints[PLACES_AT] + PLACE * shapes]
     room = floats[ints[ROOM_AT] : ints[ROOM_AT] + ints[ROOM]]
@@ -220,8 +297,21 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         for c in range(4):
             places[PLACE * k + 3 + c] = y0[q + c]
         gather(y0, y0, y1, floats, ints, own, masses, MASS * k, motions, before, MOTION * k)
+    seen, ends = np.zeros(MOTION * shapes), copied(places)
+    for k in range(ints[LEDS]):
+        own = ints[LEDS_AT] + LED * k
+        at = ints[own]
+        lead(t0, t1, floats, ints, own + 1, places, PLACE * at, motions, MOTION * at)
+        place_after(places, PLACE * at, motions, MOTION * at, h, ends, PLACE * at)
+        for c in range(MOTION):
+            before[MOTION * at + c] = seen[MOTION * at + c] = motions[MOTION * at + c]
     sweep(h, floats, ints, places, motions, before, 1e-3, boxes, room)
     pairs = pairs_of(boxes, shapes)
+    if asked:
+        most = shortened(h, floats, ints, places, motions, before, pairs)
+        if most < 0.999 * h:
+            floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + most)
+        return
     who, where, contacts = contacts_at_start(h, floats, ints, places, motions, before, pairs, room)
     kept = int(floats[ints[COUNT_AT]])
     floats[ints[COUNT_AT]] = 0.0
@@ -243,10 +333,9 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
                 rouse(floats, ties, who[WHO * k + BODY_B])
         strike(y1, floats, masses, ints, ties, bodies_at, motions, before)
         write_ties(h, y0, y1, floats, ties, rows)
-    found, ends, touched = copied(before), copied(places), filled(max(shapes, every), 0)
+    found, touched = copied(before), filled(max(shapes, every), 0)
     for k in range(MOTION * n, MOTION * every):
         found[k] = motions[k]
-    seen = np.zeros(MOTION * shapes)
     first, loose, friction, some = contacts, 0, floats[ints[FRICTION_AT]], False
     for number in range(ROUNDS):
         loose = solve_groups(n, every, who, where, contacts, masses, motions, found, friction, rows, sides)

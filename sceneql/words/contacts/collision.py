@@ -1,4 +1,4 @@
-"""collision: masses bounce off, slide on and rest on objects."""
+"""collision: masses and rigid bodies bounce off, slide on and rest on objects."""
 
 from __future__ import annotations
 
@@ -40,11 +40,16 @@ class Collision(Contact):
     where it is the field over its slope. An object may move, but not change its shape. A fast mass sees what is thicker
     than a ten-thousandth of the object's size.
 
-    Rigid bodies (spheres, boxes, convex meshes) collide with one another, with what stands of these shapes and with
-    planes, in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law to
-    rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in
-    the step. A contact has up to 64 of them. Bodies may be held by ties, which are found together with the contacts;
-    those that a tie joins do not touch each other. `points`, `normals` and `forces` tell of it, hits and rest do not.
+    Rigid bodies collide with one another and with objects, which may move by keys or formulas and so carry and push
+    them, in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law to rounding
+    (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in the step.
+    Spheres, boxes, planes and convex meshes touch exactly. Any other shape with an inside (cylinders, rings, meshes,
+    solids cut out of one another, implicit surfaces) touches by points of its surface, those of its edges and those of
+    its smooth parts slid to where the two face each other, 20 cells along it and more where it is thin: details smaller
+    than a cell on both are not seen, all else to a millionth of the size. Where a step would take such a shape farther
+    than half its thickness it is cut; a pair has at most 12 points. Bodies may be held by ties, which are found with
+    the contacts; those that a tie joins do not touch each other. `points`, `normals` and `forces` tell of it, hits
+    and rest do not. Masses do not touch rigid bodies.
 
     Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
     at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
