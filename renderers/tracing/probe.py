@@ -13,7 +13,7 @@ from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import over_rows
 from renderers.tracing.probe_kernels import probe_rows
-from renderers.tracing.scratch import scratch
+from renderers.tracing.scratch import scratch_beside
 from renderers.tracing.solids.packet_choice import lender, packets_for
 
 if TYPE_CHECKING:
@@ -41,8 +41,8 @@ class Lines:
 
     def __init__(self, scene: Scene, packets: Packets | None, rows: int) -> None:
         """``packets`` to intersect solids by, or None; ``rows`` of scratch."""
-        self.scene, self.packets, self.scratch = scene, packets, scratch(rows)
-        self.scratch[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
+        self.scene, self.packets = scene, packets
+        self.scratch = scratch_beside(packets, scene, rows)
         pixels = (int(scene.reals[layout.WIDTH]) + TILE) * TILE
         self.asked = np.zeros((1, layout.ANSWERS)) if packets is None else packets.asked(pixels)
 

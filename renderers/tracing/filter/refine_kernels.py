@@ -4,6 +4,7 @@
 from numba import types
 
 from renderers.tracing import layout
+from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter.filter_kernels import REACH
 from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
 from renderers.tracing.light.sampling_kernels import COUNT, SIDE, sample_of
@@ -11,6 +12,7 @@ from renderers.tracing.light.shade_kernels import shade
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
+from renderers.tracing.tiles_kernels import MARKS
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -42,8 +44,8 @@ def mean_of(means, columns, x, y, plane):
     return means[y, (x // LANES * (1 + columns) + plane) * WIDE + HALO + x % LANES]
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
-def refine(scene, scratch, asked, start, stop, records, visibility, means, fine):
+@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, MARKS, _rows, _rows, _rows, _rows), _nrt=False)
+def refine(scene, scratch, asked, start, stop, busy, records, visibility, means, fine):
     """Fill rows of ``fine`` (n, V): for each light its share, and whether that needs smoothing (0 or 1).
 
     The sky's loss, already there, is resampled where few pixels were joined. For pixels start..stop, or until ``asked``
@@ -54,6 +56,8 @@ def refine(scene, scratch, asked, start, stop, records, visibility, means, fine)
     room = asked.shape[0] - OWN * (1 + scene.ints[layout.LIGHT_COUNT])
     for k in range(start, stop):
         x, y = k % width, k // width
+        if busy[y // TILE, x // TILE] == 0:
+            continue
         pixels = mean_of(means, columns, x, y, 0)
         if pixels == 0.0:
             continue
@@ -110,12 +114,14 @@ def settle(records, fine, lights, k, x, y, width, height, visibility):
         visibility[column] = total / count
 
 
-@kernel(types.void(SCENE, _i, _i, _stack, _stack, _stack, _rows), _nrt=False)
-def shade_rows(scene, start, stop, records, fine, visibility, radiance):
+@kernel(types.void(SCENE, _i, _i, MARKS, _stack, _stack, _stack, _rows), _nrt=False)
+def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
     """Write the final visibility (2, n, V) and add both records' light to the radiance (n, 3)."""
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     for y in range(start, stop):
         for x in range(width):
+            if busy[y // TILE, x // TILE] == 0:
+                continue
             k = y * width + x
             for layer in range(2):
                 if records[layer, k, OWNER] == 0.0:
