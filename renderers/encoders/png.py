@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 class Writer:
     """Writes ``name.png``, or ``name.0000.png``, ``name.0001.png``, ...; every file is whole when it appears."""
 
-    def __init__(self, path: Path, *, numbered: bool, comment: str) -> None:
-        self.path, self.numbered, self.comment = path, numbered, comment
+    def __init__(self, path: Path, *, numbered: bool, comment: str, compression: int = 6) -> None:
+        """``compression``: zlib's level (RFC 1950), from 0, none, to 9."""
+        self.path, self.numbered, self.comment, self.compression = path, numbered, comment, compression
         self.made: list[Path] = []
 
     def write(self, picture: NDArray[uint8]) -> None:
@@ -27,7 +28,7 @@ class Writer:
         notes = PngImagePlugin.PngInfo()
         notes.add_text("Comment", self.comment)
         with whole(path) as stream:
-            Image.fromarray(picture).save(stream, "png", pnginfo=notes)
+            Image.fromarray(picture).save(stream, "png", pnginfo=notes, compress_level=self.compression)
         self.made.append(path)
 
     def close(self) -> list[Path]:
