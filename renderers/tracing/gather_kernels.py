@@ -210,14 +210,14 @@ def advance(scene, scratch, path, first, second, spare):
 
 
 @part
-def light_behind(scene, scratch, asked, path, record, visibility):
+def light_behind(scene, scratch, asked, ways, path, record, visibility):
     """Add the light of a surface beyond a path's records to what it has GATHERED, by QUICK samples, or fewer at lines.
 
     Returns False where the sampled rays have no answers yet.
     """
     line = path[DARK] == FAINT_LINE  # each of a pixel's samples lights it by others
     number, some = (int(path[SAMPLE]), AT_A_LINE) if line else (0, QUICK)
-    if not look_around(scene, scratch, asked, record, number, some, some, visibility):
+    if not look_around(scene, scratch, asked, ways, record, number, some, some, visibility):
         return False
     r, g, b = shade(scene, record, visibility)
     path[GATHERED] += r

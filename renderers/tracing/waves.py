@@ -17,6 +17,7 @@ from renderers.tracing.filter.edges_kernels import TRIAL, add_samples, list_edge
 from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE
 from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
+from renderers.tracing.light.bounce_kernels import WAY, dress_hits, follow_all, look_about, step_all
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.scratch import scratch_beside
 from renderers.tracing.tiles_kernels import fill_background, mark_busy
@@ -47,6 +48,8 @@ ROOM = TILES * TILE * TILE
 """Rays of the camera in a wave: few enough that their memory stays in a core's cache."""
 RAYS = 4 * ROOM
 """Rays listed at a time."""
+FEW = 32
+"""Ways of light below which each is followed by itself: a wave would cost more than it saves."""
 
 
 class Waves:
@@ -60,8 +63,15 @@ class Waves:
         self.asked = np.zeros((1 + RAYS, layout.ANSWERS)) if packets is None else packets.asked(RAYS)
         self.cones, self.at, self.each = np.zeros((ROOM, 3)), np.zeros(ROOM, np.int64), np.arange(ROOM, dtype=np.int64)
         self.paths, self.of = np.zeros((ROOM, PATH)), np.zeros(ROOM, dtype=np.int64)
-        self.hits, self.met, self.skins = np.zeros(ROOM, dtype=np.int64), np.zeros((ROOM, 2)), np.zeros((ROOM, 6))
+        self.hits, self.met, self.skins = np.zeros(ROOM, dtype=np.int64), np.zeros((ROOM, 5)), np.zeros((ROOM, 6))
         self.gathered = np.zeros((ROOM, 4))
+        count = 1 if packets is None else RAYS
+        self.ways, self.live, self.ways_hit = (
+            np.zeros((count, WAY)),
+            np.zeros(count, np.int64),
+            np.zeros(count, np.int64),
+        )
+        self.ways_met, self.ways_skins = np.zeros((count, 5)), np.zeros((count, 6))
         self.marks, self.same = np.zeros((TILE, width + LANES), np.float32), np.zeros(LANES, np.float32)
         self.edges, self.sums = np.zeros(width * TILE, dtype=np.int64), np.zeros((ROOM, 4))
         self.own = np.zeros((2, ROOM, COLUMNS), dtype=np.float32)
@@ -93,13 +103,15 @@ class Waves:
         scene, asked, at = self.scene, self.asked, self.at
         count = list_pixels(scene, start, stop, tiles, asked, self.cones, at)
         self._follow(count, at, records)
-        self._ask(0, count, lambda i, end: look_from(scene, self.scratch, asked, i, end, at, records, visibility))
+        self._ask(
+            0, count, lambda i, end: look_from(scene, self.scratch, asked, self.ways, i, end, at, records, visibility)
+        )
         counts: tuple[int, int] = end_pixels(self.gathered[:count], at, records, radiance)
         return counts
 
     def refine(self, start: int, stop: int, *more: Array) -> None:
         """As refine_kernels.refine."""
-        self._ask(start, stop, lambda i, end: refine(self.scene, self.scratch, self.asked, i, end, *more))
+        self._ask(start, stop, lambda i, end: refine(self.scene, self.scratch, self.asked, self.ways, i, end, *more))
 
     def smooth(
         self, start: int, stop: int, points: Array, undecided: int, busy: Array, planes: Array, records: Array,
@@ -129,7 +141,7 @@ class Waves:
         list_samples(scene, some, edges, self.asked, self.cones)
         self._follow(count, self.each, own)
         more = each, edges, records, visibility, own, found
-        self._ask(0, count, lambda i, end: look_from_samples(scene, self.scratch, self.asked, i, end, *more))
+        self._ask(0, count, lambda i, end: look_from_samples(scene, self.scratch, self.asked, self.ways, i, end, *more))
         light = records, radiance, self.gathered, own, found
         left = add_samples(scene, each, used + each, len(points), edges, *light, self.sums, picture)
         return edges[:left]
@@ -150,7 +162,7 @@ class Waves:
         own = self.paths, self.of, self.hits, met, spares
         started, hits, dark = meet_first(scene, self.scratch, asked, count, cones, *out, *own)
         if hits and self.packets is not None:
-            self.packets.skin(scene, asked, self.hits[:hits], met, self.skins)
+            self.packets.skin(scene, self.hits[:hits], met, self.skins)
             describe_hits(scene, asked, cones, *out, self.hits[:hits], met, self.skins)
         if not started:
             return
@@ -168,21 +180,55 @@ class Waves:
 
     def _light(self, start: int, stop: int, paths: Array) -> int:
         """Light surfaces beyond the records of paths start..stop; returns where it ends."""
-        end: int = light_paths(self.scene, self.scratch, self.asked, start, stop, paths, self.spares, self.found[0])
+        end: int = light_paths(
+            self.scene, self.scratch, self.asked, self.ways, start, stop, paths, self.spares, self.found[0]
+        )
         return end
 
     def _ask(self, start: int, stop: int, work: Callable[[int, int], int]) -> None:
         """Do ``work`` twice on each part of start..stop whose rays fit the list: to list them, and with their answers.
 
-        Without packets only once, on all of it.
+        And once more where light from around has taken ways, when these have ended. Without packets only once, on all.
         """
         if self.packets is None:
             work(start, stop)
             return
         while start < stop:
-            self.asked[0, [layout.MODE, layout.NEXT]] = layout.ASKING, 1
-            end = work(start, stop)
-            self.packets.meet(self.asked)
-            self.asked[0, [layout.MODE, layout.NEXT]] = layout.TELLING, 1
-            work(start, end)
+            self.asked[0, layout.WAYS] = 0
+            end = self._twice(start, stop, work)
+            count = int(self.asked[0, layout.WAYS])
+            if count:
+                self._light_ways(count)
+                self.asked[0, [layout.MODE, layout.NEXT]] = layout.ENDING, 0
+                work(start, end)
             start = end
+
+    def _twice(self, start: int, stop: int, work: Callable[[int, int], int]) -> int:
+        """List the rays of as much of start..stop as fits, and use their answers; returns where it ends."""
+        assert self.packets is not None
+        self.asked[0, [layout.MODE, layout.NEXT]] = layout.ASKING, 1
+        end = work(start, stop)
+        self.packets.meet(self.asked)
+        self.asked[0, [layout.MODE, layout.NEXT]] = layout.TELLING, 1
+        work(start, end)
+        return end
+
+    def _light_ways(self, count: int) -> None:
+        """Follow the first ``count`` of the ways to their ends, in waves; the last FEW one by one."""
+        assert self.packets is not None
+        scene, asked, ways, live, hits = self.scene, self.asked, self.ways, self.live, self.ways_hit
+        live[:count] = np.arange(count)
+        while True:
+            count, some = look_about(scene, self.scratch, ways, live, count, hits, self.ways_met)
+            if count < FEW:
+                asked[0, layout.MODE] = layout.PLAIN
+                follow_all(scene, self.scratch, asked, ways, live[:count])
+                return
+            if some:
+                self.packets.skin(scene, hits[:some], self.ways_met, self.ways_skins)
+                dress_hits(ways, hits[:some], self.ways_skins)
+            start = 0
+            while start < count:
+                start = self._twice(
+                    start, count, lambda i, end: step_all(scene, self.scratch, asked, ways, live, i, end)
+                )

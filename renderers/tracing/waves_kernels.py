@@ -7,6 +7,7 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE, camera_ray, place_of
 from renderers.tracing.gather_kernels import DARK, DOUBTED, GATHERED, LIVE, QUICK, advance, begin, light_behind
+from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.light_kernels import backdrop, sharpness
 from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.visibility_kernels import look_around
@@ -82,7 +83,7 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
 
     What is seen without more rays, the background and matte surfaces, is done then: its light but for the records' is
     in ``gathered[i]`` (r, g, b, and as DOUBTED). Of matte hits of solids that packets know the records are left to
-    ``describe_hits``: they are listed in ``hits``, with (t, item) in ``met``. The rest are paths, of rays ``of``.
+    ``describe_hits``: they are listed in ``hits``, with (t, item, point) in ``met``. The rest are paths, of rays ``of``.
     Returns the numbers of paths, of hits, and of paths whose surface, left in ``spares``, is to be lit.
     """
     counter = scratch.shape[0] - 1
@@ -115,6 +116,8 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
             own[0], own[1], own[2] = backdrop(scene.reals, ray[4])
         elif together and scene.ints[layout.ITEMS + 4 * item + layout.KIND] == layout.IMPLICIT:
             hits[hits_now], met[i, 0], met[i, 1] = i, t, item
+            for axis in range(3):
+                met[i, 2 + axis] = ray[axis] + t * ray[3 + axis]
             hits_now += 1
         else:
             x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
@@ -163,8 +166,8 @@ def advance_paths(scene, scratch, asked, paths, at, records, spares):
     return dark
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _paths, _rows, _rows), _nrt=False)
-def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, _paths, _rows, _rows), _nrt=False)
+def light_paths(scene, scratch, asked, ways, first, last, paths, spares, visibility):
     """Light the surfaces beyond the records of paths first..last, while ``asked`` has room for more rays.
 
     Returns where it ends. ``visibility`` (n, V) is working memory.
@@ -177,7 +180,7 @@ def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
         if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         scratch[counter, 0] = 0.0
-        if light_behind(scene, scratch, asked, paths[i], spares[i], visibility[i]):
+        if light_behind(scene, scratch, asked, ways, paths[i], spares[i], visibility[i]):
             paths[i, DARK] = 0.0
         if scratch[counter, 0] > 0.0:
             paths[i, DOUBTED] = 1.0
@@ -209,8 +212,8 @@ def end_pixels(gathered, at, records, radiance):
     return doubted, seconds
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _many, _stack, _stack), _nrt=False)
-def look_from(scene, scratch, asked, first, last, at, records, visibility):
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, _many, _stack, _stack), _nrt=False)
+def look_from(scene, scratch, asked, ways, first, last, at, records, visibility):
     """The visibility of the pixels ``at[first:last]``, one sample of each light and of the sky.
 
     Stops where ``asked`` has no room for more rays; returns where it ends.
@@ -224,5 +227,5 @@ def look_from(scene, scratch, asked, first, last, at, records, visibility):
         number = sample_of(k % width, k // width)
         for layer in range(2):
             if records[layer, k, OWNER] > 0.0:
-                look_around(scene, scratch, asked, records[layer, k], number, 1, 1, visibility[layer, k])
+                look_around(scene, scratch, asked, ways, records[layer, k], number, 1, 1, visibility[layer, k])
     return last

@@ -6,6 +6,7 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE, place_of
 from renderers.tracing.filter.planes_kernels import HALO, LANES, LINE, ONE, OWN, SLACK, ZERO, alike_lanes
+from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.shade_kernels import shade
 from renderers.tracing.light.visibility_kernels import look_around
@@ -164,8 +165,8 @@ def list_samples(scene, points, edges, asked, cones):
     asked[0, layout.NEXT] = 1 + each * len(edges)
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _i, _many, _stack, _stack, _stack, _stack), _nrt=False)
-def look_from_samples(scene, scratch, asked, first, last, each, edges, records, visibility, own, found):
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, _i, _many, _stack, _stack, _stack, _stack), _nrt=False)
+def look_from_samples(scene, scratch, asked, ways, first, last, each, edges, records, visibility, own, found):
     """The visibility ``found`` of the records ``own`` of samples first..last: borrowed from neighbors, or else sampled.
 
     Stops where ``asked`` has no room for more rays; returns where it ends.
@@ -180,7 +181,7 @@ def look_from_samples(scene, scratch, asked, first, last, each, edges, records, 
             if own[layer, i, OWNER] == 0.0:
                 continue
             if not borrow(records[layer], visibility[layer], own[layer, i], x, y, width, height, found[layer, i]):
-                look_around(scene, scratch, asked, own[layer, i], sample_of(x, y), ANEW, ANEW, found[layer, i])
+                look_around(scene, scratch, asked, ways, own[layer, i], sample_of(x, y), ANEW, ANEW, found[layer, i])
     return last
 
 

@@ -7,6 +7,7 @@ from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter.filter_kernels import REACH
 from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
+from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import COUNT, SIDE, sample_of
 from renderers.tracing.light.shade_kernels import shade
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
@@ -44,8 +45,8 @@ def mean_of(means, columns, x, y, plane):
     return means[y, (x // LANES * (1 + columns) + plane) * WIDE + HALO + x % LANES]
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, MARKS, _rows, _rows, _rows, _rows), _nrt=False)
-def refine(scene, scratch, asked, start, stop, busy, records, visibility, means, fine):
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, MARKS, _rows, _rows, _rows, _rows), _nrt=False)
+def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, means, fine):
     """Fill rows of ``fine`` (n, V): for each light its share, and whether that needs smoothing (0 or 1).
 
     The sky's loss, already there, is resampled where few pixels were joined. For pixels start..stop, or until ``asked``
@@ -65,11 +66,11 @@ def refine(scene, scratch, asked, start, stop, busy, records, visibility, means,
             return k
         if pixels < FEW:
             samples = OWN if pixels < 0.5 * FEW else OWN // 2
-            told = look_around(scene, scratch, asked, records[k], sample_of(x, y), samples, 0, fine[k])
+            told = look_around(scene, scratch, asked, ways, records[k], sample_of(x, y), samples, 0, fine[k])
             for c in range(FIRST_LIGHT if told else 0):
                 joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
                 fine[k, c] = joined / (samples + pixels)
-        for l in range(int(scene.ints[layout.LIGHT_COUNT])):
+        for l in range(int(scene.ints[layout.LIGHT_COUNT]) if asked[0, layout.MODE] != layout.ENDING else 0):
             column = FIRST_LIGHT + 2 * l
             share = mean_of(means, columns, x, y, 1 + column)
             fine[k, column + 1] = 0.0

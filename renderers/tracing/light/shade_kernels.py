@@ -7,8 +7,9 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.light.albedo_kernels import mean_reflectance
 from renderers.tracing.light.light_kernels import highlight, schlick, sky_ambient, sky_radiance
+from renderers.tracing.light.lights_kernels import light_at
 from renderers.tracing.light.soft_boxes_kernels import soft_boxes
-from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY, light_at
+from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY
 from renderers.tracing.record_kernels import IMAGED, NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
 from renderers.tracing.scene_kernels import ROW, SCENE, part
 from sceneql.compiled.kernels import kernel

@@ -53,9 +53,9 @@ class Packets:
             more = *bounds, asked, layout.ANSWERS + k, self.chosen, self.spans
             meet_asked(*memory.bundle, memory.found, *memory.rest, *more)
 
-    def skin(self, scene: Scene, asked: Floats, hits: Ints, met: Floats, skins: Floats) -> None:
+    def skin(self, scene: Scene, hits: Ints, met: Floats, skins: Floats) -> None:
         """Normals and colors of the solids at ``hits``: see skins_kernels.skin_hits."""
-        skin_hits(scene, asked, hits, met, skins, *self.of_skins)
+        skin_hits(scene, hits, met, skins, *self.of_skins)
 
 
 def solids_in_lanes(shapes: tuple[Shape, ...]) -> list[int]:

@@ -5,7 +5,7 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
-from renderers.tracing.scene_kernels import ASKED, SCENE
+from renderers.tracing.scene_kernels import SCENE
 from renderers.tracing.solids.ranges_kernels import tape_of
 from renderers.tracing.solids.skin_kernels import face_normal
 from renderers.tracing.solids.surface_kernels import unit
@@ -20,15 +20,15 @@ LANES = 64
 
 @lean(
     types.void(
-        SCENE, ASKED, types.int64[::1], _rows, _rows, _rows, types.float64[:, :, ::1], _rows, types.int32[:, :, ::1],
+        SCENE, types.int64[::1], _rows, _rows, _rows, types.float64[:, :, ::1], _rows, types.int32[:, :, ::1],
         _rows,
     )
 )  # fmt: skip
-def skin_hits(scene, asked, hits, met, skins, registers, slopes, points, codes, near):
+def skin_hits(scene, hits, met, skins, registers, slopes, points, codes, near):
     """Normals and colors of ``hits`` into ``skins`` (n, 6), as ``skin_kernels.skin`` finds them one by one.
 
-    Ray i, in row 1 + i of ``asked``, meets item ``met[i, 1]``, of a solid, at ``met[i, 0]``. The hits of an item come
-    to stand in a row in the list. ``registers`` (rows, LANES), ``slopes`` (rows, 3, LANES), ``points`` (3, LANES),
+    Hit i is of item ``met[i, 1]``, of a solid, at the point ``met[i, 2:5]``. The hits of an item come to stand in a row
+    in the list. ``registers`` (rows, LANES), ``slopes`` (rows, 3, LANES), ``points`` (3, LANES),
     ``codes`` and ``near``, as ``near_gradient_kernels.gradients`` has them, are working memory.
     """
     start = 0
@@ -40,7 +40,7 @@ def skin_hits(scene, asked, hits, met, skins, registers, slopes, points, codes, 
             if n < LANES and met[i, 1] == item:
                 hits[other], hits[start + n] = hits[start + n], i
                 for axis in range(3):
-                    points[axis, n] = asked[1 + i, axis] + met[i, 0] * asked[1 + i, 3 + axis]
+                    points[axis, n] = met[i, 2 + axis]
                 n += 1
         k = scene.ints[layout.ITEMS + 4 * int(item) + layout.REALS_AT]
         code, constants, parts = tape_of(scene, k)
