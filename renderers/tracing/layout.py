@@ -70,6 +70,6 @@ FIRST, ANYWHERE, NOTHING = range(3)
 """Want of a ray: the first hit, any hit, or none, for a ray that misses all boxes."""
 WALKED = -2.0
 """In place of the REST_ITEM of a ray that meets boxes of sheets or grids: only a walk tells what it hits."""
-MODE, NEXT, OPEN, WAYS = range(4)
+MODE, NEXT, OPEN, WAYS, ALONE = range(5)
 PLAIN, ASKING, TELLING, ENDING = range(4)
 """In the head of a list of rays (scene_kernels.ASKED): columns, and the values of MODE."""

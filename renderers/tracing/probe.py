@@ -42,9 +42,9 @@ class Lines:
     def __init__(self, scene: Scene, packets: Packets | None, rows: int) -> None:
         """``packets`` to intersect solids by, or None; ``rows`` of scratch."""
         self.scene, self.packets = scene, packets
-        self.scratch = scratch_beside(packets, scene, rows)
         pixels = (int(scene.reals[layout.WIDTH]) + TILE) * TILE
         self.asked = np.zeros((1, layout.ANSWERS)) if packets is None else packets.asked(pixels)
+        self.scratch = scratch_beside(self.asked, scene, rows)
 
     def look(self, start: int, stop: int, *out: Any) -> None:
         """As probe_kernels.probe_rows: once, or with packets twice, to collect rays and to use the answers."""

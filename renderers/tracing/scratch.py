@@ -11,7 +11,6 @@ from sceneql.field.tape.tape_ops import SCRATCH_COLUMNS
 
 if TYPE_CHECKING:
     from renderers.tracing.scene_kernels import Scene
-    from renderers.tracing.solids.bundles import Packets
     from sceneql.frame import Floats
 
 
@@ -20,13 +19,17 @@ def scratch(rows: int) -> Floats:
     return np.zeros((rows, SCRATCH_COLUMNS))
 
 
-def scratch_beside(packets: Packets | None, scene: Scene, rows: int) -> Floats:
-    """The same beside packets: the rows of the shapes hold no crossings yet, and those that packets know their items."""
+def scratch_beside(asked: Floats, scene: Scene, rows: int) -> Floats:
+    """The same beside a list of rays for packets: the rows of the shapes that these know tell their items.
+
+    They hold no crossings yet. Whether packets know all of the scene is noted in the list.
+    """
     out = scratch(rows)
     out[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
-    if packets is not None:
+    if asked.shape[1] > layout.ANSWERS:
         count = int(scene.ints[layout.ITEM_COUNT])
         items = scene.ints[layout.ITEMS : layout.ITEMS + 4 * count].reshape(count, 4)
-        for item in np.flatnonzero(items[:, layout.KIND] == layout.IMPLICIT):
-            out[-2 - items[item, layout.SHAPE], layout.ITEM_OF] = item
+        known = np.flatnonzero(items[:, layout.KIND] == layout.IMPLICIT)
+        out[-2 - items[known, layout.SHAPE], layout.ITEM_OF] = known
+        asked[0, layout.ALONE] = len(known) == count
     return out

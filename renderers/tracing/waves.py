@@ -58,9 +58,9 @@ class Waves:
     def __init__(self, scene: Scene, packets: Packets | None, rows: int, columns: int) -> None:
         """``packets`` to intersect solids by, or None; ``rows`` of scratch and ``columns`` of visibility."""
         self.scene, self.packets = scene, packets
-        self.scratch = scratch_beside(packets, scene, rows)
         width = -(-int(scene.reals[layout.WIDTH]) // TILE) * TILE
         self.asked = np.zeros((1 + RAYS, layout.ANSWERS)) if packets is None else packets.asked(RAYS)
+        self.scratch = scratch_beside(self.asked, scene, rows)
         self.cones, self.at, self.each = np.zeros((ROOM, 3)), np.zeros(ROOM, np.int64), np.arange(ROOM, dtype=np.int64)
         self.paths, self.of = np.zeros((ROOM, PATH)), np.zeros(ROOM, dtype=np.int64)
         self.hits, self.met, self.skins = np.zeros(ROOM, dtype=np.int64), np.zeros((ROOM, 5)), np.zeros((ROOM, 6))

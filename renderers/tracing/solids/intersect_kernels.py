@@ -163,6 +163,11 @@ def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
     row = int(asked[0, layout.NEXT])
     asked[0, layout.NEXT] = row + 1
     last = scratch.shape[0] - 1
+    if mode == layout.ASKING and asked[0, layout.ALONE] != 0.0:
+        asked[row, layout.REST_AT], asked[row, layout.REST_ITEM], asked[row, layout.REST_LIGHT] = NONE, -1.0, 1.0
+        asked[0, layout.OPEN] = 1.0
+        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
+        return NONE, -1, 1.0
     if mode == layout.ASKING:
         scratch[last, layout.TOLD] = layout.PROBING
         t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
