@@ -1,4 +1,4 @@
-"""Tiles of a picture that no ray need enter: all others are marked, and what is drawn at once is what rays would see."""
+"""Tiles of a picture that no ray need enter: all others are marked, and those show what rays would see."""
 
 from __future__ import annotations
 

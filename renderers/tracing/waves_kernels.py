@@ -83,7 +83,7 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
 
     What is seen without more rays, the background and matte surfaces, is done then: its light but for the records is
     in ``gathered[i]`` (r, g, b, and as DOUBTED). Of matte hits of solids that packets know the records are left to
-    ``describe_hits``: they are listed in ``hits``, with (t, item, point) in ``met``. The rest are paths, of rays ``of``.
+    ``describe_hits``: they are listed in ``hits``, with (t, item, point) in ``met``. The rest are paths of rays ``of``.
     Returns the numbers of paths, of hits, and of paths whose surface, left in ``spares``, is to be lit.
     """
     counter = scratch.shape[0] - 1

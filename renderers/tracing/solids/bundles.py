@@ -15,8 +15,11 @@ from sceneql.field.tape.own_coordinates import in_own_coordinates
 from sceneql.frame import Implicit
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from renderers.tracing.scene_kernels import Scene
-    from sceneql.frame import Floats, Ints, Shape
+    from sceneql.frame import Floats, Shape
 
 
 class Packets:
@@ -53,7 +56,7 @@ class Packets:
             more = *bounds, asked, layout.ANSWERS + k, self.chosen, self.spans
             meet_asked(*memory.bundle, memory.found, *memory.rest, *more)
 
-    def skin(self, scene: Scene, hits: Ints, met: Floats, skins: Floats) -> None:
+    def skin(self, scene: Scene, hits: NDArray[int64], met: Floats, skins: Floats) -> None:
         """Normals and colors of the solids at ``hits``: see skins_kernels.skin_hits."""
         skin_hits(scene, hits, met, skins, *self.of_skins)
 
