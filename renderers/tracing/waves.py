@@ -199,17 +199,19 @@ class Waves:
             count = int(self.asked[0, layout.WAYS])
             if count:
                 self._light_ways(count)
-                self.asked[0, [layout.MODE, layout.NEXT]] = layout.ENDING, 0
+                self.asked[0, layout.MODE], self.asked[0, layout.NEXT] = layout.ENDING, 0
                 work(start, end)
             start = end
 
     def _twice(self, start: int, stop: int, work: Callable[[int, int], int]) -> int:
         """List the rays of as much of start..stop as fits, and use their answers; returns where it ends."""
         assert self.packets is not None
-        self.asked[0, [layout.MODE, layout.NEXT]] = layout.ASKING, 1
+        head = self.asked[0]
+        head[layout.MODE], head[layout.NEXT] = layout.ASKING, 1
         end = work(start, stop)
-        self.packets.meet(self.asked)
-        self.asked[0, [layout.MODE, layout.NEXT]] = layout.TELLING, 1
+        if head[layout.NEXT] > 1:
+            self.packets.meet(self.asked)
+        head[layout.MODE], head[layout.NEXT] = layout.TELLING, 1
         work(start, end)
         return end
 

@@ -55,10 +55,14 @@ def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, 
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     columns = visibility.shape[1]
     room = asked.shape[0] - OWN * (1 + scene.ints[layout.LIGHT_COUNT])
-    for k in range(start, stop):
+    following = start
+    while following < stop:
+        k = following
         x, y = k % width, k // width
         if busy[y // TILE, x // TILE] == 0:
+            following += min(TILE - x % TILE, width - x)
             continue
+        following += 1
         pixels = mean_of(means, columns, x, y, 0)
         if pixels == 0.0:
             continue
