@@ -113,7 +113,8 @@ def surface_root(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1
             return ops.MISS, t1
         if status == ops.UNDECIDED:
             kind, _, place, _, _ = hidden(
-                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, start, t1, 0.1 * near, float(side)
+                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, start, t1, 0.1 * near, float(side),
+                True,
             )
             if kind == CROSSES or kind == TOUCHES:
                 status = ops.HIT
