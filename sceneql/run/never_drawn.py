@@ -48,12 +48,16 @@ def look(shapes: Sequence[Shape], asked: Iterable[str], tasks: Mapping[str, Task
             if shape.name in present:
                 present[shape.name] = ""
         elif present.get(shape.name, "new"):
-            from sceneql.field.tape.emptiness import nowhere_finite, proved_empty, proved_rootless
+            from sceneql.field.tape.emptiness import nowhere_finite, proved_rootless, why_empty
 
-            proved, found = (proved_empty, "negative") if shape.within is None else (proved_rootless, "zero")
-            if not proved(shape.tape, shape.low, shape.high):
-                found = "finite" if nowhere_finite(shape.tape, shape.low, shape.high) else ""
-            present[shape.name] = found and f"its field is nowhere {found} in its bounds"
+            bounded = shape.tape, shape.low, shape.high
+            if shape.within is None:
+                found = why_empty(*bounded)
+            else:
+                found = "nowhere zero" if proved_rootless(*bounded) else ""
+            if not found and nowhere_finite(*bounded):
+                found = "nowhere finite"
+            present[shape.name] = found and f"its field is {found} in its bounds"
 
 
 def missing(present: Mapping[str, str], tasks: Mapping[str, Task]) -> tuple[Diagnostic, ...]:
