@@ -19,9 +19,9 @@ SPLIT = 0.4609375
 """Where pieces are halved: off the middle, so that a root at an end of a piece does not become an end of its halves."""
 WIDEST = 1.0e-3
 """Half of the widest piece, relative to the ray, over which rounding may spread a root of even multiplicity."""
-CROSSES, TOUCHES, JUMPS, ABSENT, UNKNOWN = range(5)
+CROSSES, TOUCHES, JUMPS, ABSENT, UNKNOWN, BLURRED = range(6)
 """What an undecided piece may contain: a change of sign; a root without one; a pole or an edge of the domain of f;
-little or nothing, since f is undefined at both ends; unknown."""
+little or nothing, since f is undefined at both ends; unknown; unknown, as rounding hides the sign far around."""
 SHORTEST = 4.0e-15
 """Width of a piece, relative to its place on the ray, that is not cut further."""
 NEARBY = 64.0
@@ -69,6 +69,7 @@ def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1
     and falling at the first end or rising at the last. CROSSES: sign f goes from > 0 to < 0. TOUCHES: it is > 0 at both
     ends, with a minimum between. JUMPS: it is undefined at one end, or goes from > 0 to < 0 while it rises at both, as
     at a pole. ABSENT: it is undefined at both ends, so that no edge of the domain is near.
+    BLURRED: sign f is proved at neither end, as far as rounding may spread a root.
     """
     reach = WIDEST * (t1 - t0) + 2.0 * least
     step = least
@@ -103,6 +104,8 @@ def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1
         kind = JUMPS
     elif first == UNDEFINED and last == UNDEFINED:
         kind = ABSENT
+    elif first == 0 and last == 0:
+        kind = BLURRED
     return kind, last, place, before, after
 
 
@@ -173,6 +176,13 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
             kind, behind, place, before, after = hidden(
                 code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, first, last, t0, t1, 0.125 * least, sign, touching
             )
+            if kind == BLURRED and first > a:
+                kind, _, _, _, _ = hidden(
+                    code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, a, t0, t1, 0.125 * least, sign, touching
+                )
+                if kind == BLURRED:  # nothing behind a can be the first root: halving would end there
+                    return ops.UNDECIDED, a
+                kind = BLURRED
             if (kind == ABSENT or (kind == JUMPS and behind > 0)) and width > SHORTEST * (abs(a) + abs(b)):
                 b = middle
                 continue
