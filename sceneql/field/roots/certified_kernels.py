@@ -174,7 +174,23 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
             first = a if width <= least else middle
             last = b if width <= least else middle
             kind, behind, place, before, after = hidden(
-                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, first, last, t0, t1, 0.125 * least, sign, touching
+                code,
+                constants,
+                parts,
+                scratch,
+                ox,
+                oy,
+                oz,
+                dx,
+                dy,
+                dz,
+                first,
+                last,
+                t0,
+                t1,
+                0.125 * least,
+                sign,
+                touching,
             )
             if kind == BLURRED and first > a:
                 kind, _, _, _, _ = hidden(

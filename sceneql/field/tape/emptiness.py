@@ -24,6 +24,8 @@ BOXES = 4096
 """Boxes that a proof may look at; after them the property counts as not proved."""
 SHALLOW = 1e-12
 """Depth, relative to the lesser of the box's size and the median |f| in it, below which a solid counts as empty."""
+PLACES = 500
+"""At which it is asked what rounding does."""
 RAYS = 16
 """Along an axis, in each of the others, by which what is shallow is looked for."""
 
@@ -106,6 +108,14 @@ def bottomless(tape: Tape, low: tuple[float, ...], high: tuple[float, ...]) -> b
     """Whether f is finite at no point of a lattice in the box low..high [m], and minus infinity at some."""
     values = field_values(tape, lattice(low, high))
     return bool((values == -np.inf).any() and not np.isfinite(values).any())
+
+
+def blurred(tape: Tape, low: Corner, high: Corner) -> float:
+    """Share of places in the box low..high [m] at which bounds of rounding leave the sign of f open."""
+    places = np.random.default_rng(0).uniform(low, high, (PLACES, 3)).tolist()
+    program = (tape.code, tape.constants, tape.parts, scratch(tape))
+    bounds = [interval_kernels.box(*program, x, x, y, y, z, z) for x, y, z in places]
+    return sum(status == WHOLE and least < 0.0 < most for least, most, status in bounds) / PLACES
 
 
 def _depth(tape: Tape, low: Corner, high: Corner) -> float:

@@ -167,9 +167,7 @@ class Implicit(Solid):
             if self.field.constant and nowhere_defined(shape.tape, shape.low, shape.high):
                 message = "the formula is defined nowhere in its bounds, so there is nothing to draw"
                 raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
-            if self.field.constant and bottomless(
-                self._alone(self._less_level(moment)), *self.bounds.corners
-            ):
+            if self.field.constant and bottomless(self._alone(self._less_level(moment)), *self.bounds.corners):
                 message = "the formula is nowhere finite in its bounds, so there is no surface to draw"
                 raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
             yield shape
