@@ -108,7 +108,8 @@ class Instant:
 
     def at(self, value: Value) -> Any:
         """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""
-        now = self._evaluate(value.expr)
+        known = value.fixed_list()
+        now = self._evaluate(value.expr) if known is None else known
         if not np.isfinite(now).all():
             raise RunFailure("a value is not finite now", part="", time=self.now, span=value.span)
         return now

@@ -115,7 +115,7 @@ def blurred(tape: Tape, low: Corner, high: Corner) -> float:
     places = np.random.default_rng(0).uniform(low, high, (PLACES, 3)).tolist()
     program = (tape.code, tape.constants, tape.parts, scratch(tape))
     bounds = [interval_kernels.box(*program, x, x, y, y, z, z) for x, y, z in places]
-    return sum(status == WHOLE and least < 0.0 < most for least, most, status in bounds) / PLACES
+    return float(np.mean([status == WHOLE and least < 0.0 < most for least, most, status in bounds]))
 
 
 def _depth(tape: Tape, low: Corner, high: Corner) -> float:
