@@ -308,6 +308,7 @@ def frame_of(
     from sceneql.shapes.color import linear
 
     drawn = shapes_of(graph.drawn[output], moment, index)  # first: what cannot be drawn is no failure of the camera's
+    moment = replace(moment, shown=drawn.shapes)
     eye = graph.tasks[camera or graph.cameras[output]]
     with failing_as(eye.name, moment.time, eye.span):
         view = cast(Camera, eye.kind).view(size, moment)
