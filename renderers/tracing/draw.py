@@ -51,6 +51,9 @@ class Buffers:
 _kept: list[Buffers] = []
 """The last picture's buffers: fresh memory costs the system a tenth of a frame's time."""
 
+DOUBTED = 0.01
+"""Share of pixels with undecided roots up to which these are looked at by more rays: each of them takes long."""
+
 
 def _buffers(*shape: int) -> Buffers:
     kept = _kept.pop() if _kept else None
@@ -96,11 +99,12 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
 
     over_rows(height, shade)
     points = subpixels(samples)
+    doubted = undecided if undecided <= DOUBTED * width * height else 0
     linear = np.empty((width * height, 3), dtype=np.float32)
 
     def smooth(start: int, stop: int) -> None:
         light = buffers.records, buffers.radiance, buffers.visibility
-        with_waves(lambda w: w.smooth(start, stop, points, undecided, buffers.busy, buffers.planes, *light, linear))
+        with_waves(lambda w: w.smooth(start, stop, points, doubted, buffers.busy, buffers.planes, *light, linear))
 
     over_rows(height, smooth)
     over(frame, buffers.records[0], buffers.radiance, linear)
