@@ -46,7 +46,7 @@ def assemble(
         assert turning is not None
         model: Any = assembly.object(Ref(bodies.model))
         for k, (ref, center) in enumerate(model.solids()):
-            shape = _shape(ref, center, assembly)
+            shape = shape_of(ref, center, assembly)
             x, q = bodies.position_at + 3 * k, turning.rotation_at + 4 * k
             place = np.concatenate([start[x : x + 3], start[q : q + 4]])
             if numbers[bodies.inverse_at + k] == 0.0:
@@ -63,8 +63,8 @@ def assemble(
             )
             shapes.append(shape)
     for ref in others:
-        shape = _shape(ref, np.zeros(3), assembly)
-        fixed.append((shape, _place(ref, assembly)))
+        shape = shape_of(ref, np.zeros(3), assembly)
+        fixed.append((shape, place_of(ref, assembly)))
         standing.append(ref)
     n = len(rows)
     everything = [*shapes, *(shape for shape, _ in fixed)]
@@ -73,7 +73,7 @@ def assemble(
     for k, (_, place) in enumerate(fixed):
         places[n + k] = place
     names = [*(ref for ref, _ in moving), *standing]
-    _must_be_apart(everything, [*(place for _, place in moving), *(place for _, place in fixed)], n, names, assembly)
+    must_be_apart(everything, [*(place for _, place in moving), *(place for _, place in fixed)], n, names, assembly)
     room = convex.room_length(everything)
     places_at = assembly.floats(places)
     room_at, kept_at = (assembly.floats(np.zeros(size)) for size in (room, 3 * most))
@@ -91,7 +91,7 @@ def assemble(
     return (*found, loose, crowded)
 
 
-def _must_be_apart(
+def must_be_apart(
     shapes: Sequence[Convex], places: Sequence[Floats], moving: int, refs: Sequence[Ref | None], assembly: Assembly
 ) -> None:
     """Raise ScriptError for bodies that start inside one another or inside what stands; all such pairs at once."""
@@ -115,7 +115,7 @@ def _must_be_apart(
     found.raise_errors()
 
 
-def _shape(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex:
+def shape_of(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex:
     """The shape of an object in its own axes from a center. Raises ScriptError where it is not covered."""
     if ref is None:
         message = "a body without an object has no shape to touch with"
@@ -131,7 +131,7 @@ def _shape(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex:
         raise ScriptError([Diagnostic("no-collider", message, ref.span, help)]) from None
 
 
-def _place(ref: Ref, assembly: Assembly) -> Floats:
+def place_of(ref: Ref, assembly: Assembly) -> Floats:
     """Position and quaternion (7,) of an object that stands. Raises ScriptError for one that moves."""
     import numpy as np
 

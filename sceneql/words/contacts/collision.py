@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from sceneql.contacts import layout
 from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -41,10 +40,13 @@ class Collision(Contact):
     than a ten-thousandth of the object's size.
 
     Rigid bodies (spheres, boxes, convex meshes) collide with one another, with what stands of these shapes and with
-    planes, in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law to
-    rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in
-    the step. A contact has up to 64 of them, none held by ties; `points`, `normals` and `forces` tell of it, hits and
-    rest do not.
+    planes, by default in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's
+    law to rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order
+    1 in the step. A contact has up to 64 of them, none held by ties; `points`, `normals` and `forces` tell of it, hits
+    and rest do not. Mode `exact`, asked for by name, is for few of them, ties included: all contacts that approach are
+    reflected together until none approaches (Smith et al. 2012), and what rests, rolls or slides has the forces of
+    Coulomb's law at every stage of the solver, whose order it keeps. Where several faces turn and slide on one another
+    at once, its forces are not unique and its steps short: mode `local` takes such piles.
 
     Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
     at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
@@ -75,6 +77,9 @@ class Collision(Contact):
     def trouble(self, state: ModelState) -> str:
         """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
         at = [k for k, each in enumerate(state.ints) if each == -1]
+        endless = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
+        if endless:
+            return f"at {endless:.0f} instants impacts had no end: rigid bodies were let be there for a step"
         loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
         if crowded:
             return f"in {crowded:.0f} steps rigid bodies had more contacts than outputs have room for: all acted"
@@ -157,14 +162,15 @@ class Collision(Contact):
         """Add the contacts of rigid bodies with one another and with objects. Raises ScriptError for mode `exact`."""
         from sceneql.contacts.colliders import OFTEN, must_be_free
         from sceneql.contacts.distance.rigid_contact import assemble
+        from sceneql.contacts.rigid_exact import group
 
-        if self.mode == "exact":
-            message = "rigid bodies collide in mode `local` so far"
-            raise ScriptError([Diagnostic("no-collider", message, assembly.line())])
-        for bodies in everyone:
-            must_be_free(bodies.model, assembly)
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
+        if self.mode == "exact":
+            assembly.remember(*group.assemble(assembly, everyone, touched, self.restitution, self.friction))
+            return
+        for bodies in everyone:
+            must_be_free(bodies.model, assembly)
         assembly.step_at_most(OFTEN)
         assembly.remember(-1, *assemble(assembly, everyone, touched, self.restitution, self.friction))
 
