@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The rows of an island's exact contacts and ties together, as one dense system (law_kernels)."""
+"""The rows of an island's exact contacts and ties together, as one dense system (exact_law_kernels)."""
 
 from numba import types
 
@@ -43,8 +43,8 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     follow,
     three,
 )
-from sceneql.contacts.rigid_exact.law_kernels import ACROSS, ALONG, BILATERAL, UNILATERAL, VECTORS, solve_law
-from sceneql.contacts.rigid_exact.law_kernels import NORMAL as CONE
+from sceneql.contacts.rigid_exact.exact_law_kernels import ACROSS, ALONG, BILATERAL, UNILATERAL, VECTORS, solve_law
+from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MOVERS, SHAPES, BODIES, PAIRS, TIE_ROWS, MOST, TIES, ROOM = range(8)

@@ -60,6 +60,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
+from sceneql.contacts.rigid_exact.exact_hold_kernels import CREEP, still
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
     BEGUN_AT,
@@ -82,7 +83,6 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     mover_at,
     put_places,
 )
-from sceneql.contacts.rigid_exact.hold_kernels import CREEP, still
 from sceneql.system.signatures_kernels import A, F, I, N
 
 TOUCHES = 1e-10

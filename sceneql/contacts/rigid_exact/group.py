@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
 
 ROOM = "sceneql.contacts.rigid_exact"
-HOLD, SETTLE = f"{ROOM}.hold_kernels:hold", f"{ROOM}.hold_kernels:settle"
+HOLD, SETTLE = f"{ROOM}.exact_hold_kernels:hold", f"{ROOM}.exact_hold_kernels:settle"
 CONTACTS = f"{ROOM}.watch_kernels:gap", f"{ROOM}.strike_kernels:impact"
 MOST = 24
 """Bodies of one contact: all their conditions are one dense system."""
@@ -39,7 +39,7 @@ def assemble(
     from sceneql.bodies.rigid.tie_rows_kernels import ROW as TIE_ROW
     from sceneql.bodies.rigid.tie_system import integers
     from sceneql.contacts.distance import convex
-    from sceneql.contacts.rigid_exact import contact_kernels, law_kernels
+    from sceneql.contacts.rigid_exact import contact_kernels, exact_law_kernels
     from sceneql.contacts.rigid_exact import exact_rows_kernels as rows
 
     if assembly.ints_of(HOLD):
@@ -75,7 +75,7 @@ def assemble(
     working = assembly.floats(np.zeros(length + 12))
     records = assembly.floats(np.zeros(2 * contact_kernels.RECORD * most))
     units = assembly.floats(np.zeros(rows.UNIT * room))
-    dense = assembly.floats(np.zeros(2 * room * room + (3 + law_kernels.VECTORS) * room + 1))
+    dense = assembly.floats(np.zeros(2 * room * room + (3 + exact_law_kernels.VECTORS) * room + 1))
     kept = assembly.floats(np.zeros(len(pairs)))
     memory = assembly.floats(np.zeros(rows.MEMORY))
     outputs = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]

@@ -37,6 +37,8 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SPEED,
     pace,
 )
+from sceneql.contacts.rigid_exact.exact_law_kernels import BILATERAL, UNILATERAL
+from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     AGAIN,
     ENDLESS,
@@ -69,8 +71,6 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     write_rows,
 )
 from sceneql.contacts.rigid_exact.find_kernels import DEEP, begin, find, smaller, start_step
-from sceneql.contacts.rigid_exact.law_kernels import BILATERAL, UNILATERAL
-from sceneql.contacts.rigid_exact.law_kernels import NORMAL as CONE
 from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
 
 APPROACHES = 1e-13
