@@ -286,6 +286,11 @@ class IslandAssembly:
         movers = (mover for tie in self.ties for mover in tie.movers)
         return any(isinstance(mover, Place) and mover.bodies.model == model for mover in movers)
 
+    def ints_of(self, kernel: str) -> tuple[int, ...]:
+        """The integers of a term (system.Assembly)."""
+        terms = [term for some in self._terms.values() for term in some if kernel in term.kernels]
+        return tuple(terms[0].ints) if terms else ()
+
     def body_count(self) -> int:
         """Number of bodies of the island so far; in a block that of the whole."""
         return max(self._bodies, self.whole)

@@ -176,5 +176,8 @@ class Assembly(Protocol):
     def tied(self, model: str) -> bool:
         """Whether ties hold a body or mass of a model."""
 
+    def ints_of(self, kernel: str) -> tuple[int, ...]:
+        """The integers of the first term with a kernel; empty where there is none."""
+
     def body_count(self) -> int:
         """Number of bodies of the island (contacts choose their mode by it)."""

@@ -223,24 +223,29 @@ def open_by(floats, ints, at):
     return worst
 
 
+@lean(types.void(A, A, I, N, N))
+def shift_mover(y, floats, ints, at, to):
+    """Move the body of the mover of ints[at:] by the change of place and rotation at floats[to + AT_A:]."""
+    x, q = ints[at + POSITION], ints[at + ROTATION]
+    if x < 0:
+        return
+    for c in range(3):
+        y[x + c] += floats[to + AT_A + c]
+    if q >= 0:
+        ux, uy, uz = 0.5 * floats[to + AT_TWIST], 0.5 * floats[to + AT_TWIST + 1], 0.5 * floats[to + AT_TWIST + 2]
+        a, b, c, d = y[q], y[q + 1], y[q + 2], y[q + 3]
+        # q + (0, u) q, of the same length.
+        e, f = a - (ux * b + uy * c + uz * d), b + ux * a + uy * d - uz * c
+        g, h = c + uy * a + uz * b - ux * d, d + uz * a + ux * c - uy * b
+        scale = ((a * a + b * b + c * c + d * d) / (e * e + f * f + g * g + h * h)) ** 0.5
+        y[q], y[q + 1], y[q + 2], y[q + 3] = e * scale, f * scale, g * scale, h * scale
+
+
 @lean(types.void(A, A, I))
 def shift(y, floats, ints):
     """Move the bodies by the movers' changes of place and rotation."""
     for m in range(ints[MOVERS]):
-        at, to = ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m
-        x, q = ints[at + POSITION], ints[at + ROTATION]
-        if x < 0:
-            continue
-        for c in range(3):
-            y[x + c] += floats[to + AT_A + c]
-        if q >= 0:
-            ux, uy, uz = 0.5 * floats[to + AT_TWIST], 0.5 * floats[to + AT_TWIST + 1], 0.5 * floats[to + AT_TWIST + 2]
-            a, b, c, d = y[q], y[q + 1], y[q + 2], y[q + 3]
-            # q + (0, u) q, of the same length.
-            e, f = a - (ux * b + uy * c + uz * d), b + ux * a + uy * d - uz * c
-            g, h = c + uy * a + uz * b - ux * d, d + uz * a + ux * c - uy * b
-            scale = ((a * a + b * b + c * c + d * d) / (e * e + f * f + g * g + h * h)) ** 0.5
-            y[q], y[q + 1], y[q + 2], y[q + 3] = e * scale, f * scale, g * scale, h * scale
+        shift_mover(y, floats, ints, ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m)
 
 
 @lean(AFTER_STEP, inner=True)

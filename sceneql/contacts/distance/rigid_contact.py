@@ -60,7 +60,7 @@ def assemble(
             rows.append(body_integers(bodies, k, assembly))
             shapes.append(shape)
     for ref in others:
-        place = _place(ref, assembly)
+        place = place_of(ref, assembly)
         shape = known.of(ref, np.zeros(3), place)
         kind: Any = assembly.object(ref)
         if led.is_led(kind):
@@ -80,7 +80,7 @@ def assemble(
     between = [] if ties is None else [[shape_of.get(at, -1) for at in pair] for pair in ties.joined]
     joined = {(min(pair), max(pair)) for pair in between if min(pair) >= 0}
     starts = [*(place for _, place in moving), *(place for _, place in fixed)]
-    _must_be_apart(known, everything, starts, n, names, joined, assembly)
+    must_be_apart(known, everything, starts, n, names, joined, assembly)
     held = []
     if ties is not None:
         assembly.driven, rows, held = True, ties.bodies, ties.ints(assembly)
@@ -109,7 +109,7 @@ def assemble(
     return (*found, loose, crowded)
 
 
-def _must_be_apart(
+def must_be_apart(
     known: Shapes,
     shapes: Sequence[Convex],
     places: Sequence[Floats],
@@ -130,7 +130,7 @@ def _must_be_apart(
     found.raise_errors()
 
 
-def _place(ref: Ref, assembly: Assembly) -> Floats:
+def place_of(ref: Ref, assembly: Assembly) -> Floats:
     """Position and quaternion (7,) of an object at the start. Raises ScriptError for one that changes its shape."""
     import numpy as np
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from sceneql.contacts import layout
 from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -41,15 +40,20 @@ class Collision(Contact):
     than a ten-thousandth of the object's size.
 
     Rigid bodies collide with one another and with objects, which may move by keys or formulas and so carry and push
-    them, in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law to rounding
-    (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in the step.
-    Spheres, boxes, planes and convex meshes touch exactly. Any other shape with an inside (cylinders, rings, meshes,
-    solids cut out of one another, implicit surfaces) touches by points of its surface, those of its edges and those of
-    its smooth parts slid to where the two face each other, 20 cells along it and more where it is thin: details smaller
-    than a cell on both are not seen, all else to a millionth of the size. Where a step would take such a shape farther
-    than half its thickness it is cut; a pair has at most 12 points. Bodies may be held by ties, which are found with
-    the contacts; those that a tie joins do not touch each other. `points`, `normals` and `forces` tell of it, hits
-    and rest do not. Masses do not touch rigid bodies.
+    them, by default in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law
+    to rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in
+    the step. Spheres, boxes, planes and convex meshes touch exactly. Any other shape with an inside (cylinders, rings,
+    meshes, solids cut out of one another, implicit surfaces) touches by points of its surface, those of its edges and
+    those of its smooth parts slid to where the two face each other, 20 cells along it and more where it is thin:
+    details smaller than a cell on both are not seen, all else to a millionth of the size. Where a step would take such
+    a shape farther than half its thickness it is cut; a pair has at most 12 points. Bodies may be held by ties, which
+    are found with the contacts; those that a tie joins do not touch each other. `points`, `normals` and `forces` tell
+    of it, hits and rest do not. Masses do not touch rigid bodies.
+
+    Mode `exact`, asked for by name, is for few rigid bodies of exact shapes, ties included, and what stands: all
+    contacts that approach are reflected together until none approaches (Smith et al. 2012), and what rests, rolls or
+    slides has the forces of Coulomb's law at every stage of the solver, whose order it keeps. Where several faces turn
+    and slide on one another at once, its forces are not unique and its steps short: mode `local` takes such piles.
 
     Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
     at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
@@ -80,6 +84,9 @@ class Collision(Contact):
     def trouble(self, state: ModelState) -> str:
         """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
         at = [k for k, each in enumerate(state.ints) if each == -1]
+        endless = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
+        if endless:
+            return f"at {endless:.0f} instants impacts had no end: rigid bodies were let be there for a step"
         loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
         if crowded:
             return f"in {crowded:.0f} steps rigid bodies had more contacts than outputs have room for: all acted"
@@ -162,12 +169,13 @@ class Collision(Contact):
         """Add the contacts of rigid bodies with one another and with objects. Raises ScriptError for mode `exact`."""
         from sceneql.contacts.colliders import OFTEN
         from sceneql.contacts.distance.rigid_contact import assemble
+        from sceneql.contacts.rigid_exact import group
 
-        if self.mode == "exact":
-            message = "rigid bodies collide in mode `local` so far"
-            raise ScriptError([Diagnostic("no-collider", message, assembly.line())])
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
+        if self.mode == "exact":
+            assembly.remember(*group.assemble(assembly, everyone, touched, self.restitution, self.friction))
+            return
         assembly.step_at_most(OFTEN)
         assembly.remember(-1, *assemble(assembly, everyone, touched, self.restitution, self.friction))
 
