@@ -215,6 +215,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
                 plan, a, jacobian, scales, store, change
             ):
                 break
+            for k in range(HEAD + numbers[VELOCITIES], HEAD + numbers[VELOCITIES] + numbers[TALLIES]):
+                change[numbers[k]] = 0.0  # the work of loads stays behind by an update, and is no part of a rest
             for k in range(n):
                 y1[k] += change[k]
             leave(rate, end, a, base, y1, residual, plan, floats, ints)
