@@ -71,11 +71,13 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.grids.grid_stage_kernels import SHARE
     from sceneql.grids.multigrid import linear_kernels as linear
+    from sceneql.linear.newton_kernels import ABSOLUTE, MEMORY, RELATIVE
 
     grid = system.grid
     assert grid is not None
     stages, explicit_first, _, embedded, error_order = stepper.method.numbers
-    _, _, relative, absolute, _, _, _, *tableau = stepper.method.settings
+    settings = stepper.method.settings
+    relative, absolute, tableau = settings[RELATIVE], settings[ABSOLUTE], settings[MEMORY:]
     share = SHARE if stepper.control.adaptive else 1.0
     largest = float(np.abs(system.y).max(initial=0.0)) or 1.0
     absolute *= largest if stepper.control.by_scale else 1.0
