@@ -21,6 +21,8 @@ ENERGY = types.void(A, A, A, A)
 STIFFNESS = types.void(A, A, F, F, N, A, A)
 STRESS_FUNCTION, ENERGY_FUNCTION, STIFFNESS_FUNCTION = map(types.FunctionType, (STRESS, ENERGY, STIFFNESS))
 SCRATCH = 48
+BULK, MODULUS, SECOND = range(3)
+"""Numbers of a law: the bulk number, its modulus, a second one (laws/law.py)."""
 
 
 def at(kind):

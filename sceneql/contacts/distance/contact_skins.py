@@ -141,9 +141,8 @@ def _points_of_convex(shape: Convex, center: Floats) -> Points:
     none = np.zeros((0, 12))
     if shape.kind != CORE:
         return Points(none, none, inf, inf)
-    v, f, e, loops = (int(number) for number in shape.ints[:4])
-    radius = float(shape.floats[0])
-    vertices = shape.floats[2 : 2 + 3 * v].reshape(v, 3) + center
+    _, f, e, loops = (int(number) for number in shape.ints[:4])
+    radius, vertices = shape.radius, shape.vertices + center
     if f == 0:
         turn = np.pi * (3 - np.sqrt(5)) * np.arange(ON_BALL)
         z = 1 - (2 * np.arange(ON_BALL) + 1) / ON_BALL
@@ -151,7 +150,7 @@ def _points_of_convex(shape: Convex, center: Floats) -> Points:
         spacing = radius * np.sqrt(4 * np.pi / ON_BALL)
         return Points(none, _records(vertices[0] + radius * normals, normals), spacing, radius)
     edges = shape.ints[5 + f + loops :].reshape(e, 4)[:, :2]
-    normals = shape.floats[2 + 3 * v :].reshape(f, 3)
+    normals = shape.normals
     starts, ring = shape.ints[4 : 5 + f], shape.ints[5 + f : 5 + f + loops]
     inside = [float(normals[k] @ vertices[ring[starts[k]]] - (vertices @ normals[k]).min()) for k in range(f)]
     size = 2.0 * float(np.linalg.norm(vertices - vertices.mean(axis=0), axis=1).max())

@@ -22,6 +22,8 @@ CORE, HALF_SPACE, SKINNED = range(3)
 (contact_skins.py), here a ball around it."""
 COPLANAR = 1e-9
 """Angle [rad] between triangles of a convex hull up to which they are parts of one face."""
+VERTICES = 2
+"""Number of a CORE at which its vertices begin."""
 SHAPE = 3
 """Integers of a shape: its kind, and the offsets of its numbers and of its integers."""
 
@@ -43,6 +45,22 @@ class Convex:
         """Distance of its farthest point from the origin [m]."""
         _, found, *_ = self.floats.tolist()
         return float(found)
+
+    @property
+    def radius(self) -> float:
+        """Radius around its core [m]."""
+        found, *_ = self.floats.tolist()
+        return float(found)
+
+    @property
+    def vertices(self) -> Floats:
+        """Of a CORE: its vertices (v, 3) [m]."""
+        return self.floats[VERTICES : VERTICES + 3 * int(self.ints[0])].reshape(-1, 3)
+
+    @property
+    def normals(self) -> Floats:
+        """Of a CORE: the outer unit normals of its faces (f, 3)."""
+        return self.floats[VERTICES + 3 * int(self.ints[0]) :].reshape(-1, 3)
 
 
 def ball(radius: float, center: Sequence[float] | Floats = (0.0, 0.0, 0.0)) -> Convex:

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """The corotated law at a point (law_kernels.py): numbers Lame's lambda, mu; d = tr S - 3 of F = R S."""
 
-from sceneql.bodies.elements.law_kernels import ENERGY, STIFFNESS, STRESS
+from sceneql.bodies.elements.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
 from sceneql.bodies.elements.principal_kernels import MODES, U, V, from_modes, principal
 from sceneql.compiled.kernels import lean
 
@@ -18,7 +18,7 @@ def stress(f, numbers, p, m, scratch):
         for j in range(0, 9, 3):
             at = i + j // 3
             m[at] = u[i] * v[j] + u[i + 1] * v[j + 1] + u[i + 2] * v[j + 2]
-            p[at] = 2.0 * numbers[1] * (f[at] - m[at])
+            p[at] = 2.0 * numbers[MODULUS] * (f[at] - m[at])
     return (scratch[0] - 1.0) + (scratch[1] - 1.0) + (scratch[2] - 1.0)
 
 
@@ -27,14 +27,14 @@ def energy(f, numbers, out, scratch):
     """Mu |S - 1|^2."""
     principal(f, scratch)
     x, y, z = scratch[0] - 1.0, scratch[1] - 1.0, scratch[2] - 1.0
-    out[0], out[1] = numbers[1] * (x * x + y * y + z * z), x + y + z
+    out[0], out[1] = numbers[MODULUS] * (x * x + y * y + z * z), x + y + z
 
 
 @lean(STIFFNESS)
 def stiffness(f, numbers, pressure, bulk, definite, c, scratch):
     """By its modes: p_i = 2 mu (s_i - 1) + pressure."""
     principal(f, scratch)
-    two, x, y, z = 2.0 * numbers[1], scratch[0], scratch[1], scratch[2]
+    two, x, y, z = 2.0 * numbers[MODULUS], scratch[0], scratch[1], scratch[2]
     a = scratch[MODES : MODES + 12]
     for k in range(3):
         a[k], a[3 + k], a[6 + k] = two + bulk, bulk, two

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """The law of mooney_rivlin at a point (law_kernels.py): numbers Lame's lambda, a, b; d = J - 1, as in neo_hookean."""
 
-from sceneql.bodies.elements.law_kernels import ENERGY, STIFFNESS, STRESS
+from sceneql.bodies.elements.law_kernels import ENERGY, MODULUS, SECOND, STIFFNESS, STRESS
 from sceneql.bodies.elements.principal_kernels import MODES, from_modes, principal
 from sceneql.bodies.elements.volume_kernels import cofactor, squares
 from sceneql.compiled.kernels import lean, lean_inlined
@@ -19,7 +19,7 @@ def stress(f, numbers, p, m, scratch):
     j = cofactor(f, m)
     xx, yy, zz = cauchy(f, 0, 0), cauchy(f, 1, 1), cauchy(f, 2, 2)
     yz, xz, xy = cauchy(f, 1, 2), cauchy(f, 0, 2), cauchy(f, 0, 1)
-    one, two, trace = numbers[1], numbers[2], xx + yy + zz
+    one, two, trace = numbers[MODULUS], numbers[SECOND], xx + yy + zz
     for k in range(0, 9, 3):
         a, b, c = f[k], f[k + 1], f[k + 2]
         x = trace * a - (a * xx + b * xy + c * xz) - 2.0 * m[k]
@@ -38,8 +38,8 @@ def energy(f, numbers, out, scratch):
     xx, yy, zz = cauchy(f, 0, 0), cauchy(f, 1, 1), cauchy(f, 2, 2)
     yz, xz, xy = cauchy(f, 1, 2), cauchy(f, 0, 2), cauchy(f, 0, 1)
     second = xx * yy + yy * zz + xx * zz - yz * yz - xz * xz - xy * xy - 3.0
-    own = numbers[1] * (0.5 * first - dilatation + 0.5 * dilatation * dilatation)
-    out[0] = own + numbers[2] * (0.5 * second - 2.0 * dilatation)
+    own = numbers[MODULUS] * (0.5 * first - dilatation + 0.5 * dilatation * dilatation)
+    out[0] = own + numbers[SECOND] * (0.5 * second - 2.0 * dilatation)
     out[1] = dilatation
 
 
@@ -47,7 +47,7 @@ def energy(f, numbers, out, scratch):
 def stiffness(f, numbers, pressure, bulk, definite, c, scratch):
     """By its modes: p_i = a s_i + b s_i (s_j^2 + s_k^2) + (pressure + a (J - 2) - 2 b) s_j s_k."""
     principal(f, scratch)
-    one, two, x, y, z = numbers[1], numbers[2], scratch[0], scratch[1], scratch[2]
+    one, two, x, y, z = numbers[MODULUS], numbers[SECOND], scratch[0], scratch[1], scratch[2]
     q, bulk = pressure + one * (x * y * z - 2.0) - 2.0 * two, bulk + one
     xx, yy, zz = x * x, y * y, z * z
     coupled = q + bulk * x * y * z
