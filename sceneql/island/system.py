@@ -36,6 +36,8 @@ class Structure:
     """What lets drifts end where ties hold."""
     varying: bool
     """Whether values vary in time."""
+    limits: tuple[str, ...] = ()
+    """What keeps surfaces apart (Assembly.limit)."""
     slopes: tuple[str, ...] | None = None
     """The kernels of the Jacobian, of positive slopes too where those are others ("kernel|positive"); None: there is
     none, or it is found by differences."""

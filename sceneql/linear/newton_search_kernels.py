@@ -27,6 +27,7 @@ from sceneql.compiled.pointers_kernels import (
 )
 from sceneql.linear.newton_kernels import (
     CAREFUL,
+    CLEAR,
     CONTRACTION,
     FACTORED,
     FACTORIZATIONS,
@@ -171,6 +172,8 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             part = limit_at(functions[AT_LIMIT])(t, old[:n], new[:n], floats, ints)
             if part < UNMOVED:
                 break
+            if part < 1.0:
+                part *= CLEAR
         longest = part
         go(y, change, part, floats)
         leave(rate, t, a, base, y, residual, plan, floats, ints)

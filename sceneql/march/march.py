@@ -19,7 +19,7 @@ from sceneql.island.breakpoint_table import before, next_breakpoint
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
 from sceneql.march import march_kernels as kernels
-from sceneql.march.driver import driver, energy, jacobian
+from sceneql.march.driver import driver, energy, jacobian, limit
 from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
 from sceneql.march.first_step import first_step
 from sceneql.march.pace import Pace
@@ -128,7 +128,7 @@ class March:
         # Islands without exact contacts have no events: the kernels that find them are not even loaded.
         event = function("sceneql.march.events_kernels:find_event") if system.pairs else None
         self._energy = energy(system) if needs.newton and (needs.at_rest or not system.damped) else None
-        self._limit = None
+        self._limit = limit(system)
         self._functions = addresses(
             self._step, self._dense, *self.driver, self._jacobian, event, self._energy, self._limit
         )
@@ -146,6 +146,8 @@ class March:
         self._counts[kernels.LAST_STAGE] = -1 if local and between else method.last_stage
         self._counts[kernels.CONTROLS] = control.self_controlled
         self._counts[kernels.HALVES] = control.halves
+        # The last stage of Newton's method is a state that it has reached without letting surfaces pass one another.
+        self._counts[kernels.WATCHED] = self._limit is not None and not (needs.newton and method.last_stage >= 0)
 
     def _measure(self, prepared: Prepared) -> None:
         """Go on with the sizes that entries have had, where the method before measured errors by these, too."""
