@@ -85,6 +85,7 @@ class IslandAssembly:
     _frees: list[tuple[int, int]] = field(default_factory=list)
     _tied: list[Block] = field(default_factory=list)
     _limits: list[Block] = field(default_factory=list)
+    _growing: list[Callable[[Floats], bool]] = field(default_factory=list)
     _varying: list[tuple[int, Value, Word]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _stops: set[Breakpoint] = field(default_factory=set)
@@ -186,6 +187,10 @@ class IslandAssembly:
         """Add what keeps surfaces apart (system.Assembly)."""
         self._apart = False
         self._limits.append(Block((kernel,), tuple(ints)))
+
+    def grows(self, grow: Callable[[Floats], bool]) -> None:
+        """Say that slopes may have more places later (system.Assembly)."""
+        self._growing.append(grow)
 
     def alike(self, at: int, count: int) -> None:
         """Say that entries share a scale of errors (system.Assembly)."""
@@ -365,8 +370,14 @@ class IslandAssembly:
         floats = np.concatenate([*self._numbers, np.zeros(0 if found is None else len(channels.ARRAYS) * len(y))])
         if slopes is not None and (self._local or self._limits):
             floats[channels.STAGE] = channels.OUTSIDE if newton else channels.BETWEEN
+
+        def grown(floats: Floats) -> System | None:
+            more = [grow(floats) for grow in self._growing]
+            return self.finish(jacobian, newton) if any(more) else None
+
         return System(
             structure=structure,
+            grown=grown,
             y=y,
             floats=floats,
             ints=ints,

@@ -64,6 +64,9 @@ class System:
     floats: Floats
     ints: NDArray[int64]
     """Offsets, then the integers of every block (layout.py)."""
+    grown: Callable[[Floats], System | None]
+    """Lays the island out again with more places for slopes (Assembly.grows), from its present floats; None: there are
+    no more."""
     pairs: int
     """Number of pairs of exact contacts."""
     partner: NDArray[int64]

@@ -173,6 +173,10 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             floats[channels.POSITIVE] = memory[POSITIVE] = 1.0 if definite else 0.0
             slopes(functions, t, y, jacobian, floats, ints)
             floats[channels.NEWTON] = floats[channels.POSITIVE] = 0.0
+            if floats[channels.GROWS] != 0.0:
+                end_stage(floats)
+                fail(change, y)
+                return False
         size = math.inf
         regular = True
         if stale or memory[FACTORED] != a:

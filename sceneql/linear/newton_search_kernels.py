@@ -57,7 +57,7 @@ from sceneql.linear.stage_kernels import (
 MOST = 120
 """Largest number of updates."""
 WATCHED = 20
-"""Whole updates that need not bring less."""
+"""Whole updates that need not bring less; none where surfaces are kept apart."""
 SLOWED = 0.5
 """Contraction from which on positive slopes are slow."""
 TRUE_AFTER = 3
@@ -153,6 +153,8 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             floats[channels.POSITIVE] = 1.0 if positive else 0.0
             slopes(functions, t, y, jacobian, floats, ints)
             floats[channels.NEWTON] = floats[channels.POSITIVE] = 0.0
+            if floats[channels.GROWS] != 0.0:
+                return False
             memory[FACTORIZATIONS] += 1.0
             regular = factor_stage(plan, a, jacobian, scales, store)
             if positive or (regular and not indefinite(plan, store)):
@@ -216,7 +218,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 best[k] = y[k]
         else:
             failing += 1
-            if failing > WATCHED or not math.isfinite(value):
+            if failing > (0 if has_limit else WATCHED) or not math.isfinite(value):
                 for k in range(n):
                     y[k] = best[k]
                 foresee(y, y, floats)

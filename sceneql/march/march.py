@@ -53,6 +53,8 @@ class Statistics:
     """Impacts of exact contacts."""
     evaluations: int = 0
     """Evaluations of the rate."""
+    orderings: int = 0
+    """How many times linear systems were ordered anew, since pairs came near that had no place in the Jacobian."""
     seconds: float = 0.0
     """Run time of the compiled steps [s]."""
 
@@ -108,6 +110,7 @@ class March:
     def _engage(self, stepper: Stepper) -> None:
         """Continue with a method."""
         method, control, needs = stepper.method, stepper.control, stepper.needs
+        self._engaged = stepper
         if needs.jacobian and self._with_jacobian is not None:
             self.system = self._with_jacobian()
             self.floats = np.concatenate([self.floats, self.system.floats[len(self.floats) :]])
@@ -139,6 +142,7 @@ class March:
         self._settings = np.array(prepared.settings, dtype=np.float64)
         self._numbers = np.array(prepared.numbers, dtype=np.int64)
         self._work = np.zeros(prepared.work)
+        self._kept = prepared.kept
         self._measure(prepared)
         self.prepared_text = prepared.text
         self._counts[kernels.ADAPTIVE] = control.adaptive
@@ -148,6 +152,27 @@ class March:
         self._counts[kernels.HALVES] = control.halves
         # The last stage of Newton's method is a state that it has reached without letting surfaces pass one another.
         self._counts[kernels.WATCHED] = self._limit is not None and not (needs.newton and method.last_stage >= 0)
+
+    def _grow(self) -> bool:
+        """Lay the island out with more places in its Jacobian, and go on with what the method remembers."""
+        self.floats[channels.GROWS] = 0.0
+        system = self.system.grown(self.floats)
+        if system is None:
+            return False
+        arrays = len(channels.ARRAYS) * len(system.y)
+        floats, settings, numbers, work = self.floats, self._settings, self._numbers, self._work
+        self.floats = system.floats.copy()
+        self.floats[: len(floats) - arrays] = floats[: len(floats) - arrays]
+        self.floats[-arrays:] = floats[-arrays:]
+        self.system = system
+        self._engage(self._engaged)
+        self.statistics.orderings += 1
+        if self._kept:
+            method = self._engaged.method
+            self._settings[1 : len(method.settings)] = settings[1 : len(method.settings)]
+            self._numbers[: len(method.numbers)] = numbers[: len(method.numbers)]
+            self._work[: self._kept] = work[: self._kept]
+        return True
 
     def _measure(self, prepared: Prepared) -> None:
         """Go on with the sizes that entries have had, where the method before measured errors by these, too."""
@@ -341,6 +366,8 @@ class March:
                     break
             elif status == kernels.REACHED and target > self._step_end:
                 self._pass_breakpoint()
+            elif status == kernels.GROWS and self._grow():
+                continue
             elif not self._goes_on(status):
                 break
         done = self.statistics

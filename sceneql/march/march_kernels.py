@@ -42,7 +42,7 @@ MOST_CRAWLED = 2000
 """Such steps in a row, or shorter than any, after which the march is stuck: an impact or a breakpoint takes far fewer
 to leave."""
 
-REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK, CROSSING = range(7)
+REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK, CROSSING, GROWS = range(8)
 
 MOST_REPEATS = 100
 """Impacts for each pair at one instant before the contacts count as contradictory."""
@@ -162,6 +162,8 @@ def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, f
     while True:
         h = t1 - t0
         error = step(functions, t0, h, y0, rate0, y1, work, settings, numbers, floats, ints)
+        if floats[channels.GROWS] != 0.0:
+            return t1, GROWS
         large = beyond(y1, clock[LIMIT]) > 0
         bad = first_bad(y1) if large else -1
         if bad >= 0:

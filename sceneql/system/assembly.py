@@ -84,6 +84,13 @@ class Assembly(Protocol):
         given.
         """
 
+    def grows(self, grow: Callable[[Any], bool]) -> None:
+        """Say that the places of slopes may become more during a run, as what comes near depends on one another.
+
+        A slopes kernel that misses a place sets floats[channels.GROWS]. The march then calls ``grow`` with the floats;
+        it returns whether the slopes of its term, given by a function, have more places now. None are taken away.
+        """
+
     def tied_drift(self, kernel: str, ints: Sequence[int]) -> None:
         """Add what changes the momenta before a splitting's drift, so that it ends where ties hold (RATTLE).
 

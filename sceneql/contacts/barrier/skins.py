@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.contacts.barrier.objects import add_objects
+from sceneql.contacts.barrier.pairs import add_pairs
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
@@ -39,12 +40,13 @@ def assemble(
         corners = own[bodies.skin.triangles]
         sides.append(np.linalg.norm(corners - corners[:, [1, 2, 0]], axis=2).ravel())
         places.append(corners.reshape(-1, 3))
-    if gap is None:
-        gap = GAP * float(np.concatenate(sides).mean())
+    side = float(np.concatenate(sides).mean())
+    gap = GAP * side if gap is None else gap
     slip = SLIP * float(np.linalg.norm(np.ptp(np.concatenate(places), axis=0)))
     told, friction_at = assembly.floats([gap, slip]), assembly.value(friction)
     for bodies in everyone:
         assert bodies.skin is not None
         if refs:
             add_objects(assembly, bodies, refs, friction_at, (bodies.skin.stiffness, gap, slip))
+    add_pairs(assembly, everyone, friction_at, gap, slip, side)
     return -2, told
