@@ -80,7 +80,8 @@ def slopes(t, y, entries, floats, ints):
             across = -friction * floats[at + layout.LOAD] * mobilized(speed, slip)
             along = across
             if speed > 0.0:
-                along = -friction * floats[at + layout.LOAD] * mobilized_rate(speed, slip)
+                if floats[channels.POSITIVE] == 0.0:
+                    along = -friction * floats[at + layout.LOAD] * mobilized_rate(speed, slip)
                 u, v, w = u / speed, v / speed, w / speed
             elif abs(a) < 0.8:
                 size = math.sqrt(b * b + c * c)
