@@ -24,9 +24,22 @@ STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 """Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
 pair whose impact is due (-1: none)."""
 
-ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, ACTS, ALTERED, CRAWLED, SETTLES, WATCHED, COUNTS = range(
-    8, 22
-)
+(
+    ADAPTIVE,
+    ORDER,
+    LOCAL,
+    LAST_STAGE,
+    CONTROLS,
+    HALVES,
+    HELD,
+    SWAPPED,
+    ACTS,
+    ALTERED,
+    CRAWLED,
+    SETTLES,
+    WATCHED,
+    COUNTS,
+) = range(8, 22)
 """Properties of solver and island (system.Stepper); whether a body rests on a local contact (channels.HOLDS); whether
 the arrays of the step's start and end are swapped, for the end of a step is the next one's start; whether there are
 kernels that act after steps (Assembly.after_step), and whether they changed anything after the last one; successive

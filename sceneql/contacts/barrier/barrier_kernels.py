@@ -1,8 +1,8 @@
 # mypy: ignore-errors
 """The barrier of a gap, and smooth Coulomb friction (Li, Ferguson, Schneider et al. 2020, ACM Trans. Graph. 39, 49).
 
-The energy over area is stiffness * gap * b(s) with b(s) = -(s - 1)^2 ln s, s the distance over the gap: 0 from s = 1 on,
-and without bound as s goes to 0.
+The energy over area is stiffness * gap * b(s) with b(s) = -(s - 1)^2 ln s, s the distance over the gap: 0 from s = 1
+on, and without bound as s goes to 0.
 """
 
 import math

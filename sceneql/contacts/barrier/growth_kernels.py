@@ -1,8 +1,6 @@
 # mypy: ignore-errors
 """Distances of the pairs that are listed."""
 
-import math
-
 from numba import types
 
 from sceneql.compiled.kernels import lean

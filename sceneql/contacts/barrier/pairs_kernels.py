@@ -1,8 +1,8 @@
 # mypy: ignore-errors
 """Pairs of a vertex and a triangle and of two edges of skins: which are near, and what they are like.
 
-All pairs within gap + 2 margin are listed, in the order of their numbers. They hold until a vertex has gone further than
-the margin, the mean motion of all vertices aside.
+All pairs within gap + 2 margin are listed, in the order of their numbers. They hold until a vertex has gone further
+than the margin, the mean motion of all vertices aside.
 """
 
 import math
@@ -73,7 +73,7 @@ def gone(y, floats, ints):
 def cell(ints, size, x, y, z):
     """The cell of the hashed grid that a place lies in."""
     i, j, k = math.floor(x / size), math.floor(y / size), math.floor(z / size)
-    return (int(i) * 73856093 ^ int(j) * 19349663 ^ int(k) * 83492791) % ints[layout.CELLS]
+    return (i * 73856093 ^ j * 19349663 ^ k * 83492791) % ints[layout.CELLS]
 
 
 @lean_inlined
@@ -100,7 +100,11 @@ def fill(floats, ints, size, edges):
             k = count - 1 - m if turn == 1 else m
             a = at + 3 * (end(ints, k, 0) if edges else k)
             b = at + 3 * (end(ints, k, 1) if edges else k)
-            x, y, z = 0.5 * (floats[a] + floats[b]), 0.5 * (floats[a + 1] + floats[b + 1]), 0.5 * (floats[a + 2] + floats[b + 2])
+            x, y, z = (
+                0.5 * (floats[a] + floats[b]),
+                0.5 * (floats[a + 1] + floats[b + 1]),
+                0.5 * (floats[a + 2] + floats[b + 2]),
+            )
             c = cell(ints, size, x, y, z)
             if turn == 0:
                 floats[grid + c] += 1.0
@@ -141,9 +145,9 @@ def gather(floats, ints, reach, edges):
         i, j, k = i + 1, j + 1, k + 1
         z0, z1 = min(floats[i], min(floats[j], floats[k])) - reach, max(floats[i], max(floats[j], floats[k])) + reach
         mine = found
-        p0, p1 = int(math.floor((x0 - longest) / size)), int(math.floor((x1 + longest) / size))
-        q0, q1 = int(math.floor((y0 - longest) / size)), int(math.floor((y1 + longest) / size))
-        r0, r1 = int(math.floor((z0 - longest) / size)), int(math.floor((z1 + longest) / size))
+        p0, p1 = math.floor((x0 - longest) / size), math.floor((x1 + longest) / size)
+        q0, q1 = math.floor((y0 - longest) / size), math.floor((y1 + longest) / size)
+        r0, r1 = math.floor((z0 - longest) / size), math.floor((z1 + longest) / size)
         for p in range(p0, p1 + 1):
             for q in range(q0, q1 + 1):
                 for r in range(r0, r1 + 1):
@@ -155,7 +159,11 @@ def gather(floats, ints, reach, edges):
                         if (edges and m <= f) or d == a or d == b or d == c or e == a or e == b or e == c:
                             continue
                         u, v = at + 3 * d, at + 3 * e
-                        mx, my, mz = 0.5 * (floats[u] + floats[v]), 0.5 * (floats[u + 1] + floats[v + 1]), 0.5 * (floats[u + 2] + floats[v + 2])
+                        mx, my, mz = (
+                            0.5 * (floats[u] + floats[v]),
+                            0.5 * (floats[u + 1] + floats[v + 1]),
+                            0.5 * (floats[u + 2] + floats[v + 2]),
+                        )
                         # A place in another cell of the same hash is found there.
                         if math.floor(mx / size) != p or math.floor(my / size) != q or math.floor(mz / size) != r:
                             continue

@@ -1,5 +1,7 @@
 # mypy: ignore-errors
-"""How far skins may go before they meet: additive continuous detection (Li, Kaufman & Jiang 2021, ACM Trans. Graph. 40).
+"""How far skins may go before they meet, by additive continuous detection.
+
+Source: Li, Kaufman & Jiang (2021), Codimensional incremental potential contact, ACM Trans. Graph. 40, 170.
 """
 
 import math
@@ -31,7 +33,11 @@ def advance(y, changed, floats, ints, m, edges, part):
         p = ints[vertex(ints, node(floats, ints, m, edges, k))]
         for c in range(3):
             floats[at + 3 * k + c] = y[p + c]
-        u, v, w = u + 0.25 * (changed[p] - y[p]), v + 0.25 * (changed[p + 1] - y[p + 1]), w + 0.25 * (changed[p + 2] - y[p + 2])
+        u, v, w = (
+            u + 0.25 * (changed[p] - y[p]),
+            v + 0.25 * (changed[p + 1] - y[p + 1]),
+            w + 0.25 * (changed[p + 2] - y[p + 2]),
+        )
     first = second = 0.0
     for k in range(4):
         p = ints[vertex(ints, node(floats, ints, m, edges, k))]
@@ -44,7 +50,11 @@ def advance(y, changed, floats, ints, m, edges, part):
     way = first + second
     if way == 0.0:
         return part
-    d = edge_edge(floats, at, at + 3, at + 6, at + 9)[0] if edges else point_triangle(floats, at, at + 3, at + 6, at + 9)[0]
+    d = (
+        edge_edge(floats, at, at + 3, at + 6, at + 9)[0]
+        if edges
+        else point_triangle(floats, at, at + 3, at + 6, at + 9)[0]
+    )
     least, done = LEFT * d, 0.0
     for _ in range(MOST):
         if way * (part - done) <= d - least:
@@ -55,7 +65,11 @@ def advance(y, changed, floats, ints, m, edges, part):
             floats[at + 3 * k] = y[p] + done * (changed[p] - y[p] - u)
             floats[at + 3 * k + 1] = y[p + 1] + done * (changed[p + 1] - y[p + 1] - v)
             floats[at + 3 * k + 2] = y[p + 2] + done * (changed[p + 2] - y[p + 2] - w)
-        d = edge_edge(floats, at, at + 3, at + 6, at + 9)[0] if edges else point_triangle(floats, at, at + 3, at + 6, at + 9)[0]
+        d = (
+            edge_edge(floats, at, at + 3, at + 6, at + 9)[0]
+            if edges
+            else point_triangle(floats, at, at + 3, at + 6, at + 9)[0]
+        )
         if d <= 2.0 * least:
             break
     return done

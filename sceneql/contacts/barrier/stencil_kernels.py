@@ -49,7 +49,12 @@ def stencil(y, floats, ints, m, edges):
     The distance is infinite where it is beyond the gap. Of edges that are nearly parallel the share of the barrier is
     below 1; its slope is that by the square of their vector product.
     """
-    i, j, k, n = (node(floats, ints, m, edges, 0), node(floats, ints, m, edges, 1), node(floats, ints, m, edges, 2), node(floats, ints, m, edges, 3))
+    i, j, k, n = (
+        node(floats, ints, m, edges, 0),
+        node(floats, ints, m, edges, 1),
+        node(floats, ints, m, edges, 2),
+        node(floats, ints, m, edges, 3),
+    )
     a, b, c, d = vertex(ints, i), vertex(ints, j), vertex(ints, k), vertex(ints, n)
     p, q, r, s = ints[a], ints[b], ints[c], ints[d]
     gap = floats[ints[layout.NUMBERS] + layout.GAP]
@@ -76,7 +81,12 @@ def stencil(y, floats, ints, m, edges):
         area = 0.25 * (floats[areas + int(floats[at])] + floats[areas + int(floats[at + 1])])
         x, y_, z = product(y, p, q, r, s)
         across = x * x + y_ * y_ + z * z
-        i, j, k, n = (node(floats, ints, m, edges, 0), node(floats, ints, m, edges, 1), node(floats, ints, m, edges, 2), node(floats, ints, m, edges, 3))
+        i, j, k, n = (
+            node(floats, ints, m, edges, 0),
+            node(floats, ints, m, edges, 1),
+            node(floats, ints, m, edges, 2),
+            node(floats, ints, m, edges, 3),
+        )
         fade = PARALLEL * square(floats, rest + 3 * i, rest + 3 * j) * square(floats, rest + 3 * k, rest + 3 * n)
         if across < fade:
             part = across / fade

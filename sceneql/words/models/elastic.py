@@ -167,9 +167,9 @@ class Elastic(Model):
 
         from sceneql.bodies.elements import hold as holding
         from sceneql.bodies.elements.element_mesh import worst_angle
+        from sceneql.bodies.elements.skin import triangles
         from sceneql.bodies.elements.strain import Inertia, add_mass_damping, add_strain, density_of
         from sceneql.bodies.elements.strain_outputs import probe
-        from sceneql.bodies.elements.skin import triangles
         from sceneql.bodies.filling.tetrahedra import edges
         from sceneql.shapes.placement import rotation_matrix
         from sceneql.system import Skin
