@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from sceneql.island.breakpoint_table import BreakpointTable
+from sceneql.system.channels import ARRAYS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -97,6 +98,14 @@ class System:
 
     names: tuple[tuple[int, int, Callable[[int], str]], ...] = ()
     """Offset, count and names by number of entries that have names of their own."""
+
+    def after(self, floats: Floats) -> Floats:
+        """The floats with which it goes on from those of the same island before it had more places for slopes."""
+        import numpy as np
+
+        arrays = len(ARRAYS) * len(self.y)
+        kept = len(floats) - arrays
+        return np.concatenate([floats[:kept], self.floats[kept : len(self.floats) - arrays], floats[kept:]])
 
     def name(self, index: int) -> str:
         """The name of an entry of y, as a state of equations has one; else empty."""

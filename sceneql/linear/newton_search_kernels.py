@@ -54,8 +54,8 @@ from sceneql.linear.stage_kernels import (
     solve_stage,
 )
 
-MOST = 120
-"""Largest number of updates."""
+MOST, MOST_APART = 120, 400
+"""Largest number of updates; of such where surfaces are kept apart, whose friction sticks and slips pair by pair."""
 WATCHED = 20
 """Whole updates that need not bring less; none where surfaces are kept apart."""
 SLOWED = 0.5
@@ -147,7 +147,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     slow = failing = since = 0
     patience = TRUE_AFTER
     before = before_mean = 0.0
-    for _ in range(MOST):
+    for _ in range(MOST_APART if has_limit else MOST):
         while stale:
             floats[channels.NEWTON] = a * a
             floats[channels.POSITIVE] = 1.0 if positive else 0.0

@@ -159,19 +159,16 @@ class March:
         system = self.system.grown(self.floats)
         if system is None:
             return False
-        arrays = len(channels.ARRAYS) * len(system.y)
-        floats, settings, numbers, work = self.floats, self._settings, self._numbers, self._work
-        self.floats = system.floats.copy()
-        self.floats[: len(floats) - arrays] = floats[: len(floats) - arrays]
-        self.floats[-arrays:] = floats[-arrays:]
-        self.system = system
+        memory, method = (self._settings, self._numbers, self._work), self._engaged.method
+        self.floats, self.system = system.after(self.floats), system
         self._engage(self._engaged)
         self.statistics.orderings += 1
+        counts = (len(method.settings), len(method.numbers), self._kept)
+        for new, old, count in zip((self._settings, self._numbers, self._work), memory, counts, strict=True):
+            if self._kept:
+                new[:count] = old[:count]
         if self._kept:
-            method = self._engaged.method
-            self._settings[1 : len(method.settings)] = settings[1 : len(method.settings)]
-            self._numbers[: len(method.numbers)] = numbers[: len(method.numbers)]
-            self._work[: self._kept] = work[: self._kept]
+            self._settings[0] = 0.0
         return True
 
     def _measure(self, prepared: Prepared) -> None:

@@ -1,1 +1,1 @@
-"""Contact by a barrier: skins of solids that nothing passes (incremental potential contact, Li et al. 2020)."""
+"""Skins nothing passes."""

@@ -9,7 +9,7 @@ from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import barrier, friction_potential
 from sceneql.contacts.barrier.pairs_kernels import known
 from sceneql.contacts.barrier.skins_kernels import sliding
-from sceneql.contacts.barrier.stencil_kernels import listed, stencil
+from sceneql.contacts.barrier.weights_kernels import listed, stencil
 from sceneql.system.signatures_kernels import ENERGY
 
 

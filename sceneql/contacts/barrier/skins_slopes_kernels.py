@@ -12,7 +12,7 @@ from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import mobilized, mobilized_rate, steepness
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
 from sceneql.contacts.barrier.skins_kernels import sliding
-from sceneql.contacts.barrier.stencil_kernels import listed, node, stencil
+from sceneql.contacts.barrier.weights_kernels import listed, node, stencil
 from sceneql.system.signatures_kernels import TERM
 
 

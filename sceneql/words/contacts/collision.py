@@ -182,7 +182,7 @@ class Collision(Contact):
         """Add the barrier between elastic solids and objects, unless the script asks for masses that collide."""
         if self.mode in ("exact", "local"):
             return False
-        from sceneql.contacts.barrier.skins import assemble
+        from sceneql.contacts.barrier.barrier_contact import assemble
 
         if self.restitution.span is not None:
             help = "leave it out; mode `local` has one, of the nodes as masses"

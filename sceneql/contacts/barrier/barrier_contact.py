@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.contacts.barrier.objects import add_objects
-from sceneql.contacts.barrier.pairs import add_pairs
+from sceneql.contacts.barrier.standing import add_objects
+from sceneql.contacts.barrier.skin_pairs import add_pairs
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:

@@ -82,7 +82,7 @@ def _must_be_apart(
     bodies: Bodies, refs: Sequence[Ref], places: Floats, nodes: Any, ints: Any, gap: float, assembly: Assembly
 ) -> None:
     """Raise ScriptError where a node of the skin starts on or in an object."""
-    from sceneql.contacts.barrier.start_kernels import nearest
+    from sceneql.contacts.barrier.nearest_node_kernels import nearest
 
     d, node, other = nearest(assembly.start(), assembly.numbers(), np.array(ints, dtype=np.int64))
     if d > 0.0:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.contacts.barrier import pairs_layout as layout
-from sceneql.contacts.barrier.objects import areas_of
+from sceneql.contacts.barrier.standing import areas_of
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
