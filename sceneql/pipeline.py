@@ -110,7 +110,7 @@ def render(
             with failing_itself(name, now, graph.tasks[name].span):
                 sinks[name] = kind.open(tools[name])
         wanted = {name: set(at) for name, at in times.items()}
-        from sceneql.run.never_drawn import missing
+        from sceneql.run.never_drawn import decided_by_rounding, missing
         from sceneql.run.run import Run
         from sceneql.run.watch import Watch
 
@@ -148,7 +148,8 @@ def render(
         raise
     finally:
         gc.unfreeze()
-    report.warnings = (*missing(report.present, graph.tasks), *watch.warnings(), *run.warnings())
+    report.warnings = (*missing(report.present, graph.tasks), *decided_by_rounding(report.rounded, graph.tasks))
+    report.warnings += (*watch.warnings(), *run.warnings())
     report.conserved = watch.account()
     seconds, count = _compiled()
     report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]

@@ -39,6 +39,8 @@ class Report:
     steps: int = 0
     present: dict[str, str] = field(default_factory=dict)
     """Implicit objects that were drawn, and what none of their values was in any frame; nothing where some may be."""
+    rounded: dict[str, float] = field(default_factory=dict)
+    """Implicit objects in pictures with undecided pixels: in which share of their bounds rounding decides."""
     warnings: tuple[Diagnostic, ...] = ()
     conserved: list[str] = field(default_factory=list)
     """For each island that tells an energy, how far it drifted; momentum where it is conserved."""
@@ -119,7 +121,7 @@ class Tools:
         """The scene from a camera, by default the output's own; None before the last part of an exposure."""
         from renderers.develop import develop
         from renderers.drafts import coarser, enlarged
-        from sceneql.run.never_drawn import look, solids
+        from sceneql.run.never_drawn import look, look_at_rounding, solids
 
         renderer = self._renderer(output)
         arrangement = self._arrangement(output, moment, camera, panel)
@@ -133,6 +135,7 @@ class Tools:
         asked = solids(self.graph.drawn[self.name], self.graph.tasks)
         look(frame.shapes, asked, self.graph.tasks, self.report.present)
         if picture.undecided:
+            look_at_rounding(frame.shapes, self.report.rounded)
             counts = self.report.undecided.setdefault(self.name, {})
             counts[frame.index] = counts.get(frame.index, 0) + picture.undecided
         linear = picture.linear
@@ -305,6 +308,7 @@ def frame_of(
     from sceneql.shapes.color import linear
 
     drawn = shapes_of(graph.drawn[output], moment, index)  # first: what cannot be drawn is no failure of the camera's
+    moment = replace(moment, shown=drawn.shapes)
     eye = graph.tasks[camera or graph.cameras[output]]
     with failing_as(eye.name, moment.time, eye.span):
         view = cast(Camera, eye.kind).view(size, moment)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from sceneql.linear import cone_kernels
-from sceneql.linear import cone_rows_kernels as rows
+from sceneql.linear import cone_layout_kernels as rows
 from sceneql.linear.cones import cone_program
 
 CORNERS = np.array([(x, y) for x in (-0.5, 0.5) for y in (-0.5, 0.5)])

@@ -70,6 +70,9 @@ class FakeMoment:
     def bounds(self, names: Iterable[str]) -> tuple[Any, Any]:
         return np.array(self.box[0], dtype=float), np.array(self.box[1], dtype=float)
 
+    def around(self) -> tuple[Any, Any] | None:
+        return None
+
     def outline(self) -> Any:
         return np.array(list(product(*zip(*self.box, strict=True))), dtype=float)
 

@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 
 from cone_scenes import GRAVITY, Stack, impulses, solve, velocities, write_body, write_contact
 from sceneql.linear import cone_kernels as cones
-from sceneql.linear import cone_rows_kernels as rows
+from sceneql.linear import cone_layout_kernels as rows
 from sceneql.linear.cones import cone_program
 from sceneql.linear.multifrontal import plan
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.random import Generator, Philox
 
+import sceneql.system.channels as channels
 from runs import watch
 from solids import Solid
 
@@ -232,3 +233,22 @@ def test_what_is_turned_inside_out_comes_back(tmp_path):
     mirrored = solid.places * [1.0, 1.0, -0.1]
     assert solid.read("inverted", mirrored) == len(solid.mesh.cells)
     assert np.sum(solid.forces(mirrored) * (solid.places - mirrored)) > 0
+
+
+def test_equilibrium_follows_a_load_that_grows(tmp_path):
+    """Though a load's work, which is counted with the state, is no part of a rest."""
+    from sceneql.pipeline import load
+    from sceneql.run.run import Run
+
+    loads = "loads: {tip: {where: x > 0.49, force: [0 N, time * 1 N/s, 0 N]}}"
+    fields = f"{{{BAR}, element: p2, hold: {{wall: {{where: x < -0.49}}}}, {loads}}}"
+    path = tmp_path / "scene.yaml"
+    path.write_text(f"clock: {{end: 1 s}}\nmodels: {{body: {{elastic: {fields}}}}}\nsolvers: {{main: equilibrium}}\n")
+    run = Run(load(path, pruned=False))
+    *_, last = run.moments([0, 0.5, 1])
+    solid = Solid(tmp_path, fields, time=1.0)
+    places, _ = solid.rest(last.read("body", "positions"))
+    assert last.read("body", "positions") == pytest.approx(places, abs=1e-8)
+    assert last.read("body", "wall.force") == pytest.approx([0.0, -1.0, 0.0], abs=1e-7)
+    assert np.ptp(places[:, 1]) > 0.25
+    assert run.islands[0].march.floats[channels.RATES] < 2000

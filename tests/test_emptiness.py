@@ -11,7 +11,7 @@ from meshes import tape_of as plain_tape
 from moment import IDENTITY, FakeMoment, const, formula
 from sceneql import pipeline
 from sceneql.failure import RunFailure
-from sceneql.field.tape.emptiness import nowhere_defined, proved_empty
+from sceneql.field.tape.emptiness import nowhere_defined, proved_empty, why_empty
 from sceneql.field.tape.tape_solid import field_values
 from sceneql.shapes.solid import traced
 from sceneql.words.objects.implicit import Implicit, Within
@@ -111,3 +111,25 @@ def test_a_formula_that_is_defined_nowhere_fails_at_its_own_place(tmp_path):
         pipeline.render(pipeline.load(tmp_path / "s.yaml"), folder=tmp_path)
     assert failure.value.part == "nothing.field"
     assert failure.value.span.text == "sqrt(-1 - x^2)"
+
+
+THIN = "(x^2 + y^2 + z^2 - 0.5)^2 - 1e-14"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (THIN, ""),
+        ("(x^2 + y^2 + z^2 - 0.5)^2", "nowhere negative"),
+        ("x^2 + y^2 + z^2 - 1e-14", "shallower than 8e-13 wherever it is negative"),
+        ("x^2 + y^2 + z^2 - 0.5", ""),
+    ],
+)
+def test_a_solid_that_rays_meet_is_never_told_to_be_empty(text, told):
+    assert why_empty(*tape_of(text)) == told
+
+
+def test_a_shell_thinner_than_its_rounding_is_drawn_without_a_word(tmp_path):
+    (tmp_path / "s.yaml").write_text(SCENE.replace("x^2 + 1", THIN))
+    report = pipeline.render(pipeline.load(tmp_path / "s.yaml"), folder=tmp_path)
+    assert [w.message.split("'")[1] for w in report.warnings] == ["apart"]

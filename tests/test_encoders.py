@@ -118,6 +118,35 @@ def test_a_row_of_pictures_is_numbered_and_what_was_made_is_kept(tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["row.0000.png", "row.0001.png", "row.0002.png"]
 
 
+def test_files_are_as_small_as_compression_makes_them_and_their_pixels_the_same(tmp_path):
+    sizes = []
+    for compression in (0, 1, 9):
+        writer = png.Writer(tmp_path / f"{compression}.png", numbered=False, comment="", compression=compression)
+        picture = next(pictures(1))
+        writer.write(picture)
+        (file,) = writer.close()
+        sizes.append(file.stat().st_size)
+        with Image.open(file) as image:
+            assert np.array_equal(np.asarray(image), picture)
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes[0] > picture.size > 2 * sizes[1] > 2 * sizes[2]
+
+
+@pytest.mark.parametrize("threads", ["1", "2"])
+def test_a_picture_that_cannot_be_written_beside_the_next_one_is_told_and_the_others_are_kept(
+    tmp_path, monkeypatch, threads
+):
+    monkeypatch.setenv("SCENEQL_THREADS", threads)
+    writer = png.Writer(tmp_path / "row.png", numbered=True, comment="")
+    first, second = pictures(2)
+    writer.write(first)
+    (tmp_path / "row.0001.png").mkdir()  # in its way
+    with pytest.raises(OSError, match="directory"):
+        [lambda: writer.write(second), lambda: (writer.write(second), writer.close())][int(threads) - 1]()
+    assert writer.abort() == [tmp_path / "row.0000.png"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["row.0000.png", "row.0001.png"]
+
+
 def test_writing_pictures_imports_no_video_library(tmp_path):
     code = (
         "import sys, pathlib, numpy; from renderers.encoders.png import Writer;"

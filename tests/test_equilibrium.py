@@ -13,6 +13,8 @@ from sceneql.run.run import IslandRun
 G = 9.81
 HALF, HEIGHT, STIFFNESS = 1.0, 0.1, 1e4
 """Of von Mises's truss: half its span and its height [m], the stiffness of its two bars [N/m]."""
+AWAY, ACROSS = 50.0, 1e3
+"""How far to both sides springs hold it in its plane [m], and their stiffness [N/m]."""
 
 
 def run_of(folder, script, end=1.0, solver="equilibrium"):
@@ -73,13 +75,16 @@ def test_a_chain_hangs_as_its_springs_pull(tmp_path, count, rest, stiffness, dam
 
 def truss(load):
     sides = {"a": (f"{-HALF} 0 0", FIXED), "b": (f"{HALF} 0 0", FIXED), "c": (f"0 {HEIGHT} 0", "")}
+    sides |= {"front": (f"0 {HEIGHT} {AWAY}", FIXED), "back": (f"0 {HEIGHT} {-AWAY}", FIXED)}
     bars = [f"{{between: [{side}, c], stiffness: {STIFFNESS} N/m}}" for side in "ab"]
+    bars += [f"{{between: [{side}, c], stiffness: {ACROSS} N/m}}" for side in ("front", "back")]
     return net(sides, bars) + f"\nforces: {{push: {{force: {{components: '[0, {load}, 0]'}}}}}}"
 
 
 def resisted(height):
-    """The load [N] under which the truss stands so high."""
-    return 2 * STIFFNESS * (np.hypot(HALF, HEIGHT) / np.hypot(HALF, height) - 1) * height
+    """The load [N] under which the truss stands so high: by its bars, and by the springs that keep it in its plane."""
+    bars = (np.hypot(HALF, HEIGHT) / np.hypot(HALF, height) - 1) * height
+    return 2 * STIFFNESS * bars + 2 * ACROSS * (1 - AWAY / np.hypot(AWAY, HEIGHT - height)) * (HEIGHT - height)
 
 
 def test_von_mises_truss_follows_its_exact_curve(tmp_path):

@@ -48,10 +48,12 @@ def joined(records, values, x, y, places):
 
 def test_windows_join_the_pixels_of_one_surface(records):
     """Means along x, then y, and the sky's over wider windows, are those of sums pixel by pixel."""
+    from renderers.tracing.camera_kernels import TILE
     from renderers.tracing.filter.filter_kernels import deepen, widen
     from renderers.tracing.filter.planes_kernels import HALO, KEYS, LANES, WIDE, lay_out
     from renderers.tracing.filter.spread_kernels import ROOM, spread_sky
     from renderers.tracing.record_kernels import OWNER
+    from renderers.tracing.tiles_kernels import LOSSY
 
     count, chunks = WIDTH * HEIGHT, -(-WIDTH // LANES)
     visibility = np.random.default_rng(1).uniform(size=(count, COLUMNS)).astype(np.float32)
@@ -59,10 +61,11 @@ def test_windows_join_the_pixels_of_one_surface(records):
     sums = np.full((HEIGHT, chunks * (1 + COLUMNS) * LANES), 7.0, dtype=np.float32)
     means = np.full((HEIGHT, chunks * (1 + COLUMNS) * WIDE), 7.0, dtype=np.float32)
     fine = np.zeros((count, COLUMNS), dtype=np.float32)
-    lay_out(0, HEIGHT, WIDTH, records, visibility, planes)
-    widen(0, HEIGHT, COLUMNS, planes, sums, np.empty(LANES, dtype=np.float32))
-    deepen(0, HEIGHT, COLUMNS, planes, sums, means, np.empty(LANES, dtype=np.float32))
-    spread_sky(0, HEIGHT, WIDTH, COLUMNS, planes, means, fine, np.empty(ROOM, dtype=np.float32))
+    marks, busy = np.full((2, -(-HEIGHT // TILE), -(-WIDTH // TILE)), LOSSY, dtype=np.int8)
+    lay_out(0, HEIGHT, WIDTH, marks, records, visibility, planes)
+    widen(0, HEIGHT, COLUMNS, marks, planes, sums, np.empty(LANES, dtype=np.float32))
+    deepen(0, HEIGHT, COLUMNS, marks, planes, sums, means, np.empty(LANES, dtype=np.float32))
+    spread_sky(0, HEIGHT, WIDTH, COLUMNS, busy, planes, means, fine, np.empty(ROOM, dtype=np.float32))
 
     ones = np.concatenate([np.ones((count, 1)), visibility], axis=1)
     ends = [(j, 0.5 if abs(j) == 4 else 1.0) for j in range(-4, 5)]

@@ -25,6 +25,13 @@ FIELDS = [
     "max(x^2 + y^2 + z^2 - 1, 0.5*(-1)^(floor(3*x) + floor(3*y)))",
 ]
 """Steps of every operation that has some, alone and together."""
+STAIRS = [
+    "max(round(3*x)^2 + round(3*y)^2 + round(3*z)^2 - 4, x^2 + y^2 + z^2 - 2)",
+    "max(floor(2*x) + floor(2*y) + floor(2*z), x^2 + y^2 + z^2 - 2)",
+    "max(0.25*round(3*x)*round(3*y) - 0.5*sign(z), x^2 + y^2 + z^2 - 2)",
+    "max(where(z > 0.3, 0, where(x + y > 0.2, 1, -1)), x^2 + y^2 + z^2 - 2)",
+]
+"""Fields that are exactly 0 on blocks, which are outside, before others where they are below."""
 TIMES = np.linspace(0, 1, 4001)
 """At which a field is sampled along a ray."""
 
@@ -37,7 +44,7 @@ def rays(seed, count=25):
     return origins, 2.0 * (target - origins)
 
 
-@pytest.mark.parametrize("text", FIELDS)
+@pytest.mark.parametrize("text", FIELDS + STAIRS)
 @settings(max_examples=20, deadline=None)
 @given(st.integers(0, 10**6))
 def test_rays_across_jumps_are_decided_as_samples_tell(text, seed):

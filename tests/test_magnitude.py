@@ -53,6 +53,27 @@ def test_a_factor_changes_no_pixel(tmp_path, field, mode):
         assert others == said
 
 
+BALL = "x^2 + y^2 + z^2 - 0.5"
+
+
+@pytest.mark.parametrize(
+    "field",
+    [
+        "1e300*(1e10*(x^2 + y^2 + z^2) - 5e9)",
+        "1e-300*(x^2 + y^2 + z^2) - 5e-301",
+        "(1e154*x)^2 + (1e154*y)^2 + (1e154*z)^2 - 5e307",
+        "-(5e307 - 1e308*x^2 - 1e308*y^2 - 1e308*z^2)/1e-10",
+        f"max(1e300*(1e10*({BALL})), 1e-300*({BALL}))",
+    ],
+)
+def test_numbers_that_would_overflow_lose_no_hit(tmp_path, field):
+    plain, said = drawn(tmp_path / "plain", BALL)
+    picture, others = drawn(tmp_path / "large", field)
+    assert plain.any()
+    assert np.abs(picture.astype(int) - plain).max() <= 1
+    assert others == said
+
+
 def test_millimeters_are_drawn_and_meshed_as_meters_are(tmp_path):
     fields = "x^6 + y^6 + z^6 - 700^6", "x^6 + y^6 + z^6 - 0.7^6"
     small, _ = drawn(tmp_path / "mm", fields[0], unit=0.001, ball=1000.0)

@@ -74,7 +74,7 @@ objects:
 @pytest.mark.parametrize(
     ("name", "line", "message"),
     [
-        ("never", 4, "its field is nowhere negative in its bounds, so it has no surface"),
+        ("never", 4, "its field is nowhere negative in its bounds, so it has no surface that cells could meet"),
         ("undefined", 5, "its field is nowhere defined in its bounds"),
         ("speck", 6, "no surface was met by cells of 1 m; a smaller --cell finds smaller things"),
         ("pointer", 7, "`arrow` has no inside"),

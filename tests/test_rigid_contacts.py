@@ -165,9 +165,9 @@ def test_bodies_hand_momentum_on_and_rest_tells_its_forces(tmp_path):
 
 def test_what_is_not_covered_is_told_at_its_place(tmp_path):
     head = "models: {a: {rigid: {of: o}}}\nforces: [gravity]\noutputs: {t: {record: {of: [a.energy]}}}\n"
-    ring = "objects: {o: torus, floor: plane}\ncontacts: [collision]\n"
+    endless = "objects: {o: box, floor: {union: {of: [plane, sphere]}}}\ncontacts: [collision]\n"
     exact = "objects: {o: box, floor: plane}\ncontacts: {c: {collision: {mode: exact}}}\n"
-    for script, words in ((ring, "`torus` has no convex shape"), (exact, "mode `local`")):
+    for script, words in ((endless, "does not collide with rigid bodies"), (exact, "mode `local`")):
         path = tmp_path / "scene.yaml"
         path.write_text(head + script)
         assert not complaint(tmp_path, head + script)
@@ -244,3 +244,22 @@ solvers: {main: {semi_implicit_euler: {step: 5 ms}}}
     ((start,), (end,)) = runs.watch(tmp_path, script, [0, 0.2], "it.positions", pruned=False)
     assert len(start) == 300
     assert np.abs(end - start).max() < 1e-12
+
+
+def test_masses_and_bodies_in_one_contact_are_refused(tmp_path):
+    script = """objects: {o: {box: {position: 0 0.5 0 m}}, floor: plane}
+models: {it: {rigid: {of: o}}, net: {mass_spring: {masses: {a: {position: 0 2 0 m}}}}}
+contacts: {c: {collision: {between: [net, %s]}}}
+outputs: {t: {record: {of: [it.energy, net.energy]}}}
+"""
+    for other in ("it", "o", "o, floor"):
+        assert "masses do not touch rigid bodies, and 'net' has masses" in complaint(tmp_path, script % other)
+    assert not complaint(tmp_path, script % "floor")
+
+
+def test_a_body_may_be_named_by_its_object_too(tmp_path):
+    objects, bodies = stack([1])
+    ((places,),) = watch(
+        tmp_path, objects, bodies, [0.1], "it.positions", law="restitution: 0, between: [it, o0, floor]"
+    )
+    np.testing.assert_allclose(places, [[0, 0.5, 0]], atol=1e-12)

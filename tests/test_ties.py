@@ -214,7 +214,7 @@ clock: {{end: 3 s}}
 {BOX}
 models: {{it: {{rigid: {{of: box, mass: 2 kg}}}}}}
 forces: [gravity]
-ties: {{rail: {{slider: {{between: [it, world], axis: 1 1 0, stiffness: 50 N/m, rest: 0.1 m, drive: 3 N}}}}}}
+ties: {{rail: {{slider: {{between: [it, world], axis: 1 1 0, stiffness: 50 N/m, rest: 0.1 m, motor: {{force: 3 N}}}}}}}}
 solvers: {{main: {{dop853: {{tolerance: 1e-12}}}}}}
 """
     rows = watch(tmp_path, script, [0, 1.3, 3], "rail.shift", "rail.speed", "it.position", "it.rotation", "it.energy")

@@ -11,7 +11,6 @@ def certified(module: str) -> tuple[str, ...]:
     return (
         "sceneql.field.enclose.enclosure_kernels",
         module,
-        "renderers.tracing.solids.occupancy_kernels",
         "renderers.tracing.solids.implicit",
         "renderers.tracing.solids.implicit_kernels",
     )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from renderers.tracing import layout
+from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.filter.filter_kernels import deepen, widen
 from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE, lay_out
@@ -19,6 +20,7 @@ from renderers.tracing.picture import Picture, over_rows
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.solids.packet_choice import lender, packets_for
 from renderers.tracing.sprites import over
+from renderers.tracing.tiles_kernels import choose, reach
 from renderers.tracing.waves import Waves
 
 if TYPE_CHECKING:
@@ -40,10 +42,17 @@ class Buffers:
         self.planes = np.zeros((height, chunks * (KEYS + columns * WIDE)), dtype=np.float32)
         self.sums = np.zeros((height, chunks * (1 + columns) * LANES), dtype=np.float32)
         self.means = np.zeros((height, chunks * (1 + columns) * WIDE), dtype=np.float32)
+        bands = -(-height // TILE)
+        self.reached = np.zeros((bands, -(-width // TILE)), dtype=np.int8)
+        self.busy = np.ones_like(self.reached)
+        self.laid, self.chunks = np.ones((2, bands, chunks), dtype=np.int8)
 
 
 _kept: list[Buffers] = []
 """The last picture's buffers: fresh memory costs the system a tenth of a frame's time."""
+
+DOUBTED = 0.01
+"""Share of pixels with undecided roots up to which these are looked at by more rays: each of them takes long."""
 
 
 def _buffers(*shape: int) -> Buffers:
@@ -64,33 +73,38 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
     width, height = frame.view.size
     columns = FIRST_LIGHT + 2 * int(scene.ints[layout.LIGHT_COUNT])
     buffers = _buffers(width, height, columns)
+    reach(scene, buffers.reached)
     counts: list[tuple[int, int]] = []
     together = None if march else packets_for(frame, tolerance)
     with_waves = lender(lambda: Waves(scene, together and together(), rows, columns))
 
     def gather(start: int, stop: int) -> None:
-        out = buffers.records, buffers.radiance, buffers.visibility
+        out = buffers.reached, buffers.busy, buffers.records, buffers.radiance, buffers.visibility
         counts.append(with_waves(lambda w: w.gather(start, stop, *out)))
 
     def refine(start: int, stop: int, *of_layer: Floats) -> None:
         records, visibility, fine = of_layer
-        with_waves(lambda w: w.refine(start, stop, records, visibility, buffers.means, fine))
+        with_waves(lambda w: w.refine(start, stop, buffers.busy, records, visibility, buffers.means, fine))
 
     over_rows(height, gather)
     undecided, seconds = map(sum, zip(*counts, strict=True))
+    choose(buffers.busy, buffers.laid, buffers.chunks)
     for layer in (1, 0) if seconds else (0,):
         _filter(refine, buffers, layer)  # layer 0 last: the edges need its planes
 
     def shade(start: int, stop: int) -> None:
-        shade_rows(scene, start, stop, buffers.records, buffers.fine, buffers.visibility, buffers.radiance)
+        shade_rows(
+            scene, start, stop, buffers.busy, buffers.records, buffers.fine, buffers.visibility, buffers.radiance
+        )
 
     over_rows(height, shade)
     points = subpixels(samples)
+    doubted = undecided if undecided <= DOUBTED * width * height else 0
     linear = np.empty((width * height, 3), dtype=np.float32)
 
     def smooth(start: int, stop: int) -> None:
         light = buffers.records, buffers.radiance, buffers.visibility
-        with_waves(lambda w: w.smooth(start, stop, points, undecided, buffers.planes, *light, linear))
+        with_waves(lambda w: w.smooth(start, stop, points, doubted, buffers.busy, buffers.planes, *light, linear))
 
     over_rows(height, smooth)
     over(frame, buffers.records[0], buffers.radiance, linear)
@@ -102,17 +116,17 @@ def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> N
     """Filter the visibility of a layer's records into buffers.fine."""
     width, height, columns = buffers.shape
     records, visibility, fine = buffers.records[layer], buffers.visibility[layer], buffers.fine[layer]
-    planes, sums, means = buffers.planes, buffers.sums, buffers.means
+    marks, planes, sums, means = buffers.chunks, buffers.planes, buffers.sums, buffers.means
 
     def along(start: int, stop: int) -> None:
-        lay_out(start, stop, width, records, visibility, planes)
-        widen(start, stop, columns, planes, sums, np.empty(LANES, dtype=np.float32))
+        lay_out(start, stop, width, marks, records, visibility, planes)
+        widen(start, stop, columns, marks, planes, sums, np.empty(LANES, dtype=np.float32))
 
     def down(start: int, stop: int) -> None:
-        deepen(start, stop, columns, planes, sums, means, np.empty(LANES, dtype=np.float32))
+        deepen(start, stop, columns, marks, planes, sums, means, np.empty(LANES, dtype=np.float32))
 
     def at_last(start: int, stop: int) -> None:
-        spread_sky(start, stop, width, columns, planes, means, fine, np.empty(ROOM, dtype=np.float32))
+        spread_sky(start, stop, width, columns, buffers.busy, planes, means, fine, np.empty(ROOM, dtype=np.float32))
         refine_rows(start * width, stop * width, records, visibility, fine)
 
     for stage in (along, down, at_last):

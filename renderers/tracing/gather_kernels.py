@@ -8,7 +8,6 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
-from renderers.tracing.camera_kernels import camera_ray
 from renderers.tracing.light.lamps_kernels import mirrored_lamps
 from renderers.tracing.light.light_kernels import backdrop, dielectric, polish, sharpness, sky_radiance, smoothstep
 from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, shade
@@ -16,7 +15,7 @@ from renderers.tracing.light.soft_boxes_kernels import soft_boxes
 from renderers.tracing.light.through_kernels import CLEAR
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted, refracted_spread
-from renderers.tracing.record_kernels import IMAGED, SURFACE, TINT, TRACED, WEIGHT, copy_record, erase, start_of
+from renderers.tracing.record_kernels import IMAGED, SURFACE, TINT, TRACED, WEIGHT, copy_record, start_of
 from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.thin_capsules_kernels import coverage
@@ -59,20 +58,17 @@ capsules, and how many it has met; number of the path's sample in its pixel. Num
 
 
 @part
-def begin(reals, px, py, path, first, second, sample):
-    """Start a path (PATH,) at the camera, through point number ``sample`` of a pixel, (px, py); erase its records."""
-    ox, oy, oz, dx, dy, dz, radius, spread = camera_ray(reals, px, py)
-    path[0], path[1], path[2], path[3], path[4], path[5] = ox, oy, oz, dx, dy, dz
-    path[RADIUS], path[SPREAD] = radius, spread
+def begin(path, ray, cone):
+    """Start a path (PATH,) at the camera by a ``ray`` (6,) and its ``cone``: radius, spread and number in its pixel."""
+    for k in range(6):
+        path[k] = ray[k]
+    path[RADIUS], path[SPREAD], path[SAMPLE] = cone[0], cone[1], cone[2]
     for c in range(3):
         path[LIGHT_WEIGHT + c] = 1.0
         path[GATHERED + c] = 0.0
     path[STRAIGHT], path[KEEP], path[BOUNCE], path[LIVE] = 1.0, 1.0, 0.0, 1.0
-    path[PERSPECTIVE] = 1.0 if spread > 0.0 else 0.0
+    path[PERSPECTIVE] = 1.0 if cone[1] > 0.0 else 0.0
     path[WAITING] = path[DOUBTED] = path[DARK] = path[LAMPS] = path[PAST] = path[LINES] = 0.0
-    path[SAMPLE] = sample
-    erase(first)
-    erase(second)
 
 
 @kernel(types.void(SCENE, SCRATCH, PLACES, ROW, ROW, ROW), _nrt=False, inner=True)
@@ -214,14 +210,14 @@ def advance(scene, scratch, path, first, second, spare):
 
 
 @part
-def light_behind(scene, scratch, asked, path, record, visibility):
+def light_behind(scene, scratch, asked, ways, path, record, visibility):
     """Add the light of a surface beyond a path's records to what it has GATHERED, by QUICK samples, or fewer at lines.
 
     Returns False where the sampled rays have no answers yet.
     """
     line = path[DARK] == FAINT_LINE  # each of a pixel's samples lights it by others
     number, some = (int(path[SAMPLE]), AT_A_LINE) if line else (0, QUICK)
-    if not look_around(scene, scratch, asked, record, number, some, some, visibility):
+    if not look_around(scene, scratch, asked, ways, record, number, some, some, visibility):
         return False
     r, g, b = shade(scene, record, visibility)
     path[GATHERED] += r

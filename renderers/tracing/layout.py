@@ -54,18 +54,22 @@ INDEX, EMISSION, CHECKER, CHECKER_COLOR = 7, 8, 11, 12
 SURFACE_SIZE = 15
 """Offsets in the reals of a surface, and their number."""
 
-EMPTY, MIXED, FULL = range(3)
-"""An occupancy cell: proved outside, undecided, proved inside."""
+EMPTY, MIXED, FULL, UNKNOWN = range(4)
+"""An occupancy cell: proved outside, undecided, proved inside; not looked at, since no ray has come to it yet."""
 
+ITEM_OF = 1
+"""In the rows of a thread's scratch for shapes: a column, of the item of one that packets know."""
 TOLD = 1
-KNOWN, PROBING, REACHED = 1.0, 2.0, 3.0
+KNOWN, PROBING, REACHED, BEYOND = 1.0, 2.0, 3.0, 4.0
 """In the last row of a thread's scratch (scene_kernels.SCRATCH): a column, and its values."""
 WIDE_RADIUS, WIDE_SPREAD, WIDE_FROM = 2, 3, 4
 """In the same row: the cone of a camera's ray, and the distance up to which it is through with thin capsules; all
 are 0 for other rays, the first two also for one that has met its MOST_LINES capsules as wide as its cone."""
-FAR, WANT, ANSWERS = 6, 7, 8
+FAR, WANT, REST_AT, REST_ITEM, REST_LIGHT, ANSWERS = range(6, 12)
 FIRST, ANYWHERE, NOTHING = range(3)
 """Want of a ray: the first hit, any hit, or none, for a ray that misses all boxes."""
-MODE, NEXT, OPEN = range(3)
-PLAIN, ASKING, TELLING = range(3)
+WALKED = -2.0
+"""In place of the REST_ITEM of a ray that meets boxes of sheets or grids: only a walk tells what it hits."""
+MODE, NEXT, OPEN, WAYS, ALONE = range(5)
+PLAIN, ASKING, TELLING, ENDING = range(4)
 """In the head of a list of rays (scene_kernels.ASKED): columns, and the values of MODE."""

@@ -83,9 +83,8 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     if tables.implicits:
         from renderers.tracing.solids.implicit import prepared
 
-        places = [reals_at + place for place in tables.implicits]
         sheets = any(isinstance(shape, seen.Implicit) and shape.within is not None for shape in frame.shapes)
-        scene = prepared(scene, rows, places, sheets=sheets, march=samples > 0, certain=certain)
+        scene = prepared(scene, sheets=sheets, march=samples > 0, certain=certain)
     return scene, rows
 
 
@@ -193,7 +192,7 @@ class Rows:
         self.implicits.append(self._size)
         self._items(index, layout.IMPLICIT if shape.within is None else layout.SHEET, box[:, :6], box)
         ranges = self._tape(shape.tape)
-        ranges.append(self._code(np.full(layout.CELLS**3, layout.MIXED, dtype=np.int32)))
+        ranges.append(self._code(np.full(layout.CELLS**3, layout.UNKNOWN, dtype=np.int32)))
         for other in (shape.paint, shape.within):
             ranges += [0] * (layout.WITHIN - layout.PAINT) if other is None else self._tape(other)
         plan = ray_plan(shape.tape)

@@ -19,7 +19,14 @@ FADE = 0.04
 def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
     """Write the record of a hit item, but for its weight; returns whether the ray comes from its outer side."""
     x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
-    nx, ny, nz, fx, fy, fz, lift, sink, red, green, blue = normal_at(scene, scratch, item, x, y, z)
+    skin = normal_at(scene, scratch, item, x, y, z)
+    return describe_by(scene, item, skin, x, y, z, dx, dy, dz, radius, record)
+
+
+@part
+def describe_by(scene, item, skin, x, y, z, dx, dy, dz, radius, record):
+    """The same for a point, and what ``surface_kernels.normal_at`` says of it."""
+    nx, ny, nz, fx, fy, fz, lift, sink, red, green, blue = skin
     outside = dx * fx + dy * fy + dz * fz <= 0.0
     if not outside:
         nx, ny, nz, lift = -nx, -ny, -nz, sink

@@ -13,7 +13,7 @@ from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import over_rows
 from renderers.tracing.probe_kernels import probe_rows
-from renderers.tracing.scratch import scratch
+from renderers.tracing.scratch import scratch_beside
 from renderers.tracing.solids.packet_choice import lender, packets_for
 
 if TYPE_CHECKING:
@@ -41,10 +41,10 @@ class Lines:
 
     def __init__(self, scene: Scene, packets: Packets | None, rows: int) -> None:
         """``packets`` to intersect solids by, or None; ``rows`` of scratch."""
-        self.scene, self.packets, self.scratch = scene, packets, scratch(rows)
-        self.scratch[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
+        self.scene, self.packets = scene, packets
         pixels = (int(scene.reals[layout.WIDTH]) + TILE) * TILE
         self.asked = np.zeros((1, layout.ANSWERS)) if packets is None else packets.asked(pixels)
+        self.scratch = scratch_beside(self.asked, scene, rows)
 
     def look(self, start: int, stop: int, *out: Any) -> None:
         """As probe_kernels.probe_rows: once, or with packets twice, to collect rays and to use the answers."""

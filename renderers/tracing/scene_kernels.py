@@ -40,14 +40,16 @@ ROW = types.float32[::1]
 SCRATCH = types.float64[:, ::1]
 """Working memory of one thread: rows for root isolation, a row for each shape, the last shape's first, and a last row
 whose first entry counts undecided roots. While its entry TOLD is KNOWN, the rows of implicit shapes begin with their
-first crossing on the current ray, or with NaN. While it is PROBING, an implicit shape or grid counts as hit where a ray
-reaches its box, and TOLD becomes REACHED."""
+first crossing on the current ray, or with NaN, followed by their items. While it is PROBING, implicit shapes and grids
+are passed, and where a ray reaches the box of one TOLD becomes REACHED, or BEYOND for one that packets do not know."""
 ASKED = types.float64[:, ::1]
-"""Rays to be intersected in packets, a row each: origin, direction, length, WANT, and from ANSWERS on the first
-crossings with the implicit solids that packets know (inf: none; NaN: undecided). Row 0 is the head: MODE, the NEXT row,
-whether a ray is OPEN, from ANSWERS on the indices of those shapes. PLAIN: rays are traced at once; ASKING: rays are
-written down, and those that reach boxes of implicit shapes or grids are open, and miss everything; TELLING: rays are
-traced with the answers, in the order in which they were written."""
+"""Rays to be intersected in packets, a row each: origin, direction, length, WANT; the walk past all that packets know,
+as REST_AT, REST_ITEM and REST_LIGHT; and from ANSWERS on the first crossings with the implicit solids that they know
+(inf: none; NaN: undecided). Row 0 is the head: MODE, the NEXT row, whether a ray is OPEN, the number of WAYS of light
+listed, whether packets know all of the scene (they are ALONE), and from ANSWERS on the indices of those shapes. PLAIN:
+rays are traced at once; ASKING: rays are written down, and those that reach boxes of implicit shapes or grids are open,
+and miss everything; TELLING: rays are traced with the answers, in the order in which they were written; ENDING: no rays
+are traced, and what ways of light have brought is summed up, in their order, in which NEXT is the next one."""
 SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i), Scene)
 RAY = (_f,) * 8
 """Types of origin, direction, near and far."""

@@ -6,12 +6,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from renderers.tracing import layout
 from sceneql.field.tape.tape_ops import SCRATCH_COLUMNS
 
 if TYPE_CHECKING:
+    from renderers.tracing.scene_kernels import Scene
     from sceneql.frame import Floats
 
 
 def scratch(rows: int) -> Floats:
     """Working memory of one thread for kernels on a scene."""
     return np.zeros((rows, SCRATCH_COLUMNS))
+
+
+def scratch_beside(asked: Floats, scene: Scene, rows: int) -> Floats:
+    """The same beside a list of rays for packets: the rows of the shapes that these know tell their items.
+
+    They hold no crossings yet. Whether packets know all of the scene is noted in the list.
+    """
+    out = scratch(rows)
+    out[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
+    if asked.shape[1] > layout.ANSWERS:
+        count = int(scene.ints[layout.ITEM_COUNT])
+        items = scene.ints[layout.ITEMS : layout.ITEMS + 4 * count].reshape(count, 4)
+        known = np.flatnonzero(items[:, layout.KIND] == layout.IMPLICIT)
+        out[-2 - items[known, layout.SHAPE], layout.ITEM_OF] = known
+        asked[0, layout.ALONE] = len(known) == count
+    return out

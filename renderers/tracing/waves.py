@@ -1,8 +1,8 @@
 """The stages of a picture that trace rays: rays of a wave are listed first, so that packets can intersect them.
 
-Shadow rays and rays to the sky of a whole band make a wave, and so does each step of all its paths: camera, mirrored
-and refracted rays, with the light on their surfaces. Single are rays that light what hides the sky, and all where no
-shape suits packets.
+The camera's rays of some tiles make a wave, and so do the shadow rays and rays to the sky from what they meet, and each
+step of all their paths: mirrored and refracted rays, with the light on their surfaces. Single are rays that light what
+hides the sky, and all where no shape suits packets.
 """
 
 from __future__ import annotations
@@ -13,13 +13,25 @@ import numpy as np
 
 from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE
-from renderers.tracing.filter.edges_kernels import TRIAL, add_samples, begin_samples, list_edges, look_from_samples
+from renderers.tracing.filter.edges_kernels import TRIAL, add_samples, list_edges, list_samples, look_from_samples
 from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE
 from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
+from renderers.tracing.light.bounce_kernels import WAY, dress_hits, follow_all, look_about, step_all
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.scratch import scratch
-from renderers.tracing.waves_kernels import advance_paths, ask_paths, begin_paths, end_paths, light_paths, look_from
+from renderers.tracing.scratch import scratch_beside
+from renderers.tracing.tiles_kernels import fill_background, mark_busy
+from renderers.tracing.waves_kernels import (
+    advance_paths,
+    ask_paths,
+    describe_hits,
+    end_paths,
+    end_pixels,
+    light_paths,
+    list_pixels,
+    look_from,
+    meet_first,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,10 +43,13 @@ if TYPE_CHECKING:
 
     Array = NDArray[Any]
 
-ROOM = 10 * TILE * TILE
-"""Paths of a wave: few enough that their memory stays in a core's cache."""
+TILES = 10
+ROOM = TILES * TILE * TILE
+"""Rays of the camera in a wave: few enough that their memory stays in a core's cache."""
 RAYS = 4 * ROOM
 """Rays listed at a time."""
+FEW = 32
+"""Ways of light below which each is followed by itself: a wave would cost more than it saves."""
 
 
 class Waves:
@@ -43,57 +58,72 @@ class Waves:
     def __init__(self, scene: Scene, packets: Packets | None, rows: int, columns: int) -> None:
         """``packets`` to intersect solids by, or None; ``rows`` of scratch and ``columns`` of visibility."""
         self.scene, self.packets = scene, packets
-        self.scratch = scratch(rows)
-        self.scratch[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
         width = -(-int(scene.reals[layout.WIDTH]) // TILE) * TILE
-        self.pixels = width * TILE
         self.asked = np.zeros((1 + RAYS, layout.ANSWERS)) if packets is None else packets.asked(RAYS)
-        self.paths, self.at = np.zeros((ROOM, PATH)), np.arange(ROOM, dtype=np.int64)
+        self.scratch = scratch_beside(self.asked, scene, rows)
+        self.cones, self.at, self.each = np.zeros((ROOM, 3)), np.zeros(ROOM, np.int64), np.arange(ROOM, dtype=np.int64)
+        self.paths, self.of = np.zeros((ROOM, PATH)), np.zeros(ROOM, dtype=np.int64)
+        self.hits, self.met, self.skins = np.zeros(ROOM, dtype=np.int64), np.zeros((ROOM, 5)), np.zeros((ROOM, 6))
+        self.gathered = np.zeros((ROOM, 4))
+        count = 1 if packets is None else RAYS
+        self.ways, self.live, self.ways_hit = (
+            np.zeros((count, WAY)),
+            np.zeros(count, np.int64),
+            np.zeros(count, np.int64),
+        )
+        self.ways_met, self.ways_skins = np.zeros((count, 5)), np.zeros((count, 6))
         self.marks, self.same = np.zeros((TILE, width + LANES), np.float32), np.zeros(LANES, np.float32)
-        self.edges, self.sums = np.zeros(self.pixels, dtype=np.int64), np.zeros((ROOM, 4))
+        self.edges, self.sums = np.zeros(width * TILE, dtype=np.int64), np.zeros((ROOM, 4))
         self.own = np.zeros((2, ROOM, COLUMNS), dtype=np.float32)
         self.found = np.zeros((2, ROOM, columns), dtype=np.float32)
         self.spares = np.zeros((ROOM, COLUMNS), dtype=np.float32)
 
-    def gather(self, start: int, stop: int, records: Array, radiance: Array, visibility: Array) -> tuple[int, int]:
+    def gather(
+        self, start: int, stop: int, reached: Array, busy: Array, records: Array, radiance: Array, visibility: Array
+    ) -> tuple[int, int]:
         """Fill rows start..stop: records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
 
         Returns the number of pixels with an undecided root, and with a second record. Radiance is the part that needs
-        no visibility.
+        no visibility. Only in tiles that are ``reached`` rays are followed; those that show something become ``busy``.
         """
+        fill_background(self.scene, start, stop, reached, busy, records, radiance)
+        tiles = np.flatnonzero(reached[start // TILE])
         undecided = seconds = 0
-        for first in range(0, self.pixels, ROOM):
-            doubted, more = self._gather(start, stop, first, records, radiance, visibility)
+        for first in range(0, len(tiles), TILES):
+            some = tiles[first : first + TILES]
+            doubted, more = self._gather(start, stop, some, records, radiance, visibility)
             undecided, seconds = undecided + doubted, seconds + more
+        mark_busy(start, stop, int(self.scene.reals[layout.WIDTH]), reached, busy, records, visibility)
         return undecided, seconds
 
     def _gather(
-        self, start: int, stop: int, first: int, records: Array, radiance: Array, visibility: Array
+        self, start: int, stop: int, tiles: Array, records: Array, radiance: Array, visibility: Array
     ) -> tuple[int, int]:
-        """As ``gather``, for ROOM pixels from ``first`` on."""
-        scene, asked, at = self.scene, self.asked, np.empty_like(self.at)
-        count = begin_paths(scene, start, stop, first, records, self.paths, at)
-        self._follow(self.paths[:count], at, records)
-        self._ask(0, count, lambda i, end: look_from(scene, self.scratch, asked, i, end, at, records, visibility))
-        counts: tuple[int, int] = end_paths(self.paths[:count], at, records, radiance)
+        """As ``gather``, for some tiles."""
+        scene, asked, at = self.scene, self.asked, self.at
+        count = list_pixels(scene, start, stop, tiles, asked, self.cones, at)
+        self._follow(count, at, records)
+        self._ask(
+            0, count, lambda i, end: look_from(scene, self.scratch, asked, self.ways, i, end, at, records, visibility)
+        )
+        counts: tuple[int, int] = end_pixels(self.gathered[:count], at, records, radiance)
         return counts
 
-    def refine(self, start: int, stop: int, records: Array, visibility: Array, means: Array, fine: Array) -> None:
+    def refine(self, start: int, stop: int, *more: Array) -> None:
         """As refine_kernels.refine."""
-        more = records, visibility, means, fine
-        self._ask(start, stop, lambda i, end: refine(self.scene, self.scratch, self.asked, i, end, *more))
+        self._ask(start, stop, lambda i, end: refine(self.scene, self.scratch, self.asked, self.ways, i, end, *more))
 
     def smooth(
-        self, start: int, stop: int, points: Array, undecided: int, planes: Array, records: Array, radiance: Array,
-        visibility: Array, picture: Array,
+        self, start: int, stop: int, points: Array, undecided: int, busy: Array, planes: Array, records: Array,
+        radiance: Array, visibility: Array, picture: Array,
     ) -> None:  # fmt: skip
         """Fill rows start..stop of ``picture`` (n, 3): ``radiance``, but edges by rays through ``points`` (s, 2)."""
         scene = self.scene
         width, size = int(scene.reals[layout.WIDTH]), KEYS + visibility.shape[2] * WIDE
         light, own = (records, radiance), (self.marks, self.same, self.edges)
         doubted = undecided + int(scene.ints[layout.HAS_THIN])
-        count = list_edges(start, stop, width, size, doubted, planes, *light, picture, *own)
-        some = len(self.paths) // TRIAL
+        count = list_edges(start, stop, width, size, doubted, busy, planes, *light, picture, *own)
+        some = ROOM // TRIAL
         for first in range(0, count, some):
             edges = self.edges[first : min(first + some, count)]
             self.sums[:] = [0.0, 0.0, 0.0, 1.0]
@@ -107,40 +137,100 @@ class Waves:
         """Take some more samples of pixels; returns the pixels that need still more."""
         scene, some = self.scene, points[used : used + TRIAL]
         each, count = len(some), len(some) * len(edges)
-        paths, own, found = self.paths[:count], self.own, self.found
-        begin_samples(scene, some, edges, paths, own)
-        self._follow(paths, self.at, own)
+        own, found = self.own, self.found
+        list_samples(scene, some, edges, self.asked, self.cones)
+        self._follow(count, self.each, own)
         more = each, edges, records, visibility, own, found
-        self._ask(0, count, lambda i, end: look_from_samples(scene, self.scratch, self.asked, i, end, *more))
-        light = records, radiance, paths, own, found
+        self._ask(0, count, lambda i, end: look_from_samples(scene, self.scratch, self.asked, self.ways, i, end, *more))
+        light = records, radiance, self.gathered, own, found
         left = add_samples(scene, each, used + each, len(points), edges, *light, self.sums, picture)
         return edges[:left]
 
-    def _follow(self, paths: Array, at: Array, records: Array) -> None:
-        """Follow paths to their ends."""
-        while ask_paths(paths, self.asked):
+    def _follow(self, count: int, at: Array, records: Array) -> None:
+        """Follow ``count`` listed rays of the camera, and their paths to the ends: see waves_kernels.meet_first."""
+        if self.packets is not None:
+            self.packets.meet(self.asked)
+        scene, asked, cones, gathered, met, spares = (
+            self.scene,
+            self.asked,
+            self.cones,
+            self.gathered,
+            self.met,
+            self.spares,
+        )
+        out = at, records, gathered
+        own = self.paths, self.of, self.hits, met, spares
+        started, hits, dark = meet_first(scene, self.scratch, asked, count, cones, *out, *own)
+        if hits and self.packets is not None:
+            self.packets.skin(scene, self.hits[:hits], met, self.skins)
+            describe_hits(scene, asked, cones, *out, self.hits[:hits], met, self.skins)
+        if not started:
+            return
+        paths, of = self.paths[:started], self.of[:started]
+        own_at = at[of]
+        while True:
+            if dark:
+                self._ask(0, started, lambda i, end: self._light(i, end, paths))
+            if not ask_paths(paths, asked):
+                break
             if self.packets is not None:
-                self.packets.meet(self.asked)
-            if advance_paths(self.scene, self.scratch, self.asked, paths, at, records, self.spares):
-                self._ask(0, len(paths), lambda i, end: self._light(i, end, paths))
+                self.packets.meet(asked)
+            dark = advance_paths(scene, self.scratch, asked, paths, own_at, records, spares)
+        end_paths(paths, of, gathered)
 
     def _light(self, start: int, stop: int, paths: Array) -> int:
         """Light surfaces beyond the records of paths start..stop; returns where it ends."""
-        end: int = light_paths(self.scene, self.scratch, self.asked, start, stop, paths, self.spares, self.found[0])
+        end: int = light_paths(
+            self.scene, self.scratch, self.asked, self.ways, start, stop, paths, self.spares, self.found[0]
+        )
         return end
 
     def _ask(self, start: int, stop: int, work: Callable[[int, int], int]) -> None:
         """Do ``work`` twice on each part of start..stop whose rays fit the list: to list them, and with their answers.
 
-        Without packets only once, on all of it.
+        And once more where light from around has taken ways, when these have ended. Without packets only once, on all.
         """
         if self.packets is None:
             work(start, stop)
             return
         while start < stop:
-            self.asked[0, [layout.MODE, layout.NEXT]] = layout.ASKING, 1
-            end = work(start, stop)
-            self.packets.meet(self.asked)
-            self.asked[0, [layout.MODE, layout.NEXT]] = layout.TELLING, 1
-            work(start, end)
+            self.asked[0, layout.WAYS] = 0
+            end = self._twice(start, stop, work)
+            count = int(self.asked[0, layout.WAYS])
+            if count:
+                self._light_ways(count)
+                self.asked[0, layout.MODE], self.asked[0, layout.NEXT] = layout.ENDING, 0
+                work(start, end)
             start = end
+
+    def _twice(self, start: int, stop: int, work: Callable[[int, int], int]) -> int:
+        """List the rays of as much of start..stop as fits, and use their answers; returns where it ends."""
+        assert self.packets is not None
+        head = self.asked[0]
+        head[layout.MODE], head[layout.NEXT] = layout.ASKING, 1
+        end = work(start, stop)
+        if head[layout.NEXT] > 1:
+            self.packets.meet(self.asked)
+        head[layout.MODE], head[layout.NEXT] = layout.TELLING, 1
+        work(start, end)
+        return end
+
+    def _light_ways(self, count: int) -> None:
+        """Follow the first ``count`` of the ways to their ends, in waves; the last FEW one by one."""
+        assert self.packets is not None
+        scene, asked, ways, live, hits = self.scene, self.asked, self.ways, self.live, self.ways_hit
+        live[:count] = np.arange(count)
+        while True:
+            count, some = look_about(scene, self.scratch, ways, live, count, hits, self.ways_met)
+            if count < FEW:
+                asked[0, layout.MODE] = layout.PLAIN
+                follow_all(scene, self.scratch, asked, ways, live[:count])
+                return
+            if some:
+                self.packets.skin(scene, hits[:some], self.ways_met, self.ways_skins)
+                dress_hits(ways, hits[:some], self.ways_skins)
+            start = 0
+            while start < count:
+                start = self._twice(
+                    start, count, lambda i, end: step_all(scene, self.scratch, asked, ways, live, i, end)
+                )

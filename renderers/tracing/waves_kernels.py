@@ -1,17 +1,21 @@
 # mypy: ignore-errors
-"""Paths in waves: all paths of a band list their next ray, and go on when packets have answered."""
+"""Rays of the camera, and their paths, in waves: all list their next ray, and go on when packets have answered."""
 
 import numpy as np
 from numba import types
 
 from renderers.tracing import layout
-from renderers.tracing.camera_kernels import place_of
+from renderers.tracing.camera_kernels import TILE, camera_ray, place_of
 from renderers.tracing.gather_kernels import DARK, DOUBTED, GATHERED, LIVE, QUICK, advance, begin, light_behind
+from renderers.tracing.light.bounce_kernels import WAYS
+from renderers.tracing.light.light_kernels import backdrop, sharpness
 from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.visibility_kernels import look_around
-from renderers.tracing.record_kernels import OWNER, UNSURE
-from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH
-from renderers.tracing.solids.intersect_kernels import put_ray, tell
+from renderers.tracing.path_kernels import describe_by, faded
+from renderers.tracing.record_kernels import OWNER, UNSURE, WEIGHT, erase
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
+from renderers.tracing.solids.intersect_kernels import put_ray, tell, walk
+from renderers.tracing.solids.surface_kernels import normal_at
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -21,22 +25,114 @@ _paths = types.float64[:, ::1]
 _many = types.int64[::1]
 
 
-@kernel(_i(SCENE, _i, _i, _i, _stack, _paths, _many), _nrt=False)
-def begin_paths(scene, start, stop, first, records, paths, at):
-    """Begin paths of rows start..stop, at most TILE, from their ``first`` pixel on in the order of tiles.
+@part
+def list_ray(scene, asked, cones, n, px, py, sample):
+    """List the camera's ray through a point (px, py) of the picture [pixels] as number n, and its cone."""
+    ox, oy, oz, dx, dy, dz, radius, spread = camera_ray(scene.reals, px, py)
+    put_ray(asked, 1 + n, ox, oy, oz, dx, dy, dz, np.inf, layout.FIRST)
+    cones[n, 0], cones[n, 1], cones[n, 2] = radius, spread, sample
 
-    As many as there is room for; returns their number. Path i is of pixel ``at[i]``.
+
+@part
+def matte(scene, item):
+    """Whether rays end at an item: it is no glass, and mirrors nothing that is traced."""
+    s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
+    clear = scene.reals[s + layout.TRANSMISSION] > 0.0
+    return not clear and sharpness(scene.reals[s + layout.ROUGHNESS]) == 0.0
+
+
+@part
+def see_matte(scene, item, skin, t, ray, cone, record, gathered):
+    """Write the record of a matte item that a camera's ray meets at t; endless ones fade into the backdrop."""
+    x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
+    radius = abs(cone[0] + cone[1] * t)
+    describe_by(scene, item, skin, x, y, z, ray[3], ray[4], ray[5], radius, record)
+    weight = 1.0
+    fade = faded(scene, item, record) if cone[1] > 0.0 else 1.0
+    if fade < 1.0:
+        r, g, b = backdrop(scene.reals, max(ray[4], 0.0))
+        gathered[0], gathered[1], gathered[2] = (1.0 - fade) * r, (1.0 - fade) * g, (1.0 - fade) * b
+        weight = fade
+    record[WEIGHT], record[WEIGHT + 1], record[WEIGHT + 2] = weight, weight, weight
+
+
+@kernel(_i(SCENE, _i, _i, _many, ASKED, _paths, _many), _nrt=False)
+def list_pixels(scene, start, stop, tiles, asked, cones, at):
+    """List the camera's rays of ``tiles`` of rows start..stop, at most TILE; returns their number.
+
+    Row 1 + i of ``asked`` is the ray of pixel ``at[i]``, and ``cones[i]`` its cone: radius, spread, number of the
+    sample in its pixel.
     """
     width = int(scene.reals[layout.WIDTH])
     n = 0
-    for i in range(first, first + paths.shape[0]):
-        x, y = place_of(i)
-        if x < width and start + y < stop:
-            k = (start + y) * width + x
-            begin(scene.reals, x + 0.5, start + y + 0.5, paths[n], records[0, k], records[1, k], 0)
-            at[n] = k
-            n += 1
+    for tile in tiles:
+        for i in range(tile * TILE * TILE, (tile + 1) * TILE * TILE):
+            x, y = place_of(i)
+            if x < width and start + y < stop:
+                list_ray(scene, asked, cones, n, x + 0.5, start + y + 0.5, 0)
+                at[n] = (start + y) * width + x
+                n += 1
+    asked[0, layout.NEXT] = 1 + n
     return n
+
+
+@kernel(types.UniTuple(_i, 3)(SCENE, SCRATCH, ASKED, _i, _paths, _many, _stack, _paths, _paths, _many, _many, _paths,
+        _rows), _nrt=False)  # fmt: skip
+def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths, of, hits, met, spares):
+    """Follow ``count`` listed rays of the camera to what they meet first; ray i has the records ``at[i]``.
+
+    What is seen without more rays, the background and matte surfaces, is done then: its light but for the records is
+    in ``gathered[i]`` (r, g, b, and as DOUBTED). Of matte hits of solids that packets know the records are left to
+    ``describe_hits``: they are listed in ``hits``, with (t, item, point) in ``met``. The rest are paths of rays ``of``.
+    Returns the numbers of paths, of hits, and of paths whose surface, left in ``spares``, is to be lit.
+    """
+    counter = scratch.shape[0] - 1
+    together = asked.shape[1] > layout.ANSWERS
+    paths_now = hits_now = dark = 0
+    for i in range(count):
+        k, ray = at[i], asked[1 + i]
+        first, second = records[0, k], records[1, k]
+        erase(first)
+        erase(second)
+        tell(scratch, asked, 1 + i)
+        item = -1
+        plain = scene.ints[layout.HAS_THIN] == 0
+        if plain:
+            scratch[counter, 0] = 0.0
+            t, item, _ = walk(scene, scratch, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5], 0.0, np.inf, False)
+            plain = item < 0 or matte(scene, item)
+        if not plain:
+            path = paths[paths_now]
+            begin(path, ray, cones[i])
+            advance(scene, scratch, path, first, second, spares[paths_now])
+            of[paths_now] = i
+            paths_now += 1
+            dark += path[DARK] > 0.0
+            continue
+        scratch[counter, layout.TOLD] = 0.0
+        own = gathered[i]
+        own[0], own[1], own[2] = 0.0, 0.0, 0.0
+        if item < 0:
+            own[0], own[1], own[2] = backdrop(scene.reals, ray[4])
+        elif together and scene.ints[layout.ITEMS + 4 * item + layout.KIND] == layout.IMPLICIT:
+            hits[hits_now], met[i, 0], met[i, 1] = i, t, item
+            for axis in range(3):
+                met[i, 2 + axis] = ray[axis] + t * ray[3 + axis]
+            hits_now += 1
+        else:
+            x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
+            see_matte(scene, item, normal_at(scene, scratch, item, x, y, z), t, ray, cones[i], first, own)
+        own[3] = 1.0 if scratch[counter, 0] > 0.0 else 0.0
+    return paths_now, hits_now, dark
+
+
+@kernel(types.void(SCENE, ASKED, _paths, _many, _stack, _paths, _many, _paths, _paths), _nrt=False)
+def describe_hits(scene, asked, cones, at, records, gathered, hits, met, skins):
+    """Write the records of ``hits`` by their normals and colors in ``skins`` (n, 6), as ``skin_kernels.skin``."""
+    for i in hits:
+        nx, ny, nz, r, g, b = skins[i, 0], skins[i, 1], skins[i, 2], skins[i, 3], skins[i, 4], skins[i, 5]
+        skin = nx, ny, nz, nx, ny, nz, 0.0, 0.0, r, g, b
+        see_matte(scene, int(met[i, 1]), skin, met[i, 0], asked[1 + i], cones[i], records[0, at[i]], gathered[i])
 
 
 @kernel(_i(_paths, ASKED), _nrt=False)
@@ -70,8 +166,8 @@ def advance_paths(scene, scratch, asked, paths, at, records, spares):
     return dark
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _paths, _rows, _rows), _nrt=False)
-def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, _paths, _rows, _rows), _nrt=False)
+def light_paths(scene, scratch, asked, ways, first, last, paths, spares, visibility):
     """Light the surfaces beyond the records of paths first..last, while ``asked`` has room for more rays.
 
     Returns where it ends. ``visibility`` (n, V) is working memory.
@@ -84,31 +180,40 @@ def light_paths(scene, scratch, asked, first, last, paths, spares, visibility):
         if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         scratch[counter, 0] = 0.0
-        if light_behind(scene, scratch, asked, paths[i], spares[i], visibility[i]):
+        if light_behind(scene, scratch, asked, ways, paths[i], spares[i], visibility[i]):
             paths[i, DARK] = 0.0
         if scratch[counter, 0] > 0.0:
             paths[i, DOUBTED] = 1.0
     return last
 
 
+@kernel(types.void(_paths, _many, _paths), _nrt=False)
+def end_paths(paths, of, gathered):
+    """Write what paths have gathered to that of their rays."""
+    for i in range(paths.shape[0]):
+        for c in range(3):
+            gathered[of[i], c] = paths[i, GATHERED + c]
+        gathered[of[i], 3] = paths[i, DOUBTED]
+
+
 @kernel(types.UniTuple(_i, 2)(_paths, _many, _stack, _rows), _nrt=False)
-def end_paths(paths, at, records, radiance):
+def end_pixels(gathered, at, records, radiance):
     """Write the radiance of the pixels ``at`` without their records' light, and whether they are UNSURE.
 
     Returns the number of pixels that are, and of those with a second record.
     """
     doubted = seconds = 0
-    for i in range(paths.shape[0]):
-        doubted += paths[i, DOUBTED] > 0.0
+    for i in range(gathered.shape[0]):
+        doubted += gathered[i, 3] > 0.0
         seconds += records[1, at[i], OWNER] > 0.0
-        records[0, at[i], UNSURE] = paths[i, DOUBTED]
+        records[0, at[i], UNSURE] = gathered[i, 3]
         for c in range(3):
-            radiance[at[i], c] = paths[i, GATHERED + c]
+            radiance[at[i], c] = gathered[i, c]
     return doubted, seconds
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _many, _stack, _stack), _nrt=False)
-def look_from(scene, scratch, asked, first, last, at, records, visibility):
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, _many, _stack, _stack), _nrt=False)
+def look_from(scene, scratch, asked, ways, first, last, at, records, visibility):
     """The visibility of the pixels ``at[first:last]``, one sample of each light and of the sky.
 
     Stops where ``asked`` has no room for more rays; returns where it ends.
@@ -122,5 +227,5 @@ def look_from(scene, scratch, asked, first, last, at, records, visibility):
         number = sample_of(k % width, k // width)
         for layer in range(2):
             if records[layer, k, OWNER] > 0.0:
-                look_around(scene, scratch, asked, records[layer, k], number, 1, 1, visibility[layer, k])
+                look_around(scene, scratch, asked, ways, records[layer, k], number, 1, 1, visibility[layer, k])
     return last

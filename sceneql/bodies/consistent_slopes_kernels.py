@@ -8,7 +8,7 @@ from sceneql.system.signatures_kernels import TERM
 
 @lean(TERM, inner=True)
 def close(t, y, entries, floats, ints):
-    """dx/dt = v of every entry that is not held: the linear systems have the inertia itself (linear/inertia.py)."""
+    """dx/dt = v of every entry that is not held: the linear systems have the inertia itself (linear/elimination.py)."""
     for k in range(ints[term.COUNT]):
         if floats[ints[term.HELD_AT] + k] == 0.0:
             entries[k] += 1.0

@@ -62,6 +62,8 @@ class IslandAssembly:
     """The grids by model and output."""
     ties: list[Tied] = field(default_factory=list)
     """What its ties hold, for the term that finds all their forces."""
+    tie_ints: tuple[int, ...] = ()
+    driven: bool = False
     changes: list[tuple[int, int]] = field(default_factory=list)
     """(offset, count) of floats that change as bodies come and go."""
     _starts: list[Floats] = field(default_factory=list)
@@ -294,6 +296,11 @@ class IslandAssembly:
         """Whether ties hold a body of a model (system.Assembly)."""
         movers = (mover for tie in self.ties for mover in tie.movers)
         return any(isinstance(mover, Place) and mover.bodies.model == model for mover in movers)
+
+    def ints_of(self, kernel: str) -> tuple[int, ...]:
+        """The integers of a term (system.Assembly)."""
+        terms = [term for some in self._terms.values() for term in some if kernel in term.kernels]
+        return tuple(terms[0].ints) if terms else ()
 
     def body_count(self) -> int:
         """Number of bodies of the island so far; in a block that of the whole."""

@@ -131,5 +131,10 @@ class Moment(Protocol):
         For no names of all that is drawn, but for what leaves for good.
         """
 
+    def around(self) -> tuple[Floats, Floats] | None:
+        """Low and high corner (3,) around what the picture shows now (infinite planes left out); None where that is
+        not known, or nothing.
+        """
+
     def outline(self) -> Floats:
         """Points (n, 3) [m] whose hull holds all that is drawn over the whole film, but for what leaves for good."""

@@ -10,7 +10,7 @@ from sceneql.failure import Unsuitable
 from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Quantity, Ref, Value
-from sceneql.kinds.word import Kind, field
+from sceneql.kinds.word import Kind, Problem, field
 from sceneql.quantities.dimension import FORCE
 from sceneql.quantities.expression import Expr
 
@@ -222,6 +222,11 @@ class Tie(Interaction):
         "Force above which it is gone, at the end of a step; by default it never is.", None, above=0
     )
 
+    def problems(self) -> Iterable[Problem]:
+        """The world held to itself."""
+        if not any(ref.name for ref in self.between):
+            yield Problem("a tie holds a body, and these are the world twice", ("between", 1))
+
     def targets(self) -> tuple[str, ...]:
         """The parts that it holds; objects are among them."""
         return tuple(dict.fromkeys(ref.name for ref in self.between if ref.name))
@@ -233,6 +238,10 @@ class Tie(Interaction):
     def read(self, output: str, state: ModelState) -> Any:
         """An output at a state."""
         raise TypeError(f"{type(self).__name__} gives no {output}")
+
+    def trouble(self, state: ModelState) -> str:
+        """What a warning says of it at the end of a run; empty for nothing."""
+        return ""
 
 
 class Contact(Kind):

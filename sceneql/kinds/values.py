@@ -21,6 +21,10 @@ MOST_READ = 600
 """Numbers of the state by which a value of it is differentiated, for implicit solvers."""
 
 
+FEW = range(5)
+"""Lengths of vectors and quaternions, and of lists that are made anew as soon."""
+
+
 class Checked:
     """A value that the compiler has built and checked: pydantic tests its class alone, which saves time."""
 
@@ -41,6 +45,8 @@ class Value(Checked):
     span: Span | None = None
     _read: tuple[Symbol | Link, ...] | None = field(default=None, init=False, repr=False, compare=False)
     """The times and outputs that it reads, once they are asked for."""
+    _list: Any = field(default=None, init=False, repr=False, compare=False)
+    """What ``fixed_list`` gave before."""
 
     @property
     def constant(self) -> bool:
@@ -58,6 +64,19 @@ class Value(Checked):
             object.__setattr__(self, "_read", read)
             return read
         return self._read
+
+    def fixed_list(self) -> Any:
+        """The array of a constant list, made once and ``held`` from then on; None for other values."""
+        if (
+            self._list is None
+            and len(self.expr.type.shape) > 0
+            and self.expr.type.shape[0] not in FEW
+            and self.constant
+        ):
+            from sceneql.frame import held
+
+            object.__setattr__(self, "_list", held(evaluate(self.expr, {}.__getitem__, arrays=True)))
+        return self._list
 
     def number(self) -> Any:
         """The float, or nested tuple of floats, of a constant value, in SI."""

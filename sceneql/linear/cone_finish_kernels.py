@@ -11,8 +11,8 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.cone_points_kernels import determinant, tail
-from sceneql.linear.cone_rows_kernels import (
+from sceneql.linear.bounded_rows_kernels import move_rows, open_rows, project_rows, see_rows
+from sceneql.linear.cone_layout_kernels import (
     AT_ARM_A,
     AT_ARM_B,
     AT_B,
@@ -47,6 +47,9 @@ from sceneql.linear.cone_rows_kernels import (
     PAIR_B,
     RESIDUAL,
     RESULT_AT,
+)
+from sceneql.linear.cone_points_kernels import determinant, tail
+from sceneql.linear.cone_rows_kernels import (
     factor,
     in_world,
     momenta_left,
@@ -169,6 +172,8 @@ def look(floats, ints):
         worst, least = max(worst, case), max(least, power)
         for j in range(3):
             every += floats[c + AT_X + j] + floats[c + AT_S + j]
+    case, power = see_rows(floats, ints)
+    worst, least = max(worst, case), max(least, power)
     if not abs(every) < math.inf:
         worst = least = math.inf
     floats[ints[RESULT_AT] + RESIDUAL], floats[ints[RESULT_AT] + BALANCE] = worst, least
@@ -193,6 +198,7 @@ def finish(floats, ints, most, near):
             stiff = min(STIFF, max(1e-2 / worst, 1e2))
         for k in range(ints[CONTACTS]):
             project(floats, ints[CONTACTS_AT] + CONTACT * k, stiff)
+        project_rows(floats, ints, stiff)
         ints[FINISHES] += 1
         if not factor(floats, ints):
             return False
@@ -212,6 +218,7 @@ def finish(floats, ints, most, near):
             floats[c + AT_X] += floats[c + AT_DX] - x
             floats[c + AT_X + 1] += floats[c + AT_DX + 1] - y
             floats[c + AT_X + 2] += floats[c + AT_DX + 2] - z
+        move_rows(floats, ints)
     return False
 
 
@@ -219,7 +226,7 @@ def finish(floats, ints, most, near):
 def tell(floats, ints):
     """Write impulses and velocities of the contacts in the world, and how fast one still closes."""
     look(floats, ints)
-    closing = 0.0
+    closing = open_rows(floats, ints)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         x, s = c + AT_X, c + AT_S

@@ -9,7 +9,8 @@ With M the masses, J the contacts' rows, u = J v + given their velocities and r 
 First Newton's method of cone_finish_kernels is tried from the guess: what rests is there. Else Mehrotra's
 interior-point method with Nesterov and Todd's scaling goes near the solution, the correction renewed at every iteration
 (as Acary, Armand, Nguyen & Shpakovych 2023) and its derivative in the matrix, which is then not symmetric. Where that
-does not get there, the convex program without correction is solved.
+does not get there, convex programs are solved, with the slips of the one before as corrections, or none. Ties, stops,
+motors and friction of joints are more rows of J (bounded_rows_kernels).
 """
 
 import math
@@ -17,9 +18,19 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
+from sceneql.linear.bounded_rows_kernels import (
+    advance_rows,
+    aim_rows,
+    begin_rows,
+    center_rows,
+    fastest_row,
+    left_rows,
+    scale_rows,
+    spring_rows,
+    turn_rows,
+)
 from sceneql.linear.cone_finish_kernels import FULL, LESS, finish, look, roughness, tell
-from sceneql.linear.cone_points_kernels import aim, inner, scale, scaled, scaled_step, tail
-from sceneql.linear.cone_rows_kernels import (
+from sceneql.linear.cone_layout_kernels import (
     AT_B,
     AT_D,
     AT_DS,
@@ -51,11 +62,13 @@ from sceneql.linear.cone_rows_kernels import (
     ITERATIONS,
     RESULT_AT,
     TRIES,
+)
+from sceneql.linear.cone_points_kernels import aim, inner, prepare, scale, scaled, scaled_step, tail
+from sceneql.linear.cone_rows_kernels import (
     factor,
     fetch,
     keep,
     momenta_left,
-    prepare,
     put,
     sizes,
     step,
@@ -84,6 +97,8 @@ NEAR, NEARLY = 1e-4, 1e-2
 """What is left from which the method aims at less of the complementarity than CENTERED, and how much."""
 BACK = 0.99
 """Part of the step to the boundary of the cones."""
+ROUNDS = 6
+"""Most convex programs with the slips of the one before."""
 SHORTEST = 1e-10
 """Part of a step below which the method has come to a stop."""
 CENTERED = 0.1
@@ -107,13 +122,14 @@ def begin(floats, ints, follow):
         for j in range(6):
             floats[at + AT_V + j] = floats[at + AT_FREE + j]
     to_contacts(floats, ints, AT_V, AT_S)
+    spring_rows(floats, ints)
     factor(floats, ints)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         for j in range(3):
             floats[c + AT_DX + j] = -floats[c + AT_HEAVY] * (floats[c + AT_S + j] + floats[c + AT_B + j])
     step(floats, ints, 0)
-    fastest = 0.0
+    fastest = fastest_row(floats, ints)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         size = 0.0
@@ -129,23 +145,27 @@ def begin(floats, ints, follow):
         c = ints[CONTACTS_AT] + CONTACT * k
         heavy = floats[c + AT_HEAVY]
         slip = tail(floats, c + AT_S)
-        floats[c + AT_SLIP] = slip if follow == 1 else 0.0
+        if follow == 1:
+            floats[c + AT_SLIP] = slip
         floats[c + AT_S] += floats[c + AT_SLIP]
         for j in range(3):
             floats[c + AT_X + j] = -heavy * floats[c + AT_S + j]
         floats[c + AT_S] = max(floats[c + AT_S], slip) + fastest
         floats[c + AT_X] = max(floats[c + AT_X], heavy * slip) + heavy * fastest
+    begin_rows(floats, ints, fastest)
 
 
-@lean(types.void(A, I, N))
+@lean(types.float64(A, I, N))
 def direct(floats, ints, symmetric):
-    """The direction D, DX, DS for the right hand sides LEFT, R and Q."""
+    """The direction D, DX, DS for the right hand sides LEFT, R and Q; the longest step along it, 1 at most."""
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         q, r = c + AT_Q, c + AT_R
         x, y, z = scaled(floats, c, floats[r], floats[r + 1], floats[r + 2], -1.0)
         put(floats, c + AT_DX, *scaled(floats, c, floats[q] + x, floats[q + 1] + y, floats[q + 2] + z, -1.0))
+    aim_rows(floats, ints)
     step(floats, ints, AT_LEFT)
+    found = min(1.0, BACK * turn_rows(floats, ints))
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         q, ds, slide = c + AT_Q, c + AT_DS, c + AT_SLIDE
@@ -157,14 +177,6 @@ def direct(floats, ints, symmetric):
             floats[ds + j] -= floats[c + AT_R + j]
         x, y, z = scaled(floats, c, floats[ds], floats[ds + 1], floats[ds + 2], -1.0)
         put(floats, c + AT_DX, *scaled(floats, c, floats[q] - x, floats[q + 1] - y, floats[q + 2] - z, -1.0))
-
-
-@lean(types.float64(A, I))
-def longest(floats, ints):
-    """Longest step along the direction, 1 at most."""
-    found = 1.0
-    for k in range(ints[CONTACTS]):
-        c = ints[CONTACTS_AT] + CONTACT * k
         found = min(found, BACK * scaled_step(floats, c))
     return found
 
@@ -205,13 +217,17 @@ def left(floats, ints, follow):
         gap = inner(floats, c + AT_X, c + AT_S) / (full * size)
         worst = max(worst, gap)
         every += gap + floats[c + AT_R] + floats[c + AT_R + 1] + floats[c + AT_R + 2]
+    of_rows = left_rows(floats, ints)
+    every += of_rows
+    worst = max(worst, of_rows)
     return worst if abs(every) < math.inf else math.inf
 
 
 @lean(types.float64(A, I, N, F))
 def iterate(floats, ints, symmetric, least):
     """One iteration of the interior-point method; the part of the step that is taken, 0 where it cannot go on."""
-    total = 0.0
+    total, count = scale_rows(floats, ints)
+    count += ints[CONTACTS]
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         if not scale(floats, c):
@@ -227,14 +243,14 @@ def iterate(floats, ints, symmetric, least):
         c = ints[CONTACTS_AT] + CONTACT * k
         point = c + AT_LAMBDA
         put(floats, c + AT_Q, -floats[point], -floats[point + 1], -floats[point + 2])
-    direct(floats, ints, symmetric)
-    rest = 1.0 - longest(floats, ints)
-    centered = max(least, rest * rest * rest) * total / ints[CONTACTS]
+    rest = 1.0 - direct(floats, ints, symmetric)
+    centered = max(least, rest * rest * rest) * total / max(1.0, count)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         aim(floats, c, centered)
-    direct(floats, ints, symmetric)
-    part = longest(floats, ints)
+    center_rows(floats, ints, centered)
+    part = direct(floats, ints, symmetric)
+    advance_rows(floats, ints, part)
     for body in range(ints[BODIES]):
         at = ints[BODIES_AT] + BODY * body
         for j in range(6):
@@ -269,13 +285,12 @@ def fair(floats, ints):
 def inside(floats, ints, follow):
     """The interior-point method, from its own first point; what the solution from there comes to.
 
-    The correction follows the slip; or (``follow`` 0) there is none, and the program is convex: what slides comes off
-    by mu |u_T| (Anitescu's cones), and nothing closes.
+    The correction follows the slip; or (``follow`` 0) it is what stands there, and the program is convex. Without any
+    what slides comes off by mu |u_T| (Anitescu's cones), and nothing closes.
     """
     begin(floats, ints, follow)
     sizes(floats, ints)
-    before = best = math.inf
-    tried = False
+    peak, best, tried = 0.0, math.inf, False
     for number in range(MOST):
         worst = left(floats, ints, follow)
         if not worst < math.inf:
@@ -291,10 +306,11 @@ def inside(floats, ints, follow):
             fetch(floats, ints)
             left(floats, ints, follow)
             tried = True
+        peak = max(peak, worst)
         if number % (WATCHED if follow == 1 else SURE) == 0:
-            if worst > FALLS * before:
+            if number > SURE and worst > FALLS * peak:
                 break
-            before = worst
+            peak = worst
         if iterate(floats, ints, 1 - follow, CENTERED if worst > NEAR else NEARLY) < SHORTEST:
             break
         ints[ITERATIONS] += 1
@@ -308,6 +324,28 @@ def inside(floats, ints, follow):
     return BALANCED if accepted(floats, ints) else LOOSE
 
 
+@lean(types.void(A, I, N))
+def correct(floats, ints, follow):
+    """Write the corrections: the slips of the velocities that are there, or none."""
+    to_contacts(floats, ints, AT_V, AT_R)
+    for k in range(ints[CONTACTS]):
+        c = ints[CONTACTS_AT] + CONTACT * k
+        for j in range(3):
+            floats[c + AT_R + j] += floats[c + AT_B + j]
+        floats[c + AT_SLIP] = tail(floats, c + AT_R) if follow == 1 else 0.0
+
+
+@lean(types.int64(A, I))
+def by_rounds(floats, ints):
+    """Convex programs with the slips of the one before (De Saxce & Feng 1998), where one that follows them cycles."""
+    for number in range(ROUNDS):
+        correct(floats, ints, min(number, 1))
+        found = inside(floats, ints, 0)
+        if found != LOOSE:
+            return found
+    return LOOSE
+
+
 @lean(types.int64(A, I))
 def solve(floats, ints):
     """Solve a program, whose given numbers are written, from the guesses of velocities and impulses in it."""
@@ -319,6 +357,9 @@ def solve(floats, ints):
         fetch(floats, ints)
         found = BALANCED if accepted(floats, ints) else inside(floats, ints, 1)
         if found == LOOSE and not fair(floats, ints):
-            found = inside(floats, ints, 0)
+            found = by_rounds(floats, ints)
+            if found == LOOSE:
+                correct(floats, ints, 0)
+                found = inside(floats, ints, 0)
     tell(floats, ints)
     return found

@@ -1,18 +1,58 @@
 # mypy: ignore-errors
-"""Where the numbers of a cone program stand (cone_rows_kernels), with the plan of its factorization for given pairs."""
+"""Where the numbers of a cone program stand, with the plan of its factorization for given pairs."""
 
 from numba import types
 
 from sceneql.compiled.kernels import kernel
-from sceneql.linear import cone_rows_kernels as rows
 from sceneql.linear.block_order_kernels import filled
 from sceneql.linear.block_plan_kernels import BLOCK, plan_blocks
 from sceneql.system.signatures_kernels import I, N
 
+BODIES, CONTACTS, PAIRS_AT, CONTACT_INTS_AT, DIAGONAL_AT, PLAN_AT, PLAN, BODIES_AT, CONTACTS_AT, VALUES_AT = range(10)
+VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, RESULT_AT, TRIES, ITERATIONS, FINISHES = range(10, 20)
+ROWS, ROW_INTS_AT, ROWS_AT, HEAD = range(20, 24)
+"""Integers of a program: numbers of bodies and (to be written) of contacts; where its pairs, its contacts' pairs (to be
+written), the places of the diagonal's blocks and the plan begin; offsets into the floats, and sizes; how many
+factorizations may be tried from the guess (to be written); then what a solution took: iterations of the interior-point
+method, and factorizations of Newton's method besides; the number of bounded rows (bounded_rows_kernels), where their
+pairs begin, the offset of their floats."""
 
-@kernel(types.Tuple((I, N))(N, N, I, N, N, N))
-def lay_out(bodies, most, pairs, bodies_at, contacts_at, scratch_at):
-    """The integers of a program of so many bodies and at most so many contacts, and where its floats end.
+PAIR_A, PAIR_B, PAIR_AB, PAIR_BA, PAIR = range(5)
+"""Integers of a pair: its bodies (-1: one that is fixed or led), the places of its two blocks beside the diagonal."""
+
+AT_MASS, AT_INERTIA, AT_FREE, AT_V, AT_D, AT_LEFT, AT_FORCE, AT_TORQUE, AT_INVERSE, AT_OLD, BODY = (
+    0, 1, 10, 16, 22, 28, 34, 35, 36, 45, 51
+)  # fmt: skip
+"""Floats of a body. Given: mass, inertia about its center in the world's axes (3, 3), velocity and angular velocity
+without contacts. Found: both with contacts (given: a guess). Scratch: a direction, what is left of the momenta's
+equations, sizes of the momenta and angular momenta in these, the inverse inertia, velocities to come back to."""
+
+AT_NORMAL, AT_ARM_A, AT_ARM_B, AT_FRICTION, AT_GIVEN, AT_IMPULSE, AT_VELOCITY, AT_FRAME, AT_X, AT_S = (
+    0, 3, 6, 9, 10, 13, 16, 19, 28, 31
+)  # fmt: skip
+AT_DX, AT_DS, AT_Q, AT_LAMBDA, AT_W, AT_ETA, AT_H, AT_B, AT_R, AT_HEAVY = 34, 37, 40, 43, 46, 49, 50, 59, 62, 65
+AT_SIZE, AT_OLD_X, AT_SLIDE, AT_SLIP, AT_SLOPE, CONTACT = 66, 67, 73, 75, 76, 77
+"""Floats of a contact. Given: normal from b to a, arms from the bodies' centers, coefficient of friction, what is added
+to the velocity of a against b: the gap over the step along the normal (or the velocity after a bounce, reversed), less
+the velocity of a led body. Found, in the world: impulse on a (given: a guess) and velocity with what was added.
+Scratch: frame (3, 3), x, s, their changes, right hand side, scaled point, scaling (3, 1), matrix (3, 3), given velocity
+in the frame, what is left of s, effective mass, size of the velocities, x and s to come back to, direction of slip (2),
+slip, its change."""
+
+RESIDUAL, OVERLAP, BALANCE, RESULT = range(4)
+"""Floats that are found: what is left of the equations, of the size of the numbers in them; the largest velocity with
+which a contact still closes [m/s]; what is left with each contact's power in place of its law."""
+
+USUAL_TRIES = 4
+"""Factorizations that are tried from the guess, by default."""
+
+OTHERS = 1e-2
+"""Part of the largest velocity below which one counts as 0 when sizes are compared."""
+
+
+@kernel(types.Tuple((I, N))(N, N, N, I, N, N, N, N))
+def lay_out(bodies, most, bounded, pairs, bodies_at, contacts_at, rows_at, scratch_at):
+    """The integers of a program of so many bodies, at most so many contacts and so many bounded rows; its floats' end.
 
     ``pairs`` (m 2,): the bodies of each pair, -1 for one that is fixed or led. Bodies and contacts stand among the
     floats where it is said, and what is needed besides from ``scratch_at`` on.
@@ -24,29 +64,31 @@ def lay_out(bodies, most, pairs, bodies_at, contacts_at, scratch_at):
             edges[2 * both], edges[2 * both + 1] = pairs[2 * k], pairs[2 * k + 1]
             both += 1
     plan, factors, work = plan_blocks(bodies, edges[: 2 * both])
-    contact_ints_at = rows.HEAD + rows.PAIR * count
-    diagonal_at = contact_ints_at + most
+    contact_ints_at = HEAD + PAIR * count
+    row_ints_at = contact_ints_at + most
+    diagonal_at = row_ints_at + bounded
     plan_at = diagonal_at + bodies
     ints = filled(plan_at + plan.size, 0)
     for k in range(plan.size):
         ints[plan_at + k] = plan[k]
     place = BLOCK * bodies
     for k in range(count):
-        at = rows.HEAD + rows.PAIR * k
-        ints[at + rows.PAIR_A], ints[at + rows.PAIR_B] = pairs[2 * k], pairs[2 * k + 1]
-        ints[at + rows.PAIR_AB] = ints[at + rows.PAIR_BA] = -1
+        at = HEAD + PAIR * k
+        ints[at + PAIR_A], ints[at + PAIR_B] = pairs[2 * k], pairs[2 * k + 1]
+        ints[at + PAIR_AB] = ints[at + PAIR_BA] = -1
         if pairs[2 * k] >= 0 and pairs[2 * k + 1] >= 0:
-            ints[at + rows.PAIR_AB], ints[at + rows.PAIR_BA] = place, place + BLOCK
+            ints[at + PAIR_AB], ints[at + PAIR_BA] = place, place + BLOCK
             place += 2 * BLOCK
     for k in range(bodies):
         ints[diagonal_at + k] = BLOCK * k
-    ints[rows.BODIES], ints[rows.PAIRS_AT], ints[rows.CONTACT_INTS_AT] = bodies, rows.HEAD, contact_ints_at
-    ints[rows.DIAGONAL_AT], ints[rows.PLAN_AT], ints[rows.PLAN] = diagonal_at, plan_at, plan.size
-    ints[rows.BODIES_AT], ints[rows.CONTACTS_AT], ints[rows.TRIES] = bodies_at, contacts_at, rows.USUAL_TRIES
+    ints[BODIES], ints[PAIRS_AT], ints[CONTACT_INTS_AT] = bodies, HEAD, contact_ints_at
+    ints[ROWS], ints[ROW_INTS_AT], ints[ROWS_AT] = bounded, row_ints_at, rows_at
+    ints[DIAGONAL_AT], ints[PLAN_AT], ints[PLAN] = diagonal_at, plan_at, plan.size
+    ints[BODIES_AT], ints[CONTACTS_AT], ints[TRIES] = bodies_at, contacts_at, USUAL_TRIES
     at = scratch_at
-    ints[rows.VALUES_AT], ints[rows.VALUES], at = at, place, at + place
-    ints[rows.FACTORS_AT], ints[rows.FACTORS], at = at, factors, at + factors
-    ints[rows.WORK_AT], ints[rows.WORK], at = at, work, at + work
-    ints[rows.RIGHT_AT], at = at, at + 6 * bodies
-    ints[rows.RESULT_AT], at = at, at + rows.RESULT
+    ints[VALUES_AT], ints[VALUES], at = at, place, at + place
+    ints[FACTORS_AT], ints[FACTORS], at = at, factors, at + factors
+    ints[WORK_AT], ints[WORK], at = at, work, at + work
+    ints[RIGHT_AT], at = at, at + 6 * bodies
+    ints[RESULT_AT], at = at, at + RESULT
     return ints, at

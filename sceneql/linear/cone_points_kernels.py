@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""The interior-point method's algebra at a contact: Nesterov and Todd's scaling of the second-order cone, steps in it.
+"""Contacts one by one: their frames and masses; the interior-point method's algebra, Nesterov and Todd's scaling.
 
 Source: Nesterov & Todd (1997), Math. Oper. Res. 22, 1-42; formulas as in Vandenberghe (2010), The CVXOPT linear and
 quadratic cone program solvers, sections 4.2 and 8.3: W maps x and its inverse maps s to one scaled point.
@@ -7,18 +7,39 @@ quadratic cone program solvers, sections 4.2 and 8.3: W maps x and its inverse m
 
 import math
 
-from sceneql.compiled.kernels import lean_inlined
-from sceneql.linear.cone_rows_kernels import (
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.linear.bounded_rows_kernels import prepare_rows
+from sceneql.linear.cone_layout_kernels import (
+    AT_ARM_A,
+    AT_B,
     AT_DS,
     AT_ETA,
+    AT_FRAME,
+    AT_FRICTION,
+    AT_GIVEN,
     AT_H,
+    AT_HEAVY,
+    AT_IMPULSE,
+    AT_INERTIA,
+    AT_INVERSE,
     AT_LAMBDA,
+    AT_MASS,
+    AT_NORMAL,
     AT_Q,
     AT_S,
     AT_W,
     AT_X,
-    put,
+    BODIES,
+    BODIES_AT,
+    BODY,
+    CONTACT,
+    CONTACTS,
+    CONTACTS_AT,
 )
+from sceneql.linear.cone_rows_kernels import cross, pair_of, put, turned
+from sceneql.system.signatures_kernels import A, I, N
 
 
 @lean_inlined
@@ -105,3 +126,64 @@ def aim(floats, c, centered):
     f = -2.0 * p * n - (x * w + u * z)
     first = (p * d - m * e - n * f) / determinant(floats, point)
     put(floats, q, first, (e - m * first) / p, (f - n * first) / p)
+
+
+@lean(types.void(A, N))
+def invert(floats, at):
+    """The inverse of a body's inertia; 0 where it has none."""
+    i = at + AT_INERTIA
+    scale = max(floats[i], floats[i + 4], floats[i + 8])
+    by = 1.0 / scale if scale > 0.0 else 0.0
+    a, b, c = floats[i] * by, floats[i + 4] * by, floats[i + 8] * by
+    d, e, f = floats[i + 5] * by, floats[i + 2] * by, floats[i + 1] * by
+    u, v, w = b * c - d * d, d * e - f * c, f * d - b * e
+    whole = a * u + f * v + e * w
+    by = by / whole if whole > 0.0 else 0.0
+    put(floats, at + AT_INVERSE, u * by, v * by, w * by)
+    put(floats, at + AT_INVERSE + 3, v * by, (a * c - e * e) * by, (e * f - a * d) * by)
+    put(floats, at + AT_INVERSE + 6, w * by, (e * f - a * d) * by, (a * b - f * f) * by)
+
+
+@lean_inlined
+def lightness(floats, at, arm, x, y, z):
+    """Velocity of a body's point along a direction by an impulse of 1 along it."""
+    u, v, w = cross(floats[arm], floats[arm + 1], floats[arm + 2], x, y, z)
+    p, q, r = turned(floats, at + AT_INVERSE, u, v, w)
+    return 1.0 / floats[at + AT_MASS] + u * p + v * q + w * r
+
+
+@lean(types.void(A, I))
+def prepare(floats, ints):
+    """Write the frames, the given velocities and guessed impulses in them, the effective masses."""
+    for body in range(ints[BODIES]):
+        invert(floats, ints[BODIES_AT] + BODY * body)
+    for k in range(ints[CONTACTS]):
+        c, pair = ints[CONTACTS_AT] + CONTACT * k, pair_of(ints, k)
+        nx, ny, nz = floats[c + AT_NORMAL], floats[c + AT_NORMAL + 1], floats[c + AT_NORMAL + 2]
+        if abs(nx) <= abs(ny) and abs(nx) <= abs(nz):
+            tx, ty, tz = 0.0, nz, -ny
+        elif abs(ny) <= abs(nz):
+            tx, ty, tz = -nz, 0.0, nx
+        else:
+            tx, ty, tz = ny, -nx, 0.0
+        by = 1.0 / math.sqrt(tx * tx + ty * ty + tz * tz)
+        tx, ty, tz = tx * by, ty * by, tz * by
+        ox, oy, oz = cross(nx, ny, nz, tx, ty, tz)
+        light = 0.0
+        for side in range(2):
+            if ints[pair + side] >= 0:
+                at, arm = ints[BODIES_AT] + BODY * ints[pair + side], c + AT_ARM_A + 3 * side
+                light += lightness(floats, at, arm, nx, ny, nz)
+                light += lightness(floats, at, arm, tx, ty, tz) + lightness(floats, at, arm, ox, oy, oz)
+        floats[c + AT_HEAVY] = 3.0 / light
+        friction = floats[c + AT_FRICTION]
+        rough = 1.0 if friction > 0.0 else 0.0
+        mu = friction if friction > 0.0 else 1.0
+        frame = c + AT_FRAME
+        put(floats, frame, nx / mu, ny / mu, nz / mu)
+        put(floats, frame + 3, rough * tx, rough * ty, rough * tz)
+        put(floats, frame + 6, rough * ox, rough * oy, rough * oz)
+        for given, to in ((c + AT_GIVEN, c + AT_B), (c + AT_IMPULSE, c + AT_X)):
+            put(floats, to, *turned(floats, frame, floats[given], floats[given + 1], floats[given + 2]))
+        floats[c + AT_X] *= mu * mu
+    prepare_rows(floats, ints)

@@ -6,52 +6,68 @@ normal alone). In these, with u its velocity and r its impulse, s = (u_N / mu, u
 cone and its dual are both x_0 >= |x_T|, and s . x = u . r.
 """
 
-import math
-
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.linear.bounded_rows_kernels import (
+    ROW_DS,
+    ROW_DX,
+    add_rows,
+    fetch_rows,
+    floor_sizes,
+    from_rows,
+    keep_rows,
+    momenta_of_rows,
+    sizes_of_rows,
+    to_rows,
+)
+from sceneql.linear.cone_layout_kernels import (
+    AT_ARM_A,
+    AT_ARM_B,
+    AT_D,
+    AT_DS,
+    AT_DX,
+    AT_FORCE,
+    AT_FRAME,
+    AT_FREE,
+    AT_GIVEN,
+    AT_H,
+    AT_INERTIA,
+    AT_LEFT,
+    AT_MASS,
+    AT_OLD,
+    AT_OLD_X,
+    AT_SIZE,
+    AT_TORQUE,
+    AT_V,
+    AT_X,
+    BODIES,
+    BODIES_AT,
+    BODY,
+    CONTACT,
+    CONTACT_INTS_AT,
+    CONTACTS,
+    CONTACTS_AT,
+    DIAGONAL_AT,
+    FACTORS,
+    FACTORS_AT,
+    OTHERS,
+    PAIR,
+    PAIR_A,
+    PAIR_AB,
+    PAIR_B,
+    PAIR_BA,
+    PAIRS_AT,
+    PLAN,
+    PLAN_AT,
+    RIGHT_AT,
+    VALUES,
+    VALUES_AT,
+    WORK,
+    WORK_AT,
+)
 from sceneql.linear.multifrontal_general_kernels import factor_general, solve_general
 from sceneql.system.signatures_kernels import A, F, I, N
-
-BODIES, CONTACTS, PAIRS_AT, CONTACT_INTS_AT, DIAGONAL_AT, PLAN_AT, PLAN, BODIES_AT, CONTACTS_AT, VALUES_AT = range(10)
-VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, RESULT_AT, TRIES, ITERATIONS, FINISHES, HEAD = range(10, 21)
-"""Integers of a program: numbers of bodies and (to be written) of contacts; where its pairs, its contacts' pairs (to be
-written), the places of the diagonal's blocks and the plan begin; offsets into the floats, and sizes; how many
-factorizations may be tried from the guess (to be written); then what a solution took: iterations of the interior-point
-method, and factorizations of Newton's method besides."""
-
-PAIR_A, PAIR_B, PAIR_AB, PAIR_BA, PAIR = range(5)
-"""Integers of a pair: its bodies (-1: one that is fixed or led), the places of its two blocks beside the diagonal."""
-
-AT_MASS, AT_INERTIA, AT_FREE, AT_V, AT_D, AT_LEFT, AT_FORCE, AT_TORQUE, AT_INVERSE, AT_OLD, BODY = (
-    0, 1, 10, 16, 22, 28, 34, 35, 36, 45, 51
-)  # fmt: skip
-"""Floats of a body. Given: mass, inertia about its center in the world's axes (3, 3), velocity and angular velocity
-without contacts. Found: both with contacts (given: a guess). Scratch: a direction, what is left of the momenta's
-equations, sizes of the momenta and angular momenta in these, the inverse inertia, velocities to come back to."""
-
-AT_NORMAL, AT_ARM_A, AT_ARM_B, AT_FRICTION, AT_GIVEN, AT_IMPULSE, AT_VELOCITY, AT_FRAME, AT_X, AT_S = (
-    0, 3, 6, 9, 10, 13, 16, 19, 28, 31
-)  # fmt: skip
-AT_DX, AT_DS, AT_Q, AT_LAMBDA, AT_W, AT_ETA, AT_H, AT_B, AT_R, AT_HEAVY = 34, 37, 40, 43, 46, 49, 50, 59, 62, 65
-AT_SIZE, AT_OLD_X, AT_SLIDE, AT_SLIP, AT_SLOPE, CONTACT = 66, 67, 73, 75, 76, 77
-"""Floats of a contact. Given: normal from b to a, arms from the bodies' centers, coefficient of friction, what is added
-to the velocity of a against b: the gap over the step along the normal (or the velocity after a bounce, reversed), less
-the velocity of a led body. Found, in the world: impulse on a (given: a guess) and velocity with what was added.
-Scratch: frame (3, 3), x, s, their changes, right hand side, scaled point, scaling (3, 1), matrix (3, 3), given velocity
-in the frame, what is left of s, effective mass, size of the velocities, x and s to come back to, direction of slip (2),
-slip, its change."""
-
-RESIDUAL, OVERLAP, BALANCE, RESULT = range(4)
-"""Floats that are found: what is left of the equations, of the size of the numbers in them; the largest velocity with
-which a contact still closes [m/s]; what is left with each contact's power in place of its law."""
-
-USUAL_TRIES = 4
-"""Factorizations that are tried from the guess, by default."""
-
-OTHERS = 1e-2
-"""Part of the largest velocity below which one counts as 0 when sizes are compared."""
 
 PRODUCT = types.void(A, I, N, N)
 
@@ -169,66 +185,7 @@ def momenta_left(floats, ints):
                 floats[at + AT_FORCE] += size
                 floats[at + AT_TORQUE] += size * (abs(floats[arm]) + abs(floats[arm + 1]) + abs(floats[arm + 2]))
     to_bodies(floats, ints, AT_X, AT_LEFT, 1.0)
-
-
-@lean(types.void(A, N))
-def invert(floats, at):
-    """The inverse of a body's inertia; 0 where it has none."""
-    i = at + AT_INERTIA
-    scale = max(floats[i], floats[i + 4], floats[i + 8])
-    by = 1.0 / scale if scale > 0.0 else 0.0
-    a, b, c = floats[i] * by, floats[i + 4] * by, floats[i + 8] * by
-    d, e, f = floats[i + 5] * by, floats[i + 2] * by, floats[i + 1] * by
-    u, v, w = b * c - d * d, d * e - f * c, f * d - b * e
-    whole = a * u + f * v + e * w
-    by = by / whole if whole > 0.0 else 0.0
-    put(floats, at + AT_INVERSE, u * by, v * by, w * by)
-    put(floats, at + AT_INVERSE + 3, v * by, (a * c - e * e) * by, (e * f - a * d) * by)
-    put(floats, at + AT_INVERSE + 6, w * by, (e * f - a * d) * by, (a * b - f * f) * by)
-
-
-@lean_inlined
-def lightness(floats, at, arm, x, y, z):
-    """Velocity of a body's point along a direction by an impulse of 1 along it."""
-    u, v, w = cross(floats[arm], floats[arm + 1], floats[arm + 2], x, y, z)
-    p, q, r = turned(floats, at + AT_INVERSE, u, v, w)
-    return 1.0 / floats[at + AT_MASS] + u * p + v * q + w * r
-
-
-@lean(types.void(A, I))
-def prepare(floats, ints):
-    """Write the frames, the given velocities and guessed impulses in them, the effective masses."""
-    for body in range(ints[BODIES]):
-        invert(floats, ints[BODIES_AT] + BODY * body)
-    for k in range(ints[CONTACTS]):
-        c, pair = ints[CONTACTS_AT] + CONTACT * k, pair_of(ints, k)
-        nx, ny, nz = floats[c + AT_NORMAL], floats[c + AT_NORMAL + 1], floats[c + AT_NORMAL + 2]
-        if abs(nx) <= abs(ny) and abs(nx) <= abs(nz):
-            tx, ty, tz = 0.0, nz, -ny
-        elif abs(ny) <= abs(nz):
-            tx, ty, tz = -nz, 0.0, nx
-        else:
-            tx, ty, tz = ny, -nx, 0.0
-        by = 1.0 / math.sqrt(tx * tx + ty * ty + tz * tz)
-        tx, ty, tz = tx * by, ty * by, tz * by
-        ox, oy, oz = cross(nx, ny, nz, tx, ty, tz)
-        light = 0.0
-        for side in range(2):
-            if ints[pair + side] >= 0:
-                at, arm = ints[BODIES_AT] + BODY * ints[pair + side], c + AT_ARM_A + 3 * side
-                light += lightness(floats, at, arm, nx, ny, nz)
-                light += lightness(floats, at, arm, tx, ty, tz) + lightness(floats, at, arm, ox, oy, oz)
-        floats[c + AT_HEAVY] = 3.0 / light
-        friction = floats[c + AT_FRICTION]
-        rough = 1.0 if friction > 0.0 else 0.0
-        mu = friction if friction > 0.0 else 1.0
-        frame = c + AT_FRAME
-        put(floats, frame, nx / mu, ny / mu, nz / mu)
-        put(floats, frame + 3, rough * tx, rough * ty, rough * tz)
-        put(floats, frame + 6, rough * ox, rough * oy, rough * oz)
-        for given, to in ((c + AT_GIVEN, c + AT_B), (c + AT_IMPULSE, c + AT_X)):
-            put(floats, to, *turned(floats, frame, floats[given], floats[given + 1], floats[given + 2]))
-        floats[c + AT_X] *= mu * mu
+    momenta_of_rows(floats, ints)
 
 
 @lean(types.void(A, N, N, N, F, A, N))
@@ -297,6 +254,7 @@ def assemble(floats, ints):
         if a >= 0 and b >= 0:
             add_block(values, ints[pair + PAIR_AB], c + AT_ARM_A, c + AT_ARM_B, -1.0, floats, world)
             add_block(values, ints[pair + PAIR_BA], c + AT_ARM_B, c + AT_ARM_A, -1.0, floats, world)
+    add_rows(values, floats, ints)
 
 
 @lean(types.boolean(A, I))
@@ -318,6 +276,7 @@ def step(floats, ints, left):
         for c in range(6):
             floats[at + AT_D + c] = floats[at + left + c] if left > 0 else 0.0
     to_bodies(floats, ints, AT_DX, AT_D, 1.0)
+    from_rows(floats, ints, ROW_DX, AT_D)
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + 6 * ints[BODIES]]
     for body in range(ints[BODIES]):
         for c in range(6):
@@ -330,6 +289,7 @@ def step(floats, ints, left):
         for c in range(6):
             floats[ints[BODIES_AT] + BODY * body + AT_D + c] = right[6 * body + c]
     to_contacts(floats, ints, AT_D, AT_DS)
+    to_rows(floats, ints, AT_D, ROW_DS)
 
 
 @lean(types.void(A, I))
@@ -343,6 +303,7 @@ def keep(floats, ints):
         c = ints[CONTACTS_AT] + CONTACT * k
         for j in range(6):
             floats[c + AT_OLD_X + j] = floats[c + AT_X + j]
+    keep_rows(floats, ints)
 
 
 @lean(types.void(A, I))
@@ -356,6 +317,7 @@ def fetch(floats, ints):
         c = ints[CONTACTS_AT] + CONTACT * k
         for j in range(6):
             floats[c + AT_X + j] = floats[c + AT_OLD_X + j]
+    fetch_rows(floats, ints)
 
 
 @lean_inlined
@@ -372,7 +334,7 @@ def fastness(floats, ints, body, at, arm):
 @lean(types.void(A, I))
 def sizes(floats, ints):
     """Write the size of each contact's velocities: what they are sums of, and OTHERS of the largest one."""
-    fastest = 1e-300
+    fastest = max(1e-300, sizes_of_rows(floats, ints))
     for k in range(ints[CONTACTS]):
         c, pair = ints[CONTACTS_AT] + CONTACT * k, pair_of(ints, k)
         size = abs(floats[c + AT_GIVEN]) + abs(floats[c + AT_GIVEN + 1]) + abs(floats[c + AT_GIVEN + 2])
@@ -383,3 +345,4 @@ def sizes(floats, ints):
         fastest = max(fastest, size)
     for k in range(ints[CONTACTS]):
         floats[ints[CONTACTS_AT] + CONTACT * k + AT_SIZE] += OTHERS * fastest
+    floor_sizes(floats, ints, OTHERS * fastest)

@@ -231,7 +231,7 @@ def _single(operations: float) -> list[int]:
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.compiled.threads_kernels import tile_address
     from sceneql.linear import multifrontal_single_kernels as single
-    from sceneql.linear.multifrontal_plan_kernels import FACTOR_SINGLE, SOLVE_SINGLE
+    from sceneql.linear.multifrontal_entries_kernels import FACTOR_SINGLE, SOLVE_SINGLE
 
     pieces = (single.single_piece, single.single_forward_piece, single.single_backward_piece)
     numbers = [number_of(single.factor_single, FACTOR_SINGLE), number_of(single.solve_single, SOLVE_SINGLE)]

@@ -8,7 +8,7 @@ from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.lanes_kernels import BYTES, fma, folded, load, spread
 from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_plan_kernels import PASS, at_front
+from sceneql.linear.multifrontal_entries_kernels import PASS, at_front
 
 
 @lean_inlined

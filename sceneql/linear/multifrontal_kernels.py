@@ -16,14 +16,15 @@ where the matrix is not symmetric, L below it ((rows - width) x width). Symmetri
 the same block of rows alone.
 """
 
-from sceneql.compiled.kernels import lean
+import numpy as np
+
+from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL
-from sceneql.linear.multifrontal_plan_kernels import factor_single_at, solve_single_at
+from sceneql.linear.multifrontal_entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL, factor_single_at, solve_single_at
 from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
 from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
-from sceneql.linear.solver_kernels import FACTOR_SYSTEM, SOLVE_SYSTEM
+from sceneql.linear.solver_kernels import FACTOR_SYSTEM, NEGATIVES, SOLVE_SYSTEM
 
 RESTS = 7
 """Factorizations in double precision after one in single precision was too inaccurate."""
@@ -64,3 +65,24 @@ def solve_system(plan, values, factors, b, work, symmetric):
         return True
     solve_general(plan, factors, b, work)
     return True
+
+
+@lean_inlined
+def count(plan, factors):
+    """Negative reciprocals of pivots, on the diagonals of the fronts."""
+    found = 0
+    for s in range(plan[1]):
+        t = layout.HEAD + layout.FIELDS * s
+        width, height, panel = plan[t + 1], plan[t + 2], plan[t + 5]
+        for k in range(width):
+            if factors[panel + k * height + k] < 0.0:
+                found += 1
+    return found
+
+
+@lean(NEGATIVES)
+def negatives(plan, values, factors, work):
+    """As many as negative pivots of the factors."""
+    if plan[layout.IN_SINGLE] > 0:
+        return count(plan, factors.view(np.float32))
+    return count(plan, factors)

@@ -18,8 +18,8 @@ from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.linear import multifrontal_layout as layout
 from sceneql.linear.multifrontal_backward_kernels import backward_of
+from sceneql.linear.multifrontal_entries_kernels import FACTOR_SINGLE, PASS, SOLVE_SINGLE
 from sceneql.linear.multifrontal_forward_kernels import forward_of
-from sceneql.linear.multifrontal_plan_kernels import FACTOR_SINGLE, PASS, SOLVE_SINGLE
 from sceneql.linear.multifrontal_symmetric_kernels import FACTOR_FRONTS, fronts_of
 from sceneql.system.signatures_kernels import A, I
 

@@ -19,7 +19,6 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear.krylov_kernels import own_at, solve_system
 from sceneql.linear.solver_kernels import FACTOR_SYSTEM, PRECONDITION
-from sceneql.linear.species_block_kernels import invert_blocks
 from sceneql.system.signatures_kernels import A, N
 
 LEVELS, SPECIES, DIRECTIONS, SCRATCH, TABLE = range(1, 6)
@@ -27,6 +26,31 @@ __all__ = ["factor_system", "precondition", "solve_system"]
 LEVEL = 4
 SWEEPS = 2
 """Number of sweeps before and after the coarser levels."""
+
+
+@lean(types.boolean(N, N, A), inner=True)
+def invert_blocks(s, n, blocks):
+    """Turn each of n matrices, (s, s, n) in all, into its inverse by Gauss and Jordan; False where a pivot is lost.
+
+    Without exchanges of rows: a cell's own entry is the largest where the stage's step is one that can be solved.
+    """
+    for c in range(n):
+        for p in range(s):
+            own = (p * s + p) * n + c
+            if not abs(blocks[own]) > 0.0:
+                return False
+            pivot = 1.0 / blocks[own]
+            blocks[own] = 1.0
+            for q in range(s):
+                blocks[(p * s + q) * n + c] *= pivot
+            for m in range(s):
+                if m == p:
+                    continue
+                part = blocks[(m * s + p) * n + c]
+                blocks[(m * s + p) * n + c] = 0.0
+                for q in range(s):
+                    blocks[(m * s + q) * n + c] -= part * blocks[(p * s + q) * n + c]
+    return True
 
 
 @lean_inlined

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.failure import LimitRefused
 from sceneql.island import layout
-from sceneql.linear.inertia import Inertia, inertia_places
 from sceneql.linear.species import one_grid
 
 if TYPE_CHECKING:
@@ -32,7 +31,6 @@ MOST_OPERATIONS = 2e10
 SOLID = 16
 """Neighbors of a mass from which on a net counts as a solid, whose factors fill up."""
 SOLID_GROUPS = 3000
-COUNTING = ("sceneql.linear.dense_negatives_kernels", "sceneql.linear.multifrontal_negatives_kernels")
 TILE = 40_000
 """Values of the matrix that a thread puts together at a time; fewer are not worth threads."""
 
@@ -59,10 +57,9 @@ def stage_plan(system: System, exact: bool = False, signs: bool = False) -> Stag
     """
     import numpy as np
 
-    from sceneql.compiled.generated import function
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.compiled.threads_kernels import threads, tile_address
-    from sceneql.linear.elimination import kinds_of
+    from sceneql.linear.elimination import Inertia, kinds_of
     from sceneql.linear.solver_kernels import FACTOR_SYSTEM, NEGATIVES, SOLVE_SYSTEM
     from sceneql.linear.stage_kernels import HEAD, assemble_tile, compare_tile
 
@@ -88,8 +85,8 @@ def stage_plan(system: System, exact: bool = False, signs: bool = False) -> Stag
     )
     tiles = square * pattern.nnz // TILE + 1
     shared = (tiles, *threads(), tile_address(assemble_tile), tile_address(compare_tile))
-    signs = solver.negatives and (signs or system.structure.energies is not None)
-    negatives = number_of(function(solver.negatives), NEGATIVES) if signs else -1
+    told = solver.counts and (signs or system.structure.energies is not None)
+    negatives = number_of(solver.kernels.negatives, NEGATIVES) if told else -1
     head = [*counts, *starts[:7], solver.factors, 0, *kernels, left.unit, *shared, negatives]
     head += [len(inertia.entries), len(inertia.held), *starts[7:9]]
     assert len(head) == HEAD
@@ -107,13 +104,13 @@ class _Solver:
     factors: int
     work: int
     text: str
-    negatives: str = ""
-    """The kernel that counts negative eigenvalues (solver_kernels.py); empty: there is none."""
+    counts: bool = False
+    """Whether it counts negative eigenvalues: `negatives`."""
 
 
 def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solver]:
     """The reduced system, its pattern and solver: in units of masses unless their factors fill in too much."""
-    from sceneql.linear.elimination import left_by_entries, left_by_masses
+    from sceneql.linear.elimination import inertia_places, left_by_entries, left_by_masses
 
     by_masses = left_by_masses(system, kinds) if kinds.core.sum() > SMALL else None
     if by_masses is not None:
@@ -257,7 +254,7 @@ def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _S
             m * m,
             m * m,
             f"dense LU factorization of {m} unknowns",
-            f"{COUNTING[0]}:negatives",
+            True,
         )
 
     from sceneql.linear import multifrontal, multifrontal_kernels
@@ -272,7 +269,14 @@ def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _S
     if plan.operations > MOST_OPERATIONS:
         return None
     text = f"sparse factorization of {m} unknowns, {plan.factors:.3g} numbers in its factors"
-    return _Solver(multifrontal_kernels, plan.numbers, plan.factors, plan.work, text, f"{COUNTING[1]}:negatives")
+    return _Solver(
+        multifrontal_kernels,
+        plan.numbers,
+        plan.factors,
+        plan.work,
+        text,
+        True,
+    )
 
 
 def _iterations(pattern: Any) -> _Solver:

@@ -8,8 +8,8 @@ none), diagonal, twins (the place of the transposed block), the solver's own, ta
 the matrix is symmetric; the numbers of the solver's kernels; unknowns of a unit (1, or 3 of a mass: blocks are square,
 row by row); tiles of blocks, the numbers of threads_kernels.threads, the addresses of the tiles' kernels; the number of
 the kernel that counts negative eigenvalues (-1: none); numbers and places of the entries of inertia that is a matrix,
-and of the values that are held (inertia.py)]. ``scales``: factors of the rows, 1 for those of such inertia; then
-Inertia.numbers. ``store``: values of the matrix, factors, scratch, two numbers a tile, and last a right side
+and of the values that are held (elimination.Inertia)]. ``scales``: factors of the rows, 1 for those of such inertia;
+then Inertia.numbers. ``store``: values of the matrix, factors, scratch, two numbers a tile, and last a right side
 (unknowns,).
 """
 

@@ -89,6 +89,10 @@ class Assembled:
         # Contacts between masses come last: those with objects need the path of the whole step as the solver made it.
         for contact in sorted(contacts, key=lambda name: cast(Contact, tasks[name].kind).mutual):
             self._add_contact(contact)
+        if any(tie.drive for tie in self.assembly.ties) and not self.assembly.driven and not self.found.errors:
+            from sceneql.bodies.rigid.tied_step import add_bounded_step
+
+            add_bounded_step(self.assembly)
 
     def _add_force(self, force: str) -> None:
         """Add a force on the masses of all its models."""

@@ -60,8 +60,8 @@ class EquilibriumMarch(March):
             return False
         t = self.time
         after = t + 4.0 * float(np.spacing(t))
-        change = np.abs(self._forces(after, self._y1) - self._forces(t, self._y1)).max(initial=0.0)
-        if change > JUMPED * max(self._load(t), self._load(after)):
+        left = np.abs(self._forces(after, self._y1)).max(initial=0.0)
+        if left > JUMPED * max(self._load(t), self._load(after)):
             self._clock[kernels.T1] = after
             self._relax(after)
             return True
@@ -76,12 +76,13 @@ class EquilibriumMarch(March):
         return RunFailure(f"{message} (loads of {self._load(t):.6g} N)", part=origin.part, time=t, span=origin.span)
 
     def _forces(self, t: float, y: Floats) -> Floats:
-        """(n,) accelerations by all forces [m/s^2], 0 for other entries."""
+        """(n,) forces on masses that move [N], 0 for other entries."""
         found = np.zeros(len(y))
         rate = self.rate(t, y)
-        for velocity_at, _, count in self.system.masses:
+        for velocity_at, inverse_at, count in self.system.masses:
             mine = slice(velocity_at, velocity_at + 3 * count)
-            found[mine] = rate[mine]
+            inverse = np.repeat(self.floats[inverse_at : inverse_at + count], 3)
+            np.divide(rate[mine], inverse, out=found[mine], where=inverse > 0.0)
         return found
 
     def _load(self, t: float) -> float:
@@ -138,7 +139,7 @@ class EquilibriumMarch(March):
                 )
 
     def _resisted(self, places: Any, at: Floats, motion: Floats, size: float) -> Floats:
-        """Change of all accelerations by a motion, from central differences."""
+        """Change of all forces by a motion, from central differences."""
         ends = []
         for sign in (1.0, -1.0):
             y = self._y1.copy()

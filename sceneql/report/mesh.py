@@ -188,12 +188,12 @@ def _kept_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Pol
 
 def _why_empty(tape: Tape, low: Corner, high: Corner, cell: float) -> str:
     """Why there is no surface."""
-    from sceneql.field.tape.emptiness import nowhere_defined, nowhere_finite, proved_empty
+    from sceneql.field.tape.emptiness import nowhere_defined, nowhere_finite, why_empty
 
     if nowhere_defined(tape, low, high):
         return "its field is nowhere defined in its bounds"
-    if proved_empty(tape, low, high):
-        return "its field is nowhere negative in its bounds, so it has no surface"
+    if why := why_empty(tape, low, high):
+        return f"its field is {why} in its bounds, so it has no surface that cells could meet"
     if nowhere_finite(tape, low, high):
         return "its field is nowhere finite in its bounds"
     return f"no surface was met by cells of {cell:g} m; a smaller --cell finds smaller things"

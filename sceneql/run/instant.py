@@ -86,6 +86,8 @@ class Instant:
     """The runs of variants that are seen in panels beside this one: one framing serves all."""
     room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     """What overlays take of the picture's left, top, right and bottom, in parts of its width and height."""
+    shown: tuple[Drawn, ...] | None = None
+    """The shapes of the picture that is being made, once they are known."""
     _states: dict[str, ModelState] = field(default_factory=dict)
     _values: dict[tuple[str, str], tuple[Any, bool]] = field(default_factory=dict)
     """Formulas of other parts that values read, by part and output, and whether each varies: worked out once."""
@@ -108,7 +110,8 @@ class Instant:
 
     def at(self, value: Value) -> Any:
         """The value now: float or float64 array, SI. Raises RunFailure if it is not finite."""
-        now = self._evaluate(value.expr)
+        known = value.fixed_list()
+        now = self._evaluate(value.expr) if known is None else known
         if not np.isfinite(now).all():
             raise RunFailure("a value is not finite now", part="", time=self.now, span=value.span)
         return now
@@ -179,6 +182,14 @@ class Instant:
         asked = list(names)
         boxes = self._of_panels(lambda run: None if (box := run.bounds(asked)) is None else np.array(box))
         return (boxes.min(axis=0), boxes.max(axis=0)) if len(boxes) else (np.full(3, -1.0), np.full(3, 1.0))
+
+    def around(self) -> tuple[Floats, Floats] | None:
+        """Low and high corner (3,) around what the picture shows now; None where that is not known or nothing."""
+        from sceneql.shapes.world_boxes import box_of
+
+        boxes = np.array([box_of(shape) for shape in self.shown or ()]).reshape(-1, 2, 3)
+        boxes = boxes[np.isfinite(boxes).all(axis=(1, 2))]
+        return (boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)) if len(boxes) else None
 
     def outline(self) -> Floats:
         """Points (n, 3) whose hull holds all that stays over the whole film, in all panels."""

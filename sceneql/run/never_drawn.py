@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from sceneql.graph import Task
 
 NO_SHAPE = "it was empty whenever it was drawn"
+LITTLE = 0.01
+"""Share of a solid's bounds in which rounding may decide without a word."""
 
 
 def solids(names: Iterable[str], tasks: Mapping[str, Task]) -> Iterator[str]:
@@ -48,12 +50,41 @@ def look(shapes: Sequence[Shape], asked: Iterable[str], tasks: Mapping[str, Task
             if shape.name in present:
                 present[shape.name] = ""
         elif present.get(shape.name, "new"):
-            from sceneql.field.tape.emptiness import nowhere_finite, proved_empty, proved_rootless
+            from sceneql.field.tape.emptiness import nowhere_finite, proved_rootless, why_empty
 
-            proved, found = (proved_empty, "negative") if shape.within is None else (proved_rootless, "zero")
-            if not proved(shape.tape, shape.low, shape.high):
-                found = "finite" if nowhere_finite(shape.tape, shape.low, shape.high) else ""
-            present[shape.name] = found and f"its field is nowhere {found} in its bounds"
+            bounded = shape.tape, shape.low, shape.high
+            if shape.within is None:
+                found = why_empty(*bounded)
+            else:
+                found = "nowhere zero" if proved_rootless(*bounded) else ""
+            if not found and nowhere_finite(*bounded):
+                found = "nowhere finite"
+            present[shape.name] = found and f"its field is {found} in its bounds"
+
+
+def look_at_rounding(shapes: Sequence[Shape], rounded: dict[str, float]) -> None:
+    """Record in ``rounded`` by name in which share of its bounds rounding decides what is inside a solid."""
+    from sceneql.frame import Implicit
+
+    for shape in shapes:
+        if isinstance(shape, Implicit) and shape.name not in rounded:
+            from sceneql.field.tape.emptiness import blurred
+
+            rounded[shape.name] = blurred(shape.tape, shape.low, shape.high)
+
+
+def decided_by_rounding(rounded: Mapping[str, float], tasks: Mapping[str, Task]) -> Iterator[Diagnostic]:
+    """A warning for each solid of which rounding decides more than a little, at its formula where it has one."""
+    for name, share in rounded.items():
+        if share > LITTLE:
+            formula = getattr(tasks[name].kind, "field", None)
+            yield Diagnostic(
+                "rounding",
+                f"rounding decides what is inside '{name}' in {100 * share:.0f} % of its bounds; pixels are undecided",
+                getattr(formula, "span", None) or tasks[name].span,
+                help="of large terms that cancel, rounding alone is left: write the formula without them",
+                severity="warning",
+            )
 
 
 def missing(present: Mapping[str, str], tasks: Mapping[str, Task]) -> tuple[Diagnostic, ...]:

@@ -275,8 +275,11 @@ def _forbidden(island: IslandRun) -> Diagnostic | None:
 
 
 def _troubled(island: IslandRun) -> Iterator[Diagnostic]:
-    """What contacts say of the run at its end."""
+    """What contacts and ties say of the run at its end."""
     tasks = island.graph.tasks
+    for name in dict.fromkeys(force for force, _ in island.island.forces if isinstance(tasks[force].kind, Tie)):
+        if text := cast(Tie, tasks[name].kind).trouble(island.state(name)):
+            yield Diagnostic("tie-trouble", text, tasks[name].span, severity="warning")
     for name in dict.fromkeys(contact for contact, _, _ in island.island.contacts):
         if text := cast(Contact, tasks[name].kind).trouble(island.state(name)):
             yield Diagnostic("contact-trouble", text, tasks[name].span, severity="warning")

@@ -19,6 +19,10 @@ def reaches(skeleton: Skeleton, threshold: float) -> Floats:
     more, so w_i K(d_i/R_i) >= c/N_i, which bounds d_i since the kernel K falls. N_i counts the parts of weight above 0
     that come within R_j of where part i can contribute most; a second round uses the distances of the first.
     """
+    return skeleton.kept(f"reaches {threshold!r}", lambda: _reaches(skeleton, threshold))
+
+
+def _reaches(skeleton: Skeleton, threshold: float) -> Floats:
     import numpy as np
 
     from sceneql.field.skeleton.profile import farthest

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Hashable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from pydantic import BaseModel
 
 from sceneql.failure import RunFailure
 from sceneql.kinds import Color, Moment, Points, Position, Problem, Quantity, Record, Value, field
@@ -207,6 +209,27 @@ def refuse_rounded(shape: Shape, place: Value, radius: Value, moment: Moment) ->
         size, value = wide[k], radius
         told = f"a part {longs[k]:.3g} m long has a radius of {size:.3g} m"
     raise failure(f"{told}, where float64 numbers are {np.spacing(size):.2g} m apart: too coarse", value, moment)
+
+
+def fixed_values(own: Collection[str], *records: BaseModel) -> tuple[list[Floats], Hashable] | None:
+    """(lists, all else) that records of fields hold, of the first record the fields ``own``, for ``OfHeld.get``.
+
+    None where one of them may change with time, or where there is no list: then they are soon made.
+    """
+    lists: list[Floats] = []
+    rest: list[Hashable] = []
+    for record in records:
+        for name in own if record is records[0] else type(record).model_fields:
+            value = getattr(record, name)
+            if isinstance(value, Value):
+                if not value.constant:
+                    return None
+                array = value.fixed_list()
+                if array is not None:
+                    lists.append(array)
+                value = name if array is not None else value.number()
+            rest.append((name, value))
+    return (lists, tuple(rest)) if lists else None
 
 
 def each(value: Value, n: int, what: str, moment: Moment) -> Floats:

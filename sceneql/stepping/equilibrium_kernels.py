@@ -8,9 +8,9 @@ Numer. Anal. 35, 508-523). `step` follows a path of rests: it takes plain update
 none that leaves its tangent, so that it does not leap to another branch where a path has turned back.
 
 ``settings``: the memory of Newton's method (newton_kernels), a [s] at which the matrix's inertia outweighs its rounding
-alone, what ended the latest step; then the scales of the stage plan. ``numbers``: [entries of the Jacobian's room, where
-the plan starts, numbers of velocities, of tallies], velocities, tallies, the stage plan. ``work``: the step to try next,
-in an array of y's size; base; the rest before; scratch (4); the Jacobian; the store.
+alone, what ended the latest step; then the scales of the stage plan. ``numbers``: [entries of the Jacobian's room,
+where the plan starts, numbers of velocities, of tallies], velocities, tallies, the stage plan. ``work``: the step to
+try next, in an array of y's size; base; the rest before; scratch (4); the Jacobian; the store.
 """
 
 import math
@@ -44,6 +44,8 @@ FIRST, LONG = 0.01, 100.0
 LONGEST = 1e6
 """The largest a [s], where motions are so slow that LONG is not beside their periods."""
 FASTER = 4.0
+PANELS = 32
+"""Parts of a step over which the velocities of led places are summed."""
 FAILURES = 40
 PUSH, PUSHES = 1e-3, 3
 """Part of its size by which what is at an unstable rest is moved, and how often."""
@@ -70,14 +72,15 @@ def at_rest(y, kept, numbers):
 
 
 @lean_inlined
-def from_rest(a, rest, velocity, plan, base):
-    """The base of a stage from rest; ``velocity``: rates there, of places that are led among them, which stay.
+def from_rest(a, rest, velocity, plan, base, y):
+    """The base of a stage from rest, and its first guess y.
 
+    ``velocity``: rates there, of places that are led among them, which stay.
     Of an entry that no unknown moves x = base + a v is its place, whatever the velocity v that leads it.
     """
     at = plan[POSITIONS_AT]
     for k in range(base.size):
-        base[k] = rest[k]
+        base[k] = y[k] = rest[k]
     for k in range(at, at + 3 * plan[POSITIONS], 3):
         base[plan[k]] -= a * velocity[plan[k]]
         base[plan[k + 1]] = velocity[plan[k]] - a * velocity[plan[k + 1]]
@@ -86,6 +89,8 @@ def from_rest(a, rest, velocity, plan, base):
     for k in range(at, at + 3 * plan[POSITIONS], 3):
         if base[plan[k + 1]] == 0.0:
             base[plan[k]] = rest[plan[k]]
+        else:
+            y[plan[k + 1]] = velocity[plan[k]]
 
 
 @lean_inlined
@@ -137,9 +142,7 @@ def relax(functions, t, y, work, settings, numbers, floats, ints):
         if a < LONG:
             settings[CAREFUL] = 1.0  # plain updates may come to rest on a saddle
         rate_at(functions[AT_RATE])(t, rest, led, floats, ints)
-        from_rest(a, rest, led, plan, base)
-        for k in range(n):
-            y[k] = rest[k]
+        from_rest(a, rest, led, plan, base, y)
         if newton(functions, t, a, base, rest, y, scratch, jacobian, store, scales, settings, plan, floats, ints):
             at_rest(y, rest, numbers)
             for k in range(n):
@@ -186,18 +189,16 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     # Places that are led go on by their own velocities (Simpson's rule).
     for k in range(n):
         rest[k] = y0[k]
-    for part in range(3):
-        rate(t + 0.5 * part * h, y0, led, floats, ints)
-        weight = h / 6.0 if part != 1 else 4.0 * h / 6.0
-        at = plan[POSITIONS_AT]
+    at = plan[POSITIONS_AT]
+    for part in range(2 * PANELS + 1):
+        rate(t + 0.5 * part * h / PANELS, y0, led, floats, ints)
+        weight = h / (6.0 * PANELS) * (1.0 if part in (0, 2 * PANELS) else 2.0 + 2.0 * (part % 2))
         for k in range(at, at + 3 * plan[POSITIONS], 3):
             rest[plan[k]] += weight * led[plan[k]]
     a = LONG
     for passes in range(PASSES):
         rate(end, rest, led, floats, ints)
-        from_rest(a, rest, led, plan, base)
-        for k in range(n):
-            y1[k] = rest[k]
+        from_rest(a, rest, led, plan, base, y1)
         leave(rate, end, a, base, y1, residual, plan, floats, ints)
         before = first = 0.0
         reached = False
@@ -208,10 +209,14 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             floats[channels.NEWTON] = 0.0
             for k in range(n):
                 change[k] = residual[k]
+            for k in range(HEAD + numbers[VELOCITIES], HEAD + numbers[VELOCITIES] + numbers[TALLIES]):
+                change[numbers[k]] = 0.0
             if not factor_stage(plan, a, jacobian, scales, store) or not solve_stage(
                 plan, a, jacobian, scales, store, change
             ):
                 break
+            for k in range(HEAD + numbers[VELOCITIES], HEAD + numbers[VELOCITIES] + numbers[TALLIES]):
+                change[numbers[k]] = 0.0  # the work of loads stays behind by an update, and is no part of a rest
             for k in range(n):
                 y1[k] += change[k]
             leave(rate, end, a, base, y1, residual, plan, floats, ints)

@@ -44,13 +44,14 @@ from sceneql.system.fields import Cells, Grid
 from sceneql.system.state import Bodies, ModelState, Place, Skin, Turning
 from sceneql.system.stepping import Control, IslandFacts, Method, Needs, Prepared, Stepper
 from sceneql.system.terms import Pattern, Slopes, Stage
-from sceneql.system.ties import Led, Mover, Tied, TieRow
+from sceneql.system.ties import Drive, Led, Mover, Tied, TieRow
 
 __all__ = [
     "Assembly",
     "Bodies",
     "Cells",
     "Control",
+    "Drive",
     "Grid",
     "IslandFacts",
     "Led",

@@ -182,8 +182,18 @@ class Assembly(Protocol):
     def tie(self, tied: Tied) -> None:
         """Hold two bodies to conditions; their forces are found together with those of all other ties."""
 
+    ties: list[Tied]
+    """What ties hold."""
+    tie_ints: tuple[int, ...]
+    """The integers of the term that finds all ties' forces (bodies/rigid/tie_kernels.py), once it is there."""
+    driven: bool
+    """Whether a step lets stops, motors and friction of ties act already."""
+
     def tied(self, model: str) -> bool:
         """Whether ties hold a body or mass of a model."""
+
+    def ints_of(self, kernel: str) -> tuple[int, ...]:
+        """The integers of the first term with a kernel; empty where there is none."""
 
     def body_count(self) -> int:
         """Number of bodies of the island (contacts choose their mode by it)."""

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from sceneql.system.state import Place
+
+if TYPE_CHECKING:
+    from sceneql.quantities.span import Span
 
 Triple = tuple[float, float, float]
 
@@ -43,6 +46,35 @@ class TieRow:
 
 
 @dataclass(frozen=True, slots=True)
+class Drive:
+    """Stops, a motor and dry friction along the one motion that a tie leaves, as offsets in the floats (-1: none)."""
+
+    along: tuple[int, ...]
+    """Integers of the motion (bodies/rigid/drive_kernels.py)."""
+    limits_at: int
+    """The least and the greatest that the motion goes [m or rad]."""
+    restitution_at: int
+    follows: Literal["nothing", "speed", "place"]
+    target_at: int
+    """What the motor follows."""
+    most_at: int
+    """Its largest force or torque."""
+    settling_at: int
+    """The time in which it takes an error of the place away [s]."""
+    reached_at: int
+    """The place that it followed last."""
+    friction_at: int
+    """Largest force or torque of the friction."""
+    effort_at: int
+    """What all of these do along the motion, on the first body; then the steps in which that was not found exactly."""
+
+    @property
+    def always(self) -> bool:
+        """Whether it acts in every step, and not at stops alone."""
+        return self.follows != "nothing" or self.friction_at >= 0
+
+
+@dataclass(frozen=True, slots=True)
 class Tied:
     """The rows of a tie."""
 
@@ -52,3 +84,7 @@ class Tied:
     """Offset in the floats of what its rows write there (bodies/rigid/tie_rows_kernels.py)."""
     holds_at: int
     """floats[holds_at]: 1 while it holds, 0 once it is broken."""
+    drive: Drive | None = None
+    """What acts along the motion that it leaves in bounds, found by the step."""
+    name: str = ""
+    span: Span | None = None

@@ -1,12 +1,16 @@
-"""Ray tracing the common implicit scenes in packets, beside POV-Ray on the same machine.
+"""Films of the common implicit scenes, of an empty picture and of a ball on a plane, beside POV-Ray.
 
-Run it as ``python tests/bench/bench_implicit.py [--tape] [SCENE...]``. The picture has 640 x 360 pixels, one ray each,
-and a shadow ray where the light is faced. A pixel is wrong where its center disagrees with the certified routine.
+Run it as ``python tests/bench/bench_implicit.py [--tape] [SCENE...]``. Films have 48 frames of 640 x 360 pixels, a ray
+each, with one hard sun, in which the thing turns: processor time of a frame on one thread from the script to the PNG
+file, start and compilation apart, by its stages. Light that surfaces reflect onto one another is in it, of which the
+peer has none. Where POV-Ray is installed, the processor time of a whole run of it that writes a PNG file stands beside.
+
+The second column is that of a kernel of the bench alone: one ray a pixel, and a shadow ray where the light is faced.
+A pixel is wrong where its center disagrees with the certified routine.
 Nothing is compiled for a scene: tapes are interpreted in lanes, and where one is a polynomial or a density of points
 its exact form along each ray is used besides; with ``--tape`` the interpreter works alone, beside half of each bar.
 POV-Ray is run where it is installed; its figures from another machine are given else, and fidget's always. Times are
-medians of rounds in which each is run once, ours for some frames in a row. Beside them stands the processor time of
-`trace` on that picture: what a film pays for shading.
+medians of rounds in which each is run once, ours for some frames in a row.
 """
 
 from __future__ import annotations
@@ -14,6 +18,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import resource
 import shutil
 import statistics
 import subprocess
@@ -22,22 +27,20 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from bench_certified import frame_of
 from bench_polygonise import ELSEWHERE, SCENES, quoted, register, scene_tape
+from implicit_films import film, scripts
 
-from renderers.trace import Trace
 from sceneql.compiled.kernels import over_tiles
-from sceneql.field.packets.packets import Memory, lined, packets
+from sceneql.field.packets import packets
+from sceneql.field.packets.packets import Memory, lined
 from sceneql.field.tape.builder import TapeBuilder
 from sceneql.field.tape.tape_ops import HIT, INSIDE
 from sceneql.field.tape.tape_solid import cast, field_values
-from sceneql.frame import Sun
 
 FILE = Path(__file__).parent / "scenes" / "implicit.json"
 VIEW = json.loads(FILE.read_text(encoding="utf-8"))["view"]
@@ -151,24 +154,10 @@ def milliseconds(draw: Callable[[], object], threads: int) -> float:
     return statistics.median(times)
 
 
-def processor_milliseconds(draw: Callable[[], object]) -> float:
-    """Processor time of a picture on one thread."""
-    os.environ["SCENEQL_THREADS"] = "1"
-    start = time.thread_time()
-    draw()
-    return 1e3 * (time.thread_time() - start)
-
-
 def medians(works: dict[str, Callable[[], float]]) -> dict[str, float]:
     """Of what works return, in rounds of one of each: what slows the machine down slows all of them."""
     found = [[work() for work in works.values()] for _ in range(ROUNDS)]
     return dict(zip(works, map(statistics.median, zip(*found, strict=True)), strict=True))
-
-
-def traced(name: str) -> Callable[[], object]:
-    """Has `trace` draw a scene as these pictures show it: one sample, a matte surface, a hard light and its shadow."""
-    frame = replace(frame_of(name), lights=(Sun(tuple(view(name)[3]), (np.pi,) * 3, 0.0),))
-    return lambda: Trace(samples=1).draw(frame)
 
 
 def coefficients(name: str) -> str:
@@ -203,8 +192,8 @@ def povray_object(name: str) -> str:
     return f"intersection {{ poly {{ {coefficients(name)} sturm }} {ball} pigment {{ rgb 1 }} }}"
 
 
-def povray(name: str, threads: int) -> float:
-    """ms in which POV-Ray traces a scene once."""
+def povray(name: str, threads: int) -> tuple[float, float]:
+    """ms in which POV-Ray traces a scene once, and ms of processor time of its whole run, which writes a PNG file."""
     right, up, way, light, (size, far, _) = view(name)
     camera = f"location {vector(-far * way)} right {vector(WIDTH * size * right)} up {vector(HEIGHT * size * up)}"
     text = (
@@ -217,7 +206,8 @@ def povray(name: str, threads: int) -> float:
         command = [
             "povray",
             "+Iscene.pov",
-            "-O/dev/null",
+            "+Oscene.png",
+            "+FN",
             "-D",
             "-F",
             "-A",
@@ -225,34 +215,47 @@ def povray(name: str, threads: int) -> float:
             f"+H{HEIGHT}",
             f"+WT{threads}",
         ]
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         found = re.search(r"Trace Time:.*?\(([\d.]+) seconds\)", run.stderr, re.DOTALL)
         if found is None:
             raise RuntimeError(run.stderr[-2000:])
-        return 1e3 * float(found[1])
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        whole = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        return 1e3 * float(found[1]), 1e3 * whole
+
+
+def films(names: list[str]) -> None:
+    """The table of films."""
+    os.environ["SCENEQL_THREADS"] = "1"
+    for name, text in scripts({name: SCENES[name] for name in SCENES if name in names}):
+        took = statistics.median(film(text)["all"] for _ in range(3))
+        line = f"{name:13} {took:7.1f} ms of one processor a frame"
+        if name in SCENES and shutil.which("povray") and name != "shell":
+            peer = statistics.median(povray(name, 1)[1] for _ in range(3))
+            line += f", POV-Ray {peer:.0f} ms, ratio {peer / took:.1f}"
+        stages = ", ".join(f"{stage} {ms:.1f}" for stage, ms in film(text, stages=True).items() if stage != "all")
+        print(f"{line}: {stages}", flush=True)
 
 
 def main(names: list[str]) -> None:
-    """The table."""
+    """The tables."""
+    films(names)
     for name in names:
         picture = Picture(name)
         spent, certified, undecided = picture.draw()
-        draw = traced(name)
-        draw()
         works = {
             "one": lambda picture=picture: milliseconds(picture.draw, 1),
             "two": lambda picture=picture: milliseconds(picture.draw, 2),
-            "trace": lambda draw=draw: processor_milliseconds(draw),
         }
         here = name in BARS and shutil.which("povray")
         if here:
-            works |= {f"peer {k}": lambda name=name, k=k: povray(name, k) for k in (1, 2)}
+            works |= {f"peer {k}": lambda name=name, k=k: povray(name, k)[0] for k in (1, 2)}
         took = medians(works)
         one, two = took["one"], took["two"]
         rays = WIDTH * HEIGHT
         line = f"{name:13} {one:6.1f} / {two:5.1f} ms (1 / 2 threads), {spent / rays:.1f} enclosures a pixel,"
         line += f" {certified} rays certified, {undecided} undecided, {picture.wrong()} wrong"
-        line += f"; `trace` {took['trace']:.1f} ms of one processor"
         if name in BARS:
             peer = (took["peer 1"], took["peer 2"]) if here else POV_ELSEWHERE[name]
             line += f"; POV-Ray {'here' if here else 'elsewhere'} {peer[0]:.0f} / {peer[1]:.0f} ms:"

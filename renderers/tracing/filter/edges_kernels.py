@@ -4,14 +4,16 @@
 from numba import types
 
 from renderers.tracing import layout
-from renderers.tracing.camera_kernels import place_of
+from renderers.tracing.camera_kernels import TILE, place_of
 from renderers.tracing.filter.planes_kernels import HALO, LANES, LINE, ONE, OWN, SLACK, ZERO, alike_lanes
-from renderers.tracing.gather_kernels import DOUBTED, GATHERED, begin
+from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.shade_kernels import shade
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
+from renderers.tracing.tiles_kernels import ACROSS, MARKS, busiest
+from renderers.tracing.waves_kernels import list_ray
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -111,18 +113,30 @@ def borrow(records, visibility, record, x, y, width, height, found):
     return count > 0
 
 
-@kernel(_i(_i, _i, _i, _i, _i, _rows, _stack, _rows, _rows, _rows, LINE, _many), _nrt=False)
-def list_edges(start, stop, width, size, undecided, planes, records, radiance, picture, marks, same, edges):
+@kernel(_i(_i, _i, _i, _i, _i, MARKS, _rows, _stack, _rows, _rows, _rows, LINE, _many), _nrt=False)
+def list_edges(start, stop, width, size, undecided, busy, planes, records, radiance, picture, marks, same, edges):
     """List the pixels of rows start..stop, at most TILE, that are to be drawn anew; write the others to the picture.
 
     ``size`` of a chunk of ``planes``, those of the first records; ``undecided`` roots in the picture, or thin capsules:
-    pixels with one are drawn anew as well. ``marks`` (TILE, chunks LANES) and ``same`` (LANES,) are working memory.
+    pixels with one are drawn anew as well. ``busy`` (rows of tiles, tiles) are 0 of tiles of nothing but background.
+    ``marks`` (TILE, chunks LANES) and ``same`` (LANES,) are working memory.
     """
-    for y in range(start, stop):
-        for chunk in range(planes.shape[1] // size):
-            mark_edges(y, planes, size, chunk, same, marks[y - start, chunk * LANES :])
-    n = 0
-    for i in range(len(edges)):
+    row = start // TILE
+    for chunk in range(planes.shape[1] // size):
+        if busiest(busy, row, ACROSS * chunk, ACROSS * chunk + ACROSS - 1) != 0:
+            for y in range(start, stop):
+                mark_edges(y, planes, size, chunk, same, marks[y - start, chunk * LANES :])
+    n, i = 0, -1
+    while i + 1 < len(edges):
+        i += 1
+        if i % (TILE * TILE) == 0 and busiest(busy, row, i // (TILE * TILE), i // (TILE * TILE)) == 0:
+            first, last = i // TILE, min(i // TILE + TILE, width)
+            for y in range(start, stop):
+                for k in range(y * width + first, y * width + last):
+                    for c in range(3):
+                        picture[k, c] = radiance[k, c]
+            i += TILE * TILE - 1
+            continue
         x, y = place_of(i)
         y += start
         if x >= width or y >= stop:
@@ -140,19 +154,19 @@ def list_edges(start, stop, width, size, undecided, planes, records, radiance, p
     return n
 
 
-@kernel(types.void(SCENE, _reals, _many, _reals, _stack), _nrt=False)
-def begin_samples(scene, points, edges, paths, own):
-    """Begin paths through ``points`` (s, 2) of each of the pixels ``edges``; ``own`` are the paths' records."""
+@kernel(types.void(SCENE, _reals, _many, ASKED, _reals), _nrt=False)
+def list_samples(scene, points, edges, asked, cones):
+    """List the camera's rays through ``points`` (s, 2) of each of the pixels ``edges``, as ``list_pixels``."""
     width = int(scene.reals[layout.WIDTH])
     each = len(points)
     for i in range(each * len(edges)):
         k, s = edges[i // each], i % each
-        px, py = k % width + points[s, 0], k // width + points[s, 1]
-        begin(scene.reals, px, py, paths[i], own[0, i], own[1, i], s)
+        list_ray(scene, asked, cones, i, k % width + points[s, 0], k // width + points[s, 1], s)
+    asked[0, layout.NEXT] = 1 + each * len(edges)
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _i, _many, _stack, _stack, _stack, _stack), _nrt=False)
-def look_from_samples(scene, scratch, asked, first, last, each, edges, records, visibility, own, found):
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, _i, _many, _stack, _stack, _stack, _stack), _nrt=False)
+def look_from_samples(scene, scratch, asked, ways, first, last, each, edges, records, visibility, own, found):
     """The visibility ``found`` of the records ``own`` of samples first..last: borrowed from neighbors, or else sampled.
 
     Stops where ``asked`` has no room for more rays; returns where it ends.
@@ -167,12 +181,12 @@ def look_from_samples(scene, scratch, asked, first, last, each, edges, records, 
             if own[layer, i, OWNER] == 0.0:
                 continue
             if not borrow(records[layer], visibility[layer], own[layer, i], x, y, width, height, found[layer, i]):
-                look_around(scene, scratch, asked, own[layer, i], sample_of(x, y), ANEW, ANEW, found[layer, i])
+                look_around(scene, scratch, asked, ways, own[layer, i], sample_of(x, y), ANEW, ANEW, found[layer, i])
     return last
 
 
 @kernel(_i(SCENE, _i, _i, _i, _many, _stack, _rows, _reals, _stack, _stack, _reals, _rows), _nrt=False)
-def add_samples(scene, each, used, whole, edges, records, radiance, paths, own, found, sums, picture):
+def add_samples(scene, each, used, whole, edges, records, radiance, gathered, own, found, sums, picture):
     """Add ``each`` samples of the pixels ``edges`` to ``sums`` (n, 4): tamed light, and whether all show one surface.
 
     ``used`` samples are there then, of ``whole``. Finished pixels go to the picture, the others to the front of
@@ -189,10 +203,10 @@ def add_samples(scene, each, used, whole, edges, records, radiance, paths, own, 
                 if own[layer, i, OWNER] != 0.0:
                     dr, dg, db = shade(scene, own[layer, i], found[layer, i])
                     r, g, b = r + dr, g + dg, b + db
-            r, g, b = paths[i, GATHERED] + r, paths[i, GATHERED + 1] + g, paths[i, GATHERED + 2] + b
+            r, g, b = gathered[i, 0] + r, gathered[i, 1] + g, gathered[i, 2] + b
             plain = (
                 plain
-                and paths[i, DOUBTED] == 0.0
+                and gathered[i, 3] == 0.0
                 and alike(records[0, k], own[0, i], SLACK)
                 and contrast(radiance, k, r, g, b) < 0.5 * CONTRAST
             )

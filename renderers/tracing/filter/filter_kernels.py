@@ -3,9 +3,11 @@
 
 from numba import types
 
+from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter import planes_kernels as chunks
 from renderers.tracing.filter.planes_kernels import HALO, LANES, WIDE, ZERO, F
 from renderers.tracing.light.sampling_kernels import SIDE
+from renderers.tracing.tiles_kernels import BLANK, LAY, MARKS
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -21,8 +23,8 @@ def add_lanes(same, share, values, apart, sums, own_apart, columns):
             total[i] += share * same[i] * value[i]
 
 
-@kernel(types.void(_i, _i, _i, chunks.PLANES, chunks.PLANES, chunks.LINE), _nrt=False)
-def widen(start, stop, columns, planes, sums, same):
+@kernel(types.void(_i, _i, _i, MARKS, chunks.PLANES, chunks.PLANES, chunks.LINE), _nrt=False)
+def widen(start, stop, columns, marks, planes, sums, same):
     """Filter along x: weight and weighted visibility of rows start..stop into ``sums``.
 
     ``planes`` are those of planes_kernels with the visibility (V columns) behind the keys, ``sums`` has 1 + V planes of
@@ -31,6 +33,8 @@ def widen(start, stop, columns, planes, sums, same):
     size, own = chunks.KEYS + columns * WIDE, (1 + columns) * LANES
     for y in range(start, stop):
         for chunk in range(sums.shape[1] // own):
+            if marks[y // TILE, chunk] == BLANK:
+                continue
             a, out = planes[y, chunk * size + HALO :], sums[y, chunk * own :]
             for i in range(own):
                 out[i] = ZERO
@@ -48,8 +52,8 @@ def widen(start, stop, columns, planes, sums, same):
                 add_lanes(same, share, b[chunks.KEYS :], WIDE, out[LANES:], LANES, columns)
 
 
-@kernel(types.void(_i, _i, _i, chunks.PLANES, chunks.PLANES, chunks.PLANES, chunks.LINE), _nrt=False)
-def deepen(start, stop, columns, planes, sums, means, same):
+@kernel(types.void(_i, _i, _i, MARKS, chunks.PLANES, chunks.PLANES, chunks.PLANES, chunks.LINE), _nrt=False)
+def deepen(start, stop, columns, marks, planes, sums, means, same):
     """Filter along y: number of pixels joined, and their mean visibility, of rows start..stop into ``means``.
 
     It has 1 + V planes of WIDE a chunk, with the neighbors' at both its ends.
@@ -57,9 +61,11 @@ def deepen(start, stop, columns, planes, sums, means, same):
     size, of_sums, of_means = chunks.KEYS + columns * WIDE, (1 + columns) * LANES, (1 + columns) * WIDE
     across = sums.shape[1] // of_sums
     for y in range(start, stop):
-        for i in range(means.shape[1]):
-            means[y, i] = ZERO
         for chunk in range(across):
+            if marks[y // TILE, chunk] == BLANK:
+                continue
+            for i in range(chunk * of_means, (chunk + 1) * of_means):
+                means[y, i] = ZERO
             a, out = planes[y, chunk * size + HALO :], means[y, chunk * of_means + HALO :]
             if not chunks.known(a):
                 continue
@@ -75,7 +81,7 @@ def deepen(start, stop, columns, planes, sums, means, same):
                 for i in range(LANES):
                     total[i] = total[i] / out[i] if out[i] > ZERO else ZERO
         for chunk in range(across):
-            for plane in range(1 + columns):
+            for plane in range(1 + columns if marks[y // TILE, chunk] == LAY else 0):
                 at = chunk * of_means + plane * WIDE
                 for i in range(HALO):
                     if chunk > 0:

@@ -7,9 +7,11 @@ A chunk is LANES pixels of a row, with HALO more on both sides, so that neighbor
 import numpy as np
 from numba import types
 
+from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.light.sampling_kernels import SIDE
 from renderers.tracing.record_kernels import FLATTEST, NORMAL, OWNER, PLACE, RADIUS
 from renderers.tracing.scene_kernels import part
+from renderers.tracing.tiles_kernels import BLANK, MARKS
 from sceneql.compiled.kernels import kernel
 
 F = np.float32
@@ -30,13 +32,19 @@ PLANES = types.float32[:, ::1]
 """Type of planes: for each row of the picture one chunk after the other."""
 
 
-@kernel(types.void(_i, _i, _i, PLANES, PLANES, PLANES), _nrt=False)
-def lay_out(start, stop, width, records, visibility, planes):
-    """Write rows of records (n, COLUMNS) and their visibility (n, V) as planes (h, chunks (8 + V) WIDE)."""
+@kernel(types.void(_i, _i, _i, MARKS, PLANES, PLANES, PLANES), _nrt=False)
+def lay_out(start, stop, width, marks, records, visibility, planes):
+    """Write rows of records (n, COLUMNS) and their visibility (n, V) as planes (h, chunks (8 + V) WIDE).
+
+    ``marks`` (rows / TILE, chunks), here and in the stages that follow, say which chunks are left as they are, being
+    BLANK, and which are wiped.
+    """
     columns = visibility.shape[1]
     size = KEYS + columns * WIDE
     for y in range(start, stop):
         for chunk in range(planes.shape[1] // size):
+            if marks[y // TILE, chunk] == BLANK:
+                continue
             out = planes[y, chunk * size : (chunk + 1) * size]
             for i in range(WIDE):
                 x = chunk * LANES - HALO + i

@@ -4,13 +4,16 @@
 from numba import types
 
 from renderers.tracing import layout
+from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter.filter_kernels import REACH
 from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
+from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import COUNT, SIDE, sample_of
 from renderers.tracing.light.shade_kernels import shade
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
+from renderers.tracing.tiles_kernels import MARKS
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -42,8 +45,8 @@ def mean_of(means, columns, x, y, plane):
     return means[y, (x // LANES * (1 + columns) + plane) * WIDE + HALO + x % LANES]
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, _i, _i, _rows, _rows, _rows, _rows), _nrt=False)
-def refine(scene, scratch, asked, start, stop, records, visibility, means, fine):
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, MARKS, _rows, _rows, _rows, _rows), _nrt=False)
+def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, means, fine):
     """Fill rows of ``fine`` (n, V): for each light its share, and whether that needs smoothing (0 or 1).
 
     The sky's loss, already there, is resampled where few pixels were joined. For pixels start..stop, or until ``asked``
@@ -52,8 +55,14 @@ def refine(scene, scratch, asked, start, stop, records, visibility, means, fine)
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     columns = visibility.shape[1]
     room = asked.shape[0] - OWN * (1 + scene.ints[layout.LIGHT_COUNT])
-    for k in range(start, stop):
+    following = start
+    while following < stop:
+        k = following
         x, y = k % width, k // width
+        if busy[y // TILE, x // TILE] == 0:
+            following += min(TILE - x % TILE, width - x)
+            continue
+        following += 1
         pixels = mean_of(means, columns, x, y, 0)
         if pixels == 0.0:
             continue
@@ -61,11 +70,11 @@ def refine(scene, scratch, asked, start, stop, records, visibility, means, fine)
             return k
         if pixels < FEW:
             samples = OWN if pixels < 0.5 * FEW else OWN // 2
-            told = look_around(scene, scratch, asked, records[k], sample_of(x, y), samples, 0, fine[k])
+            told = look_around(scene, scratch, asked, ways, records[k], sample_of(x, y), samples, 0, fine[k])
             for c in range(FIRST_LIGHT if told else 0):
                 joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
                 fine[k, c] = joined / (samples + pixels)
-        for l in range(int(scene.ints[layout.LIGHT_COUNT])):
+        for l in range(int(scene.ints[layout.LIGHT_COUNT]) if asked[0, layout.MODE] != layout.ENDING else 0):
             column = FIRST_LIGHT + 2 * l
             share = mean_of(means, columns, x, y, 1 + column)
             fine[k, column + 1] = 0.0
@@ -110,12 +119,14 @@ def settle(records, fine, lights, k, x, y, width, height, visibility):
         visibility[column] = total / count
 
 
-@kernel(types.void(SCENE, _i, _i, _stack, _stack, _stack, _rows), _nrt=False)
-def shade_rows(scene, start, stop, records, fine, visibility, radiance):
+@kernel(types.void(SCENE, _i, _i, MARKS, _stack, _stack, _stack, _rows), _nrt=False)
+def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
     """Write the final visibility (2, n, V) and add both records' light to the radiance (n, 3)."""
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     for y in range(start, stop):
         for x in range(width):
+            if busy[y // TILE, x // TILE] == 0:
+                continue
             k = y * width + x
             for layer in range(2):
                 if records[layer, k, OWNER] == 0.0:

@@ -3,12 +3,14 @@
 
 from numba import types
 
+from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter import planes_kernels as chunks
 from renderers.tracing.filter.filter_kernels import REACH, add_lanes
 from renderers.tracing.filter.planes_kernels import HALO, LANES, WIDE, ZERO, F
 from renderers.tracing.light.sampling_kernels import SIDE
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.scene_kernels import part
+from renderers.tracing.tiles_kernels import ACROSS, LOSSY, MARKS, busiest
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -54,13 +56,14 @@ def narrower(planes, means, y, at, mean_at, sums, same):
     add_lanes(same, F(1.0), mean[WIDE:], WIDE, sums[LANES:], LANES, FIRST_LIGHT)
 
 
-@kernel(types.void(_i, _i, _i, _i, chunks.PLANES, chunks.PLANES, chunks.PLANES, chunks.LINE), _nrt=False)
-def spread_sky(start, stop, width, columns, planes, means, fine, memory):
+@kernel(types.void(_i, _i, _i, _i, MARKS, chunks.PLANES, chunks.PLANES, chunks.PLANES, chunks.LINE), _nrt=False)
+def spread_sky(start, stop, width, columns, busy, planes, means, fine, memory):
     """The sky's loss over 24 x 24 pixels, from nine means over 8 x 8 of weights 1 2 1, 2 4 2, 1 2 1, into ``fine``.
 
     Each of its samples, one in 16 x 16 pixels, has the same weight in all, and samples that enter and leave as the
     window moves have half of their weight in a plain window, so that stripes are fainter. Near edges the window is a
-    plain one. Planes and means are those of filter_kernels, ``fine`` is (n, V), ``memory`` (ROOM,).
+    plain one. Where no tile around is LOSSY (``busy``, rows of tiles and tiles) there is nothing to spread. Planes and
+    means are those of filter_kernels, ``fine`` is (n, V), ``memory`` (ROOM,).
     """
     size, of_means = chunks.KEYS + columns * WIDE, (1 + columns) * WIDE
     same, wide, narrow = memory[:LANES], memory[LANES : LANES + OF_SKY], memory[LANES + OF_SKY :]
@@ -68,7 +71,13 @@ def spread_sky(start, stop, width, columns, planes, means, fine, memory):
         for chunk in range(means.shape[1] // of_means):
             at, mean_at = chunk * size + HALO, chunk * of_means + HALO
             a = planes[y, at:]
-            if not chunks.known(a):
+            most = busiest(busy, y // TILE, ACROSS * chunk, ACROSS * chunk + ACROSS - 1)
+            if most == 0 or not chunks.known(a):
+                continue
+            if most < LOSSY:
+                for i in range(min(LANES, width - chunk * LANES)):
+                    for c in range(FIRST_LIGHT if a[chunks.OWN + i] > ZERO else 0):
+                        fine[y * width + chunk * LANES + i, c] = ZERO
                 continue
             for i in range(OF_SKY):
                 wide[i] = ZERO

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from renderers.tracing import layout
-from renderers.tracing.light.visibility_kernels import SHOWN
+from renderers.tracing.light.lights_kernels import SHOWN
 from sceneql.frame import PointLight, Points, Shape
 
 if TYPE_CHECKING:

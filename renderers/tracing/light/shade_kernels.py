@@ -7,8 +7,9 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.light.albedo_kernels import mean_reflectance
 from renderers.tracing.light.light_kernels import highlight, schlick, sky_ambient, sky_radiance
+from renderers.tracing.light.lights_kernels import light_at
 from renderers.tracing.light.soft_boxes_kernels import soft_boxes
-from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY, light_at
+from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY
 from renderers.tracing.record_kernels import IMAGED, NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
 from renderers.tracing.scene_kernels import ROW, SCENE, part
 from sceneql.compiled.kernels import kernel
@@ -71,6 +72,38 @@ def light_width(reals, k, distance, roughness):
     return min(np.sqrt(alpha * alpha + size * size + SHARPEST * SHARPEST), 1.0)
 
 
+@part
+def is_dark(u):
+    """Whether the sky has no light."""
+    for k in range(layout.SKY, layout.SKY + 9):
+        if u[k] != 0.0:
+            return False
+    return True
+
+
+@part
+def shade_matte(scene, record, visibility, s, nx, ny, nz, x, y, z):
+    """``shade`` of a surface that reflects nothing specularly: bit for bit the same, since those terms are 0."""
+    u = scene.reals
+    body = (1.0 - u[s + layout.METALLIC]) * (1.0 - u[s + layout.TRANSMISSION])
+    open_sky = (0.0, 0.0, 0.0) if is_dark(u) else sky_ambient(u, ny)
+    r, g, b = 0.0, 0.0, 0.0
+    for l in range(int(scene.ints[layout.LIGHT_COUNT])):
+        lx, ly, lz, _, ir, ig, ib = light_at(u, l, x, y, z)
+        nl = nx * lx + ny * ly + nz * lz
+        if nl > 0.0:
+            nl *= visibility[FIRST_LIGHT + 2 * l]
+            r, g, b = r + nl * ir, g + nl * ig, b + nl * ib
+    e = s + layout.EMISSION
+    return (
+        record[WEIGHT] * (body * record[TINT] * (max(open_sky[0] - visibility[SKY], 0.0) + r / np.pi) + u[e]),
+        record[WEIGHT + 1]
+        * (body * record[TINT + 1] * (max(open_sky[1] - visibility[SKY + 1], 0.0) + g / np.pi) + u[e + 1]),
+        record[WEIGHT + 2]
+        * (body * record[TINT + 2] * (max(open_sky[2] - visibility[SKY + 2], 0.0) + b / np.pi) + u[e + 2]),
+    )
+
+
 @kernel(types.UniTuple(types.float64, 3)(SCENE, ROW, ROW), _nrt=False, inner=True)
 def shade(scene, record, visibility):
     """Radiance (3) of a record times its weight, without the rays that are traced further."""
@@ -79,6 +112,8 @@ def shade(scene, record, visibility):
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     vx, vy, vz = float(record[VIEW]), float(record[VIEW + 1]), float(record[VIEW + 2])
     x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
+    if u[s + layout.SPECULAR] == 0.0 and u[s + layout.METALLIC] == 0.0:
+        return shade_matte(scene, record, visibility, s, nx, ny, nz, x, y, z)
     roughness = u[s + layout.ROUGHNESS]
     nv = facing_ratio(record)
     f0 = reflectance_at_normal(u, record)

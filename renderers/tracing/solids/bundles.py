@@ -8,12 +8,17 @@ import numpy as np
 
 from renderers.tracing import layout
 from renderers.tracing.solids.bundles_kernels import RAYS, meet_asked
-from sceneql.field.packets.packets import Memory
+from renderers.tracing.solids.skins_kernels import LANES, skin_hits
+from sceneql.field.packets.packets import Memory, lined
 from sceneql.field.roots.clips import clip_rows, clips_of
 from sceneql.field.tape.own_coordinates import in_own_coordinates
 from sceneql.frame import Implicit
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from renderers.tracing.scene_kernels import Scene
     from sceneql.frame import Floats, Shape
 
 
@@ -33,6 +38,11 @@ class Packets:
             reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
             self.bounds.append((box, clips, np.abs(clips) @ reach, matrix))
         self.chosen, self.spans = np.empty((2, 1 + RAYS), dtype=np.int64), np.empty((2, 2, RAYS))
+        tapes = [shape.tape for i in solids if isinstance(shape := shapes[i], Implicit)]
+        tapes += [shape.paint for i in solids if isinstance(shape := shapes[i], Implicit) and shape.paint is not None]
+        rows, parts = max(len(tape.code) for tape in tapes), max(len(tape.parts) for tape in tapes)
+        memory = lined((rows, LANES)), lined((rows, 3, LANES)), lined((3, LANES))
+        self.of_skins = *memory, np.empty((2, rows, 4), dtype=np.int32), np.empty((parts, 8))
 
     def asked(self, rays: int) -> Floats:
         """An empty list of rays (1 + rays, columns), see scene_kernels.ASKED."""
@@ -45,6 +55,10 @@ class Packets:
         for k, (memory, bounds) in enumerate(zip(self.memories, self.bounds, strict=True)):
             more = *bounds, asked, layout.ANSWERS + k, self.chosen, self.spans
             meet_asked(*memory.bundle, memory.found, *memory.rest, *more)
+
+    def skin(self, scene: Scene, hits: NDArray[int64], met: Floats, skins: Floats) -> None:
+        """Normals and colors of the solids at ``hits``: see skins_kernels.skin_hits."""
+        skin_hits(scene, hits, met, skins, *self.of_skins)
 
 
 def solids_in_lanes(shapes: tuple[Shape, ...]) -> list[int]:

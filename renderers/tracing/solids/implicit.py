@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from itertools import product
 from typing import TYPE_CHECKING
 
-from renderers.tracing import layout
 from renderers.tracing.scene_kernels import CROSSING, SKIN
-from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.skin_kernels import skin
-from sceneql.compiled.kernels import address, over_tiles
+from sceneql.compiled.kernels import address
 
 if TYPE_CHECKING:
     from renderers.tracing.scene_kernels import Scene
 
 
-def prepared(scene: Scene, rows: int, places: list[int], *, sheets: bool, march: bool, certain: bool) -> Scene:
-    """The scene with the addresses of the kernels for its implicit objects, whose reals begin at ``places``.
+def prepared(scene: Scene, *, sheets: bool, march: bool, certain: bool) -> Scene:
+    """The scene with the addresses of the kernels for its implicit objects.
 
     Solids and ``sheets`` by certified roots in the cells that are not proved empty; with ``march`` by samples on the
     ray, with ``certain`` by certified intervals alone, both without cells.
@@ -29,13 +26,10 @@ def prepared(scene: Scene, rows: int, places: list[int], *, sheets: bool, march:
             from renderers.tracing.solids.certain_kernels import certain as other
         return scene._replace(solid=address(other, CROSSING), sheet=address(other, CROSSING))
     from renderers.tracing.solids.implicit_kernels import crossing
-    from renderers.tracing.solids.occupancy_kernels import BLOCK, occupy
 
     scene = scene._replace(solid=address(crossing, CROSSING))
     if sheets:
         from renderers.tracing.solids import sheet_kernels
 
         scene = scene._replace(sheet=address(sheet_kernels.crossing, CROSSING))
-    slabs = list(product(places, range(layout.CELLS // BLOCK)))
-    over_tiles(len(slabs), lambda tile: occupy(scene, scratch(rows), *slabs[tile]))
     return scene

@@ -6,6 +6,7 @@ from numba import types
 
 from renderers.tracing import layout
 from renderers.tracing.scene_kernels import CROSSING, SCRATCH, part
+from renderers.tracing.solids.occupancy_kernels import PAD, occupy
 from renderers.tracing.solids.ranges_kernels import box_part, cells_at, plan_at, tape_of
 from renderers.tracing.solids.solids_kernels import NONE, inverse
 from sceneql.compiled.kernels import kernel
@@ -24,8 +25,6 @@ RETRIES = 8
 """Undecided places passed on one ray before it counts as a miss."""
 FARTHER = 10.0
 """Factor by which the step past an undecided place grows from one to the next."""
-PAD = 1e-7
-"""Enlargement of a cell, relative to its side, against rounding in the walk."""
 
 
 @part
@@ -35,7 +34,7 @@ def step_to(d, low, cell, side, origin, inv):
 
 
 @part
-def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
+def occupied(scene, scratch, k, ox, oy, oz, dx, dy, dz, start, stop):
     """(from, to, full): the first piece of [start, stop] in cells not proved empty; from >= stop: none.
 
     It ends at the next empty cell, or behind a full one (``full``): there the ray is certainly inside.
@@ -60,7 +59,9 @@ def occupied(scene, k, ox, oy, oz, dx, dy, dz, start, stop):
     begin = NONE
     t = start
     while t < stop:
-        state = scene.ints[base + (i * layout.CELLS + j) * layout.CELLS + l]
+        state = int(scene.ints[base + (i * layout.CELLS + j) * layout.CELLS + l])
+        if state == layout.UNKNOWN:
+            state = occupy(scene, scratch, k, i, j, l)
         if state == layout.EMPTY:
             if begin < NONE:
                 return begin, t, False
@@ -101,7 +102,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     tries = 0
     past = 0.1 * PAD * side / np.sqrt(dx * dx + dy * dy + dz * dz)  # a step into the next cell, within its pad
     while t < stop and tries < RETRIES:
-        begin, end, full = occupied(scene, k, ox, oy, oz, dx, dy, dz, t, stop)
+        begin, end, full = occupied(scene, scratch, k, ox, oy, oz, dx, dy, dz, t, stop)
         if not begin < stop:
             return NONE
         if full and anywhere:

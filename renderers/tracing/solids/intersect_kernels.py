@@ -27,8 +27,9 @@ def meet(scene, scratch, item, ox, oy, oz, dx, dy, dz, near, far, anywhere):
         return thin_round(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far)
     last = scratch.shape[0] - 1
     if scratch[last, layout.TOLD] >= layout.PROBING:
-        scratch[last, layout.TOLD] = layout.REACHED
-        return near
+        reached = layout.REACHED if kind == layout.IMPLICIT else layout.BEYOND
+        scratch[last, layout.TOLD] = max(scratch[last, layout.TOLD], reached)
+        return NONE
     if kind == layout.GRID:
         return crossing_at(scene.grid)(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere)
     if scratch[last, layout.TOLD] != 0.0:
@@ -117,6 +118,42 @@ def tell(scratch, asked, row):
         scratch[last - 1 - int(asked[0, column]), 0] = asked[row, column]
 
 
+@part
+def join(scene, scratch, asked, row, far, anywhere):
+    """(whether a listed ray is told by its row alone, what ``walk`` would return for it).
+
+    The walk past all that packets know is joined with their nearest crossing. Where it takes the order in which the
+    walk meets several things, the ray is not told: of a shadow ray with two blockers, or with two hits in one place.
+    """
+    where, item, light = asked[row, layout.REST_AT], asked[row, layout.REST_ITEM], asked[row, layout.REST_LIGHT]
+    if asked[row, layout.WANT] == layout.NOTHING:
+        return True, where, int(item), light
+    if item == layout.WALKED:
+        return False, where, -1, light
+    nearest, of, several = NONE, 0, False
+    for column in range(layout.ANSWERS, asked.shape[1]):
+        t = asked[row, column]
+        if t != t:
+            return False, where, -1, light
+        if 0.0 <= t < far:
+            several = t == nearest or (anywhere and nearest < NONE) or (several and t > nearest)
+            if t < nearest:
+                nearest, of = t, int(asked[0, column])
+    if nearest == NONE:
+        return True, where, int(item), light
+    if several or nearest == where or (anywhere and item >= 0):
+        return False, where, -1, light
+    if where < nearest:
+        return True, where, int(item), light
+    found = int(scratch[scratch.shape[0] - 2 - of, layout.ITEM_OF])
+    if anywhere:
+        s = scene.ints[layout.ITEMS + 4 * found + layout.SURFACE_AT]
+        light = 0.95 * scene.reals[s + layout.TRANSMISSION]
+        if light != 0.0:
+            light *= (scene.reals[s] + scene.reals[s + 1] + scene.reals[s + 2]) / 3.0
+    return True, nearest, found, light
+
+
 @kernel(MET(SCENE, SCRATCH, ASKED, *RAY[1:], types.boolean), _nrt=False, inner=True)
 def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
     """As ``walk`` from the ray's origin on, in the mode of ``asked``: in ASKING an open ray is listed and misses."""
@@ -126,17 +163,28 @@ def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
     row = int(asked[0, layout.NEXT])
     asked[0, layout.NEXT] = row + 1
     last = scratch.shape[0] - 1
-    if mode == layout.ASKING:
-        scratch[last, layout.TOLD] = layout.PROBING
-        t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
-        reached = scratch[last, layout.TOLD] == layout.REACHED
-        scratch[last, layout.TOLD] = 0.0
-        if not reached:
-            asked[row, layout.WANT] = layout.NOTHING
-            return t, item, light
+    if mode == layout.ASKING and asked[0, layout.ALONE] != 0.0:
+        asked[row, layout.REST_AT], asked[row, layout.REST_ITEM], asked[row, layout.REST_LIGHT] = NONE, -1.0, 1.0
         asked[0, layout.OPEN] = 1.0
         put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
         return NONE, -1, 1.0
+    if mode == layout.ASKING:
+        scratch[last, layout.TOLD] = layout.PROBING
+        t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
+        reached = scratch[last, layout.TOLD]
+        scratch[last, layout.TOLD] = 0.0
+        asked[row, layout.REST_AT], asked[row, layout.REST_ITEM], asked[row, layout.REST_LIGHT] = t, item, light
+        if reached < layout.REACHED:
+            asked[row, layout.WANT] = layout.NOTHING
+            return t, item, light
+        if reached == layout.BEYOND:
+            asked[row, layout.REST_ITEM] = layout.WALKED
+        asked[0, layout.OPEN] = 1.0
+        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
+        return NONE, -1, 1.0
+    told, t, item, light = join(scene, scratch, asked, row, far, anywhere)
+    if told:
+        return t, item, light
     tell(scratch, asked, row)
     t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
     scratch[last, layout.TOLD] = 0.0

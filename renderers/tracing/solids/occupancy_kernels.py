@@ -1,16 +1,17 @@
 # mypy: ignore-errors
-"""Occupancy cells of an implicit object's box: proved empty, proved full, or neither."""
+"""Occupancy cells of an implicit object's box: proved empty, proved full, or neither; filled as rays come to them."""
 
 from numba import types
 
 from renderers.tracing import layout
 from renderers.tracing.scene_kernels import SCENE, SCRATCH, part
-from renderers.tracing.solids.implicit_kernels import PAD
 from renderers.tracing.solids.ranges_kernels import cells_at, is_sheet, tape_of
 from sceneql.compiled.kernels import kernel
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.tape_ops import NOWHERE, WHOLE
 
+PAD = 1e-7
+"""Enlargement of a cell, relative to its side, against rounding in the walk."""
 BLOCK = 4
 """Cells along a side of the coarse blocks that are tested before their cells."""
 
@@ -47,17 +48,20 @@ def region(scene, scratch, k, i, j, l, side):
     return layout.FULL if status == WHOLE and high < 0.0 else layout.MIXED
 
 
-@kernel(types.void(SCENE, SCRATCH, types.int64, types.int64), _nrt=False)
-def occupy(scene, scratch, k, slab):
-    """Fill a slab (BLOCK layers of cells along x) of implicit object k: coarse blocks first, then their cells."""
+@kernel(types.int64(SCENE, SCRATCH, *(types.int64,) * 4), _nrt=False, inner=True)
+def occupy(scene, scratch, k, i, j, l):
+    """What cell (i, j, l) of implicit object k is; fills its block: a coarse one is tested first, then its cells.
+
+    Threads may fill a block at once: they write the same.
+    """
     base = cells_at(scene, k)
-    for bj in range(0, layout.CELLS, BLOCK):
-        for bl in range(0, layout.CELLS, BLOCK):
-            coarse = region(scene, scratch, k, slab * BLOCK, bj, bl, BLOCK)
-            for i in range(slab * BLOCK, slab * BLOCK + BLOCK):
-                for j in range(bj, bj + BLOCK):
-                    for l in range(bl, bl + BLOCK):
-                        found = coarse
-                        if coarse == layout.MIXED:
-                            found = region(scene, scratch, k, i, j, l, 1)
-                        scene.ints[base + (i * layout.CELLS + j) * layout.CELLS + l] = found
+    bi, bj, bl = i // BLOCK * BLOCK, j // BLOCK * BLOCK, l // BLOCK * BLOCK
+    coarse = region(scene, scratch, k, bi, bj, bl, BLOCK)
+    for ci in range(bi, bi + BLOCK):
+        for cj in range(bj, bj + BLOCK):
+            for cl in range(bl, bl + BLOCK):
+                found = coarse
+                if coarse == layout.MIXED:
+                    found = region(scene, scratch, k, ci, cj, cl, 1)
+                scene.ints[base + (ci * layout.CELLS + cj) * layout.CELLS + cl] = found
+    return int(scene.ints[base + (i * layout.CELLS + j) * layout.CELLS + l])

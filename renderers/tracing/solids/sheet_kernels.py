@@ -5,7 +5,8 @@ import numpy as np
 
 from renderers.tracing import layout
 from renderers.tracing.scene_kernels import CROSSING
-from renderers.tracing.solids.implicit_kernels import FARTHER, PAD, RETRIES, occupied
+from renderers.tracing.solids.implicit_kernels import FARTHER, RETRIES, occupied
+from renderers.tracing.solids.occupancy_kernels import PAD
 from renderers.tracing.solids.ranges_kernels import box_part, tape_of
 from renderers.tracing.solids.solids_kernels import NONE
 from sceneql.compiled.kernels import kernel
@@ -26,7 +27,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     tolerance = b[layout.TOLERANCE]
     tries = 0
     while t < stop and tries < RETRIES:
-        begin, end, _ = occupied(scene, k, ox, oy, oz, dx, dy, dz, t, stop)
+        begin, end, _ = occupied(scene, scratch, k, ox, oy, oz, dx, dy, dz, t, stop)
         if not begin < stop:
             return NONE
         end = max(end, begin + past)

@@ -16,16 +16,26 @@ BESIDE = 1e-5
 
 
 @part
-def normal(scene, scratch, k, x, y, z):
-    """Outward unit normal of implicit object k: of a face of its box if the point is on one, else of the field."""
-    b = scene.reals
+def face_normal(b, k, x, y, z):
+    """(whether a point is on a face of the box of implicit object k, its outward unit normal (3))."""
     p = (x, y, z)
     for axis in range(3):
         near = 1e-9 * (b[k + 3 + axis] - b[k + axis] + abs(p[axis]))
-        if abs(p[axis] - b[k + axis]) < near:
-            return (-1.0 if axis == 0 else 0.0), (-1.0 if axis == 1 else 0.0), (-1.0 if axis == 2 else 0.0)
-        if abs(p[axis] - b[k + 3 + axis]) < near:
-            return (1.0 if axis == 0 else 0.0), (1.0 if axis == 1 else 0.0), (1.0 if axis == 2 else 0.0)
+        side = -1.0 if abs(p[axis] - b[k + axis]) < near else 0.0
+        if side == 0.0 and abs(p[axis] - b[k + 3 + axis]) < near:
+            side = 1.0
+        if side != 0.0:
+            return True, (side if axis == 0 else 0.0), (side if axis == 1 else 0.0), (side if axis == 2 else 0.0)
+    return False, 0.0, 0.0, 0.0
+
+
+@part
+def normal(scene, scratch, k, x, y, z):
+    """Outward unit normal of implicit object k: of a face of its box if the point is on one, else of the field."""
+    b = scene.reals
+    on_face, fx, fy, fz = face_normal(b, k, x, y, z)
+    if on_face:
+        return fx, fy, fz
     code, constants, parts = tape_of(scene, k)
     _, gx, gy, gz = gradient(code, constants, parts, scratch, x, y, z)
     if not is_sheet(scene, k):

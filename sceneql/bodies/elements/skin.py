@@ -11,6 +11,9 @@ from sceneql.bodies.spring_look import vertex_normals
 from sceneql.frame import Mesh, Surface
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.bodies.elements.element_mesh import ElementMesh
     from sceneql.frame import Floats, Ints
     from sceneql.kinds import Ref
@@ -21,6 +24,8 @@ CELLS = 3
 CANDIDATES, STEPS = 12, 6
 """Elements whose middles are nearest, among which that of a vertex is looked for; steps of Newton's method to its place
 in a curved one."""
+CREASE = 0.77
+"""Cosine of the largest angle [40 degrees] between triangles that are shaded as one surface."""
 SIX = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))
 """The triangles between the six nodes of a face."""
 
@@ -32,12 +37,45 @@ def triangles(mesh: ElementMesh) -> Ints:
     return found
 
 
-def skin(name: str, surface: Surface, mesh: ElementMesh, places: Floats) -> Mesh:
-    """The outer triangles of nodes at places (n, 3) [m], smooth."""
-    found = triangles(mesh)
-    used, which = np.unique(found, return_inverse=True)
-    own, corners = places[used], which.reshape(-1, 3).astype(np.int32)
-    return Mesh(name, surface, own, corners, vertex_normals(own, corners))
+@dataclass(frozen=True, slots=True, eq=False)
+class Skin:
+    """The outer triangles of a mesh, whose creases at rest are kept."""
+
+    nodes: NDArray[int64]
+    """(v,) the node of each vertex: one at a crease has several."""
+    triangles: Ints
+    """(m, 3)."""
+
+    @classmethod
+    def of(cls, mesh: ElementMesh) -> Skin:
+        """That of the material at rest."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        found = triangles(mesh)
+        a, b, c = (mesh.points[found[:, k]] for k in range(3))
+        normals = np.cross(b - a, c - a)
+        normals = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        count = len(found)
+        sides = np.concatenate([found[:, [0, 1]], found[:, [1, 2]], found[:, [2, 0]]]).astype(np.int64)
+        starts = np.concatenate([3 * np.arange(count) + k for k in range(3)])
+        ends = np.concatenate([3 * np.arange(count) + (k + 1) % 3 for k in range(3)])
+        low, high = sides.min(axis=1), sides.max(axis=1)
+        order = np.lexsort((sides[:, 0] != low, high, low))
+        pairs = np.flatnonzero((low[order][1:] == low[order][:-1]) & (high[order][1:] == high[order][:-1]))
+        one, two = order[pairs], order[pairs + 1]
+        flat = np.sum(normals[one % count] * normals[two % count], axis=1) > CREASE
+        one, two = one[flat], two[flat]
+        # Sides of two triangles run opposite ways.
+        rows, columns = np.concatenate([starts[one], ends[one]]), np.concatenate([ends[two], starts[two]])
+        _, group = connected_components(coo_array((np.ones(len(rows)), (rows, columns)), (3 * count,) * 2), False)
+        _, first, which = np.unique(group, return_index=True, return_inverse=True)
+        return cls(found.ravel()[first].astype(np.int64), which.reshape(-1, 3).astype(np.int32))
+
+    def drawn(self, name: str, surface: Surface, places: Floats) -> Mesh:
+        """The triangles where nodes are at places (n, 3) [m], smooth but for creases."""
+        own = places[self.nodes]
+        return Mesh(name, surface, own, self.triangles, vertex_normals(own, self.triangles))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,13 +4,13 @@
 import math
 
 from sceneql.bodies.rigid.drive_kernels import REST_AT, STIFFNESS_AT, WORK_AT, motion
-from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, ROW
+from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, AT_PUSH, ROW
 from sceneql.compiled.kernels import lean
 from sceneql.system.signatures_kernels import AFTER_STEP
 
-SCRATCH_AT, ROWS, HOLDS_AT, LIMIT_AT, MOTION_AT = range(5)
+SCRATCH_AT, ROWS, HOLDS_AT, LIMIT_AT, EFFORT_AT, MOTION_AT = range(6)
 """Integers of a tie: what its rows write, their number, whether it holds, the force that breaks it; then, where it
-leaves one motion, those of drive_kernels."""
+leaves one motion, an offset that is not read here and those of drive_kernels."""
 
 
 @lean(AFTER_STEP, inner=True)
@@ -21,9 +21,10 @@ def part(t0, t1, y0, rate0, y1, floats, ints):
     x = y = z = 0.0
     for k in range(ints[ROWS]):
         to = ints[SCRATCH_AT] + ROW * k
-        x += floats[to + AT_FORCE] * floats[to + AT_J]
-        y += floats[to + AT_FORCE] * floats[to + AT_J + 1]
-        z += floats[to + AT_FORCE] * floats[to + AT_J + 2]
+        force = floats[to + AT_FORCE] + floats[to + AT_PUSH]
+        x += force * floats[to + AT_J]
+        y += force * floats[to + AT_J + 1]
+        z += force * floats[to + AT_J + 2]
     if not math.sqrt(x * x + y * y + z * z) > floats[ints[LIMIT_AT]]:
         return False
     if ints.size > MOTION_AT:

@@ -1,14 +1,29 @@
-"""The one motion that a hinge or a slider leaves: its outputs, and a force, a spring and a damping along it."""
+"""The one motion that a hinge or a slider leaves: its outputs, and what acts along it."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.bodies.rigid.joint import Joint, Side
-from sceneql.kinds import Value
+from sceneql.kinds import Problem, Value
 
 if TYPE_CHECKING:
-    from sceneql.system import Assembly, Bodies, ModelState
+    from sceneql.system import Assembly, Bodies, Drive, ModelState
+
+
+Follows = Literal["nothing", "speed", "place"]
+
+
+@dataclass(frozen=True, slots=True)
+class Motor:
+    """What a motor does: a largest force at which it follows a speed or a place, or a force alone."""
+
+    most: Value
+    follows: Follows
+    target: Value | None
+    settling: float
 
 
 class Driven(Joint):
@@ -18,11 +33,32 @@ class Driven(Joint):
         """Its kind, `turn` or `shift`, and its vectors (drive_kernels)."""
         raise NotImplementedError
 
-    def along(self) -> tuple[Value | None, Value | None, float, Value | None]:
-        """Force, stiffness, rest and damping."""
+    def spring(self) -> tuple[Value | None, float, Value | None]:
+        """Stiffness, rest and damping."""
         raise NotImplementedError
 
-    def assemble_motion(self, first: Side, second: Side, holds: int, assembly: Assembly) -> tuple[int, ...]:
+    def stops(self) -> tuple[tuple[float, float] | None, Value]:
+        """How far the motion goes at least and at most, and the restitution there."""
+        raise NotImplementedError
+
+    def rubbing(self) -> Value | None:
+        """Its dry friction."""
+        raise NotImplementedError
+
+    def driver(self) -> Motor | None:
+        """Its motor."""
+        raise NotImplementedError
+
+    def problems(self) -> Iterator[Problem]:
+        """Those of a tie; limits between which it does not start."""
+        yield from super().problems()
+        limits, _ = self.stops()
+        if limits is not None and not limits[0] <= 0.0 <= limits[1]:
+            yield Problem("it starts at 0, which must lie between the limits", ("limits",))
+
+    def assemble_motion(
+        self, first: Side, second: Side, holds: int, assembly: Assembly
+    ) -> tuple[tuple[int, ...], Drive | None]:
         """Add what acts along the motion."""
         import numpy as np
 
@@ -33,25 +69,83 @@ class Driven(Joint):
         kind, vectors = self.motion(first, second, assembly)
         numbers, scratch = assembly.floats(vectors), assembly.floats(np.zeros(2 * MOVED + ROW))
         row = (POINT if kind == "shift" else ANGLE, 0, 0, numbers, scratch + 2 * MOVED, holds)
-        force, stiffness, rest, damping = self.along()
+        motor, (stiffness, rest, damping) = self.driver(), self.spring()
+        force = motor.most if motor is not None and motor.follows == "nothing" else None
         none = assembly.floats([0.0])
         values = [none if value is None else assembly.value(value) for value in (force, stiffness, damping)]
         held = next(side.mover for side in (first, second) if isinstance(side.mover, Place))
         law = (values[0], values[1], assembly.floats([rest]), values[2], held.bodies.work_at, assembly.floats([0.0]))
+        effort = assembly.floats([0.0, 0.0])
         ints = (*integers(first.mover), *integers(second.mover), *row, scratch, *law)
-        assembly.remember(*ints)
         if kind == "turn":
             assembly.after_step("sceneql.bodies.rigid.drive_kernels:follow", ints, samples=True)
         if any(value is not None for value in (force, stiffness, damping)):
             assembly.term("force", "sceneql.bodies.rigid.drive_kernels:drive", ints)
-        return ints
+        return (effort, *ints), self._bounds(ints, motor, effort, assembly)
+
+    def _bounds(self, motion: tuple[int, ...], motor: Motor | None, effort: int, assembly: Assembly) -> Drive | None:
+        """What acts in bounds; None for nothing."""
+        from sceneql.system import Drive
+
+        (limits, restitution), friction = self.stops(), self.rubbing()
+        follows: Follows = "nothing" if motor is None else motor.follows
+        if limits is None and friction is None and follows == "nothing":
+            return None
+        target, most, settling, reached = -1, -1, -1, -1
+        if motor is not None and motor.target is not None:
+            target, most = assembly.value(motor.target), assembly.value(motor.most)
+            settling = assembly.floats([motor.settling])
+            reached = assembly.floats(assembly.initial(motor.target))
+        return Drive(
+            along=motion,
+            limits_at=-1 if limits is None else assembly.floats(limits),
+            restitution_at=-1 if limits is None else assembly.value(restitution),
+            follows=follows,
+            target_at=target,
+            most_at=most,
+            settling_at=settling,
+            reached_at=reached,
+            friction_at=-1 if friction is None else assembly.value(friction),
+            effort_at=effort,
+        )
 
     def read(self, output: str, state: ModelState) -> Any:
         """How far and how fast it has gone; force and torque."""
+        if output == "effort":
+            return self._effort(state)
         if output not in ("angle", "shift", "speed"):
             return super().read(output, state)
         far, fast = self._motion(state)
         return fast if output == "speed" else far
+
+    def remark(self, state: ModelState) -> str:
+        """That stops, motor and friction make steps of order 1."""
+        motor = self.driver()
+        parts = [
+            *(["stops"] if self.stops()[0] is not None else []),
+            *(["friction"] if self.rubbing() is not None else []),
+            *(["its motor"] if motor is not None and motor.follows != "nothing" else []),
+        ]
+        acts = "acts" if parts in (["friction"], ["its motor"]) else "act"
+        told = "on the velocities at the end of a step (mode local), of order 1 in the step where they do"
+        return f"{' and '.join(parts)} {acts} {told}" if parts else ""
+
+    def trouble(self, state: ModelState) -> str:
+        """That of a tie; steps whose stops, motors and friction were not solved to rounding."""
+        from sceneql.bodies.rigid.drive_kernels import LAST_AT
+
+        told, loose = super().trouble(state), float(state.floats[state.ints[-(LAST_AT + 2)] + 1])
+        if told or not loose:
+            return told
+        return f"in {loose:.0f} steps stops, motors and friction were not solved to rounding"
+
+    def _effort(self, state: ModelState) -> float:
+        """What motor, stops and friction do along the motion."""
+        from sceneql.bodies.rigid.drive_kernels import FORCE_AT, LAST_AT
+
+        own = state.ints[-(LAST_AT + 1) :]
+        force = 0.0 if self.read("broken", state) else float(state.floats[own[FORCE_AT]])
+        return force + float(state.floats[state.ints[-(LAST_AT + 2)]])
 
     def _motion(self, state: ModelState) -> tuple[float, float]:
         import numpy as np

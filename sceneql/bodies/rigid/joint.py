@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from sceneql.kinds import Gives, Object, Ref, Tie, Value, quantity_type
+from sceneql.kinds import Gives, Object, Problem, Ref, Tie, Value, quantity_type
+from sceneql.kinds.values import TIME
+from sceneql.kinds.word import written_name
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.quantities.expression import Expr, Link, Type
-from sceneql.system import Led, Place, Tied, TieRow
+from sceneql.quantities.expression import Expr, Link, Symbol, Type, walk
+from sceneql.system import Drive, Led, Place, Tied, TieRow
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies, ModelState, Mover
@@ -59,6 +61,15 @@ def _triple(vector: Floats) -> Triple:
 class Joint(Tie):
     """A tie of rows that a word gives."""
 
+    def problems(self) -> Iterator[Problem]:
+        """The world twice; a place or an axis that moves by itself, which is that at the start alone."""
+        yield from super().problems()
+        for name in ("at", "from_", "to", "axis", "other_axis"):
+            value = getattr(self, name, None)
+            if isinstance(value, Value) and any(isinstance(n, Symbol) and n.name in TIME for n in walk(value.expr)):
+                text = "a tie stays where it is at the start in the bodies that it holds, and does not move by the time"
+                yield Problem(text, (written_name(name),))
+
     def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
         """The conditions that hold, all of them at the start."""
         raise NotImplementedError
@@ -71,40 +82,50 @@ class Joint(Tie):
         from sceneql.bodies.rigid.tie_system import integers
 
         first, second = sides_of(self.between, assembly)
-        if not (isinstance(first.mover, Place) or isinstance(second.mover, Place)):
-            message = "a tie needs a body that it can hold: neither of these is moved by forces"
-            raise ScriptError([Diagnostic("no-mass", message, self.between[0].span)])
         if first.mover == second.mover:
             raise ScriptError([Diagnostic("same-mass", "a tie leads from a body to itself", self.between[1].span)])
         rows = self.rows(first, second, assembly)
         scratch, holds = assembly.floats(np.zeros(ROW * len(rows))), assembly.floats([1.0])
-        assembly.tie(Tied((first.mover, second.mover), tuple(rows), scratch, holds))
+        motion, drive = self.assemble_motion(first, second, holds, assembly)
+        assembly.tie(Tied((first.mover, second.mover), tuple(rows), scratch, holds, drive, name, assembly.line()))
         arm = assembly.floats(rows[0].vectors[0] if rows[0].kind in ("point", "distance") else (0.0, 0.0, 0.0))
         assembly.remember(scratch, len(rows), holds, arm, *integers(first.mover), *integers(second.mover))
-        motion = self.assemble_motion(first, second, holds, assembly)
+        assembly.remember(*motion)
         if self.breaks is not None:
             ints = (scratch, len(rows), holds, assembly.floats([self.breaks]), *motion)
             assembly.after_step("sceneql.bodies.rigid.break_kernels:part", ints)
 
-    def assemble_motion(self, first: Side, second: Side, holds: int, assembly: Assembly) -> tuple[int, ...]:
-        """Add what acts along a motion that it leaves; the integers of that, as drive_kernels has them."""
-        return ()
+    def assemble_motion(
+        self, first: Side, second: Side, holds: int, assembly: Assembly
+    ) -> tuple[tuple[int, ...], Drive | None]:
+        """Add what acts along a motion that it leaves; the integers of that, as drive_kernels has them, and bounds."""
+        return (), None
 
     def read(self, output: str, state: ModelState) -> Any:
         """Force, torque, and whether it is gone."""
         import numpy as np
 
-        from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, ROW
+        from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, AT_PUSH, ROW
 
         at, count, holds = state.ints[:3]
         if output == "broken":
             return float(state.floats[holds] == 0.0)
         rows = state.floats[at : at + ROW * count].reshape(count, ROW)
-        parts = rows[:, AT_FORCE, None] * rows[:, AT_J : AT_J + 6]
+        parts = (rows[:, AT_FORCE] + rows[:, AT_PUSH])[:, None] * rows[:, AT_J : AT_J + 6]
         force = parts[:, :3].sum(axis=0)
         if output == "force":
             return force
         return parts[:, 3:].sum(axis=0) - np.cross(self._arm(state), force)
+
+    def trouble(self, state: ModelState) -> str:
+        """How far it has come open, where it could not be held."""
+        from sceneql.bodies.rigid.tie_rows_kernels import AT_OPEN, ROW
+
+        at, count = state.ints[:2]
+        opened = float(state.floats[at : at + ROW * count].reshape(count, ROW)[:, AT_OPEN].max())
+        if opened == 0.0:
+            return ""
+        return f"it came open by {opened:.2g} (m or rad): other ties, or what leads its bodies, ask for something else"
 
     def _arm(self, state: ModelState) -> Floats:
         """From the position of the first body to where the tie is (3,) [m]."""

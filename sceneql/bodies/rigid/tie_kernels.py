@@ -19,6 +19,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_INVERSE,
     AT_J,
     AT_MASS,
+    AT_OPEN,
     AT_SIZE,
     AT_SPEED,
     AT_T,
@@ -68,6 +69,8 @@ GAIN = 0.98
 CLOSED = 1e-14
 """Gap of a row, against the numbers that it is the difference of, below which it is rounding."""
 MOST_CLOSINGS = 6
+OPENED = 1e-6
+"""Such a gap from which a tie counts as one that cannot be held."""
 
 
 @lean(types.void(F, A, A, I))
@@ -220,24 +223,29 @@ def open_by(floats, ints, at):
     return worst
 
 
+@lean(types.void(A, A, I, N, N))
+def shift_mover(y, floats, ints, at, to):
+    """Move the body of the mover of ints[at:] by the change of place and rotation at floats[to + AT_A:]."""
+    x, q = ints[at + POSITION], ints[at + ROTATION]
+    if x < 0:
+        return
+    for c in range(3):
+        y[x + c] += floats[to + AT_A + c]
+    if q >= 0:
+        ux, uy, uz = 0.5 * floats[to + AT_TWIST], 0.5 * floats[to + AT_TWIST + 1], 0.5 * floats[to + AT_TWIST + 2]
+        a, b, c, d = y[q], y[q + 1], y[q + 2], y[q + 3]
+        # q + (0, u) q, of the same length.
+        e, f = a - (ux * b + uy * c + uz * d), b + ux * a + uy * d - uz * c
+        g, h = c + uy * a + uz * b - ux * d, d + uz * a + ux * c - uy * b
+        scale = ((a * a + b * b + c * c + d * d) / (e * e + f * f + g * g + h * h)) ** 0.5
+        y[q], y[q + 1], y[q + 2], y[q + 3] = e * scale, f * scale, g * scale, h * scale
+
+
 @lean(types.void(A, A, I))
 def shift(y, floats, ints):
     """Move the bodies by the movers' changes of place and rotation."""
     for m in range(ints[MOVERS]):
-        at, to = ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m
-        x, q = ints[at + POSITION], ints[at + ROTATION]
-        if x < 0:
-            continue
-        for c in range(3):
-            y[x + c] += floats[to + AT_A + c]
-        if q >= 0:
-            ux, uy, uz = 0.5 * floats[to + AT_TWIST], 0.5 * floats[to + AT_TWIST + 1], 0.5 * floats[to + AT_TWIST + 2]
-            a, b, c, d = y[q], y[q + 1], y[q + 2], y[q + 3]
-            # q + (0, u) q, of the same length.
-            e, f = a - (ux * b + uy * c + uz * d), b + ux * a + uy * d - uz * c
-            g, h = c + uy * a + uz * b - ux * d, d + uz * a + ux * c - uy * b
-            scale = ((a * a + b * b + c * c + d * d) / (e * e + f * f + g * g + h * h)) ** 0.5
-            y[q], y[q + 1], y[q + 2], y[q + 3] = e * scale, f * scale, g * scale, h * scale
+        shift_mover(y, floats, ints, ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m)
 
 
 @lean(AFTER_STEP, inner=True)
@@ -252,6 +260,11 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         balance(floats, ints, AT_C, AT_SIZE)
         shift(y1, floats, ints)
         changed = True
+    if t1 > t0 and open_by(floats, ints, AT_C) > OPENED:
+        for k in range(ints[ROWS]):
+            to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]
+            if abs(floats[to + AT_C]) > OPENED * floats[to + AT_SIZE]:
+                floats[to + AT_OPEN] = max(floats[to + AT_OPEN], abs(floats[to + AT_C]))
     worst = 0.0
     for k in range(ints[ROWS]):
         row = ints[ROWS_AT] + ROW_INTS * k

@@ -32,9 +32,12 @@ AT_X, AT_V, AT_R, AT_W, AT_INVERSE, AT_MASS, AT_A, AT_TWIST, MOVED = 0, 3, 6, 15
 """Floats of a mover: position, velocity, rotation (3, 3), angular velocity, inverse inertia in the world's axes (3, 3),
 inverse mass; acceleration and angular acceleration, by all forces but the ties' and then with these."""
 
-AT_J, AT_T, AT_BIAS, AT_C, AT_SPEED, AT_FORCE, AT_SIZE, ROW = 0, 12, 24, 25, 26, 27, 28, 29
+AT_J, AT_T, AT_BIAS, AT_C, AT_SPEED, AT_FORCE, AT_SIZE, AT_PUSH, AT_OPEN, ROW = (
+    0, 12, 24, 25, 26, 27, 28, 29, 30, 31
+)  # fmt: skip
 """Floats of a row: J, by velocity and angular velocity of a, then of b; the inverse masses times J; the bias, C, dC/dt,
-the force of the row; the size of the numbers that C is the difference of."""
+the force of the row; the size of the numbers that C is the difference of; the force by which it answers contacts and
+drives, that are found by the step (tied_step_kernels); the largest gap that was not closed at the end of a step."""
 
 KIND, FIRST, SECOND, NUMBERS, SCRATCH, HOLDS, ROW_INTS = range(7)
 """Integers of a row: kind, both movers, offsets of its numbers, its floats, and of whether it holds (0: broken)."""

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from itertools import chain, product
 from typing import TYPE_CHECKING
 
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.system import Led, Place
 
 if TYPE_CHECKING:
@@ -19,6 +20,10 @@ KINDS = ("point", "angle", "distance", "gear")
 IMPLIED, ROUNDING = 1e-10, 1e-13
 """Square of a condition's part that the others do not imply, of all of it, below which it is one that they do; what is
 added to such squares for their factorization."""
+MOST = 600
+"""Conditions above which it is not looked whether they contradict each other at the start."""
+APART = 1e-6
+"""Speed of a tie that comes apart at the start from which it is told."""
 LEAST = 7
 """Numbers of a row, of which the last may be left out where it is 0."""
 
@@ -101,10 +106,39 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     kernels.survey(0.0, assembly.start(), numbers, np.array(ints))
     if redundant(ties, numbers)[1] == 0:
         assembly.write(ease, [kernels.LITTLE])
+    _must_agree(ties, numbers)
     assembly.term("tie", f"{KERNELS}:hold", ints)
+    assembly.tie_ints = ints
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
     if free:  # else where parts are led to is known at the end of a step alone
         assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
+
+
+def _must_agree(ties: Sequence[Tied], floats: Floats) -> None:
+    """Raise ScriptError where ties ask for velocities at the start that no motion has, by their evaluation there."""
+    import numpy as np
+
+    from sceneql.bodies.rigid.tie_rows_kernels import AT_J, AT_SPEED, ROW
+
+    of = [(tie, k) for tie in ties for k in range(len(tie.rows))]
+    if len(of) > MOST or not any(isinstance(mover, Led) for tie in ties for mover in tie.movers):
+        return
+    columns: dict[tuple[int, ...], int] = {}
+    whole, speeds = np.zeros((len(of), 12 * len(ties))), np.zeros(len(of))
+    for row, (tie, k) in enumerate(of):
+        scratch = tie.scratch_at + ROW * k
+        speeds[row] = floats[scratch + AT_SPEED]
+        for side, mover in enumerate(tie.movers):
+            if isinstance(mover, Place) and floats[mover.ints[3]] > 0.0:
+                at = 6 * columns.setdefault(integers(mover), len(columns))
+                whole[row, at : at + 6] += floats[scratch + AT_J + 6 * side :][:6]
+    left = np.abs(speeds - whole @ np.linalg.lstsq(whole, speeds, rcond=1e-9)[0])
+    fastest = float(left.max())
+    if fastest > APART:
+        found = dict.fromkeys(tie.name for (tie, _), one in zip(of, left, strict=True) if one > 0.1 * fastest)
+        names = " and ".join(f"'{name}'" for name in found)
+        message = f"ties contradict each other at the start: {names} would come apart at {fastest:.3g} m/s (or rad/s)"
+        raise ScriptError([Diagnostic("ties-contradict", message, of[int(left.argmax())][0].span)])
 
 
 def _add_pivots(assembly: Assembly, ties: Sequence[Tied]) -> None:

@@ -50,6 +50,10 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             elif ref.name in driver:
                 text = f"'{ref.name}' is moved by '{driver[ref.name]}'"
                 found.error("no-body", text, ref.span, help=f"name that: `{driver[ref.name]}`")
+        if isinstance(task.kind, Tie) and task.kind.targets() and not set(forces[task.name]) & set(names):
+            text = "a tie needs a body that it can hold: neither of these is moved by forces"
+            if not {ref.name for ref in task.kind.between} & {*inside, *driver}:
+                found.error("no-mass", text, task.kind.between[0].span)
     contacts = {t.name: _touching(t, tasks, names, found) for t in tasks.values() if isinstance(t.kind, Contact)}
     for task in models:
         for other in reads(task.name, tasks):
@@ -131,8 +135,15 @@ def _touching(
         if why is not None:
             help = f"name under `between` what may touch, without '{ref.name}'"
             found.error("no-collider", f"'{ref.name}': {why}", ref.span, help=help)
-    ties = [driver.get(name, name) for name in ties]
+    ties = list(dict.fromkeys(driver.get(name, name) for name in ties))
     targets = [name for name in ties if name in models]
+    turning = [name for name in targets if getattr(tasks[name].kind, "turns", False)]
+    for ref in task.kind.ties() if turning and not task.kind.mutual else ():
+        name = driver.get(ref.name, ref.name)
+        if name in targets and name not in turning:
+            text = f"masses do not touch rigid bodies, and '{ref.name}' has masses, '{turning[0]}' bodies"
+            help = f"give '{ref.name}' a contact of its own, with the objects that it may touch"
+            found.error("no-collider", text, ref.span, help=help)
     surfaces = [name for name in ties if isinstance(tasks[name].kind, Object)]
     if not targets:
         targets = [n for n in models if getattr(tasks[n].kind, "has_bodies", False)]

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.contacts.barrier.standing import add_objects
 from sceneql.contacts.barrier.skin_pairs import add_pairs
+from sceneql.contacts.barrier.standing import add_objects
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ SLIP = 1e-4
 def assemble(
     assembly: Assembly, everyone: Sequence[Bodies], refs: Sequence[Ref], friction: Value, gap: float | None
 ) -> tuple[int, ...]:
-    """Add the barriers of all skins; what the word remembers: -2, offset of gap and slip in the floats.
+    """Add the barriers of all skins; what the word remembers: -3, offset of gap and slip in the floats.
 
     Raises ScriptError for masses without skins, and for what starts too near.
     """
@@ -49,4 +49,4 @@ def assemble(
         if refs:
             add_objects(assembly, bodies, refs, friction_at, (bodies.skin.stiffness, gap, slip))
     add_pairs(assembly, everyone, friction_at, gap, slip, side)
-    return -2, told
+    return -3, told

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
 
-CORE, HALF_SPACE = range(2)
-"""Kinds: a polyhedron, segment or point with a radius; all on one side of a plane."""
+CORE, HALF_SPACE, SKINNED = range(3)
+"""Kinds: a polyhedron, segment or point with a radius; all on one side of a plane; what is met by its skin alone
+(contact_skins.py), here a ball around it."""
 COPLANAR = 1e-9
 """Angle [rad] between triangles of a convex hull up to which they are parts of one face."""
 SHAPE = 3

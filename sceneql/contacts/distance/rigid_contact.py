@@ -1,16 +1,17 @@
-"""Contacts of rigid bodies with one another and with objects that stand: their shapes, and the arrays of the kernel."""
+"""Contacts of rigid bodies with one another and with objects: their shapes, and the arrays of the kernel."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from sceneql.island.start import Start
-from sceneql.kinds import Ref, Value
+from sceneql.contacts.distance import led
+from sceneql.kinds import Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 
 if TYPE_CHECKING:
     from sceneql.contacts.distance.convex import Convex
+    from sceneql.contacts.distance.rigid_shapes import Shapes
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies
 
@@ -18,8 +19,6 @@ CONTACTS = 24
 """Contacts by the body whose forces are told and kept."""
 DEEP = 1e-6
 """Part of a body's size by which it may start inside another: rounding in a script."""
-SHAPE = 3
-"""Integers of a shape (convex.SHAPE)."""
 KERNEL = "sceneql.contacts.distance.rigid_local_kernels:back_off"
 
 
@@ -32,12 +31,15 @@ def assemble(
     """
     import numpy as np
 
-    from sceneql.bodies.rigid.turning import packed, unpacked
-    from sceneql.contacts.distance import convex
-    from sceneql.contacts.distance import rigid_local_kernels as kernels
-    from sceneql.contacts.distance.rigid_rows_kernels import PLACE, WHO
+    from sceneql.bodies.rigid.point_list import WHO
+    from sceneql.bodies.rigid.tied_step import body_integers, tied_step
+    from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS
+    from sceneql.contacts.distance import convex, rigid_layout
+    from sceneql.contacts.distance.rigid_rows_kernels import PLACE
+    from sceneql.contacts.distance.rigid_shapes import Shapes
 
-    numbers, shapes, fixed, rows = assembly.numbers(), [], [], []
+    numbers, known, shapes, fixed, rows, still = assembly.numbers(), Shapes(assembly), [], [], [], []
+    leads: list[tuple[int, ...]] = []
     moving: list[tuple[Ref | None, Floats]] = []
     standing: list[Ref | None] = []
     start = assembly.start()
@@ -46,100 +48,99 @@ def assemble(
         assert turning is not None
         model: Any = assembly.object(Ref(bodies.model))
         for k, (ref, center) in enumerate(model.solids()):
-            shape = _shape(ref, center, assembly)
+            shape = known.of(ref, center)
             x, q = bodies.position_at + 3 * k, turning.rotation_at + 4 * k
             place = np.concatenate([start[x : x + 3], start[q : q + 4]])
             if numbers[bodies.inverse_at + k] == 0.0:
                 fixed.append((shape, place))
                 standing.append(ref)
+                still.append(x)
                 continue
             moving.append((ref, place))
-            inertia: Floats = np.asarray(np.linalg.inv(unpacked(numbers[turning.inverse_at + 6 * k :][:6])))
-            rows.append(
-                (
-                    *(x, bodies.velocity_at + 3 * k, q, turning.momentum_at + 3 * k),
-                    *(bodies.mass_at + k, assembly.floats(packed(inertia)), bodies.work_at),
-                )
-            )
+            rows.append(body_integers(bodies, k, assembly))
             shapes.append(shape)
     for ref in others:
-        shape = _shape(ref, np.zeros(3), assembly)
-        fixed.append((shape, _place(ref, assembly)))
+        place = place_of(ref, assembly)
+        shape = known.of(ref, np.zeros(3), place)
+        kind: Any = assembly.object(ref)
+        if led.is_led(kind):
+            leads.append((len(fixed), *led.lead(ref, kind, place, assembly)))
+        fixed.append((shape, place))
         standing.append(ref)
     n = len(rows)
+    leads = [(n + first, *rest) for first, *rest in leads]
     everything = [*shapes, *(shape for shape, _ in fixed)]
     count, most = len(everything), CONTACTS * n + 64
     places = np.zeros((count, PLACE))
     for k, (_, place) in enumerate(fixed):
         places[n + k] = place
     names = [*(ref for ref, _ in moving), *standing]
-    _must_be_apart(everything, [*(place for _, place in moving), *(place for _, place in fixed)], n, names, assembly)
+    ties = tied_step(assembly, rows, not assembly.driven)
+    shape_of = {at: k for k, at in enumerate([*(row[0] for row in rows), *still])}
+    between = [] if ties is None else [[shape_of.get(at, -1) for at in pair] for pair in ties.joined]
+    joined = {(min(pair), max(pair)) for pair in between if min(pair) >= 0}
+    starts = [*(place for _, place in moving), *(place for _, place in fixed)]
+    must_be_apart(known, everything, starts, n, names, joined, assembly)
+    held = []
+    if ties is not None:
+        assembly.driven, rows, held = True, ties.bodies, ties.ints(assembly)
     room = convex.room_length(everything)
     places_at = assembly.floats(places)
     room_at, kept_at = (assembly.floats(np.zeros(size)) for size in (room, 3 * most))
     found = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
     loose, crowded = assembly.floats([0.0]), assembly.floats([0.0])
     data = assembly.floats(convex.joined(everything, 0, 0)[0])
-    _, integers = convex.joined(everything, data, kernels.HEAD)
-    bodies_at = kernels.HEAD + len(integers)
-    names_at = bodies_at + kernels.BODY_INTS * n
-    head = [n, count, kernels.HEAD, bodies_at, places_at, room_at, room, kept_at, names_at, most]
+    _, integers = convex.joined(everything, data, rigid_layout.HEAD)
+    bodies_at = rigid_layout.HEAD + len(integers)
+    ties_at = bodies_at + BODY_INTS * len(rows)
+    joined_at = ties_at + len(held)
+    names_at = joined_at + 1 + 2 * len(joined)
+    leads_at = names_at + WHO * most
+    skins_at = leads_at + rigid_layout.LED * len(leads)
+    skins = known.written(everything, skins_at)
+    head = [n, count, rigid_layout.HEAD, bodies_at, places_at, room_at, room, kept_at, names_at, most]
     head += [assembly.value(restitution), assembly.value(friction), *found, loose, crowded]
+    head += [len(rows), ties_at, len(held), joined_at, len(leads), leads_at, skins_at if skins else 0]
     names_room = [0] * (WHO * most)
-    ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *names_room]
+    ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *held]
+    ints += [len(joined), *(number for pair in sorted(joined) for number in pair), *names_room]
+    ints += [*(number for one in leads for number in one), *skins]
     assembly.contact("local", (KERNEL,), [int(number) for number in ints], 0)
     return (*found, loose, crowded)
 
 
-def _must_be_apart(
-    shapes: Sequence[Convex], places: Sequence[Floats], moving: int, refs: Sequence[Ref | None], assembly: Assembly
+def must_be_apart(
+    known: Shapes,
+    shapes: Sequence[Convex],
+    places: Sequence[Floats],
+    moving: int,
+    refs: Sequence[Ref | None],
+    joined: set[tuple[int, int]],
+    assembly: Assembly,
 ) -> None:
     """Raise ScriptError for bodies that start inside one another or inside what stands; all such pairs at once."""
-    import numpy as np
-
-    from sceneql.contacts.distance import convex
-    from sceneql.contacts.distance.gap_kernels import gap
-    from sceneql.contacts.distance.rigid_local_kernels import standing_pairs
-
-    floats, ints = convex.joined(shapes)
-    room, where = np.zeros(convex.room_length(shapes)), np.concatenate(places)
     found = Diagnostics()
-    for a, b in standing_pairs(floats, ints, len(shapes), where, room).tolist():
-        if a >= moving:
-            break
-        depth = -gap(floats, ints, SHAPE * a, SHAPE * b, where, 7 * a, 7 * b, room)[0]
+    for (a, b), gap in known.gaps(shapes, places, moving):
+        if (a, b) in joined:
+            continue
         one, other = refs[a], refs[b]
-        if one is not None and other is not None and depth > DEEP * shapes[a].reach:
-            message = f"'{one.name}' starts {depth:.3g} m inside '{other.name}'"
+        if one is not None and other is not None and -gap > DEEP * shapes[a].reach:
+            message = f"'{one.name}' starts {-gap:.3g} m inside '{other.name}'"
             found.error("starts-inside", message, assembly.line(), help="move one of them away")
     found.raise_errors()
 
 
-def _shape(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex:
-    """The shape of an object in its own axes from a center. Raises ScriptError where it is not covered."""
-    if ref is None:
-        message = "a body without an object has no shape to touch with"
-        raise ScriptError([Diagnostic("no-collider", message, assembly.line())])
-    start: Any = Start(assembly)
-    kind: Any = assembly.object(ref)
-    try:
-        found: Convex = kind.convex(start, center)
-        return found
-    except (TypeError, ValueError) as error:
-        help = "spheres, boxes, planes and convex meshes do"
-        message = f"'{ref.name}' does not collide with rigid bodies yet: {error}"
-        raise ScriptError([Diagnostic("no-collider", message, ref.span, help)]) from None
-
-
-def _place(ref: Ref, assembly: Assembly) -> Floats:
-    """Position and quaternion (7,) of an object that stands. Raises ScriptError for one that moves."""
+def place_of(ref: Ref, assembly: Assembly) -> Floats:
+    """Position and quaternion (7,) of an object at the start. Raises ScriptError for one that changes its shape."""
     import numpy as np
 
-    kind = assembly.object(ref)
+    kind: Any = assembly.object(ref)
+    for name, value in kind:
+        own = name not in led.MOVING and name not in Object.model_fields
+        if own and isinstance(value, Value) and not value.constant:
+            message = f"`{name}` of '{ref.name}' varies in time, and rigid bodies touch only what keeps its shape"
+            raise ScriptError([Diagnostic("no-collider", message, value.span)])
     values = [getattr(kind, name, None) for name in ("position", "rotation")]
-    if any(isinstance(value, Value) and not value.constant for value in values):
-        message = f"'{ref.name}' moves by itself, and rigid bodies touch only what stands or what they are, so far"
-        raise ScriptError([Diagnostic("no-collider", message, ref.span)])
     parts = [
         assembly.initial(value) if isinstance(value, Value) else rest
         for value, rest in zip(values, ((0, 0, 0), (1, 0, 0, 0)), strict=True)

@@ -13,68 +13,62 @@ import numpy as np
 from numba import types
 
 import sceneql.system.channels as channels
-from sceneql.bodies.rigid.rigid_kernels import times_symmetric, to_body, to_world
+from sceneql.bodies.rigid.groups_kernels import MASS, solve_groups
+from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_POINT, AT_PUSH, BODY_A, BODY_B, WHERE, WHO
+from sceneql.bodies.rigid.tied_rows_kernels import ROW_BODIES_AT, ROWS, begin_ties, first_stop, rouse, write_ties
+from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tied_to
+from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, Q_AT, X_AT, gather
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
-from sceneql.contacts.distance.convex import SHAPE
+from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts.distance.convex import SHAPE, SKINNED
 from sceneql.contacts.distance.first_touch_kernels import first_touch
 from sceneql.contacts.distance.first_touch_kernels import move as place_after
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT, manifold
-from sceneql.contacts.distance.rigid_groups_kernels import MASS, solve_groups
-from sceneql.contacts.distance.rigid_rows_kernels import (
-    AT_NORMAL,
-    AT_POINT,
-    AT_PUSH,
-    BODY_A,
-    BODY_B,
-    MOTION,
-    PLACE,
-    WHERE,
-    WHO,
-    add_points,
-    recall,
-    with_room,
+from sceneql.contacts.distance.rigid_layout import (
+    ALL_BODIES,
+    BODIES,
+    BODIES_AT,
+    COUNT_AT,
+    CROWDED_AT,
+    FORCES_AT,
+    FRICTION_AT,
+    JOINED_AT,
+    KEPT_AT,
+    KEPT_NAMES_AT,
+    LED,
+    LEDS,
+    LEDS_AT,
+    LOOSE_AT,
+    MOST_KEPT,
+    NORMALS_AT,
+    PLACES_AT,
+    POINTS_AT,
+    RESTITUTION_AT,
+    ROOM,
+    ROOM_AT,
+    SHAPES,
+    SHAPES_AT,
+    SKINS_AT,
+    TIES,
+    TIES_AT,
 )
+from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, recall, with_room
 from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept_box
 from sceneql.linear.block_order_kernels import filled
+from sceneql.linear.bounded_rows_kernels import ROW
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
-BODIES, SHAPES, SHAPES_AT, BODIES_AT, PLACES_AT, ROOM_AT, ROOM, KEPT_AT, KEPT_NAMES_AT, MOST_KEPT = range(10)
-RESTITUTION_AT, FRICTION_AT, COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, LOOSE_AT, CROWDED_AT, HEAD = range(10, 19)
-"""Integers of an island's contacts: numbers of bodies that move and of shapes, of which theirs come first; where the
-shapes (contacts/distance/convex.py) and the bodies' integers begin; offsets into the floats of places (7 a shape), of
-working memory and its size; where impulses are kept from step to step among the floats, their names among the integers,
-and how many at most; offsets of the coefficients; of how many contacts there were, and of their points, normals and
-forces; of the steps whose contacts were not solved to rounding, or were more than can be kept."""
-
-X_AT, V_AT, Q_AT, L_AT, MASS_AT, INERTIA_AT, WORK_AT, BODY_INTS = range(8)
-"""Integers of a body: offsets of position, velocity, quaternion and angular momentum in y, of its mass and of its
-inertia (xx, yy, zz, yz, xz, xy) in the floats, of the work in y."""
+lead = lazy("sceneql.contacts.distance.led_kernels:lead", types.void(F, F, A, I, N, A, N, A, N))
+skin_points = lazy(
+    "sceneql.contacts.distance.skin_pair_kernels:skin_points",
+    types.Tuple((I, A, N))(F, A, I, N, N, A, A, A, F, N, I, A, N),
+)
+cut = lazy("sceneql.contacts.distance.skin_pair_kernels:cut", F(F, A, I, N, N, A, A, F))
 
 ROUNDS = 12
 """Most solutions of a step."""
 DEEP = 1e-7
 """Part of a body's reach by which it may be inside another at the end of a step without another solution."""
-
-
-@lean(types.void(A, N, A, N, A, N))
-def inertia_of(y, q, floats, at, out, to):
-    """Write the inertia in the world's axes (3, 3) to out[to:]."""
-    for c in range(3):
-        e = to_body(y, q, 1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2))
-        x, y_, z = to_world(y, q, *times_symmetric(floats, at, *e))
-        out[to + c], out[to + 3 + c], out[to + 6 + c] = x, y_, z
-
-
-@lean_inlined
-def spin_by(inertia, at, x, y, z):
-    """The angular velocity of an angular momentum, by the inertia (3, 3) at inertia[at:]."""
-    a, b, c = inertia[at], inertia[at + 1], inertia[at + 2]
-    d, e, f = inertia[at + 4], inertia[at + 5], inertia[at + 8]
-    # The cofactors of a symmetric matrix.
-    p, q, r = d * f - e * e, c * e - b * f, b * e - c * d
-    s, t, u = a * f - c * c, b * c - a * e, a * d - b * b
-    det = a * p + b * q + c * r
-    return (p * x + q * y + r * z) / det, (q * x + s * y + t * z) / det, (r * x + t * y + u * z) / det
 
 
 @lean(F(A, N, F))
@@ -84,26 +78,38 @@ def reach_of(motions, of, reach):
     return v + reach * math.sqrt(motions[of + 3] ** 2 + motions[of + 4] ** 2 + motions[of + 5] ** 2)
 
 
-@lean(types.void(F, A, A, A, I, N, A, N, A, N, A, N))
-def move(h, y0, y1, floats, ints, own, masses, at, found, of, places, to):
-    """Write the end of the step of a body by its velocities with contacts, and what they took to the work."""
-    x, v, q, momentum = ints[own + X_AT], ints[own + V_AT], ints[own + Q_AT], ints[own + L_AT]
-    mass, inertia = masses[at], at + 1
-    wx, wy, wz = found[of + 3], found[of + 4], found[of + 5]
-    bx, by, bz = spin_by(masses, inertia, y0[momentum], y0[momentum + 1], y0[momentum + 2])
-    lost = 0.0
+@lean(F(A, A, N, N, F))
+def speed_at(places, motions, a, b, reach):
+    """The largest speed that the motion of shape b gives a point within a reach of the center of shape a."""
+    far = 0.0
     for c in range(3):
-        u, w, before = found[of + c], found[of + 3 + c], (bx, by, bz)[c]
-        i = inertia + 3 * c
-        new = masses[i] * wx + masses[i + 1] * wy + masses[i + 2] * wz
-        lost += mass * ((y1[v + c] - y0[v + c]) * u - 0.5 * (u * u - y0[v + c] ** 2))
-        lost += (y1[momentum + c] - y0[momentum + c]) * w - 0.5 * (new * w - y0[momentum + c] * before)
-        y1[v + c] = u
-        y1[x + c] = y0[x + c] + h * u
-        y1[momentum + c] = new
-    y1[ints[own + WORK_AT]] += lost
-    for c in range(4):
-        y1[q + c] = places[to + 3 + c]
+        far += (places[PLACE * a + c] - places[PLACE * b + c]) ** 2
+    return reach_of(motions, MOTION * b, math.sqrt(far) + reach)
+
+
+@kernel(A(A), inner=True)
+def copied(numbers):
+    """A copy."""
+    found = np.empty(numbers.size)
+    for k in range(numbers.size):
+        found[k] = numbers[k]
+    return found
+
+
+@lean(types.boolean(I, N, N))
+def joined(ints, a, b):
+    """Whether a tie joins two shapes' bodies; a < b."""
+    at = ints[JOINED_AT]
+    low, high = at + 1, at + 1 + 2 * ints[at]
+    while low < high:
+        middle = low + 2 * ((high - low) // 4)
+        if ints[middle] == a and ints[middle + 1] == b:
+            return True
+        if ints[middle] < a or (ints[middle] == a and ints[middle + 1] < b):
+            low = middle + 2
+        else:
+            high = middle
+    return False
 
 
 @lean(types.void(F, A, I, A, A, A, F, A, A), inner=True)
@@ -139,6 +145,31 @@ def standing_pairs(floats, ints, shapes, places, room):
     return pairs_of(boxes, shapes)
 
 
+@lean_inlined
+def is_skinned(ints, a, b):
+    """Whether a pair of shapes touches by skins."""
+    head = ints[SHAPES_AT]
+    return ints[head + SHAPE * a] == SKINNED or ints[head + SHAPE * b] == SKINNED
+
+
+@lean(F(F, A, I, A, A, A, types.int64[:, ::1]), inner=True)
+def shortened(h, floats, ints, places, motions, before, pairs):
+    """How much of a step pairs of skins may do at once [s]."""
+    n, head, least = ints[BODIES], ints[SHAPES_AT], h
+    for p in range(pairs.shape[0]):
+        a, b = pairs[p, 0], pairs[p, 1]
+        if a < n and is_skinned(ints, a, b) and not joined(ints, a, b):
+            reach = floats[ints[head + SHAPE * a + 1] + 1]
+            fast = reach_of(motions, MOTION * a, reach) + reach_of(before, MOTION * a, reach)
+            if b < n:
+                other = floats[ints[head + SHAPE * b + 1] + 1]
+                fast += reach_of(motions, MOTION * b, other) + reach_of(before, MOTION * b, other)
+            else:
+                fast += speed_at(places, motions, a, b, reach)
+            least = min(least, cut(h, floats, ints, a, b, places, motions, fast))
+    return least
+
+
 @kernel(types.Tuple((I, A, N))(F, A, I, A, A, A, types.int64[:, ::1], A), inner=True)
 def contacts_at_start(h, floats, ints, places, motions, before, pairs, room):
     """The points where bodies touch, or would in the step by their motions without contacts."""
@@ -150,11 +181,20 @@ def contacts_at_start(h, floats, ints, places, motions, before, pairs, room):
         a, b = pairs[p, 0], pairs[p, 1]
         if a >= n:
             break
+        if joined(ints, a, b):
+            continue
         reach = floats[ints[head + SHAPE * a + 1] + 1]
         margin = h * (reach_of(motions, MOTION * a, reach) + reach_of(before, MOTION * a, reach)) + 1e-3 * reach
         if b < n:
             other = floats[ints[head + SHAPE * b + 1] + 1]
             margin += h * (reach_of(motions, MOTION * b, other) + reach_of(before, MOTION * b, other))
+        else:
+            margin += h * speed_at(places, motions, a, b, reach)
+        if is_skinned(ints, a, b):
+            who, where, contacts = skin_points(
+                h, floats, ints, a, b, places, motions, before, margin, 0, who, where, contacts
+            )
+            continue
         count, gap, nx, ny, nz = manifold(
             floats, ints, head + SHAPE * a, head + SHAPE * b, places, PLACE * a, PLACE * b, margin, points, names, room
         )
@@ -187,9 +227,16 @@ def contacts_at_end(h, floats, ints, places, motions, before, boxes, ends, who, 
         a, b = pairs[p, 0], pairs[p, 1]
         if a >= n:
             break
+        if joined(ints, a, b):
+            continue
         one, two, reach = head + SHAPE * a, head + SHAPE * b, floats[ints[head + SHAPE * a + 1] + 1]
         if b < n:
             reach = min(reach, floats[ints[head + SHAPE * b + 1] + 1])
+        if is_skinned(ints, a, b):
+            who, where, contacts = skin_points(
+                h, floats, ints, a, b, ends, motions, before, -DEEP * reach, 1, who, where, contacts
+            )
+            continue
         count, _, nx, ny, nz = manifold(
             floats, ints, one, two, ends, PLACE * a, PLACE * b, -DEEP * reach, points, names, room
         )
@@ -222,72 +269,108 @@ def tell(floats, ints, who, where, contacts, h):
 
 @kernel(BACK_OFF, inner=True)
 def back_off(t0, t1, y0, rate0, y1, floats, ints):
-    """Resolve the contacts of the step in y1."""
-    if floats[channels.STEP_END] > 0.0:
+    """Resolve the contacts of the step in y1, with the ties of what touches.
+
+    While STEP_END is above 0, only lower it: to where a tie comes to its stop, or where skins would come too fast.
+    """
+    h, n, shapes, every, bodies_at = t1 - t0, ints[BODIES], ints[SHAPES], ints[ALL_BODIES], ints[BODIES_AT]
+    ties = ints[ints[TIES_AT] : ints[TIES_AT] + ints[TIES]]
+    tied = ties.size > 0
+    asked = floats[channels.STEP_END] > 0.0
+    if asked and tied:
+        part = first_stop(h, y0, y1, floats, ties)
+        if part < 1.0:
+            floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + part * h)
+    if asked and ints[SKINS_AT] == 0:
         return
-    h = t1 - t0
-    n, shapes = ints[BODIES], ints[SHAPES]
     places = floats[ints[PLACES_AT] : ints[PLACES_AT] + PLACE * shapes]
     room = floats[ints[ROOM_AT] : ints[ROOM_AT] + ints[ROOM]]
-    motions, before, masses = np.zeros(MOTION * shapes), np.zeros(MOTION * shapes), np.empty(MASS * n)
+    size = MOTION * max(shapes, every)
+    motions, before, masses = np.zeros(size), np.zeros(size), np.empty(MASS * every)
     boxes = np.empty(BOX * shapes)
+    # What stands has the numbers behind the bodies with shapes: those without one come once that is looked at.
     for k in range(n):
-        own = ints[BODIES_AT] + BODY_INTS * k
-        x, v, q, momentum = ints[own + X_AT], ints[own + V_AT], ints[own + Q_AT], ints[own + L_AT]
+        own = bodies_at + BODY_INTS * k
+        x, q = ints[own + X_AT], ints[own + Q_AT]
         for c in range(3):
             places[PLACE * k + c] = y0[x + c]
-            motions[MOTION * k + c], before[MOTION * k + c] = y1[v + c], y0[v + c]
         for c in range(4):
             places[PLACE * k + 3 + c] = y0[q + c]
-        masses[MASS * k] = floats[ints[own + MASS_AT]]
-        inertia_of(y0, q, floats, ints[own + INERTIA_AT], masses, MASS * k + 1)
-        for y, to in ((y1, motions), (y0, before)):
-            wx, wy, wz = spin_by(masses, MASS * k + 1, y[momentum], y[momentum + 1], y[momentum + 2])
-            to[MOTION * k + 3], to[MOTION * k + 4], to[MOTION * k + 5] = wx, wy, wz
+        gather(y0, y0, y1, floats, ints, own, masses, MASS * k, motions, before, MOTION * k)
+    seen, ends = np.zeros(MOTION * shapes), copied(places)
+    for k in range(ints[LEDS]):
+        own = ints[LEDS_AT] + LED * k
+        at = ints[own]
+        lead(t0, t1, floats, ints, own + 1, places, PLACE * at, motions, MOTION * at)
+        place_after(places, PLACE * at, motions, MOTION * at, h, ends, PLACE * at)
+        for c in range(MOTION):
+            before[MOTION * at + c] = seen[MOTION * at + c] = motions[MOTION * at + c]
     sweep(h, floats, ints, places, motions, before, 1e-3, boxes, room)
     pairs = pairs_of(boxes, shapes)
+    if asked:
+        most = shortened(h, floats, ints, places, motions, before, pairs)
+        if most < 0.999 * h:
+            floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + most)
+        return
     who, where, contacts = contacts_at_start(h, floats, ints, places, motions, before, pairs, room)
     kept = int(floats[ints[COUNT_AT]])
     floats[ints[COUNT_AT]] = 0.0
-    if pairs.shape[0] == 0:
+    if pairs.shape[0] == 0 and not tied:
         return
     names = ints[ints[KEPT_NAMES_AT] : ints[KEPT_NAMES_AT] + WHO * ints[MOST_KEPT]]
     recall(who, where, contacts, names, floats[ints[KEPT_AT] : ints[KEPT_AT] + 3 * ints[MOST_KEPT]], kept)
-    found, ends, touched = np.empty(before.size), np.empty(places.size), filled(shapes, 0)
-    for k in range(before.size):
-        found[k] = before[k]
-    for k in range(places.size):
-        ends[k] = places[k]
-    first, loose, friction = contacts, 0, floats[ints[FRICTION_AT]]
+    free, rows, sides = copied(y1), np.empty(0), ties
+    if tied:
+        rows = np.zeros(ROW * ties[ROWS])
+        sides = ties[ties[ROW_BODIES_AT] : ties[ROW_BODIES_AT] + 2 * ties[ROWS]]
+        for k in range(n, every):
+            own = bodies_at + BODY_INTS * k
+            gather(y0, y0, y1, floats, ints, own, masses, MASS * k, motions, before, MOTION * k)
+        begin_ties(h, y0, y1, floats, ties)
+        for k in range(contacts):
+            rouse(floats, ties, who[WHO * k + BODY_A])
+            if who[WHO * k + BODY_B] < n:
+                rouse(floats, ties, who[WHO * k + BODY_B])
+        strike(y1, floats, masses, ints, ties, bodies_at, motions, before)
+        write_ties(h, y0, y1, floats, ties, rows)
+    found, touched = copied(before), filled(max(shapes, every), 0)
+    for k in range(MOTION * n, MOTION * every):
+        found[k] = motions[k]
+    first, loose, friction, some = contacts, 0, floats[ints[FRICTION_AT]], False
     for number in range(ROUNDS):
-        loose = solve_groups(n, who, where, contacts, masses, motions, found, friction)
-        for k in range(shapes):
+        loose = solve_groups(n, every, who, where, contacts, masses, motions, found, friction, rows, sides)
+        for k in range(touched.size):
             touched[k] = 0
         for k in range(contacts):
             at, w = WHERE * k + AT_PUSH, WHO * k
             if where[at] != 0.0 or where[at + 1] != 0.0 or where[at + 2] != 0.0:
-                touched[who[w + BODY_A]] = touched[who[w + BODY_B]] = 1
-        for k in range(n):
+                touched[who[w + BODY_A]] = 1
+                if who[w + BODY_B] < n:
+                    touched[who[w + BODY_B]] = 1
+        some = tied_to(touched, floats, ties, rows)
+        for k in range(every):
             if touched[k] == 0:
-                x, q = ints[ints[BODIES_AT] + BODY_INTS * k + X_AT], ints[ints[BODIES_AT] + BODY_INTS * k + Q_AT]
-                whole = math.sqrt(y1[q] ** 2 + y1[q + 1] ** 2 + y1[q + 2] ** 2 + y1[q + 3] ** 2)
                 for c in range(MOTION):
                     found[MOTION * k + c] = motions[MOTION * k + c]
-                for c in range(PLACE):
-                    ends[PLACE * k + c] = y1[x + c] if c < 3 else y1[q + c - 3] / whole
-            else:
-                place_after(places, PLACE * k, found, MOTION * k, h, ends, PLACE * k)
+        place_all(h, y0, y1, free, floats, ints, bodies_at, every, ties, touched, found, motions)
+        for k in range(n):
+            x, q = ints[bodies_at + BODY_INTS * k + X_AT], ints[bodies_at + BODY_INTS * k + Q_AT]
+            whole = math.sqrt(y1[q] ** 2 + y1[q + 1] ** 2 + y1[q + 2] ** 2 + y1[q + 3] ** 2)
+            for c in range(PLACE):
+                ends[PLACE * k + c] = y1[x + c] if c < 3 else y1[q + c - 3] / whole
         if number == ROUNDS - 1:
             break
         last = contacts
+        for k in range(MOTION * n):
+            seen[k] = found[k]
         who, where, contacts = contacts_at_end(
-            h, floats, ints, places, found, before, boxes, ends, who, where, contacts, room
+            h, floats, ints, places, seen, before, boxes, ends, who, where, contacts, room
         )
-        if contacts == last:
+        more = some and again(h, y0, y1, free, floats, ties, rows)
+        if contacts == last and not more:
             break
     floats[ints[LOOSE_AT]] += loose > 0
     tell(floats, ints, who, where, first, h)
-    for k in range(n):
-        if touched[k] != 0:
-            own = ints[BODIES_AT] + BODY_INTS * k
-            move(h, y0, y1, floats, ints, own, masses, MASS * k, found, MOTION * k, ends, PLACE * k)
+    move_all(y0, y1, free, floats, ints, bodies_at, every, ties, touched, masses, found, before)
+    if tied:
+        end_ties(h, y0, floats, ties, rows, who, where, contacts, n, some)

@@ -7,18 +7,26 @@ The list grows as it needs. A point is known from step to step by its pair and i
 import numpy as np
 from numba import types
 
+from sceneql.bodies.rigid.point_list import (
+    AT_ARM_A,
+    AT_ARM_B,
+    AT_GIVEN,
+    AT_LED,
+    AT_POINT,
+    AT_PUSH,
+    BODY_A,
+    BODY_B,
+    FIRST_NAME,
+    LAST_NAME,
+    WHERE,
+    WHO,
+)
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT
 from sceneql.linear.block_order_kernels import longer
 from sceneql.system.signatures_kernels import A, F, I, N
 
 PLACE, MOTION = 7, 6
-BODY_A, BODY_B, FIRST_NAME, LAST_NAME, WHO = range(5)
-"""Integers of a point: its two shapes, the first one moves; its name."""
-AT_NORMAL, AT_ARM_A, AT_ARM_B, AT_GIVEN, AT_PUSH, AT_POINT, WHERE = 0, 3, 6, 9, 10, 13, 16
-"""Floats of a point: normal from b to a, arms from the centers, the normal velocity that is added (cone_rows_kernels),
-the impulse on a, the point on a."""
-
 BOUNCES = 2.0
 """A contact bounces that approaches faster than the step's forces make it in so many steps."""
 
@@ -36,16 +44,15 @@ def with_room(who, where, count):
 
 
 @lean_inlined
-def speed_along(motions, a, b, n, rx, ry, rz, sx, sy, sz, nx, ny, nz):
-    """The normal velocity of a's point against b's; shapes from the n-th on stand."""
+def speed_along(motions, a, b, rx, ry, rz, sx, sy, sz, nx, ny, nz):
+    """The normal velocity of a's point against b's."""
     p, q = MOTION * a, MOTION * b
     ux = motions[p] + motions[p + 4] * rz - motions[p + 5] * ry
     uy = motions[p + 1] + motions[p + 5] * rx - motions[p + 3] * rz
     uz = motions[p + 2] + motions[p + 3] * ry - motions[p + 4] * rx
-    if b < n:
-        ux -= motions[q] + motions[q + 4] * sz - motions[q + 5] * sy
-        uy -= motions[q + 1] + motions[q + 5] * sx - motions[q + 3] * sz
-        uz -= motions[q + 2] + motions[q + 3] * sy - motions[q + 4] * sx
+    ux -= motions[q] + motions[q + 4] * sz - motions[q + 5] * sy
+    uy -= motions[q + 1] + motions[q + 5] * sx - motions[q + 3] * sz
+    uz -= motions[q + 2] + motions[q + 3] * sy - motions[q + 4] * sx
     return nx * ux + ny * uy + nz * uz
 
 
@@ -73,14 +80,21 @@ def add_points(
             where[to + AT_PUSH + c], where[to + AT_POINT + c] = 0.0, points[p + c]
         gap = points[p + 6]
         given = gap / h
-        will = speed_along(motions, a, b, n, rx, ry, rz, sx, sy, sz, nx, ny, nz)
+        will = speed_along(motions, a, b, rx, ry, rz, sx, sy, sz, nx, ny, nz)
         if ahead != 0:
             given -= will
         elif restitution > 0.0 and gap + h * will < 0.0:
-            was = speed_along(before, a, b, n, rx, ry, rz, sx, sy, sz, nx, ny, nz)
+            was = speed_along(before, a, b, rx, ry, rz, sx, sy, sz, nx, ny, nz)
             if was < 0.0 and -was > BOUNCES * abs(will - was):
                 given = restitution * was
         where[to + AT_GIVEN] = given
+        for c in range(3):
+            where[to + AT_LED + c] = 0.0
+        if b >= n:
+            q = MOTION * b
+            where[to + AT_LED] = motions[q] + motions[q + 4] * sz - motions[q + 5] * sy
+            where[to + AT_LED + 1] = motions[q + 1] + motions[q + 5] * sx - motions[q + 3] * sz
+            where[to + AT_LED + 2] = motions[q + 2] + motions[q + 3] * sy - motions[q + 4] * sx
 
 
 @lean(types.void(I, A, N, I, A, N), inner=True)

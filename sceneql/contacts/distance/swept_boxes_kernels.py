@@ -7,7 +7,7 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import kernel, lean
-from sceneql.contacts.distance.convex import CORE
+from sceneql.contacts.distance.convex import HALF_SPACE
 from sceneql.contacts.distance.core_kernels import (
     FLOATS,
     HEAD,
@@ -33,7 +33,7 @@ def swept_box(floats, ints, shape, places, at, motions, of, h, margin, room, box
 
     Of a half space the whole space. The motion is that of first_touch_kernels.
     """
-    if ints[shape + KIND] != CORE:
+    if ints[shape + KIND] == HALF_SPACE:
         for c in range(3):
             boxes[to + c], boxes[to + 3 + c] = -math.inf, math.inf
         return

@@ -79,6 +79,23 @@ def over_zero(a, b, d):
 
 
 @inlined
+def few_digits(a):
+    """Whether a number has at most 24 binary digits, as whole numbers below 2^24: products of two such are exact."""
+    return a == np.float64(np.float32(a))
+
+
+@inlined
+def exact(op, a, c):
+    """Whether a + c, a - c or a c is free of rounding, as with the whole numbers that steps give."""
+    if op == ops.MUL:
+        return few_digits(a) and few_digits(c) and (a == 0.0 or c == 0.0 or abs(a * c) > TINY)
+    c = -c if op == ops.SUB else c
+    total = a + c
+    part = total - a  # the error of a sum, exactly (Knuth 1969)
+    return (a - (total - part)) + (c - part) == 0.0
+
+
+@inlined
 def squared(low, high):
     """Interval of the square."""
     p = low * low
@@ -107,7 +124,10 @@ def wave(low, high, peak):
 @inlined
 def binary_box(op, a, b, c, d):
     """(low, high, status) of an operation on [a, b] and [c, d]."""
-    if op == ops.ADD:
+    if a == b and c == d and (op == ops.ADD or op == ops.SUB or op == ops.MUL) and exact(op, a, c):
+        low = a + c if op == ops.ADD else (a - c if op == ops.SUB else a * c)
+        high = low
+    elif op == ops.ADD:
         low, high = outward(a + c, b + d)
         if a >= 0.0 and c >= 0.0:
             low = max(low, 0.0)  # so that a sum of squares has a square root
@@ -160,7 +180,8 @@ def unary_box(op, a, b):
         high = max(abs(a), abs(b))
     elif op == ops.SQUARE:
         low, high = squared(a, b)
-        low, high = outward(low, high)
+        if not (a == b and exact(ops.MUL, a, a)):
+            low, high = outward(low, high)
         low = max(low, 0.0)
     elif op == ops.SQRT:
         if b < 0.0:

@@ -19,9 +19,9 @@ SPLIT = 0.4609375
 """Where pieces are halved: off the middle, so that a root at an end of a piece does not become an end of its halves."""
 WIDEST = 1.0e-3
 """Half of the widest piece, relative to the ray, over which rounding may spread a root of even multiplicity."""
-CROSSES, TOUCHES, JUMPS, ABSENT, UNKNOWN = range(5)
+CROSSES, TOUCHES, JUMPS, ABSENT, UNKNOWN, BLURRED = range(6)
 """What an undecided piece may contain: a change of sign; a root without one; a pole or an edge of the domain of f;
-little or nothing, since f is undefined at both ends; unknown."""
+little or nothing, since f is undefined at both ends; unknown; unknown, as rounding hides the sign far around."""
 SHORTEST = 4.0e-15
 """Width of a piece, relative to its place on the ray, that is not cut further."""
 NEARBY = 64.0
@@ -31,12 +31,15 @@ SURE = 1.0 - 1.0e-14
 
 
 @woven
-def surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign):
-    """(side, bounds of sign df/dt (2)) at t: 1 where sign f is proved > 0, -1 where < 0, UNDEFINED, or 0 if open."""
+def surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign, touching):
+    """(side, bounds of sign df/dt (2)) at t: 1 where sign f is proved > 0, -1 where < 0, UNDEFINED, or 0 if open.
+
+    Where it is proved to be exactly 0, as on a block between steps, is outside, except with ``touching``: 1.
+    """
     low, high, least, most, status = on_ray(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, t, sign)
     if status == ops.NOWHERE:
         return UNDEFINED, least, most
-    if low > 0.0:
+    if low > 0.0 or (low == 0.0 and high == 0.0 and not touching):
         return 1, least, most
     return (-1 if status == ops.WHOLE and high < 0.0 else 0), least, most
 
@@ -46,43 +49,44 @@ def told(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, least,
     """(side, t) of ``surely`` at the first of some places from t0 on where it is not 0; steps grow fourfold."""
     t = t0
     step = 0.125 * least
-    side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign)
+    side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign, True)
     while side == 0 and step < WIDEST * (t1 - t0) + least:
         t = min(t0 + step, t1)
         step *= 4.0
-        side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign)
+        side, _, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t, sign, True)
     return side, t
 
 
 @lean(
     f"Tuple((int64, int64, float64, float64, float64))({ops.TAPE}, float64, float64, float64, float64, float64,"
-    " float64, float64, float64, float64, float64, float64, float64)",
+    " float64, float64, float64, float64, float64, float64, float64, boolean)",
     inner=True,
 )
-def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1, least, sign):
+def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1, least, sign, touching):
     """(kind, side at the end, place, from, to): what the undecided piece a..b, within t0..t1, contains.
 
     from..to is a..b, extended by fourfold growing steps until at each end sign f is proved: < 0, or undefined, or > 0
     and falling at the first end or rising at the last. CROSSES: sign f goes from > 0 to < 0. TOUCHES: it is > 0 at both
     ends, with a minimum between. JUMPS: it is undefined at one end, or goes from > 0 to < 0 while it rises at both, as
     at a pole. ABSENT: it is undefined at both ends, so that no edge of the domain is near.
+    BLURRED: sign f is proved at neither end, as far as rounding may spread a root.
     """
     reach = WIDEST * (t1 - t0) + 2.0 * least
     step = least
     before = a
-    first, gone, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
+    first, gone, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign, touching)
     while (first == 0 or (first == 1 and not falling < 0.0)) and before > t0 and step < reach:
         before = max(a - step, t0)
-        first, gone, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign)
+        first, gone, falling = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, before, sign, touching)
         step *= 4.0
     step = least
     after = b
-    last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
+    last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign, touching)
     while after < t1 and step < (NEARBY * least if first == UNDEFINED == last else reach):
         if last == -1 or (last == 1 and rising > 0.0) or (last == UNDEFINED and first != UNDEFINED):
             break
         after = min(b + step, t1)
-        last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign)
+        last, rising, _ = surely(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, after, sign, touching)
         step *= 4.0
     place = a
     kind = UNKNOWN
@@ -100,6 +104,8 @@ def hidden(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, b, t0, t1
         kind = JUMPS
     elif first == UNDEFINED and last == UNDEFINED:
         kind = ABSENT
+    elif first == 0 and last == 0:
+        kind = BLURRED
     return kind, last, place, before, after
 
 
@@ -168,8 +174,31 @@ def certify(code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, t0, t1, fin
             first = a if width <= least else middle
             last = b if width <= least else middle
             kind, behind, place, before, after = hidden(
-                code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, first, last, t0, t1, 0.125 * least, sign
+                code,
+                constants,
+                parts,
+                scratch,
+                ox,
+                oy,
+                oz,
+                dx,
+                dy,
+                dz,
+                first,
+                last,
+                t0,
+                t1,
+                0.125 * least,
+                sign,
+                touching,
             )
+            if kind == BLURRED and first > a:
+                kind, _, _, _, _ = hidden(
+                    code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, a, a, t0, t1, 0.125 * least, sign, touching
+                )
+                if kind == BLURRED:  # nothing behind a can be the first root: halving would end there
+                    return ops.UNDECIDED, a
+                kind = BLURRED
             if (kind == ABSENT or (kind == JUMPS and behind > 0)) and width > SHORTEST * (abs(a) + abs(b)):
                 b = middle
                 continue

@@ -97,7 +97,9 @@ def on_sides(code, constants, scratch, sides, steps, count, choice, places, chos
 @inlined
 def clear(low, high, status, sign, touching):
     """Whether bounds of sign f on a piece exclude an entry, or with ``touching`` a root."""
-    return low > 0.0 or (touching and status == ops.WHOLE and high < 0.0) or (status == ops.NOWHERE and sign > 0.0)
+    if touching:
+        return low > 0.0 or (status == ops.WHOLE and high < 0.0) or (status == ops.NOWHERE and sign > 0.0)
+    return low >= 0.0 or (status == ops.NOWHERE and sign > 0.0)
 
 
 @inlined

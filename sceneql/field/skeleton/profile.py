@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +12,9 @@ from sceneql.field.tape.builder import TapeBuilder
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Tape
+
+FEW = 8
+"""Densities whose distances are kept."""
 
 
 @cache
@@ -32,15 +35,28 @@ def profile(kernel: int, r: Floats) -> Floats:
 def farthest(kernel: int, density: Floats) -> Floats:
     """Largest r = d/R (n,) at which a kernel reaches densities (n,) > 0; 0 where it never does. By bisection."""
     densities, where = np.unique(density, return_inverse=True)
+    found = np.array(_few(kernel, tuple(densities.tolist()))) if len(densities) <= FEW else _bisected(kernel, densities)
+    return found[where]
+
+
+@lru_cache(maxsize=256)
+def _few(kernel: int, densities: tuple[float, ...]) -> tuple[float, ...]:
+    """``farthest`` of a few densities, that the next frame asks for again."""
+    found: tuple[float, ...] = tuple(_bisected(kernel, np.array(densities)).tolist())
+    return found
+
+
+def _bisected(kernel: int, densities: Floats) -> Floats:
     low, high = np.zeros(len(densities)), np.ones(len(densities))
     for _ in range(54):
         middle = 0.5 * (low + high)
         above = profile(kernel, middle) > densities
         low, high = np.where(above, middle, low), np.where(above, high, middle)
-    found: Floats = np.where(densities < 1.0, high, 0.0)[where]
+    found: Floats = np.where(densities < 1.0, high, 0.0)
     return found
 
 
+@lru_cache(maxsize=256)
 def steepness(kernel: int, density: float) -> float:
     """-R dK/dd where a kernel has a given density."""
     r = farthest(kernel, np.array([density]))

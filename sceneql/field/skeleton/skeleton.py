@@ -5,12 +5,16 @@ Imports numpy: to be imported by the function that needs it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.frame import held
+
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy import bool_, int64
     from numpy.typing import NDArray
 
@@ -47,6 +51,14 @@ class Skeleton:
     """Index into KERNELS."""
     middles: Floats | None = None
     """(p,) [m] > 0, the radius at the control point c of a quadratic Bezier curve a c b; NaN for other parts."""
+    _made: dict[str, NDArray[Any]] = field(default_factory=dict, init=False, repr=False)
+    """What was made of it before: its arrays never change."""
+
+    def kept(self, name: str, make: Callable[[], NDArray[Any]]) -> NDArray[Any]:
+        """An array made of the parts, which do not change: once for each name, and read-only."""
+        if name not in self._made:
+            self._made[name] = held(make())
+        return self._made[name]
 
     @property
     def curved(self) -> NDBool:
@@ -65,6 +77,9 @@ class Skeleton:
 
     def plain(self) -> NDBool:
         """(p,) which parts are points or segments of one radius, alone in their group, with Wyvill's kernel."""
+        return self.kept("plain", self._plain).copy()
+
+    def _plain(self) -> NDBool:
         a, b, c = self.corners.transpose(1, 0, 2)
         _, where, count = np.unique(self.groups, return_inverse=True, return_counts=True)
         lone = count[where] == 1
@@ -74,6 +89,8 @@ class Skeleton:
 
     def chosen(self, which: NDBool) -> Skeleton:
         """The parts chosen by a mask (p,)."""
+        if which.all():
+            return self
         middles = None if self.middles is None else self.middles[which]
         return Skeleton(
             self.corners[which], self.radii[which], self.weights[which], self.groups[which], self.kernel, middles
@@ -87,6 +104,9 @@ class Skeleton:
 
     def rows(self) -> Floats:
         """(r, 8) rows of the operation SKELETON: parts in spatial order, groups together, boxes before their parts."""
+        return self.kept("rows", self._rows)
+
+    def _rows(self) -> Floats:
         corners, radii, shapes, condition = _settled(self.corners, self.radii)
         curved = self.curved
         corners[curved], radii[curved], shapes[curved] = self.corners[curved], self.radii[curved], CURVE

@@ -87,7 +87,7 @@ def any_slopes(op, value, a, b, slope_a, slope_b, slope, n):
             ga, gb, g = slope_a[axis], slope_b[axis], slope[axis]
             for i in range(n):
                 first = a[i] > b[i] if op == ops.MAX else a[i] < b[i]
-                g[i] = ga[i] if first else gb[i]
+                g[i] = ga[i] if first else 0.0 + gb[i]  # the sign of a zero is that of ``gradient``
         return
     if op == ops.SQRT:
         for axis in range(3):
@@ -159,11 +159,13 @@ def differentiate(code, constants, parts, registers, slope, n):
                 for i in range(n):
                     g[i] = da[i] - db[i]
             elif op == ops.MUL:
+                # A zero factor is skipped, as by ``gradient``, and zeros have the same sign.
                 for i in range(n):
-                    g[i] = b[i] * da[i] + a[i] * db[i]
+                    one = b[i] * da[i] if b[i] != 0.0 else 0.0
+                    g[i] = one + a[i] * db[i] if a[i] != 0.0 else one
             elif op == ops.SQUARE:
                 for i in range(n):
-                    g[i] = 2.0 * a[i] * da[i]
+                    g[i] = 2.0 * a[i] * da[i] if a[i] != 0.0 else 0.0
             elif op == ops.NEG:
                 for i in range(n):
                     g[i] = -da[i]

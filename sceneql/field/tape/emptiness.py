@@ -14,8 +14,8 @@ import numpy as np
 from sceneql.field.enclose import interval_kernels
 from sceneql.field.tape import tape_kernels
 from sceneql.field.tape.magnitude import lattice
-from sceneql.field.tape.tape_ops import NOWHERE, WHOLE
-from sceneql.field.tape.tape_solid import field_values, scratch
+from sceneql.field.tape.tape_ops import HIT, INSIDE, NOWHERE, WHOLE
+from sceneql.field.tape.tape_solid import cast, field_values, scratch
 
 if TYPE_CHECKING:
     from sceneql.frame import Tape
@@ -24,6 +24,10 @@ BOXES = 4096
 """Boxes that a proof may look at; after them the property counts as not proved."""
 SHALLOW = 1e-12
 """Depth, relative to the lesser of the box's size and the median |f| in it, below which a solid counts as empty."""
+PLACES = 500
+"""At which it is asked what rounding does."""
+RAYS = 16
+"""Along an axis, in each of the others, by which what is shallow is looked for."""
 
 Corner = tuple[float, float, float]
 
@@ -39,8 +43,38 @@ def proved_empty(tape: Tape, low: Corner, high: Corner) -> bool:
         low,
         high,
         lambda least, most, status: status == NOWHERE or least >= -slack,
-        lambda value, status: value < 0.0,
+        _negative,
     )
+
+
+def _negative(value: float, status: int) -> bool:
+    """Whether f in the middle of a box refutes that it is nowhere negative."""
+    return value < 0.0
+
+
+def why_empty(tape: Tape, low: Corner, high: Corner) -> str:
+    """What is proved of f where rays along the axes meet no solid in the box low..high [m]; "" where nothing is."""
+    if not proved_empty(tape, low, high):
+        return ""
+    if _all_settled(tape, low, high, lambda least, most, status: status == NOWHERE or least >= 0.0, _negative):
+        return "nowhere negative"
+    if _met(tape, low, high):
+        return ""
+    return f"shallower than {SHALLOW * _depth(tape, low, high):.1g} wherever it is negative"
+
+
+def _met(tape: Tape, low: Corner, high: Corner) -> bool:
+    """Whether one of RAYS^2 rays along each axis is found to enter the solid in the box low..high [m]."""
+    first, last = np.array(low), np.array(high)
+    ticks = (np.arange(RAYS) + 0.5) / RAYS
+    for axis in range(3):
+        places = np.stack([*np.meshgrid(ticks, ticks), np.zeros((RAYS, RAYS))], axis=-1).reshape(-1, 3)
+        origins = first + np.roll(places, axis, axis=1) * (last - first)
+        way = np.roll([0.0, 0.0, 1.0], axis) * (last - first)
+        status, _ = cast(tape, origins, way, 0.0, 1.0)
+        if ((status == HIT) | (status == INSIDE)).any():
+            return True
+    return False
 
 
 def proved_rootless(tape: Tape, low: Corner, high: Corner) -> bool:
@@ -74,6 +108,14 @@ def bottomless(tape: Tape, low: tuple[float, ...], high: tuple[float, ...]) -> b
     """Whether f is finite at no point of a lattice in the box low..high [m], and minus infinity at some."""
     values = field_values(tape, lattice(low, high))
     return bool((values == -np.inf).any() and not np.isfinite(values).any())
+
+
+def blurred(tape: Tape, low: Corner, high: Corner) -> float:
+    """Share of places in the box low..high [m] at which bounds of rounding leave the sign of f open."""
+    places = np.random.default_rng(0).uniform(low, high, (PLACES, 3)).tolist()
+    program = (tape.code, tape.constants, tape.parts, scratch(tape))
+    bounds = [interval_kernels.box(*program, x, x, y, y, z, z) for x, y, z in places]
+    return float(np.mean([status == WHOLE and least < 0.0 < most for least, most, status in bounds]))
 
 
 def _depth(tape: Tape, low: Corner, high: Corner) -> float:

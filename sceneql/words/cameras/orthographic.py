@@ -48,14 +48,19 @@ class Orthographic(Camera):
         import numpy as np
 
         axes = framing.axes_towards(self._back(moment), moment.at(self.up))
-        points = framing.corners(*framing.bounds(moment, self.fit))
-        across = points @ axes[:2].T
-        middle = (across.min(axis=0) + across.max(axis=0)) / 2
         aim: Any = None
         if self.look_at is not None:
             aim = moment.at(self.look_at)
         elif self.follow is not None:
             aim = framing.whereabouts(moment, self.follow)
+        now = None if self.height is None or aim is None else moment.around()
+        if now is not None:  # what the film shows before and after moves no window that the script places
+            points = around = framing.corners(*now)
+        else:
+            points = framing.corners(*framing.bounds(moment, self.fit))
+            around = framing.corners(*framing.bounds(moment, None))
+        across = points @ axes[:2].T
+        middle = (across.min(axis=0) + across.max(axis=0)) / 2
         if aim is not None:
             middle = axes[:2] @ aim
         if self.height is not None:
@@ -63,7 +68,7 @@ class Orthographic(Camera):
         else:
             reach = np.abs(across - middle).max(axis=0) / framing.seen_slopes(1.0, size, self.margin)
             half = max(float(np.max(reach)), framing.NEAREST)
-        depths = np.concatenate([points, framing.corners(*framing.bounds(moment, None))]) @ axes[2]
+        depths = np.concatenate([points, around]) @ axes[2]
         room = max(float(np.ptp(depths)), 1.0)
         origin = middle @ axes[:2] + (float(depths.max()) + room) * axes[2]
         return framing.view(origin, axes, size, half, orthographic=True)

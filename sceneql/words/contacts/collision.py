@@ -1,4 +1,4 @@
-"""collision: masses bounce off, slide on and rest on objects."""
+"""collision: masses and rigid bodies bounce off, slide on and rest on objects."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from sceneql.contacts import layout
 from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Problem, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -19,7 +18,7 @@ RIGID = ("points", "normals", "forces")
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
 EXACT = "sceneql.contacts.collision_kernels"
-BARRIER = -2
+BARRIER = -3
 """Where in the remembered integers those of a barrier begin."""
 NO_RESTITUTION = "elastic solids have no restitution: they bounce by their own elasticity"
 LOCAL = "sceneql.contacts.back_off_kernels"
@@ -43,11 +42,21 @@ class Collision(Contact):
     where it is the field over its slope. An object may move, but not change its shape. A fast mass sees what is thicker
     than a ten-thousandth of the object's size.
 
-    Rigid bodies (spheres, boxes, convex meshes) collide with one another, with what stands of these shapes and with
-    planes, in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law to
-    rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in
-    the step. A contact has up to 64 of them, none held by ties; `points`, `normals` and `forces` tell of it, hits and
-    rest do not.
+    Rigid bodies collide with one another and with objects, which may move by keys or formulas and so carry and push
+    them, by default in mode `local`: the velocities at the end of a step, of all contacts together, obey Coulomb's law
+    to rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in
+    the step. Spheres, boxes, planes and convex meshes touch exactly. Any other shape with an inside (cylinders, rings,
+    meshes, solids cut out of one another, implicit surfaces) touches by points of its surface, those of its edges and
+    those of its smooth parts slid to where the two face each other, 20 cells along it and more where it is thin:
+    details smaller than a cell on both are not seen, all else to a millionth of the size. Where a step would take such
+    a shape farther than half its thickness it is cut; a pair has at most 12 points. Bodies may be held by ties, which
+    are found with the contacts; those that a tie joins do not touch each other. `points`, `normals` and `forces` tell
+    of it, hits and rest do not. Masses do not touch rigid bodies.
+
+    Mode `exact`, asked for by name, is for few rigid bodies of exact shapes, ties included, and what stands: all
+    contacts that approach are reflected together until none approaches (Smith et al. 2012), and what rests, rolls or
+    slides has the forces of Coulomb's law at every stage of the solver, whose order it keeps. Where several faces turn
+    and slide on one another at once, its forces are not unique and its steps short: mode `local` takes such piles.
 
     Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
     no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There
@@ -90,6 +99,9 @@ class Collision(Contact):
     def trouble(self, state: ModelState) -> str:
         """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
         at = [k for k, each in enumerate(state.ints) if each == -1]
+        endless = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
+        if endless:
+            return f"at {endless:.0f} instants impacts had no end: rigid bodies were let be there for a step"
         loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
         if crowded:
             return f"in {crowded:.0f} steps rigid bodies had more contacts than outputs have room for: all acted"
@@ -122,6 +134,8 @@ class Collision(Contact):
 
         must_be_free(bodies.model, assembly)
         if self.mode == "barrier":
+            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
             message = f"mode `barrier` is that of elastic solids, and '{bodies.model}' is none"
             raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
         if not others:
@@ -185,6 +199,8 @@ class Collision(Contact):
         from sceneql.contacts.barrier.barrier_contact import assemble
 
         if self.restitution.span is not None:
+            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
             help = "leave it out; mode `local` has one, of the nodes as masses"
             raise ScriptError([Diagnostic("no-restitution", NO_RESTITUTION, self.restitution.span, help)])
         written = {ref.name: ref for ref in self.between or ()}
@@ -203,16 +219,20 @@ class Collision(Contact):
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
         """Add the contacts of rigid bodies with one another and with objects. Raises ScriptError for mode `exact`."""
-        from sceneql.contacts.colliders import OFTEN, must_be_free
+        from sceneql.contacts.colliders import OFTEN
         from sceneql.contacts.distance.rigid_contact import assemble
+        from sceneql.contacts.rigid_exact import group
 
-        if self.mode in ("exact", "barrier"):
-            message = "rigid bodies collide in mode `local` so far"
-            raise ScriptError([Diagnostic("no-collider", message, assembly.line())])
-        for bodies in everyone:
-            must_be_free(bodies.model, assembly)
+        if self.mode == "barrier":
+            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+            message = "mode `barrier` is that of elastic solids, and rigid bodies are none"
+            raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
+        if self.mode == "exact":
+            assembly.remember(*group.assemble(assembly, everyone, touched, self.restitution, self.friction))
+            return
         assembly.step_at_most(OFTEN)
         assembly.remember(-1, *assemble(assembly, everyone, touched, self.restitution, self.friction))
 
@@ -222,7 +242,7 @@ class Collision(Contact):
 
         if output in RIGID:
             return self._rigid(output, state)
-        marks = (k for k, each in enumerate(state.ints) if each in (-1, BARRIER))
+        marks = (k for k, each in enumerate(state.ints) if each in (-1, -2, BARRIER))
         ints = state.ints[: next(marks, len(state.ints))]
         tallies = np.array([state.floats[at : at + len(TALLY)] for at in ints]).reshape(-1, len(TALLY))
         column = tallies[:, TALLY.index(output)]

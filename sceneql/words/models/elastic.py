@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import PrivateAttr
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from sceneql.bodies.elements.element import Element
     from sceneql.bodies.elements.element_mesh import ElementMesh
-    from sceneql.bodies.elements.skin import Carried
+    from sceneql.bodies.elements.skin import Carried, Skin
     from sceneql.bodies.elements.strain import Strain
     from sceneql.frame import Floats, Shape
     from sceneql.system import Assembly, Bodies, ModelState
@@ -144,6 +144,13 @@ class Elastic(Model):
         """Its elements in the run; there are none before the island is assembled."""
         assert self._made is not None
         return self._made.strain
+
+    @cached_property
+    def skin(self) -> Skin:
+        """Its outer faces, for pictures."""
+        from sceneql.bodies.elements.skin import Skin
+
+        return Skin.of(self.solid.mesh)
 
     def chosen_element(self) -> type[Element]:
         """The element that the script names, or that suits its law."""
@@ -261,13 +268,11 @@ class Elastic(Model):
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
         """Its outer faces, or the polygons of its object."""
-        from sceneql.bodies.elements.skin import skin
-
         assert state.bodies is not None
         surface = moment.surface(name, self.material, self.color)
         places = masses.positions(state.bodies, state)
         assert self._made is not None
         if self._made.polygons is None:
-            yield skin(name, surface, self.solid.mesh, places)
+            yield self.skin.drawn(name, surface, places)
         else:
             yield self._made.polygons().drawn(name, surface, places)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 from sceneql.kinds import FieldBuilder, FixedScalar, Gives, Moment, Object, Points, Problem, Value, field
+from sceneql.shapes.held_arrays import OfHeld
 from sceneql.shapes.placement import balls_box
 from sceneql.shapes.skeleton_parts import (
     MOST,
@@ -15,6 +16,7 @@ from sceneql.shapes.skeleton_parts import (
     Shape,
     each,
     failure,
+    fixed_values,
     numbers,
     refuse_rounded,
 )
@@ -25,8 +27,11 @@ if TYPE_CHECKING:
     from sceneql.field.skeleton.skeleton import Skeleton
     from sceneql.frame import Floats
 
+SKELETONS: OfHeld[Skeleton] = OfHeld()
 TINY = 1e-300
 """Density that its own color is given everywhere, so that it has one where no part reaches."""
+OWN = ("points", "segments", "radius", "weight", "kernel")
+"""Fields that its parts are made of, beside `skeleton`."""
 Kernel = Literal["wyvill", "soft_object", "metaball", "gaussian", "inverse_square"]
 
 
@@ -92,11 +97,15 @@ class Blobby(Object):
             yield most, f"a skeleton has at most {MOST:,} parts, not {total:,}"
 
     def parts(self, moment: Moment) -> Skeleton:
-        """Its skeleton in its parent's coordinates: that of `points`, then those of its entries.
+        """Its skeleton in its parent's coordinates: that of `points`, then those of its entries; made once if fixed.
 
         Raises RunFailure for a segment to a point that is not there, lists of other lengths than the points', radii
         that are not above 0, numbers whose products overflow, and too many parts.
         """
+        told = fixed_values(OWN, self, *self.skeleton)
+        return self._parts(moment) if told is None else SKELETONS.get(*told, lambda: self._parts(moment))
+
+    def _parts(self, moment: Moment) -> Skeleton:
         import numpy as np
 
         from sceneql.field.skeleton.skeleton import Skeleton

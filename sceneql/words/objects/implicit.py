@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import field_validator
 
+from sceneql.formulas.balanced import balanced
 from sceneql.formulas.point_formula import in_coordinates, written_out
 from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Problem, Record, Symbols
 from sceneql.kinds import field as described
 from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Expr, Symbol
+from sceneql.quantities.expression import Call, Expr, Number, Symbol
 from sceneql.shapes.placement import inverse
 from sceneql.shapes.solid import Solid, block, length, less, traced
 
@@ -121,14 +122,19 @@ class Implicit(Solid):
         """
         per_unit = build.constant(1.0 / self.unit)
         u, v, w = (build.op("mul", register, per_unit) for register in (x, y, z))
-        formula = written_out(self.field.expr, moment)
-        value = less(build, build.expression(formula, {"x": u, "y": v, "z": w}), self.level)
+        formula = self._less_level(moment)
+        value = build.expression(formula, {"x": u, "y": v, "z": w})
         value = build.op("mul", value, build.constant(self._leveling(formula)))
         if self.bounds.ball is not None:
             limit = less(build, length(build, u, v, w), self.bounds.ball)
         else:
             limit = block(build, (u, v, w), *self.bounds.corners)
         return value, limit
+
+    def _less_level(self, moment: Moment) -> Expr:
+        """The formula now less the level; where its numbers would overflow, both over a power of two."""
+        formula = written_out(self.field.expr, moment)
+        return balanced(Call("sub", (formula, Number(self.level))) if self.level else formula)
 
     def _leveling(self, formula: Expr) -> float:
         """The power of two that the formula less the level is multiplied by."""
@@ -141,8 +147,7 @@ class Implicit(Solid):
         from sceneql.field.tape.builder import TapeBuilder
 
         alone = TapeBuilder()
-        value = alone.expression(formula, {"x": alone.x, "y": alone.y, "z": alone.z})
-        return alone.finish(less(alone, value, self.level))
+        return alone.finish(alone.expression(formula, {"x": alone.x, "y": alone.y, "z": alone.z}))
 
     def reach(self, moment: Moment) -> tuple[Any, Any]:
         """The box around its bounds."""
@@ -162,9 +167,7 @@ class Implicit(Solid):
             if self.field.constant and nowhere_defined(shape.tape, shape.low, shape.high):
                 message = "the formula is defined nowhere in its bounds, so there is nothing to draw"
                 raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
-            if self.field.constant and bottomless(
-                self._alone(written_out(self.field.expr, moment)), *self.bounds.corners
-            ):
+            if self.field.constant and bottomless(self._alone(self._less_level(moment)), *self.bounds.corners):
                 message = "the formula is nowhere finite in its bounds, so there is no surface to draw"
                 raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
             yield shape

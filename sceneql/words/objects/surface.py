@@ -74,7 +74,10 @@ class Surface(Object):
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A smooth mesh. Raises ValueError for a model that has no surface, or for numbers that are none of it."""
+        import numpy as np
+
         from sceneql.bodies.spring_look import skin
+        from sceneql.grids.maps.colors import colored
 
         cloth: Any = moment.object(self.of)
         if "triangles" not in cloth.gives:
@@ -83,18 +86,20 @@ class Surface(Object):
         if len(triangles):
             points = apply(place, moment.read(self.of.name, "positions"))
             half = 0.5 * positive(moment, self.thickness, "thickness")
-            drawn = skin(name, moment.surface(name, self.material, self.color), points, triangles, half)
-            yield drawn if self.shows is None else replace(drawn, colors=self._colors(len(points), drawn, moment))
+            look, own = moment.surface(name, self.material, self.color), getattr(cloth, "skin", None)
+            drawn = skin(name, look, points, triangles, half) if own is None else own.drawn(name, look, points)
+            if self.shows is not None:
+                values = self._values(len(points), moment)
+                values = np.resize(values, len(drawn.vertices)) if own is None else values[own.nodes]
+                drawn = replace(drawn, colors=colored(values, self.scale(moment), self.colors))
+            yield drawn
 
-    def _colors(self, count: int, drawn: Any, moment: Moment) -> Floats:
-        """(v, 3) of the vertices; a sheet has two for each mass."""
+    def _values(self, count: int, moment: Moment) -> Floats:
+        """(count,) what it shows of each mass; of a sheet each has two vertices."""
         import numpy as np
 
-        from sceneql.grids.maps.colors import colored
-
         assert self.shows is not None
-        values = np.asarray(moment.at(self.shows), dtype=float)
+        values: Floats = np.asarray(moment.at(self.shows), dtype=float)
         if values.shape != (count,):
             raise ValueError(f"'{self.of.name}' has {count} masses, but it shows {values.size} numbers")
-        found: Floats = colored(np.resize(values, len(drawn.vertices)), self.scale(moment), self.colors)
-        return found
+        return values

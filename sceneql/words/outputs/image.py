@@ -14,6 +14,7 @@ class Image(Picture):
     imports: ClassVar[tuple[str, ...]] = ("PIL",)
 
     time: FixedTime | None = field("The instant; by default the end of the clock.", None, at_least=0)
+    compression: int = field("Of the file: from 0, none, to 9, the smallest and slowest.", 6, at_least=0, at_most=9)
 
     def times(self, clock: Clock) -> list[float]:
         """The instants [s] that it wants."""
@@ -21,15 +22,15 @@ class Image(Picture):
 
     def open(self, tools: Tools) -> Sink:
         """Start it."""
-        return _Stills(self, tools, numbered=False)
+        return _Stills(self, tools, numbered=False, compression=self.compression)
 
 
 class _Stills:
     """PNG files: one, or a numbered row of them."""
 
-    def __init__(self, picture: Picture, tools: Tools, *, numbered: bool) -> None:
+    def __init__(self, picture: Picture, tools: Tools, *, numbered: bool, compression: int) -> None:
         self.picture, self.tools = picture, tools
-        self.writer: Any = tools.encoder("png", numbered=numbered)
+        self.writer: Any = tools.encoder("png", numbered=numbered, compression=compression)
 
     def take(self, moment: Moment) -> None:
         self.writer.write(self.tools.pixels(self.picture, moment))

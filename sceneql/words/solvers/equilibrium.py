@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
 
 if TYPE_CHECKING:
+    from sceneql.frame import Floats
     from sceneql.system import Stepper
 
 
@@ -42,7 +43,11 @@ class Equilibrium(Solver):
                 settings=(0.0, 1.0, self.tolerance, self.tolerance, 1.0, *NO_MEMORY, 0.0, 0.0),
             ),
             Control(
-                first_step=self.step or 1.0, adaptive=True, self_controlled=True, largest_step=self.step or float("inf")
+                first_step=self.step or 1.0,
+                adaptive=True,
+                tolerance=self.tolerance,
+                largest_step=self.step or float("inf"),
+                self_controlled=True,
             ),
             Needs(
                 jacobian=True,
@@ -52,6 +57,10 @@ class Equilibrium(Solver):
                 march="sceneql.march.equilibrium_march:EquilibriumMarch",
             ),
         )
+
+    def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
+        """0: nothing of a motion is left."""
+        return 0.0
 
 
 def prepare(system: Any, stepper: Stepper) -> Any:

@@ -27,7 +27,8 @@ class Gear(Joint):
     inner: bool = field("The smaller runs inside the larger: both turn in one sense.", False)
 
     def problems(self) -> Iterator[Problem]:
-        """A wheel that meshes with the world."""
+        """Those of a tie; a wheel that meshes with the world."""
+        yield from super().problems()
         for k, ref in enumerate(self.between):
             if not ref.name:
                 yield Problem("a wheel meshes with another, not with the world", ("between", k))

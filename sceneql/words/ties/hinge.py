@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from sceneql.bodies.rigid.drive import Driven
+from sceneql.bodies.rigid.drive import Driven, Follows, Motor
 from sceneql.bodies.rigid.joint import FORCES, Side, across, axis_of, must_turn, point_of, together
-from sceneql.kinds import Direction, FixedAngle, Gives, Position, Quantity, Value, field, quantity_type
+from sceneql.kinds import (
+    Angle,
+    Direction,
+    FixedAngle,
+    FixedTime,
+    Gives,
+    Position,
+    Problem,
+    Quantity,
+    Record,
+    Scalar,
+    Value,
+    field,
+    quantity_type,
+)
 from sceneql.quantities import dimension as dim
 from sceneql.system import TieRow
 
@@ -17,23 +31,56 @@ if TYPE_CHECKING:
 TORQUE = dim.FORCE * dim.LENGTH
 
 
+class HingeMotor(Record):
+    """A motor: at most a torque at which it follows a speed or an angle; or that torque alone."""
+
+    said_by: ClassVar[Mapping[str, str]] = {"force": "the motor of a hinge has a `torque`: `motor: {torque: 3 N*m}`"}
+
+    torque: Annotated[Value, Quantity(TORQUE)] = field(
+        "The largest torque with `speed` or `angle`; without them the torque on the first body, against the second."
+    )
+    speed: Annotated[Value, Quantity(dim.FREQUENCY)] | None = field("The speed that it follows.", None)
+    angle: Angle | None = field("The angle that it follows, from that at the start.", None)
+    settling: FixedTime = field("Time in which an error of the angle falls to a part 1/e.", "0.1 s", above=0)
+
+    def problems(self) -> Iterator[Problem]:
+        """Two things to follow; a largest torque below 0."""
+        if self.speed is not None and self.angle is not None:
+            yield Problem("a motor follows a speed or an angle, not both", ("angle",), at_key=True)
+        if self.speed is None and self.angle is None:
+            return
+        if self.torque.constant and self.torque.number() < 0:
+            yield Problem("the largest torque is not below 0", ("torque",))
+
+
 class Hinge(Driven):
     """Two bodies share a point and an axis, about which one turns against the other.
 
-    The angle is that of the first body against the second, 0 at the start, over full turns too; about the axis it may
-    have a spring, a damping and a torque in time: torque - stiffness (angle - rest) - damping speed.
+    The angle is that of the first body against the second, 0 at the start, over full turns too. About the axis it may
+    have a spring and a damping, - stiffness (angle - rest) - damping speed, a motor, stops at `limits`, and dry
+    friction. Stops, friction, and motors that follow something, act on the velocities at the end of a step, with all
+    contacts at once (mode `local`): a step in which one acts is of order 1, others are the solver's own. A motor that
+    follows an angle goes by the angle's own speed and (angle - what it is)/settling; a stop at which the body is as
+    slow as its forces make it in two steps holds it.
     """
 
+    said_by: ClassVar[Mapping[str, str]] = {"drive": "that is a motor: `motor: {torque: 3 N*m}`"}
     gives: ClassVar[Mapping[str, Gives]] = {
         "angle": Gives(quantity_type(dim.ANGLE), "How far it has turned."),
         "speed": Gives(quantity_type(dim.FREQUENCY), "How fast it turns."),
+        "effort": Gives(quantity_type(TORQUE), "Torque of motor, stops and friction on the first body."),
         **FORCES,
     }
 
     at: Position = field("Where it is at the start.")
     axis: Direction = field("Its axis at the start; its length does not matter.", "0 0 1")
-    drive: Annotated[Value, Quantity(TORQUE)] | None = field(
-        "Torque on the first body about the axis, against the second.", None
+    motor: HingeMotor | None = field("What turns the first body against the second.", None)
+    limits: Annotated[tuple[float, float], Quantity(dim.ANGLE, (2,), needs_unit=True)] | None = field(
+        "Least and greatest angle, from that at the start, where stops are.", None
+    )
+    restitution: Scalar = field("Speed after a stop as a part of that before.", "0", at_least=0, at_most=1)
+    friction: Annotated[Value, Quantity(TORQUE)] | None = field(
+        "Torque of dry friction, up to which it holds and with which it rubs.", None, at_least=0
     )
     stiffness: Annotated[Value, Quantity(TORQUE)] | None = field("Torque for an angle [N m/rad].", None, at_least=0)
     rest: FixedAngle = field("The angle without a torque of the spring.", "0 deg")
@@ -56,6 +103,22 @@ class Hinge(Driven):
         side, _ = across(axis)
         return "turn", (first.direction(side), second.direction(side), second.direction(axis))
 
-    def along(self) -> tuple[Value | None, Value | None, float, Value | None]:
-        """Torque, stiffness, rest and damping."""
-        return self.drive, self.stiffness, self.rest, self.damping
+    def spring(self) -> tuple[Value | None, float, Value | None]:
+        """Stiffness, rest and damping."""
+        return self.stiffness, self.rest, self.damping
+
+    def stops(self) -> tuple[tuple[float, float] | None, Value]:
+        """The limits and the restitution there."""
+        return self.limits, self.restitution
+
+    def rubbing(self) -> Value | None:
+        """The torque of dry friction."""
+        return self.friction
+
+    def driver(self) -> Motor | None:
+        """What the motor does."""
+        if self.motor is None:
+            return None
+        speed, angle = self.motor.speed, self.motor.angle
+        follows: Follows = "nothing" if speed is angle else "speed" if angle is None else "place"
+        return Motor(self.motor.torque, follows, angle if speed is None else speed, self.motor.settling)

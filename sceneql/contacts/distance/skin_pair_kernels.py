@@ -1,0 +1,56 @@
+# mypy: ignore-errors
+"""Pairs of skins among the contacts of rigid bodies (rigid_local_kernels), compiled where there are any."""
+
+import numpy as np
+from numba import types
+
+from sceneql.compiled.kernels import kernel
+from sceneql.contacts.distance.convex import SHAPE
+from sceneql.contacts.distance.manifold_kernels import NAME
+from sceneql.contacts.distance.manifold_kernels import POINT as FLAT
+from sceneql.contacts.distance.rigid_layout import BODIES, RESTITUTION_AT, SHAPES_AT, SKINS_AT
+from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, with_room
+from sceneql.contacts.distance.skin_contact_kernels import MOST, POINT, safe, touching
+from sceneql.system.signatures_kernels import A, F, I, N
+
+ROUGH = 1e-3
+"""Part of a body's reach that the margin of a pair has besides the way that it may go (rigid_local_kernels)."""
+
+
+@kernel(types.Tuple((I, A, N))(F, A, I, N, N, A, A, A, F, N, I, A, N))
+def skin_points(h, floats, ints, a, b, places, motions, before, margin, ahead, who, where, contacts):
+    """The list of points (rigid_rows_kernels) with those of two skins behind; the arguments as of its add_points."""
+    head, skins, n = ints[SHAPES_AT], ints[SKINS_AT], ints[BODIES]
+    one, two, at_a, at_b, of_a, of_b = ints[skins + a], ints[skins + b], PLACE * a, PLACE * b, MOTION * a, MOTION * b
+    reach = floats[ints[head + SHAPE * a + 1] + 1]
+    size = min(reach, floats[ints[head + SHAPE * b + 1] + 1])
+    curved = np.empty(MOST * POINT)
+    if ahead == 0:
+        fast = (margin - ROUGH * reach) / h
+        if safe(floats, ints, one, two, places, at_a, at_b, motions, of_a, of_b, fast, h) < 0.0:
+            return who, where, contacts
+        count = touching(
+            floats, ints, one, two, places, at_a, at_b, motions, of_a, of_b, h, fast, margin, size, curved
+        )[0]
+    else:
+        count = touching(
+            floats, ints, one, two, places, at_a, at_b, motions, of_a, of_b, 0.0, 1.0, margin, size, curved
+        )[0]
+    names = np.zeros(NAME, dtype=np.int64)
+    restitution = floats[ints[RESTITUTION_AT]] if ahead == 0 else 0.0
+    for k in range(count):
+        who, where = with_room(who, where, contacts)
+        flat, names[1] = curved[POINT * k : POINT * k + FLAT], k
+        nx, ny, nz = curved[POINT * k + 7], curved[POINT * k + 8], curved[POINT * k + 9]
+        add_points(
+            who, where, contacts, 1, a, b, n, flat, names, nx, ny, nz, places, h, restitution, motions, before, ahead
+        )
+        contacts += 1
+    return who, where, contacts
+
+
+@kernel(F(F, A, I, N, N, A, A, F))
+def cut(h, floats, ints, a, b, places, motions, fast):
+    """How much of a step two skins may do at once [s], as skin_contact_kernels.safe has it."""
+    one, two = ints[ints[SKINS_AT] + a], ints[ints[SKINS_AT] + b]
+    return abs(safe(floats, ints, one, two, places, PLACE * a, PLACE * b, motions, MOTION * a, MOTION * b, fast, h))

@@ -1,0 +1,309 @@
+# mypy: ignore-errors
+"""The forces of exact contacts that rest, roll or slide, with those of the ties, and what takes their errors away."""
+
+import math
+
+from numba import types
+
+from sceneql.bodies.rigid.tie_kernels import shift_mover
+from sceneql.bodies.rigid.tie_rows_kernels import (
+    AT_A,
+    AT_FORCE,
+    AT_TWIST,
+    AT_V,
+    AT_W,
+    AT_X,
+    MOMENTUM,
+    MOVER,
+    POSITION,
+    ROTATION,
+    VELOCITY,
+    press,
+    put,
+    see,
+)
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.rigid_exact.contact_kernels import (
+    AIMED,
+    FORCE,
+    GAP,
+    NORMAL,
+    POINT,
+    PUSHES,
+    RECORD,
+    SHAPE_A,
+    SHAPE_B,
+    SLIDE,
+    SLIDES,
+    SLOW,
+    SPEED,
+    pace,
+    three,
+)
+from sceneql.contacts.rigid_exact.exact_rows_kernels import (
+    AGAIN,
+    AT_CONTACT,
+    AT_FIRST,
+    AT_PUSH,
+    AT_WEIGHED,
+    COUNT_AT,
+    FORCES,
+    FORCES_AT,
+    FRICTION_AT,
+    GAPS,
+    KEPT,
+    LOOSE,
+    MEMORY_AT,
+    MOVERS,
+    MOVERS_AT,
+    NORMALS_AT,
+    PATIENCE,
+    POINTS_AT,
+    RECORDS_AT,
+    SINCE,
+    SPEEDS,
+    TIE_ROWS,
+    TIED_AT,
+    UNDECIDED,
+    UNIT,
+    UNITS_AT,
+    WORKS_AT,
+    follow_all,
+    kick,
+    left_at,
+    look,
+    mover_at,
+    pull_at,
+    sizes_at,
+    solution_at,
+    solve_rows,
+    write_rows,
+)
+from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, I, N
+
+STILL = 1e-10
+"""Slip [m/s], and in parts of the speeds that it is a sum of, up to which a contact does not slide."""
+CREEP = 1e-5
+"""Slip [m/s] up to which friction is against the pull; what is left of it ends where the pull is below its bound."""
+LEAVES = 1e-10
+"""Acceleration, in parts of the numbers that it is a sum of, from which a contact leaves or slips."""
+ROUNDING = 2e-11
+"""Sum of forces, in parts of these, that is rounding."""
+CLOSED = 4e-16
+"""Gap or speed, against the numbers that it is the difference of, below which it is rounding."""
+MOST_CLOSINGS = 4
+
+
+@lean_inlined
+def still(floats, ints, rec):
+    """Slip up to which a contact sticks."""
+    a, b = int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B])
+    return STILL * (1.0 + pace(floats, rec, mover_at(ints, a), mover_at(ints, b)))
+
+
+@lean(types.void(A, I))
+def aim(floats, ints):
+    """Write the directions in which contacts slide; zero where they stick, or are so slow that the pull decides.
+
+    The direction of friction changes at a rate of friction / speed, infinitely fast as the speed goes to 0.
+    """
+    for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
+        rec = ints[RECORDS_AT] + RECORD * k
+        sx, sy, sz = three(floats, rec + SLIDE)
+        speed = math.sqrt(sx * sx + sy * sy + sz * sz)
+        slow = floats[rec + SLIDES] == 0.0 or speed <= (CREEP if floats[rec + SLIDES] == SLOW else 1e-3 * CREEP)
+        if slow:
+            put(floats, rec + AIMED, 0.0, 0.0, 0.0)
+        else:
+            put(floats, rec + AIMED, sx / speed, sy / speed, sz / speed)
+
+
+@lean(types.void(A, I, N))
+def decide(floats, ints, n):
+    """Drop the contacts that leave, let those slide that slip, and keep the forces as a guess."""
+    memory = ints[MEMORY_AT]
+    kept, row = 0, ints[TIE_ROWS]
+    found, left = solution_at(ints), left_at(ints)
+    largest = 0.0
+    for i in range(n):
+        largest = max(largest, floats[sizes_at(ints) + i])
+    for k in range(int(floats[memory + KEPT])):
+        rec, to = ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * kept
+        rows = 0
+        while row + rows < n and floats[ints[UNITS_AT] + UNIT * (row + rows) + AT_CONTACT] == k:
+            floats[rec + FORCE + rows] = floats[found + row + rows]
+            rows += 1
+        pushes, leaves = floats[found + row] > 0.0, floats[left + row] > LEAVES * largest
+        leaves = leaves and floats[memory + AGAIN] < PATIENCE
+        floats[rec + PUSHES] = 1.0 if pushes else 0.0
+        if rows == 3 and not leaves:
+            p, q = floats[left + row + 1], floats[left + row + 2]
+            size = math.sqrt(p * p + q * q)
+            floats[rec + SLIDES] = SLOW if size > LEAVES * largest else 0.0
+        row += rows
+        if leaves:
+            continue
+        if to != rec:
+            for c in range(RECORD):
+                floats[to + c] = floats[rec + c]
+        kept += 1
+    floats[memory + KEPT] = kept
+    floats[memory + UNDECIDED] = 0.0
+
+
+@lean(types.void(A, I, N, types.float64))
+def tell(floats, ints, n, friction):
+    """Write points, normals and forces of the contacts for outputs."""
+    row, found = ints[TIE_ROWS], solution_at(ints)
+    count = int(floats[ints[MEMORY_AT] + KEPT])
+    for k in range(count):
+        rec = ints[RECORDS_AT] + RECORD * k
+        fx = fy = fz = 0.0
+        while row < n and floats[ints[UNITS_AT] + UNIT * row + AT_CONTACT] == k:
+            at = ints[UNITS_AT] + UNIT * row + AT_PUSH
+            fx += floats[found + row] * floats[at]
+            fy += floats[found + row] * floats[at + 1]
+            fz += floats[found + row] * floats[at + 2]
+            row += 1
+        put(floats, ints[POINTS_AT] + 3 * k, *three(floats, rec + POINT))
+        put(floats, ints[NORMALS_AT] + 3 * k, *three(floats, rec + NORMAL))
+        put(floats, ints[FORCES_AT] + 3 * k, fx, fy, fz)
+    floats[ints[COUNT_AT]] = count
+
+
+@lean(types.void(A, A, I, N))
+def balance(rate, floats, ints, n):
+    """Set the forces on a mover to 0 that are rounding, so that what rests stays, whatever the solver's step."""
+    found = solution_at(ints)
+    for m in range(ints[MOVERS]):
+        at = ints[MOVERS_AT] + MOVER * m
+        if ints[at + POSITION] < 0:
+            continue
+        force = torque = 0.0
+        for i in range(n):
+            unit = ints[UNITS_AT] + UNIT * i
+            for side in range(2):
+                if floats[unit + AT_FIRST + side] == m:
+                    push, size = unit + AT_PUSH + 6 * side, abs(floats[found + i])
+                    for c in range(3):
+                        force += size * abs(floats[push + c])
+                        torque += size * abs(floats[push + 3 + c])
+        total = turn = 0.0
+        for c in range(3):
+            total += abs(rate[ints[at + VELOCITY] + c])
+            turn += abs(rate[ints[at + MOMENTUM] + c]) if ints[at + ROTATION] >= 0 else 0.0
+        for c in range(3):
+            if total <= ROUNDING * force:
+                rate[ints[at + VELOCITY] + c] = 0.0
+            if ints[at + ROTATION] >= 0 and turn <= ROUNDING * torque:
+                rate[ints[at + MOMENTUM] + c] = 0.0
+
+
+@lean(TERM, inner=True)
+def hold(t, y, rate, floats, ints):
+    """Adds the forces of all contacts, and what they change of the ties' forces, once those are there."""
+    memory = ints[MEMORY_AT]
+    for m in range(ints[MOVERS]):
+        at, to = ints[MOVERS_AT] + MOVER * m, mover_at(ints, m)
+        see(y, floats, to, ints, at)
+        press(y, rate, floats, to, ints, at)
+        for c in range(3):
+            floats[pull_at(ints, m) + c] = floats[to + AT_A + c]
+            floats[pull_at(ints, m) + 3 + c] = floats[to + AT_TWIST + c]
+    floats[ints[COUNT_AT]] = 0.0
+    if floats[memory + KEPT] == 0.0:
+        floats[memory + UNDECIDED] = 0.0
+        return
+    friction = floats[ints[FRICTION_AT]]
+    follow_all(floats, ints)
+    aim(floats, ints)
+    n = write_rows(floats, ints, FORCES, friction)
+    if not solve_rows(floats, ints, n, friction) and floats[memory + UNDECIDED] > 0.0:
+        floats[memory + LOOSE] += 1.0
+    found = solution_at(ints)
+    for i in range(n):
+        unit, force = ints[UNITS_AT] + UNIT * i, floats[found + i]
+        for side in range(2):
+            m = int(floats[unit + AT_FIRST + side])
+            at, mover, f = ints[MOVERS_AT] + MOVER * m, mover_at(ints, m), unit + AT_PUSH + 6 * side
+            if ints[at + POSITION] < 0:
+                continue
+            power = 0.0
+            for c in range(3):
+                rate[ints[at + VELOCITY] + c] += force * floats[f + c]
+                power += floats[f + c] * floats[mover + AT_V + c]
+                if ints[at + ROTATION] >= 0:
+                    rate[ints[at + MOMENTUM] + c] += force * floats[f + 3 + c]
+                    power += floats[f + 3 + c] * floats[mover + AT_W + c]
+            if i >= ints[TIE_ROWS] and ints[ints[WORKS_AT] + m] >= 0:
+                rate[ints[ints[WORKS_AT] + m]] -= force * power
+        if i < ints[TIE_ROWS]:
+            floats[ints[ints[TIED_AT] + 3 * i + 2] + AT_FORCE] += force
+    balance(rate, floats, ints, n)
+    tell(floats, ints, n, friction)
+    if floats[memory + UNDECIDED] > 0.0:
+        decide(floats, ints, n)
+
+
+@lean_inlined
+def size_of(floats, ints, rec):
+    """Size of the coordinates of a contact."""
+    total = 0.0
+    for side in range(2):
+        mover = mover_at(ints, int(floats[rec + SHAPE_A + side]))
+        for c in range(3):
+            total += abs(floats[mover + AT_X + c]) + abs(floats[rec + POINT + c] - floats[mover + AT_X + c])
+    return total
+
+
+@lean(AFTER_STEP, inner=True)
+def settle(t0, t1, y0, rate0, y1, floats, ints):
+    """Closes the gaps and the speeds of kept contacts, by the least change that ties leave."""
+    memory = ints[MEMORY_AT]
+    if floats[memory + KEPT] == 0.0 or t1 < floats[memory + SINCE]:
+        return False
+    friction = floats[ints[FRICTION_AT]]
+    changed = False
+    for _ in range(MOST_CLOSINGS):
+        look(t1, y1, floats, ints)
+        follow_all(floats, ints)
+        open = False
+        for k in range(int(floats[memory + KEPT])):
+            rec = ints[RECORDS_AT] + RECORD * k
+            gap = floats[rec + GAP] if floats[rec + PUSHES] > 0.0 else min(0.0, floats[rec + GAP])
+            if abs(gap) > CLOSED * size_of(floats, ints, rec):
+                open = True
+        if not open:
+            break
+        n = write_rows(floats, ints, GAPS, friction)
+        solve_rows(floats, ints, n, 0.0)
+        for m in range(ints[MOVERS]):
+            for c in range(3):
+                floats[mover_at(ints, m) + AT_A + c] = floats[mover_at(ints, m) + AT_TWIST + c] = 0.0
+        for i in range(n):
+            unit, by = ints[UNITS_AT] + UNIT * i, floats[solution_at(ints) + i]
+            for side in range(2):
+                mover = mover_at(ints, int(floats[unit + AT_FIRST + side]))
+                for c in range(3):
+                    floats[mover + AT_A + c] += by * floats[unit + AT_WEIGHED + 6 * side + c]
+                    floats[mover + AT_TWIST + c] += by * floats[unit + AT_WEIGHED + 6 * side + 3 + c]
+        for m in range(ints[MOVERS]):
+            shift_mover(y1, floats, ints, ints[MOVERS_AT] + MOVER * m, mover_at(ints, m))
+        changed = True
+    open = False
+    for k in range(int(floats[memory + KEPT])):
+        rec = ints[RECORDS_AT] + RECORD * k
+        a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
+        worst = abs(floats[rec + SPEED]) if floats[rec + PUSHES] > 0.0 else max(0.0, -floats[rec + SPEED])
+        if floats[rec + PUSHES] > 0.0 and floats[rec + SLIDES] == 0.0 and friction > 0.0:
+            for c in range(3):
+                worst = max(worst, abs(floats[rec + SLIDE + c]))
+        if worst > CLOSED * pace(floats, rec, a, b):
+            open = True
+    if open:
+        n = write_rows(floats, ints, SPEEDS, friction)
+        # Tangents stand as ties here: what sticks has no speed.
+        solve_rows(floats, ints, n, 0.0)
+        kick(y1, floats, ints, n)
+        changed = True
+    return changed

@@ -1,0 +1,277 @@
+# mypy: ignore-errors
+"""The rows of an island's exact contacts and ties together, as one dense system (exact_law_kernels)."""
+
+from numba import types
+
+from sceneql.bodies.rigid.tie_kernels import survey
+from sceneql.bodies.rigid.tie_rows_kernels import (
+    AT_A,
+    AT_BIAS,
+    AT_C,
+    AT_INVERSE,
+    AT_J,
+    AT_MASS,
+    AT_SPEED,
+    AT_TWIST,
+    AT_X,
+    MOMENTUM,
+    MOVED,
+    MOVER,
+    POSITION,
+    ROTATION,
+    TURN,
+    VELOCITY,
+    put,
+    see,
+    turned,
+)
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.rigid_exact.contact_kernels import (
+    AIMED,
+    BIAS,
+    FORCE,
+    GAP,
+    PUSHES,
+    RECORD,
+    ROWS,
+    SHAPE_A,
+    SHAPE_B,
+    SLIDE,
+    SLIDES,
+    SPEED,
+    dot,
+    follow,
+    three,
+)
+from sceneql.contacts.rigid_exact.exact_law_kernels import ACROSS, ALONG, BILATERAL, UNILATERAL, VECTORS, solve_law
+from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
+from sceneql.system.signatures_kernels import A, F, I, N
+
+MOVERS, SHAPES, BODIES, PAIRS, TIE_ROWS, MOST, TIES, ROOM = range(8)
+SHAPES_AT, MOVERS_AT, PAIRS_AT, TIES_AT, TIED_AT, KINDS_AT, WORKS_AT = range(8, 15)
+MOVED_AT, PLACES_AT, BEGUN_AT, ROOM_AT, RECORDS_AT, UNITS_AT, DENSE_AT, KEPT_AT, MEMORY_AT = range(15, 24)
+RESTITUTION_AT, FRICTION_AT, COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, TALLY_AT, HEAD = range(24, 32)
+"""Integers of an island's exact contacts. Numbers of movers (the shapes in order, of which those that move come first,
+then what else is tied), of shapes, of those that move, of pairs, of rows of ties; room for contacts; how many integers
+the ties have; floats of working memory of distances. Where in the integers stand the shapes (convex.SHAPE), the movers
+(tie_rows_kernels), two shapes a pair, the ties' own integers, of each of their rows both movers and its floats, room
+for kinds of rows, pivots and which contacts are struck, where the energy taken from each mover counts. Offsets in the
+floats: movers, places of shapes, those at the start of the step, working memory, contacts (twice), rows, the dense
+system, how many contacts each pair keeps, memory, coefficients, what outputs read."""
+
+KEPT, UNDECIDED, SINCE, STARTED, BEGUN, LOOSE, CROWDED, ENDLESS, LATEST, AGAIN, MEMORY = range(11)
+"""Memory: how many contacts are kept; whether it is open which of them slide or leave; since when they are these [s];
+whether it has begun; when the step began [s]; solutions that were not found to rounding, contacts without room,
+instants with impacts without end; when the latest event was [s], and how many there were at that instant before."""
+PATIENCE, ENDURANCE = 20, 100
+"""Events at one instant after which no contact is let go any more; after which the pairs that touch have none."""
+
+PLACE = 7
+AT_ROW, AT_PUSH, AT_WEIGHED, AT_FIRST, AT_SECOND, AT_CONTACT, UNIT = 0, 12, 24, 36, 37, 38, 39
+"""Floats of a row of the system: by velocities of both movers; by forces on both; these over the masses; both movers,
+and the contact (-1: a tie's)."""
+
+FORCES, SPEEDS, GAPS, IMPACTS = range(4)
+"""What is solved for: forces by accelerations; what is left of speeds and of gaps; impulses of contacts that are
+marked."""
+
+
+@lean_inlined
+def mover_at(ints, m):
+    """Where the floats of a mover begin."""
+    return ints[MOVED_AT] + MOVED * m
+
+
+@lean_inlined
+def pull_at(ints, m):
+    """Where the accelerations of a mover stand by all forces but those of contacts, of the latest rate."""
+    return ints[MOVED_AT] + MOVED * ints[MOVERS] + 6 * m
+
+
+@lean(types.void(F, A, A, I))
+def look(t, y, floats, ints):
+    """Write movers, and rows of ties, of a state."""
+    for m in range(ints[MOVERS]):
+        see(y, floats, mover_at(ints, m), ints, ints[MOVERS_AT] + MOVER * m)
+    if ints[TIES] > 0:
+        survey(t, y, floats, ints[ints[TIES_AT] : ints[TIES_AT] + ints[TIES]])
+
+
+@lean(types.void(A, A, I, N))
+def put_places(y, floats, ints, to):
+    """Write where the shapes are to floats[to:]."""
+    for k in range(ints[SHAPES]):
+        at = ints[MOVERS_AT] + MOVER * k
+        put(floats, to + PLACE * k, *three(floats, mover_at(ints, k) + AT_X))
+        x, q = ints[at + POSITION], ints[at + ROTATION]
+        for c in range(4):
+            floats[to + PLACE * k + 3 + c] = y[q + c] if x >= 0 else floats[ints[at + TURN] + c]
+
+
+@lean(types.void(A, I, N, N, N, N, N))
+def weigh(floats, ints, row, a, b, of, contact):
+    """Write what the masses make of the forces of a row, its movers, its contact."""
+    at = ints[UNITS_AT] + UNIT * row
+    floats[at + AT_FIRST], floats[at + AT_SECOND], floats[at + AT_CONTACT] = a, b, contact
+    for side in range(2):
+        mover, f, w = mover_at(ints, b if side == 1 else a), at + of + 6 * side, at + AT_WEIGHED + 6 * side
+        inverse = floats[mover + AT_MASS]
+        put(floats, w, inverse * floats[f], inverse * floats[f + 1], inverse * floats[f + 2])
+        put(floats, w + 3, *turned(floats, mover + AT_INVERSE, *three(floats, f + 3)))
+
+
+@lean_inlined
+def pressed(floats, ints, row):
+    """A row's speeds times the accelerations of its movers."""
+    at, total = ints[UNITS_AT] + UNIT * row, 0.0
+    for side in range(2):
+        mover = mover_at(ints, int(floats[at + AT_FIRST + side]))
+        for c in range(3):
+            total += floats[at + AT_ROW + 6 * side + c] * floats[mover + AT_A + c]
+            total += floats[at + AT_ROW + 6 * side + 3 + c] * floats[mover + AT_TWIST + c]
+    return total
+
+
+@lean(N(A, I, N, F))
+def write_rows(floats, ints, what, friction):
+    """Write the rows for FORCES, SPEEDS, GAPS or IMPACTS, with the right hand side and a guess; how many they are."""
+    room = ints[TIE_ROWS] + 3 * ints[MOST]
+    dense, kinds, n = ints[DENSE_AT], ints[KINDS_AT], 0
+    marked = kinds + 2 * room
+    right, guess = dense + room * room, dense + room * room + room
+    for r in range(ints[TIE_ROWS]):
+        tied = ints[TIED_AT] + 3 * r
+        at, to = ints[UNITS_AT] + UNIT * n, ints[tied + 2]
+        for c in range(12):
+            floats[at + AT_ROW + c] = floats[at + AT_PUSH + c] = floats[to + AT_J + c]
+        weigh(floats, ints, n, ints[tied], ints[tied + 1], AT_PUSH, -1)
+        ints[kinds + n] = BILATERAL
+        if what == FORCES:
+            floats[right + n] = floats[to + AT_BIAS] + pressed(floats, ints, n)
+        elif what == GAPS:
+            floats[right + n] = floats[to + AT_C]
+        else:
+            floats[right + n] = floats[to + AT_SPEED]
+        floats[guess + n] = 0.0
+        n += 1
+    for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
+        rec = ints[RECORDS_AT] + RECORD * k
+        a, b = int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B])
+        slides, pushes = floats[rec + SLIDES] > 0.0, floats[rec + PUSHES] > 0.0
+        if what == IMPACTS and ints[marked + k] == 0:
+            continue
+        if (what == GAPS and not pushes and floats[rec + GAP] >= 0.0) or (
+            what == SPEEDS and not pushes and floats[rec + SPEED] >= 0.0
+        ):
+            continue
+        if what == FORCES:
+            slides = floats[rec + AIMED] != 0.0 or floats[rec + AIMED + 1] != 0.0 or floats[rec + AIMED + 2] != 0.0
+        rough = friction > 0.0 and what != GAPS and (what == IMPACTS or not slides)
+        if what == SPEEDS and not pushes:
+            rough = False
+        rows = 3 if rough else 1
+        for j in range(rows):
+            at = ints[UNITS_AT] + UNIT * n
+            for c in range(12):
+                floats[at + AT_ROW + c] = floats[at + AT_PUSH + c] = floats[rec + ROWS + 12 * j + c]
+            if what == FORCES and slides and friction > 0.0:
+                # Friction against the slip, in the parts of both tangents.
+                sx, sy, sz = three(floats, rec + AIMED)
+                for e in range(1, 3):
+                    row = rec + ROWS + 12 * e
+                    part = friction * dot(sx, sy, sz, floats[row], floats[row + 1], floats[row + 2])
+                    for c in range(12):
+                        floats[at + AT_PUSH + c] -= part * floats[row + c]
+            weigh(floats, ints, n, a, b, AT_PUSH, k)
+            if what == FORCES:
+                floats[right + n] = pressed(floats, ints, n) + floats[rec + BIAS + j]
+                floats[guess + n] = floats[rec + FORCE + j]
+            else:
+                row = rec + ROWS + 12 * j
+                sx, sy, sz = three(floats, rec + SLIDE)
+                speed = floats[rec + SPEED] if j == 0 else dot(sx, sy, sz, *three(floats, row))
+                floats[right + n] = floats[rec + GAP] if what == GAPS else speed
+                floats[guess + n] = 0.0
+            kind = UNILATERAL if rows == 1 else (CONE if j == 0 else (ACROSS if j == 1 else ALONG))
+            if pushes and (what == GAPS or what == SPEEDS):
+                kind = BILATERAL
+            ints[kinds + n] = kind
+            n += 1
+    return n
+
+
+@lean(types.boolean(A, I, N, F))
+def solve_rows(floats, ints, n, friction):
+    """Solve for what the rows give: x and s stand in the dense system; whether to rounding."""
+    room = ints[TIE_ROWS] + 3 * ints[MOST]
+    dense, kinds = ints[DENSE_AT], ints[KINDS_AT]
+    w = floats[dense : dense + n * n]
+    for i in range(n):
+        p = ints[UNITS_AT] + UNIT * i
+        for j in range(n):
+            q = ints[UNITS_AT] + UNIT * j
+            total = 0.0
+            for one in range(2):
+                for other in range(2):
+                    if floats[p + AT_FIRST + one] == floats[q + AT_FIRST + other]:
+                        f, g = p + AT_ROW + 6 * one, q + AT_WEIGHED + 6 * other
+                        for c in range(6):
+                            total += floats[f + c] * floats[g + c]
+            w[i * n + j] = total
+    at = dense + room * room
+    b, x, s = floats[at : at + n], floats[at + room : at + room + n], floats[at + 2 * room : at + 2 * room + n]
+    work = floats[at + 3 * room : at + 3 * room + VECTORS * n + n * n + 1]
+    return solve_law(n, w, b, ints[kinds : kinds + n], friction, x, s, work, ints[kinds + room : kinds + room + n])
+
+
+@lean_inlined
+def solution_at(ints):
+    """Where x begins."""
+    room = ints[TIE_ROWS] + 3 * ints[MOST]
+    return ints[DENSE_AT] + room * room + room
+
+
+@lean_inlined
+def right_at(ints):
+    """Where b begins."""
+    room = ints[TIE_ROWS] + 3 * ints[MOST]
+    return ints[DENSE_AT] + room * room
+
+
+@lean_inlined
+def left_at(ints):
+    """Where s begins."""
+    room = ints[TIE_ROWS] + 3 * ints[MOST]
+    return ints[DENSE_AT] + room * room + 2 * room
+
+
+@lean_inlined
+def sizes_at(ints):
+    """Where the sizes of the numbers in each row begin."""
+    room = ints[TIE_ROWS] + 3 * ints[MOST]
+    return ints[DENSE_AT] + room * room + 3 * room
+
+
+@lean(types.void(A, A, I, N))
+def kick(y, floats, ints, n):
+    """Change velocities and angular momenta by the impulses of the rows."""
+    for i in range(n):
+        at, impulse = ints[UNITS_AT] + UNIT * i, floats[solution_at(ints) + i]
+        if impulse == 0.0:
+            continue
+        for side in range(2):
+            mover = ints[MOVERS_AT] + MOVER * int(floats[at + AT_FIRST + side])
+            if ints[mover + POSITION] < 0:
+                continue
+            for c in range(3):
+                y[ints[mover + VELOCITY] + c] += impulse * floats[at + AT_WEIGHED + 6 * side + c]
+                if ints[mover + ROTATION] >= 0:
+                    y[ints[mover + MOMENTUM] + c] += impulse * floats[at + AT_PUSH + 6 * side + 3 + c]
+
+
+@lean(types.void(A, I))
+def follow_all(floats, ints):
+    """Write the kept contacts for the state that was looked at."""
+    for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
+        rec = ints[RECORDS_AT] + RECORD * k
+        follow(floats, rec, mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B])))

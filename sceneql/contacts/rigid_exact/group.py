@@ -1,0 +1,186 @@
+"""Contacts of rigid bodies in mode `exact`: shapes, movers and ties of an island as the arrays of its kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import chain
+from typing import TYPE_CHECKING, Any
+
+from sceneql.contacts.distance.led import is_led
+from sceneql.contacts.distance.rigid_contact import must_be_apart, place_of
+from sceneql.kinds import Ref
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.system import Place
+
+if TYPE_CHECKING:
+    from sceneql.contacts.distance.convex import Convex
+    from sceneql.frame import Floats
+    from sceneql.kinds import Value
+    from sceneql.system import Assembly, Bodies
+
+ROOM = "sceneql.contacts.rigid_exact"
+HOLD, SETTLE = f"{ROOM}.exact_hold_kernels:hold", f"{ROOM}.exact_hold_kernels:settle"
+CONTACTS = f"{ROOM}.watch_kernels:gap", f"{ROOM}.strike_kernels:impact"
+MOST = 24
+"""Bodies of one contact: all their conditions are one dense system."""
+FEW = 8
+"""Contacts by the body that there is room for, and besides."""
+
+
+def assemble(
+    assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref], restitution: Value, friction: Value
+) -> tuple[int, ...]:
+    """Add the exact contacts of rigid bodies: what outputs read (Collision).
+
+    Raises ScriptError for a shape that is not covered, for bodies that start inside each other, for too many bodies.
+    """
+    import numpy as np
+
+    from sceneql.bodies.rigid.tie_rows_kernels import MOVED, POSITION
+    from sceneql.bodies.rigid.tie_rows_kernels import ROW as TIE_ROW
+    from sceneql.bodies.rigid.tie_system import integers
+    from sceneql.contacts.distance import convex
+    from sceneql.contacts.rigid_exact import contact_kernels, exact_law_kernels
+    from sceneql.contacts.rigid_exact import exact_rows_kernels as rows
+
+    if assembly.ints_of(HOLD):
+        message = "bodies in mode `exact` collide by one `collision` an island: its contacts are solved together"
+        raise ScriptError([Diagnostic("invalid", message, assembly.line(), "name all that collide in one `between`")])
+    found = _shapes(assembly, everyone, others)
+    n = len(found.moving)
+    if n > MOST:
+        message = f"{n} rigid bodies are too many for contacts in mode `exact`: at most {MOST}"
+        raise ScriptError([Diagnostic("invalid", message, assembly.line(), "mode: local takes more")])
+    movers: list[tuple[int, ...]] = []
+    works: list[int] = []
+    for bodies, k in found.moving:
+        turning = bodies.turning
+        assert turning is not None
+        turns = (turning.rotation_at + 4 * k, turning.momentum_at + 3 * k, turning.inverse_at + 6 * k)
+        center = (bodies.position_at + 3 * k, bodies.velocity_at + 3 * k, bodies.inverse_at + k)
+        movers.append((*center, *turns, *(6 * (-1,))))
+        works.append(bodies.work_at)
+    for place in found.standing:
+        at = assembly.floats([*place, *(0.0 for _ in range(12))])
+        movers.append((*(6 * (-1,)), at, at + 3, at + 7, at + 10, at + 13, at + 16))
+        works.append(-1)
+    tied, ties = _tied(assembly, movers, works, TIE_ROW, integers, POSITION)
+    count = len(found.shapes)
+    pairs = [(a, b) for a in range(n) for b in range(a + 1, count) if (a, b) not in found.joined]
+    most = FEW * n + FEW
+    room = len(tied) + 3 * most
+    length = convex.room_length(found.shapes)
+    moved, places, begun = (
+        assembly.floats(np.zeros(size)) for size in ((MOVED + 6) * len(movers), 7 * count, 7 * count)
+    )
+    working = assembly.floats(np.zeros(length + 12))
+    records = assembly.floats(np.zeros(2 * contact_kernels.RECORD * most))
+    units = assembly.floats(np.zeros(rows.UNIT * room))
+    dense = assembly.floats(np.zeros(2 * room * room + (3 + exact_law_kernels.VECTORS) * room + 1))
+    kept = assembly.floats(np.zeros(len(pairs)))
+    memory = assembly.floats(np.zeros(rows.MEMORY))
+    outputs = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
+    nan = float("nan")
+    tally = assembly.floats([0.0, nan, nan, 0.0, nan])
+    data = assembly.floats(convex.joined(found.shapes, 0, 0)[0])
+    _, shapes = convex.joined(found.shapes, data, rows.HEAD)
+    lists = [
+        shapes.tolist(),
+        list(chain(*movers)),
+        list(chain(*pairs)),
+        list(ties),
+        list(chain(*tied)),
+        [0] * (2 * room + most),
+        works,
+    ]
+    begins = np.cumsum([rows.HEAD, *(len(some) for some in lists)]).tolist()[:-1]
+    head = [len(movers), count, n, len(pairs), len(tied), most, len(ties), length, *begins]
+    head += [moved, places, begun, working, records, units, dense, kept, memory]
+    head += [assembly.value(restitution), assembly.value(friction), *outputs, tally]
+    ints = [int(number) for number in chain(head, *lists)]
+    assembly.contact("exact", CONTACTS, ints, len(pairs) + 2 * most)
+    assembly.term("tie", HOLD, ints)
+    assembly.after_step(SETTLE, ints, samples=True)
+    return (tally, -1, *outputs, memory + rows.LOOSE, memory + rows.CROWDED, -2, memory + rows.ENDLESS)
+
+
+@dataclass(frozen=True, slots=True)
+class Touching:
+    """What collides."""
+
+    shapes: list[Convex]
+    """Of the bodies that move, then of what stands."""
+    moving: list[tuple[Bodies, int]]
+    """The bodies that move: of which, and its number among these."""
+    standing: list[Floats]
+    """Position and quaternion (7,) of what stands."""
+    joined: set[tuple[int, int]]
+    """Pairs of bodies that a tie joins: they do not touch."""
+
+
+def _shapes(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref]) -> Touching:
+    """The shapes of a contact. Raises ScriptError for one that is not covered, or inside another at the start."""
+    import numpy as np
+
+    from sceneql.contacts.distance.rigid_shapes import Shapes
+
+    numbers, start, known = assembly.numbers(), assembly.start(), Shapes(assembly)
+    moving: list[tuple[Bodies, int]] = []
+    solid: list[tuple[Convex, Floats, Ref | None]] = []
+    fixed: list[tuple[Convex, Floats, Ref | None]] = []
+    for bodies in everyone:
+        assert bodies.turning is not None
+        model: Any = assembly.object(Ref(bodies.model))
+        for k, (ref, center) in enumerate(model.solids()):
+            x, q = bodies.position_at + 3 * k, bodies.turning.rotation_at + 4 * k
+            one = (_exactly(known.of(ref, center), ref), np.concatenate([start[x : x + 3], start[q : q + 4]]), ref)
+            if numbers[bodies.inverse_at + k] == 0.0:
+                fixed.append(one)
+            else:
+                moving.append((bodies, k))
+                solid.append(one)
+    for ref in others:
+        kind: Any = assembly.object(ref)
+        if is_led(kind):
+            message = f"'{ref.name}' moves by itself, which rigid bodies feel in mode `local` alone"
+            raise ScriptError([Diagnostic("no-collider", message, ref.span)])
+        place = place_of(ref, assembly)
+        fixed.append((_exactly(known.of(ref, np.zeros(3), place), ref), place, ref))
+    shapes, places, names = (list(some) for some in zip(*solid, *fixed, strict=True))
+    numbered = {bodies.position_at + 3 * k: number for number, (bodies, k) in enumerate(moving)}
+    sides = [
+        [numbered.get(mover.ints[0], -1) if isinstance(mover, Place) else -1 for mover in tie.movers]
+        for tie in assembly.ties
+    ]
+    joined = {(min(pair), max(pair)) for pair in sides}
+    must_be_apart(known, shapes, places, len(moving), names, joined, assembly)
+    return Touching(shapes, moving, [place for _, place, _ in fixed], joined)
+
+
+def _tied(
+    assembly: Assembly, movers: list[tuple[int, ...]], works: list[int], row: int, integers: Any, position: int
+) -> tuple[list[tuple[int, int, int]], tuple[int, ...]]:
+    """Movers and floats of each row of the island's ties, and the integers of all; adds what is tied to the movers."""
+    rows = []
+    for tie in assembly.ties:
+        sides = []
+        for mover in tie.movers:
+            one = integers(mover)
+            if one not in movers:
+                movers.append(one)
+                works.append(-1)
+            sides.append(movers.index(one))
+        rows += [(sides[0], sides[1], tie.scratch_at + row * k) for k in range(len(tie.rows))]
+    return rows, assembly.tie_ints if rows else ()
+
+
+def _exactly(shape: Convex, ref: Ref | None) -> Convex:
+    """A shape. Raises ScriptError where points of its surface stand for it."""
+    from sceneql.contacts.distance.convex import SKINNED
+
+    if shape.kind == SKINNED and ref is not None:
+        message = f"'{ref.name}' touches by points of its surface, which mode `local` alone can do"
+        help = "mode `exact` takes spheres, boxes, planes and convex meshes"
+        raise ScriptError([Diagnostic("no-collider", message, ref.span, help)])
+    return shape

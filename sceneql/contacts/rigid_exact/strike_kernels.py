@@ -1,0 +1,254 @@
+# mypy: ignore-errors
+"""Impacts of rigid bodies by generalized reflections, and the contacts that are kept after them.
+
+All contacts that approach are reflected together, until none approaches (Smith, Kaufman, Vouga, Tamstorf & Grinspun
+2012): with the impulses of Coulomb's law and Newton's restitution on these alone. What is left of infinitely many
+bounces that are lower than LOWEST ends at once.
+"""
+
+import math
+
+import numpy as np
+from numba import types
+
+import sceneql.system.channels as channels
+from sceneql.bodies.rigid.tie_rows_kernels import (
+    AT_MASS,
+    AT_V,
+    AT_W,
+    MOMENTUM,
+    MOVER,
+    POSITION,
+    ROTATION,
+)
+from sceneql.compiled.kernels import kernel, lean, lean_inlined
+from sceneql.contacts import layout
+from sceneql.contacts.distance.manifold_kernels import MOST as MOST_CORNERS
+from sceneql.contacts.distance.manifold_kernels import NAME
+from sceneql.contacts.distance.manifold_kernels import POINT as CORNER
+from sceneql.contacts.impact_kernels import count_hit
+from sceneql.contacts.rigid_exact.contact_kernels import (
+    BIAS,
+    PAIR,
+    RECORD,
+    ROWS,
+    SHAPE_A,
+    SHAPE_B,
+    SPEED,
+    pace,
+)
+from sceneql.contacts.rigid_exact.exact_law_kernels import BILATERAL, UNILATERAL
+from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
+from sceneql.contacts.rigid_exact.exact_rows_kernels import (
+    AGAIN,
+    ENDLESS,
+    ENDURANCE,
+    FRICTION_AT,
+    IMPACTS,
+    KEPT,
+    KEPT_AT,
+    KINDS_AT,
+    LATEST,
+    LOOSE,
+    MEMORY_AT,
+    MOST,
+    MOVERS,
+    MOVERS_AT,
+    RECORDS_AT,
+    RESTITUTION_AT,
+    STARTED,
+    TALLY_AT,
+    TIE_ROWS,
+    WORKS_AT,
+    follow_all,
+    kick,
+    look,
+    mover_at,
+    pull_at,
+    right_at,
+    solution_at,
+    solve_rows,
+    write_rows,
+)
+from sceneql.contacts.rigid_exact.find_kernels import DEEP, begin, find, smaller, start_step
+from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
+
+APPROACHES = 1e-13
+"""Speed of approach, in parts of the speeds that it is a sum of, that counts."""
+PARTS, STILL = 1e-9, 1e-12
+"""Speed away from each other, in the same parts and [m/s], from which a contact is not kept."""
+MOST_ROUNDS = 500
+"""Reflections at one instant, after which all contacts end their approach together, without restitution."""
+LOWEST = 1e-12
+"""Height of the next bounce, in parts of the size of the smaller body, from which the bodies stay together."""
+
+
+@lean_inlined
+def marked_at(ints):
+    """Where the integers begin that say which contacts are struck."""
+    return ints[KINDS_AT] + 2 * (ints[TIE_ROWS] + 3 * ints[MOST])
+
+
+@lean(F(A, A, I, N))
+def energy(y, floats, ints, m):
+    """Kinetic energy of a mover."""
+    at, mover = ints[MOVERS_AT] + MOVER * m, mover_at(ints, m)
+    if ints[at + POSITION] < 0 or floats[mover + AT_MASS] == 0.0:
+        return 0.0
+    total = 0.0
+    for c in range(3):
+        total += floats[mover + AT_V + c] ** 2 / floats[mover + AT_MASS]
+        if ints[at + ROTATION] >= 0:
+            total += floats[mover + AT_W + c] * y[ints[at + MOMENTUM] + c]
+    return 0.5 * total
+
+
+@lean(F(A, A, I))
+def energies(y, floats, ints):
+    """Kinetic energy of all."""
+    total = 0.0
+    for m in range(ints[MOVERS]):
+        total += energy(y, floats, ints, m)
+    return total
+
+
+@lean(N(F, A, A, I, F, F))
+def reflect(t, y, floats, ints, restitution, friction):
+    """Impulses on the contacts that are marked, so that none of them approaches; rows that were solved for.
+
+    With a restitution below 0, and no friction, none of them goes apart, either.
+    """
+    n = write_rows(floats, ints, IMPACTS, friction)
+    right = right_at(ints)
+    for i in range(ints[TIE_ROWS], n):
+        kind = ints[ints[KINDS_AT] + i]
+        if (kind == UNILATERAL or kind == CONE) and floats[right + i] < 0.0:
+            floats[right + i] *= 1.0 + max(0.0, restitution)
+        elif kind == UNILATERAL and restitution < 0.0:
+            ints[ints[KINDS_AT] + i] = BILATERAL
+    if not solve_rows(floats, ints, n, friction):
+        floats[ints[MEMORY_AT] + LOOSE] += 1.0
+    kick(y, floats, ints, n)
+    look(t, y, floats, ints)
+    follow_all(floats, ints)
+    return n
+
+
+@lean(N(A, I))
+def mark_approaching(floats, ints):
+    """Mark the contacts that approach; how many."""
+    count = 0
+    for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
+        rec = ints[RECORDS_AT] + RECORD * k
+        a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
+        near = floats[rec + SPEED] < -APPROACHES * (STILL + pace(floats, rec, a, b))
+        ints[marked_at(ints) + k] = 1 if near else 0
+        count += near
+    return count
+
+
+@lean(types.boolean(F, A, A, I))
+def strike(t, y, floats, ints):
+    """End the approach of all kept contacts; whether there was one. They, the ties and the movers are of this state."""
+    memory, marked = ints[MEMORY_AT], marked_at(ints)
+    restitution, friction = floats[ints[RESTITUTION_AT]], floats[ints[FRICTION_AT]]
+    count = int(floats[memory + KEPT])
+    fastest = 0.0
+    for k in range(count):
+        fastest = max(fastest, -floats[ints[RECORDS_AT] + RECORD * k + SPEED])
+    if count == 0:
+        return False
+    if mark_approaching(floats, ints) > 0:
+        count_hit(floats, ints[TALLY_AT], t, fastest)
+    for m in range(ints[MOVERS]):
+        work = ints[ints[WORKS_AT] + m]
+        if work >= 0:
+            y[work] += energy(y, floats, ints, m)
+    rounds = 0
+    while restitution > 0.0 and rounds < MOST_ROUNDS and mark_approaching(floats, ints) > 0:
+        before, part = energies(y, floats, ints), restitution
+        n = reflect(t, y, floats, ints, part, friction)
+        # Restitution and friction of several contacts may make energy: then less of the restitution.
+        while friction > 0.0 and part > 0.0 and energies(y, floats, ints) > before * (1.0 + 1e-12):
+            for i in range(n):
+                floats[solution_at(ints) + i] *= -1.0
+            kick(y, floats, ints, n)
+            look(t, y, floats, ints)
+            follow_all(floats, ints)
+            mark_approaching(floats, ints)
+            part = 0.5 * part if part > 0.05 else 0.0
+            n = reflect(t, y, floats, ints, part, friction)
+        rounds += 1
+    if rounds == MOST_ROUNDS and mark_approaching(floats, ints) > 0:
+        floats[memory + ENDLESS] += 1.0
+    # What approaches still, or would bounce lower than LOWEST, stays together.
+    caught = 0
+    for k in range(count):
+        rec = ints[RECORDS_AT] + RECORD * k
+        a, b = int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B])
+        ma, mb = mover_at(ints, a), mover_at(ints, b)
+        pull, speed = floats[rec + BIAS], floats[rec + SPEED]
+        for side in range(2):
+            for c in range(6):
+                pull += floats[rec + ROWS + 6 * side + c] * floats[pull_at(ints, b if side == 1 else a) + c]
+        low = pull < 0.0 and speed * speed < -2.0 * pull * LOWEST * smaller(floats, ints, a, b)
+        near = speed <= STILL + PARTS * pace(floats, rec, ma, mb)
+        stays = near or (low and restitution < 1.0)
+        ints[marked + k] = 1 if stays else 0
+        if stays and ((low and not near) or speed < 0.0 or restitution == 0.0):
+            caught += 1
+    if caught > 0:
+        reflect(t, y, floats, ints, 0.0, friction)
+        reflect(t, y, floats, ints, -1.0, 0.0)
+        if math.isnan(floats[ints[TALLY_AT] + layout.REST_TIME]):
+            floats[ints[TALLY_AT] + layout.REST_TIME] = t
+    for m in range(ints[MOVERS]):
+        work = ints[ints[WORKS_AT] + m]
+        if work >= 0:
+            y[work] -= energy(y, floats, ints, m)
+    return True
+
+
+@lean(types.void(A, I, types.boolean))
+def keep(floats, ints, old):
+    """Keep the contacts that do not part; ``old``: of pairs alone that kept some before."""
+    memory, kept = ints[MEMORY_AT], 0
+    for k in range(int(floats[memory + KEPT])):
+        rec, to = ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * kept
+        a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
+        if abs(floats[rec + SPEED]) > STILL + PARTS * pace(floats, rec, a, b):
+            continue
+        if old and floats[ints[KEPT_AT] + int(floats[rec + PAIR])] == 0.0:
+            continue
+        for c in range(RECORD if to != rec else 0):
+            floats[to + c] = floats[rec + c]
+        kept += 1
+    floats[memory + KEPT] = kept
+
+
+@kernel(IMPACT, inner=True)
+def impact(t, y, pair, floats, ints):
+    """Strike the contacts of this instant; for pair -1, at the end of a step, find anew those that are kept."""
+    memory = ints[MEMORY_AT]
+    points, names = np.zeros(MOST_CORNERS * CORNER), np.zeros(MOST_CORNERS * NAME, dtype=np.int64)
+    if pair >= 0:
+        again = floats[memory + AGAIN] + 1.0 if t == floats[memory + LATEST] else 0.0
+        floats[memory + LATEST], floats[memory + AGAIN] = t, again
+        floats[memory + ENDLESS] += again == ENDURANCE
+        find(t, y, floats, ints, 1e-9, points, names)
+        strike(t, y, floats, ints)
+        keep(floats, ints, False)
+        begin(t, y, floats, ints)
+    elif floats[memory + STARTED] == 0.0:
+        floats[memory + STARTED] = 1.0
+        find(t, y, floats, ints, DEEP, points, names)
+        keep(floats, ints, False)
+        begin(t, y, floats, ints)
+        floats[channels.CHANGED] = 1.0
+    elif floats[memory + KEPT] > 0.0:
+        floats[memory + AGAIN] = 0.0
+        find(t, y, floats, ints, 1e-9, points, names)
+        keep(floats, ints, True)
+        begin(t, y, floats, ints)
+        floats[channels.CHANGED] = 1.0
+    start_step(t, y, floats, ints)

@@ -1,0 +1,87 @@
+# mypy: ignore-errors
+"""Gradients of a tape at a few points close together: densities are sums over the parts in their reach alone."""
+
+from sceneql.compiled.kernels import inlined, lean
+from sceneql.field.tape import tape_ops as ops
+from sceneql.field.tape.batch_gradient_kernels import differentiate
+from sceneql.field.tape.batch_kernels import BATCH, evaluate
+
+MANY = 32
+"""Parts of a density from which on those in reach are looked for."""
+GROW = 1.0 + 1e-9
+"""Factor of a squared reach, against rounding."""
+
+
+@inlined
+def many_points(code):
+    """Whether a tape has a density of MANY parts, and no skeleton, whose hierarchy finds those in reach itself."""
+    found = False
+    for k in range(code.shape[0]):
+        if code[k, 0] == ops.SKELETON:
+            return False
+        found = found or (code[k, 0] == ops.DENSITY and code[k, 2] - code[k, 1] >= MANY)
+    return found
+
+
+@inlined
+def extent(x, n):
+    """Least and largest of n numbers."""
+    low = high = x[0]
+    for i in range(1, n):
+        low, high = min(low, x[i]), max(high, x[i])
+    return low, high
+
+
+@inlined
+def apart(a, b, low, high):
+    """Distance along an axis of a piece between a and b from low..high."""
+    return max(max(low - max(a, b), min(a, b) - high), 0.0)
+
+
+@inlined
+def keep_near(parts, start, stop, x, y, z, n, near, kept):
+    """Append the parts start..stop-1 in whose reach the box around n points is to ``near``; returns its length."""
+    x0, x1 = extent(x, n)
+    y0, y1 = extent(y, n)
+    z0, z1 = extent(z, n)
+    for part in range(start, stop):
+        dx = apart(parts[part, 0], parts[part, 3], x0, x1)
+        dy = apart(parts[part, 1], parts[part, 4], y0, y1)
+        dz = apart(parts[part, 2], parts[part, 5], z0, z1)
+        if not dx * dx + dy * dy + dz * dz > parts[part, 6] * parts[part, 6] * GROW:
+            for column in range(8):
+                near[kept, column] = parts[part, column]
+            kept += 1
+    return kept
+
+
+@lean(f"void({BATCH}, float64[:, :, ::1], float64[:, ::1], int32[:, :, ::1], float64[:, ::1], int64)", inner=True)
+def gradients(code, constants, parts, registers, slope, points, codes, near, n):
+    """Gradients at n ``points`` (3, LANES) into the last of ``slope`` (rows, 3, LANES), bit for bit as of all parts.
+
+    ``registers`` (rows, LANES), ``codes`` (2, rows, 4) and ``near`` (parts, 8) are working memory.
+    """
+    rows = code.shape[0]
+    if not many_points(code):
+        evaluate(code, constants, parts, registers, points, n)
+        differentiate(code, constants, parts, registers, slope, n)
+        return
+    rest, whole = codes[0, :rows], codes[1, :rows]
+    for k in range(rows):
+        for column in range(4):
+            rest[k, column] = whole[k, column] = code[k, column]
+    kept = 0
+    for k in range(rows):
+        if code[k, 0] == ops.DENSITY:
+            # The points at which it is asked are those of the rows before.
+            evaluate(rest[:k], constants, near, registers, points, n)
+            for j in range(k):
+                rest[j, 0] = ops.KEEP
+            p, first = code[k, 3], kept
+            kept = keep_near(
+                parts, code[k, 1], code[k, 2], registers[p], registers[p + 1], registers[p + 2], n, near, kept
+            )  # fmt: skip
+            rest[k, 1] = whole[k, 1] = first
+            rest[k, 2] = whole[k, 2] = kept
+    evaluate(rest, constants, near, registers, points, n)
+    differentiate(whole, constants, near, registers, slope, n)

@@ -1,0 +1,398 @@
+# mypy: ignore-errors
+"""Bounded rows of a cone program: ties, stops, motors and dry friction of joints, one number of impulse each.
+
+A row between two bodies has s = J v + given and an impulse x in [low, high], with s >= 0 where x = low, s <= 0 where
+x = high, and s = 0 between. Without bounds it is a tie; in [0, inf) a stop; in [-a, a] friction or a motor. A row with
+low = high has that impulse. Ties that say the same twice share an impulse near the one guessed: steps are proximal.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.linear import cone_layout_kernels as layout
+from sceneql.system.signatures_kernels import A, F, I, N
+
+ROW_J, ROW_LOW, ROW_HIGH, ROW_GIVEN, ROW_X, ROW_S = 0, 12, 13, 14, 15, 16
+ROW_HEAVY, ROW_LONG, ROW_SIZE, ROW_H, ROW_DX, ROW_DS, ROW_A, ROW_C, ROW_DA, ROW_DC = range(17, 27)
+ROW_AIM_A, ROW_AIM_C, ROW_LEFT, ROW_OLD, ROW = 27, 28, 29, 30, 33
+"""Floats of a row. Given: J by velocity and angular velocity of the first body of its pair, then of the second; the
+bounds of the impulse, what is added to J v. Found: impulse (given: a guess), s. Scratch: effective mass, length that
+makes a velocity of s, size of s, matrix, changes of impulse and s; a and c, their changes, what these aim at; what is
+left of s; impulse, a and c to come back to."""
+
+STIFF = 1e8
+"""Stiffness of proximal steps of ties in the interior-point method, of the effective mass."""
+PRODUCT = types.void(A, I, N, N)
+
+
+@lean_inlined
+def row_pair(ints, k):
+    """Where the integers of a row's pair are."""
+    return ints[layout.PAIRS_AT] + layout.PAIR * ints[ints[layout.ROW_INTS_AT] + k]
+
+
+@lean_inlined
+def moves(floats, c):
+    """Whether the impulse of a row is not given by its bounds."""
+    return floats[c + ROW_HIGH] > floats[c + ROW_LOW] and floats[c + ROW_HEAVY] > 0.0
+
+
+@lean(PRODUCT)
+def to_rows(floats, ints, of, at):
+    """J times the bodies' six numbers ``of``, to ``at``."""
+    for k in range(ints[layout.ROWS]):
+        c, pair, total = ints[layout.ROWS_AT] + ROW * k, row_pair(ints, k), 0.0
+        for side in range(2):
+            body = ints[pair + side]
+            if body >= 0:
+                to = ints[layout.BODIES_AT] + layout.BODY * body + of
+                for j in range(6):
+                    total += floats[c + ROW_J + 6 * side + j] * floats[to + j]
+        floats[c + at] = total
+
+
+@lean(PRODUCT)
+def from_rows(floats, ints, of, at):
+    """Adds J^T times the rows' numbers ``of`` to the bodies' six ``at``."""
+    for k in range(ints[layout.ROWS]):
+        c, pair = ints[layout.ROWS_AT] + ROW * k, row_pair(ints, k)
+        x = floats[c + of]
+        if x == 0.0:
+            continue
+        for side in range(2):
+            body = ints[pair + side]
+            if body >= 0:
+                to = ints[layout.BODIES_AT] + layout.BODY * body + at
+                for j in range(6):
+                    floats[to + j] += x * floats[c + ROW_J + 6 * side + j]
+
+
+@lean(types.void(A, I))
+def momenta_of_rows(floats, ints):
+    """Adds the rows' impulses to LEFT, and their sizes to those of the momenta."""
+    for k in range(ints[layout.ROWS]):
+        c, pair = ints[layout.ROWS_AT] + ROW * k, row_pair(ints, k)
+        for side in range(2):
+            body = ints[pair + side]
+            if body >= 0:
+                at = ints[layout.BODIES_AT] + layout.BODY * body
+                for j in range(6):
+                    part = abs(floats[c + ROW_X] * floats[c + ROW_J + 6 * side + j])
+                    floats[at + (layout.AT_FORCE if j < 3 else layout.AT_TORQUE)] += part
+    from_rows(floats, ints, ROW_X, layout.AT_LEFT)
+
+
+@lean(types.void(A, I))
+def prepare_rows(floats, ints):
+    """Write the effective masses and lengths; impulses into their bounds. A row that moves no body has no impulse."""
+    for k in range(ints[layout.ROWS]):
+        c, pair = ints[layout.ROWS_AT] + ROW * k, row_pair(ints, k)
+        light = straight = 0.0
+        for side in range(2):
+            body, j = ints[pair + side], c + ROW_J + 6 * side
+            if body >= 0:
+                at, own = ints[layout.BODIES_AT] + layout.BODY * body, 0.0
+                for i in range(3):
+                    own += floats[j + i] * floats[j + i] / floats[at + layout.AT_MASS]
+                    for m in range(3):
+                        own += floats[j + 3 + i] * floats[at + layout.AT_INVERSE + 3 * i + m] * floats[j + 3 + m]
+                light += own
+                straight += 1.0 / floats[at + layout.AT_MASS] if own > 0.0 else 0.0
+        floats[c + ROW_HEAVY] = 1.0 / light if light > 0.0 else 0.0
+        floats[c + ROW_LONG] = math.sqrt(straight / light) if light > 0.0 else 1.0
+        floats[c + ROW_X] = min(max(floats[c + ROW_X], floats[c + ROW_LOW]), floats[c + ROW_HIGH])
+        if light == 0.0:
+            floats[c + ROW_X] = 0.0
+
+
+@lean(types.float64(A, I))
+def sizes_of_rows(floats, ints):
+    """Write the sizes of what s are sums of; the largest as a velocity."""
+    fastest = 0.0
+    for k in range(ints[layout.ROWS]):
+        c, pair = ints[layout.ROWS_AT] + ROW * k, row_pair(ints, k)
+        size = abs(floats[c + ROW_GIVEN])
+        for side in range(2):
+            body = ints[pair + side]
+            if body >= 0:
+                at = ints[layout.BODIES_AT] + layout.BODY * body
+                for j in range(6):
+                    part = abs(floats[at + layout.AT_FREE + j]) + abs(floats[at + layout.AT_V + j])
+                    size += abs(floats[c + ROW_J + 6 * side + j]) * part
+        floats[c + ROW_SIZE] = size
+        fastest = max(fastest, floats[c + ROW_LONG] * size)
+    return fastest
+
+
+@lean(types.void(A, I, F))
+def floor_sizes(floats, ints, least):
+    """Adds a velocity to all sizes."""
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        floats[c + ROW_SIZE] += least / floats[c + ROW_LONG]
+
+
+@lean(types.void(A, A, I))
+def add_rows(values, floats, ints):
+    """Adds J^T H J of the rows to the matrix of Newton's method."""
+    for k in range(ints[layout.ROWS]):
+        c, pair = ints[layout.ROWS_AT] + ROW * k, row_pair(ints, k)
+        h = floats[c + ROW_H]
+        if h == 0.0:
+            continue
+        for one in range(2):
+            for other in range(2):
+                a, b = ints[pair + one], ints[pair + other]
+                if a < 0 or b < 0:
+                    continue
+                if one == other:
+                    to = ints[ints[layout.DIAGONAL_AT] + a]
+                else:
+                    to = ints[pair + (layout.PAIR_AB if one == 0 else layout.PAIR_BA)]
+                for i in range(6):
+                    part = h * floats[c + ROW_J + 6 * one + i]
+                    if part != 0.0:
+                        for j in range(6):
+                            values[to + 6 * i + j] += part * floats[c + ROW_J + 6 * other + j]
+
+
+@lean(types.void(A, I))
+def keep_rows(floats, ints):
+    """Keep x, a and c."""
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        floats[c + ROW_OLD] = floats[c + ROW_X]
+        floats[c + ROW_OLD + 1], floats[c + ROW_OLD + 2] = floats[c + ROW_A], floats[c + ROW_C]
+
+
+@lean(types.void(A, I))
+def fetch_rows(floats, ints):
+    """Take x, a and c back as they were kept."""
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        floats[c + ROW_X] = floats[c + ROW_OLD]
+        floats[c + ROW_A], floats[c + ROW_C] = floats[c + ROW_OLD + 1], floats[c + ROW_OLD + 2]
+
+
+@lean(types.UniTuple(F, 2)(A, I))
+def see_rows(floats, ints):
+    """Write all s; what is left of the rows' law, the largest against the size of the numbers in it.
+
+    Once of the case that holds best, and once of bounds and power alone, as of contacts (cone_finish_kernels.see).
+    """
+    to_rows(floats, ints, layout.AT_V, ROW_S)
+    worst = least = 0.0
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        floats[c + ROW_S] += floats[c + ROW_GIVEN]
+        if not moves(floats, c):
+            continue
+        x, s, size = floats[c + ROW_X], floats[c + ROW_S], floats[c + ROW_SIZE]
+        push = floats[c + ROW_HEAVY] * size
+        low, high = floats[c + ROW_LOW], floats[c + ROW_HIGH]
+        one = max(abs(x - low) / push, max(-s, 0.0) / size)
+        other = max(abs(high - x) / push, max(s, 0.0) / size)
+        out = max(low - x, x - high) / max(push, abs(x))
+        worst = max(worst, max(min(abs(s) / size, min(one, other)), out))
+        # Power against the nearer bound on the side that s drives to; a tie has none.
+        way = x - low if s > 0.0 else high - x
+        part = min(1.0, max(way, 0.0) / max(push, abs(x)))
+        least = max(least, max(abs(s) / size * part, out))
+    return worst, least
+
+
+@lean(types.void(A, I, F))
+def project_rows(floats, ints, stiff):
+    """Write rho times the derivative of P(x - rho s) to H, and P(x - rho s) - x to DX."""
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        floats[c + ROW_H] = floats[c + ROW_DX] = 0.0
+        if not moves(floats, c):
+            continue
+        x, heavy = floats[c + ROW_X], floats[c + ROW_HEAVY]
+        rho = stiff * heavy * max(1.0, abs(x) / (heavy * floats[c + ROW_SIZE]))
+        aim = x - rho * floats[c + ROW_S]
+        if aim <= floats[c + ROW_LOW]:
+            floats[c + ROW_DX] = floats[c + ROW_LOW] - x
+        elif aim >= floats[c + ROW_HIGH]:
+            floats[c + ROW_DX] = floats[c + ROW_HIGH] - x
+        else:
+            floats[c + ROW_DX] = -rho * floats[c + ROW_S]
+            floats[c + ROW_H] = rho
+
+
+@lean(types.void(A, I))
+def move_rows(floats, ints):
+    """Take a step of the impulses, once DS is known."""
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        floats[c + ROW_X] += floats[c + ROW_DX] - floats[c + ROW_H] * floats[c + ROW_DS]
+
+
+@lean(types.float64(A, I))
+def open_rows(floats, ints):
+    """How fast a tie or a stop still opens or is run through [m/s]."""
+    worst = 0.0
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        if moves(floats, c) and floats[c + ROW_HIGH] == math.inf:
+            s = floats[c + ROW_S]
+            worst = max(worst, floats[c + ROW_LONG] * (abs(s) if floats[c + ROW_LOW] == -math.inf else -s))
+    return worst
+
+
+@lean(types.void(A, I))
+def spring_rows(floats, ints):
+    """Springs of the effective masses in place of the bounds: H, and DX for s without them."""
+    to_rows(floats, ints, layout.AT_V, ROW_S)
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        used = moves(floats, c)
+        floats[c + ROW_S] += floats[c + ROW_GIVEN]
+        floats[c + ROW_H] = floats[c + ROW_HEAVY] if used else 0.0
+        floats[c + ROW_DX] = -floats[c + ROW_HEAVY] * floats[c + ROW_S] if used else 0.0
+
+
+@lean(types.float64(A, I))
+def fastest_row(floats, ints):
+    """The largest s without impulses, as a velocity."""
+    found = 0.0
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        if moves(floats, c):
+            found = max(found, floats[c + ROW_LONG] * abs(floats[c + ROW_S]))
+    return found
+
+
+@lean(types.void(A, I, F))
+def begin_rows(floats, ints, fastest):
+    """The first point of the interior-point method, from the springs' solution: inside the bounds."""
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        if not moves(floats, c):
+            continue
+        low, high, heavy = floats[c + ROW_LOW], floats[c + ROW_HIGH], floats[c + ROW_HEAVY]
+        s = floats[c + ROW_S] + floats[c + ROW_DS]
+        fast = max(fastest / floats[c + ROW_LONG], 1e-300)
+        x, room = -heavy * s, min(heavy * fast, 0.5 * (high - low))
+        if low > -math.inf:
+            x = max(x, low + room)
+        if high < math.inf:
+            x = min(x, high - room)
+        floats[c + ROW_X] = x
+        for at, width in ((ROW_A, x - low), (ROW_C, high - x)):
+            floats[c + at] = min(fast, heavy * fast * fast / width) if width < math.inf else 0.0
+        if low > -math.inf:
+            floats[c + ROW_A] += max(s, 0.0)
+        if high < math.inf:
+            floats[c + ROW_C] += max(-s, 0.0)
+
+
+@lean(types.float64(A, I))
+def left_rows(floats, ints):
+    """Write what is left of s = a - c; the largest of this and of the gaps of complementarity; NaN where none is."""
+    to_rows(floats, ints, layout.AT_V, ROW_S)
+    worst = every = 0.0
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        if not moves(floats, c):
+            continue
+        x, size = floats[c + ROW_X], floats[c + ROW_SIZE]
+        floats[c + ROW_S] += floats[c + ROW_GIVEN]
+        floats[c + ROW_LEFT] = floats[c + ROW_S] - floats[c + ROW_A] + floats[c + ROW_C]
+        full, gap = max(floats[c + ROW_HEAVY] * size, abs(x)), 0.0
+        if floats[c + ROW_LOW] > -math.inf:
+            gap += (x - floats[c + ROW_LOW]) * floats[c + ROW_A]
+        if floats[c + ROW_HIGH] < math.inf:
+            gap += (floats[c + ROW_HIGH] - x) * floats[c + ROW_C]
+        worst = max(worst, max(abs(floats[c + ROW_LEFT]) / size, gap / (full * size)))
+        every += floats[c + ROW_LEFT] + gap
+    return worst if abs(every) < math.inf else math.nan
+
+
+@lean(types.UniTuple(F, 2)(A, I))
+def scale_rows(floats, ints):
+    """Write H and the aims of the predictor; the sum of the complementarity products, and their number."""
+    total = count = 0.0
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        floats[c + ROW_H] = floats[c + ROW_AIM_A] = floats[c + ROW_AIM_C] = 0.0
+        if not moves(floats, c):
+            continue
+        x, slope = floats[c + ROW_X], 0.0
+        if floats[c + ROW_LOW] > -math.inf:
+            slope += floats[c + ROW_A] / (x - floats[c + ROW_LOW])
+            total += floats[c + ROW_A] * (x - floats[c + ROW_LOW])
+            count += 1.0
+            floats[c + ROW_AIM_A] = -floats[c + ROW_A]
+        if floats[c + ROW_HIGH] < math.inf:
+            slope += floats[c + ROW_C] / (floats[c + ROW_HIGH] - x)
+            total += floats[c + ROW_C] * (floats[c + ROW_HIGH] - x)
+            count += 1.0
+            floats[c + ROW_AIM_C] = -floats[c + ROW_C]
+        floats[c + ROW_H] = 1.0 / slope if slope > 0.0 else STIFF * floats[c + ROW_HEAVY]
+    return total, count
+
+
+@lean(types.void(A, I))
+def aim_rows(floats, ints):
+    """Write DX by the aims and what is left; what DS adds to it comes once that is known (`turn_rows`)."""
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        floats[c + ROW_DX] = 0.0
+        if moves(floats, c):
+            aim = floats[c + ROW_AIM_A] - floats[c + ROW_AIM_C] - floats[c + ROW_LEFT]
+            floats[c + ROW_DX] = floats[c + ROW_H] * aim
+
+
+@lean(types.float64(A, I))
+def turn_rows(floats, ints):
+    """Write DX, DA and DC by DS; the longest step that keeps all inside."""
+    longest = math.inf
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        if not moves(floats, c):
+            continue
+        floats[c + ROW_DX] -= floats[c + ROW_H] * floats[c + ROW_DS]
+        x, dx = floats[c + ROW_X], floats[c + ROW_DX]
+        for at, change, aim, width, way in (
+            (ROW_A, ROW_DA, ROW_AIM_A, x - floats[c + ROW_LOW], dx),
+            (ROW_C, ROW_DC, ROW_AIM_C, floats[c + ROW_HIGH] - x, -dx),
+        ):
+            floats[c + change] = 0.0
+            if width < math.inf:
+                floats[c + change] = floats[c + aim] - floats[c + at] / width * way
+                if way < 0.0:
+                    longest = min(longest, -width / way)
+                if floats[c + change] < 0.0:
+                    longest = min(longest, -floats[c + at] / floats[c + change])
+    return longest
+
+
+@lean(types.void(A, I, F))
+def center_rows(floats, ints, centered):
+    """Aims of the corrector (Mehrotra 1992), from the predictor's changes."""
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        if not moves(floats, c):
+            continue
+        x, dx = floats[c + ROW_X], floats[c + ROW_DX]
+        if floats[c + ROW_LOW] > -math.inf:
+            more = (centered - dx * floats[c + ROW_DA]) / (x - floats[c + ROW_LOW])
+            floats[c + ROW_AIM_A] = more - floats[c + ROW_A]
+        if floats[c + ROW_HIGH] < math.inf:
+            more = (centered + dx * floats[c + ROW_DC]) / (floats[c + ROW_HIGH] - x)
+            floats[c + ROW_AIM_C] = more - floats[c + ROW_C]
+
+
+@lean(types.void(A, I, F))
+def advance_rows(floats, ints, part):
+    """Take a part of the step."""
+    for k in range(ints[layout.ROWS]):
+        c = ints[layout.ROWS_AT] + ROW * k
+        if moves(floats, c):
+            floats[c + ROW_X] += part * floats[c + ROW_DX]
+            floats[c + ROW_A] += part * floats[c + ROW_DA]
+            floats[c + ROW_C] += part * floats[c + ROW_DC]

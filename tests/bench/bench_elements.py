@@ -1,0 +1,172 @@
+"""Finite elements beside exact values: Cook's membrane, elastica, Lame's sphere, a free sphere, a bar's torsion.
+
+Run: python tests/bench/bench_elements.py [name ...]. Rest is found by plain Newton's method on the project's own forces
+and stiffness (tests/solids.py), frequencies by SciPy from its matrices; `falling` times steps of bdf2 with 28,000
+elements beside the same tetrahedra as springs.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from scipy.sparse import diags_array
+from scipy.sparse.linalg import cg, eigsh, splu
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from sceneql.pipeline import load
+from sceneql.run.run import Run
+from solids import Solid
+
+COOK = [(0, 0), (48, 44), (48, 60), (0, 44)]
+ELASTICA = {4: (0.66996418127767, 0.32894124224685), 10: (0.8106090248803, 0.55499559775375)}
+
+
+def solid(fields: str, more: str = "") -> Solid:
+    """The model of a script."""
+    with tempfile.TemporaryDirectory() as folder:
+        return Solid(Path(folder), fields, more)
+
+
+def told(what: str, *errors: float, seconds: float = 0.0) -> None:
+    """A line of relative errors."""
+    print(f"{what:60s}" + " ".join(f"{100 * error:+9.4f} %" for error in errors) + f" {seconds:8.2f} s", flush=True)
+
+
+def cook() -> None:
+    """Cook's membrane, one layer: drop of its corner."""
+    cases = [("p2_mean", 8, 0.499999, 0.26442), ("p2_mean", 16, 0.499999, 0.26442), ("p1", 32, 0.499999, 0.26442)]
+    cases += [("p2", 16, 1 / 3, 0.3075), ("p2_mean", 16, 1 / 3, 0.3075), ("p2", 16, 1 / 3, 23.9677 / 70)]
+    for k, (element, n, poisson, exact) in enumerate(cases):
+        stress = k == len(cases) - 1
+        across = "back: {where: z < 1e-9, components: z}" if stress else "plane: {where: x > -1, components: z}"
+        corners = ", ".join(f"{x} {y} {z} m" for z in (0, 1) for x, y in COOK)
+        start = time.perf_counter()
+        one = solid(
+            f"{{block: {{corners: [{corners}], cells: [{n}, {n}, 1], cut: five}}, element: {element}, "
+            f"law: {{linear: {{modulus: 70 Pa, poisson: {poisson}}}}}, probes: {{top: 48 52 0.5 m}}, "
+            f"hold: {{left: {{where: x < 1e-9, components: {'xy' if stress else 'xyz'}}}, {across}}}, "
+            "loads: {tip: {where: x > 47.999, force: 0 1 0 N}}}"
+        )
+        places, _ = one.rest()
+        found = one.read("top.displacement", places)[1]
+        name = f"Cook, {'plane stress' if stress else 'plane strain'}, {element} {n} x {n}, Poisson {poisson:.6g}"
+        told(name, found / exact - 1, seconds=time.perf_counter() - start)
+
+
+def elastica() -> None:
+    """A strip bent by a load at its end: w and u there."""
+    for law in ("saint_venant", "neo_hookean"):
+        start = time.perf_counter()
+        one = solid(
+            f"{{block: {{size: 10 1 0.1 m, center: 5 0 0 m, cells: [40, 2, 1]}}, element: p2, "
+            f"law: {{{law}: {{modulus: 1.2 MPa, poisson: 0}}}}, hold: {{left: {{where: x < 1e-9}}}}, "
+            "loads: {tip: {where: x > 9.9999, force: [0 N, 0 N, time * 1 N/s]}}, probes: {end: 10 0 0 m}}"
+        )
+        places, steps = one.places, 0
+        for part in range(1, 9):
+            one.time = 0.5 * part
+            places, more = one.rest(places, 1e-8, most=100)
+            steps += more
+        u, w = (one.read("end.displacement", places) / 10)[[0, 2]]
+        errors = w / ELASTICA[4][0] - 1, -u / ELASTICA[4][1] - 1
+        told(f"elastica, load 4, {law}, {steps} plain Newton steps", *errors, seconds=time.perf_counter() - start)
+
+
+def lame() -> None:
+    """A hollow sphere under pressure inside: displacement and hoop stress there, the means over its nodes."""
+    objects = "objects: {hole: {sphere: {radius: 1.2 m, hidden: yes}}, shell: {difference: {hidden: yes, of: "
+    objects += "[{sphere: {radius: 2 m}}, {sphere: {radius: 1 m}}]}}}\n"
+    for spacing in (0.5, 0.35, 0.25):
+        start = time.perf_counter()
+        one = solid(
+            f"{{of: shell, spacing: {spacing} m, element: p2, law: {{linear: {{modulus: 10 MPa, poisson: 0.3}}}}, "
+            "loads: {inner: {object: hole, pressure: 1 Pa}}}",
+            objects,
+        )
+        x, r = one.places, np.linalg.norm(one.places, axis=1)
+        stiffness = one.stiffness(x)
+        diagonal = stiffness.diagonal()
+        matrix = stiffness + diags_array(1e-6 * diagonal.mean() * one.masses / one.masses.mean())  # it is held nowhere
+        move, _ = cg(matrix, one.forces(x).ravel(), rtol=1e-8, M=diags_array(1 / diagonal))
+        move = move.reshape(-1, 3)
+        inner = np.abs(r - 1) < 1e-6
+        out = x[inner] / r[inner][:, None]
+        stress = one.read("stress", x + move)[inner]
+        hoop = 0.5 * (np.trace(stress, axis1=1, axis2=2) - np.einsum("ni,nij,nj->n", out, stress, out))
+        outwards = 1e6 * np.sum(move[inner] * out, axis=1)
+        errors = outwards.mean() / 0.08 - 1, hoop.mean() / 0.7142857143 - 1
+        name = f"Lame, p2, spacing {spacing}, {len(one.mesh.cells)} elements; u, hoop stress"
+        told(name, *errors, seconds=time.perf_counter() - start)
+
+
+def sphere() -> None:
+    """A free elastic sphere, Poisson's ratio 1/4: its first torsional and spheroidal frequency, each five-fold."""
+    for element, spacing in (("p1", 0.4), ("p2", 0.6), ("p2", 0.4), ("p2", 0.3)):
+        start = time.perf_counter()
+        one = solid(
+            f"{{of: ball, spacing: {spacing} m, element: {element}, density: 1 kg/m^3, "
+            "law: {linear: {modulus: 2.5 Pa, poisson: 0.25}}}",
+            "objects: {ball: {sphere: {radius: 1 m, hidden: yes}}}\n",
+        )
+        stiffness = one.stiffness(one.places).tocsc()
+        squares = eigsh(stiffness, 18, one.inertia.tocsc(), sigma=-1.0, return_eigenvectors=False)
+        found = np.sqrt(np.maximum(np.sort(squares), 0.0))
+        errors = [found[at : at + 5].mean() / exact - 1 for at, exact in ((6, 2.501132620409), (11, 2.639869277902))]
+        name = f"free sphere, {element}, spacing {spacing}; torsional, spheroidal"
+        told(name, *errors, seconds=time.perf_counter() - start)
+
+
+def torsion() -> None:
+    """A square bar turned at its ends, which are free to warp: its torque over shear modulus, twist and side^4."""
+    for n in (4, 8):
+        start = time.perf_counter()
+        one = solid(
+            f"{{block: {{size: 1 1 4 m, cells: [{n}, {n}, {n}]}}, element: p2, "
+            "law: {linear: {modulus: 2.5 Pa, poisson: 0.25}}}"
+        )
+        x, matrix, twist = one.places, one.stiffness(one.places).tocsc(), 1e-3
+        ends = np.abs(np.abs(x[:, 2]) - 2) < 1e-9
+        known = np.zeros((len(x), 3), dtype=bool)
+        known[ends, :2] = True
+        known[np.argmin(np.linalg.norm(x, axis=1)), 2] = True
+        move = np.zeros_like(x)
+        move[ends, 0], move[ends, 1] = -twist * x[ends, 2] * x[ends, 1], twist * x[ends, 2] * x[ends, 0]
+        known, move = known.ravel(), move.ravel()
+        free = ~known
+        move[free] = splu(matrix[free][:, free]).solve(-(matrix[free] @ move))
+        forces = (matrix @ move).reshape(-1, 3)
+        top = x[:, 2] > 1.99
+        torque = np.sum(x[top, 0] * forces[top, 1] - x[top, 1] * forces[top, 0])
+        told(
+            f"torsion, p2, {n} x {n} x {n} cells",
+            torque / twist / 0.140577014956 - 1,
+            seconds=time.perf_counter() - start,
+        )
+
+
+def falling() -> None:
+    """Steps of bdf2 at 10 ms: 28,392 p1 elements in free fall beside springs along the same edges."""
+    fill = "of: cube, spacing: 60 mm, element: p1, law: {neo_hookean: {modulus: 55 kPa, poisson: 0.4}}"
+    models = {
+        "elements": f"elastic: {{{fill}}}",
+        "springs": "mass_spring: {solid: {object: cube, spacing: 60 mm, density: 1000 kg/m^3, modulus: 55 kPa}}",
+    }
+    for name, model in models.items():
+        script = "clock: {end: 1 s}\nobjects: {cube: {box: {size: 0.78 0.78 0.78 m, hidden: yes}}}\n"
+        script += f"models: {{body: {{{model}}}}}\nforces: [gravity]\nsolvers: {{main: {{bdf2: {{step: 10 ms}}}}}}\n"
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "scene.yaml"
+            path.write_text(script)
+            times = [time.perf_counter() for _ in Run(load(path, pruned=False)).moments(np.arange(0, 0.3, 0.01))]
+        print(f"falling, {name}: median step {1e3 * np.median(np.diff(times)):.0f} ms", flush=True)
+
+
+BENCHES = {one.__name__: one for one in (cook, elastica, lame, sphere, torsion, falling)}
+
+if __name__ == "__main__":
+    for asked in sys.argv[1:] or BENCHES:
+        BENCHES[asked]()
