@@ -69,6 +69,9 @@ SHORTEST = 1e-10
 """Part of an update below which no shorter one is tried."""
 ROUNDING = 1e-13
 """Relative rounding error of a potential."""
+NOISY = 1e5
+"""Fall of a potential that the slope predicts, in rounding errors, from which on its value tells nothing: energies of
+stiff solids are small differences."""
 UNMOVED = 1e-12
 """Part of an update that a limit allows, below which nothing can move."""
 
@@ -167,6 +170,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if not regular or not solve_stage(plan, a, jacobian, scales, store, change):
             break
         slope = -along(plan, scales, residual, change) if has_potential else -2.0 * lowest
+        noisy = has_limit and -slope <= NOISY * rounding
         part = 1.0
         aim(y, change, floats)
         if has_limit:
@@ -180,7 +184,12 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         go(y, change, part, floats)
         leave(rate, t, a, base, y, residual, plan, floats, ints)
         value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
-        while searching and not value <= lowest + ENOUGH * part * slope + rounding and part > SHORTEST * longest:
+        while (
+            searching
+            and not noisy
+            and not value <= lowest + ENOUGH * part * slope + rounding
+            and part > SHORTEST * longest
+        ):
             part = shorter(part, lowest, slope, value)
             go(y, change, part, floats)
             leave(rate, t, a, base, y, residual, plan, floats, ints)
@@ -218,7 +227,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 best[k] = y[k]
         else:
             failing += 1
-            if failing > (0 if has_limit else WATCHED) or not math.isfinite(value):
+            if failing > (0 if has_limit and not noisy else WATCHED) or not math.isfinite(value):
                 for k in range(n):
                     y[k] = best[k]
                 foresee(y, y, floats)
