@@ -86,6 +86,8 @@ class IslandAssembly:
     _free: list[Block] = field(default_factory=list)
     _frees: list[tuple[int, int]] = field(default_factory=list)
     _tied: list[Block] = field(default_factory=list)
+    _limits: list[Block] = field(default_factory=list)
+    _growing: list[Callable[[Floats], bool]] = field(default_factory=list)
     _varying: list[tuple[int, Value, Word]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _stops: set[Breakpoint] = field(default_factory=set)
@@ -182,6 +184,15 @@ class IslandAssembly:
     def tied_drift(self, kernel: str, ints: Sequence[int]) -> None:
         """Add what lets drifts end where ties hold (system.Assembly)."""
         self._tied.append(Block((kernel,), tuple(ints)))
+
+    def limit(self, kernel: str, ints: Sequence[int]) -> None:
+        """Add what keeps surfaces apart (system.Assembly)."""
+        self._apart = False
+        self._limits.append(Block((kernel,), tuple(ints)))
+
+    def grows(self, grow: Callable[[Floats], bool]) -> None:
+        """Say that slopes may have more places later (system.Assembly)."""
+        self._growing.append(grow)
 
     def alike(self, at: int, count: int) -> None:
         """Say that entries share a scale of errors (system.Assembly)."""
@@ -315,8 +326,9 @@ class IslandAssembly:
 
     @property
     def contact_mode(self) -> str:
-        """The modes of its contacts: exact, local, both or none."""
-        modes = [mode for mode, blocks in (("exact", self._exact), ("local", self._local)) if blocks]
+        """The modes of its contacts: exact, local, barrier, several or none."""
+        kinds = (("exact", self._exact), ("local", self._local), ("barrier", self._limits))
+        modes = [mode for mode, blocks in kinds if blocks]
         return " and ".join(modes) or "none"
 
     def finish(self, jacobian: bool = False, newton: bool = False) -> System:
@@ -335,9 +347,9 @@ class IslandAssembly:
         exact = grouped(self._exact, blocks)
         pairs = [block.pairs for block in blocks[first_exact:]]
         local = grouped(self._local, blocks)
-        between = (self._after, self._settling, self._free, self._tied)
-        after, settling, free, tied = (grouped(some, blocks) for some in between)
-        counts = (count for _, count in (*groups, *exact, *local, *after, *settling, *free, *tied))
+        between = (self._after, self._settling, self._free, self._tied, self._limits)
+        after, settling, free, tied, limits = (grouped(some, blocks) for some in between)
+        counts = (count for _, count in (*groups, *exact, *local, *after, *settling, *free, *tied, *limits))
         first_blocks = list(accumulate(counts, initial=1))
         ints = lay_out(self._pairs, self._frees, bool(tied), blocks, first_blocks, pairs)
         found, derived = full(len(y)) if jacobian else None, None
@@ -345,7 +357,7 @@ class IslandAssembly:
             masses = [(at, -1 if at in self._matrices else inverse_at, n) for at, inverse_at, n in self._masses]
             found, derived, more = section(len(ints), len(y), slopes, masses, self._pairs)
             ints = np.concatenate([ints, more])
-        names = [tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free, tied)]
+        names = [tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free, tied, limits)]
         structure = Structure(
             terms=tuple(kernels[0] for kernels, _ in groups),
             exact=tuple((kernels[0], kernels[1]) for kernels, _ in exact),
@@ -354,6 +366,7 @@ class IslandAssembly:
             settling=names[2],
             free=names[3],
             tied=names[4],
+            limits=names[5],
             varying=bool(self._varying),
             slopes=derived,
             energies=self._energies(groups, blocks[1:first_exact]) if slopes is not None else None,
@@ -362,10 +375,16 @@ class IslandAssembly:
         for position, velocity, count in self._pairs:
             partner[position : position + count] = np.arange(velocity, velocity + count)
         floats = np.concatenate([*self._numbers, np.zeros(0 if found is None else len(channels.ARRAYS) * len(y))])
-        if slopes is not None and self._local:
+        if slopes is not None and (self._local or self._limits):
             floats[channels.STAGE] = channels.OUTSIDE if newton else channels.BETWEEN
+
+        def grown(floats: Floats) -> System | None:
+            more = [grow(floats) for grow in self._growing]
+            return self.finish(jacobian, newton) if any(more) else None
+
         return System(
             structure=structure,
+            grown=grown,
             y=y,
             floats=floats,
             ints=ints,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from sceneql.island.breakpoint_table import BreakpointTable
+from sceneql.system.channels import ARRAYS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,6 +37,8 @@ class Structure:
     """What lets drifts end where ties hold."""
     varying: bool
     """Whether values vary in time."""
+    limits: tuple[str, ...] = ()
+    """What keeps surfaces apart (Assembly.limit)."""
     slopes: tuple[str, ...] | None = None
     """The kernels of the Jacobian, of positive slopes too where those are others ("kernel|positive"); None: there is
     none, or it is found by differences."""
@@ -62,6 +65,9 @@ class System:
     floats: Floats
     ints: NDArray[int64]
     """Offsets, then the integers of every block (layout.py)."""
+    grown: Callable[[Floats], System | None]
+    """Lays the island out again with more places for slopes (Assembly.grows), from its present floats; None: there are
+    no more."""
     pairs: int
     """Number of pairs of exact contacts."""
     partner: NDArray[int64]
@@ -92,6 +98,14 @@ class System:
 
     names: tuple[tuple[int, int, Callable[[int], str]], ...] = ()
     """Offset, count and names by number of entries that have names of their own."""
+
+    def after(self, floats: Floats) -> Floats:
+        """The floats with which it goes on from those of the same island before it had more places for slopes."""
+        import numpy as np
+
+        arrays = len(ARRAYS) * len(self.y)
+        kept = len(floats) - arrays
+        return np.concatenate([floats[:kept], self.floats[kept : len(self.floats) - arrays], floats[kept:]])
 
     def name(self, index: int) -> str:
         """The name of an entry of y, as a state of equations has one; else empty."""

@@ -37,6 +37,8 @@ class Model(Kind):
     """Whether its bodies are rigid: those of a contact are solved together."""
     has_bodies: ClassVar[bool] = True
     """Whether forces that name no model act on it."""
+    has_skin: ClassVar[bool] = False
+    """Whether its masses span a surface: all of a contact with such a model are solved together."""
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies | None:
         """Reserve state, give initial values, add the terms of its own rate; the point masses forces may act on."""
@@ -269,6 +271,12 @@ class Contact(Kind):
     ) -> None:
         """Add its terms for all models of rigid bodies at once."""
         raise NotImplementedError
+
+    def assemble_skins(
+        self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> bool:
+        """Add its terms for all models at once, some of which have skins; whether it acts on skins."""
+        return False
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output at a state."""

@@ -22,7 +22,7 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.compiled.pointers_kernels import AT_ENERGY, AT_JACOBIAN, AT_LIMIT, AT_RATE, jacobian_at, rate_at
+from sceneql.compiled.pointers_kernels import AT_ENERGY, AT_JACOBIAN, AT_LIMIT, AT_RATE, jacobian_at, limit_at, rate_at
 from sceneql.linear.stage_kernels import POSITIONS, POSITIONS_AT, factor_stage, solve_stage
 from sceneql.system.signatures_kernels import A, F, I
 
@@ -40,6 +40,8 @@ HELPS = 0.7
 """Largest contraction with which that plain iteration continues."""
 SLOW = 0.2
 """Contraction from which on the Jacobian is evaluated anew."""
+CLEAR = 0.9
+"""Share of the part of a change up to which surfaces stay apart that is taken."""
 UNSEEN = 0.05
 """Least contraction that is assumed before two updates measure it."""
 TINY = 0.01
@@ -117,6 +119,18 @@ def end_stage(floats):
 
 
 @lean_inlined
+def approach(functions, t, a, base, y0, y, plan, floats, ints):
+    """Let positions follow the velocities of a guess, no further than surfaces stay apart."""
+    follow(plan, a, base, y)
+    part = limit_at(functions[AT_LIMIT])(t, y0, y, floats, ints)
+    if part < 1.0:
+        at = plan[POSITIONS_AT]
+        for k in range(at, at + 3 * plan[POSITIONS], 3):
+            y[plan[k]] = y0[plan[k]] + CLEAR * part * (y[plan[k]] - y0[plan[k]])
+            y[plan[k + 1]] = (y[plan[k]] - base[plan[k]]) / a
+
+
+@lean_inlined
 def leave(rate, t, a, base, y, residual, plan, floats, ints):
     """Residual of the stage's equations at y; that of positions, which `follow` solves, is rounding alone."""
     follow(plan, a, base, y)
@@ -137,6 +151,8 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
     n = y.size
     change, residual, guess = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n]
+    if functions[AT_LIMIT] != 0:
+        approach(functions, t, a, base, y0, y, plan, floats, ints)
     for k in range(n):
         guess[k] = y[k]
     foresee(y0, y0, floats)
@@ -157,6 +173,10 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             floats[channels.POSITIVE] = memory[POSITIVE] = 1.0 if definite else 0.0
             slopes(functions, t, y, jacobian, floats, ints)
             floats[channels.NEWTON] = floats[channels.POSITIVE] = 0.0
+            if floats[channels.GROWS] != 0.0:
+                end_stage(floats)
+                fail(change, y)
+                return False
         size = math.inf
         regular = True
         if stale or memory[FACTORED] != a:
@@ -171,6 +191,10 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if regular:
             for k in range(n):
                 change[k] += y[k]
+            if functions[AT_LIMIT] != 0:
+                follow(plan, a, base, change)
+                regular = limit_at(functions[AT_LIMIT])(t, y, change, floats, ints) == 1.0
+        if regular:
             foresee(y, change, floats)
             for k in range(n):
                 y[k], change[k] = change[k], change[k] - y[k]

@@ -27,6 +27,7 @@ from sceneql.compiled.pointers_kernels import (
 )
 from sceneql.linear.newton_kernels import (
     CAREFUL,
+    CLEAR,
     CONTRACTION,
     FACTORED,
     FACTORIZATIONS,
@@ -53,10 +54,10 @@ from sceneql.linear.stage_kernels import (
     solve_stage,
 )
 
-MOST = 120
-"""Largest number of updates."""
+MOST, MOST_APART = 120, 400
+"""Largest number of updates; of such where surfaces are kept apart, whose friction sticks and slips pair by pair."""
 WATCHED = 20
-"""Whole updates that need not bring less."""
+"""Whole updates that need not bring less; none where surfaces are kept apart."""
 SLOWED = 0.5
 """Contraction from which on positive slopes are slow."""
 TRUE_AFTER = 3
@@ -68,6 +69,9 @@ SHORTEST = 1e-10
 """Part of an update below which no shorter one is tried."""
 ROUNDING = 1e-13
 """Relative rounding error of a potential."""
+NOISY = 1e5
+"""Fall of a potential that the slope predicts, in rounding errors, from which on its value tells nothing: energies of
+stiff solids are small differences."""
 UNMOVED = 1e-12
 """Part of an update that a limit allows, below which nothing can move."""
 
@@ -146,12 +150,14 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     slow = failing = since = 0
     patience = TRUE_AFTER
     before = before_mean = 0.0
-    for _ in range(MOST):
+    for _ in range(MOST_APART if has_limit else MOST):
         while stale:
             floats[channels.NEWTON] = a * a
             floats[channels.POSITIVE] = 1.0 if positive else 0.0
             slopes(functions, t, y, jacobian, floats, ints)
             floats[channels.NEWTON] = floats[channels.POSITIVE] = 0.0
+            if floats[channels.GROWS] != 0.0:
+                return False
             memory[FACTORIZATIONS] += 1.0
             regular = factor_stage(plan, a, jacobian, scales, store)
             if positive or (regular and not indefinite(plan, store)):
@@ -164,6 +170,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if not regular or not solve_stage(plan, a, jacobian, scales, store, change):
             break
         slope = -along(plan, scales, residual, change) if has_potential else -2.0 * lowest
+        noisy = has_limit and -slope <= NOISY * rounding
         part = 1.0
         aim(y, change, floats)
         if has_limit:
@@ -171,11 +178,18 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             part = limit_at(functions[AT_LIMIT])(t, old[:n], new[:n], floats, ints)
             if part < UNMOVED:
                 break
+            if part < 1.0:
+                part *= CLEAR
         longest = part
         go(y, change, part, floats)
         leave(rate, t, a, base, y, residual, plan, floats, ints)
         value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
-        while searching and not value <= lowest + ENOUGH * part * slope + rounding and part > SHORTEST * longest:
+        while (
+            searching
+            and not noisy
+            and not value <= lowest + ENOUGH * part * slope + rounding
+            and part > SHORTEST * longest
+        ):
             part = shorter(part, lowest, slope, value)
             go(y, change, part, floats)
             leave(rate, t, a, base, y, residual, plan, floats, ints)
@@ -213,7 +227,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 best[k] = y[k]
         else:
             failing += 1
-            if failing > WATCHED or not math.isfinite(value):
+            if failing > (0 if has_limit and not noisy else WATCHED) or not math.isfinite(value):
                 for k in range(n):
                     y[k] = best[k]
                 foresee(y, y, floats)

@@ -116,6 +116,10 @@ class Assembled:
         with self.word(contact):
             if kind.mutual and masses:
                 kind.assemble_together(contact, self.assembly, [bodies for bodies, _ in masses], masses[0][1])
+            elif any(bodies.skin is not None for bodies, _ in masses):
+                everyone = [bodies for bodies, _ in masses]
+                if kind.assemble_skins(contact, self.assembly, everyone, masses[0][1]):
+                    return
             rigid = [(bodies, refs) for bodies, refs in masses if bodies.turning is not None]
             if rigid and not kind.mutual:
                 kind.assemble_rigid(contact, self.assembly, [bodies for bodies, _ in rigid], rigid[0][1])

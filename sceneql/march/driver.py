@@ -71,6 +71,32 @@ def energy(system: System) -> Any:
     return _slopes_module(jacobian_text(system.structure)).energy
 
 
+def limit(system: System) -> Any:
+    """The largest part of a change that keeps surfaces apart; None on an island without such surfaces."""
+    return load(write("limit", limit_text(system.structure))).limit if system.structure.limits else None
+
+
+def limit_text(structure: Structure) -> str:
+    """The text of its module."""
+    names = {name: f"kernel_{k}" for k, name in enumerate(structure.limits)}
+    before = (structure.terms, structure.exact, structure.local, structure.after)
+    others = (structure.settling, structure.free, structure.tied)
+    first = layout.GROUPS_AT + sum(len(some) for some in (*before, *others))
+    lines = [
+        *_imports(names),
+        "from sceneql.compiled.kernels import lean",
+        *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
+        "from sceneql.system.signatures_kernels import LIMIT",
+        *("", "", "@lean(LIMIT)", "def limit(t, y, changed, floats, ints):"),
+        *([REFRESH.replace("(t, y,", "(t, changed,")] if structure.varying else []),
+        "    part = 1.0",
+    ]
+    for group, name in enumerate(structure.limits, first):
+        call = f"{names[name]}(t, y, changed, floats, ints[ints[b] : ints[b + 1]])"
+        lines += _blocks(group, f"part = min(part, {call})")
+    return "\n".join([*lines, "    return part"]) + "\n"
+
+
 @cache
 def _slopes_module(code: str) -> Any:
     return load(write("jacobian", code))
@@ -121,7 +147,7 @@ def jacobian_text(structure: Structure) -> str:
 def modules(structure: Structure) -> tuple[str, ...]:
     """The modules of an island's kernels; those of contacts, as a rule the largest, first."""
     slopes = (name.partition("|")[0] for name in structure.slopes or ())
-    after = (*slopes, *structure.after, *structure.settling, *structure.free, *structure.tied)
+    after = (*slopes, *structure.after, *structure.settling, *structure.free, *structure.tied, *structure.limits)
     names = (*structure.local, *chain(*structure.exact), *after, *structure.terms)
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import sceneql.system.channels as channels
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.island import layout
 from sceneql.march import march_kernels as kernels
@@ -35,8 +36,11 @@ class EquilibriumMarch(March):
         self._relax(0.0)
 
     def _relax(self, t: float) -> None:
-        y = self._y1.copy()
-        found = relax(self._functions, t, y, self._work, self._settings, self._numbers, self.floats, self.system.ints)
+        grown = True
+        while grown:
+            y, ints = self._y1.copy(), self.system.ints
+            found = relax(self._functions, t, y, self._work, self._settings, self._numbers, self.floats, ints)
+            grown = self.floats[channels.GROWS] != 0.0 and self._grow()
         if found == UNSTABLE:
             raise self._failure("the rest that was found is unstable: the least push would leave it")
         if found != REACHED:

@@ -29,6 +29,7 @@ MESSAGES = {
     kernels.NOT_FINITE: "a value is no longer finite: the step is unstable, or the equations have no value there",
     kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: {{}}",
     kernels.STEP_TOO_SMALL: "the step that the tolerance asks for is below the resolution of time: {}",
+    kernels.CROSSING: "surfaces would pass through one another within this step: take shorter ones",
     kernels.STUCK: "contacts push against each other at one instant without end",
 }
 AHEAD = 1e-9
@@ -64,6 +65,8 @@ def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure
     control = march.control
     if status == kernels.STUCK:
         return blamed(march, 0, MESSAGES[status])
+    if status == kernels.CROSSING:
+        return blamed(march, entry, MESSAGES[status])
     if status == kernels.PAUSED:
         return _hopeless(march, ahead)
     if status == kernels.STEP_TOO_SMALL:

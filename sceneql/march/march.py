@@ -19,7 +19,7 @@ from sceneql.island.breakpoint_table import before, next_breakpoint
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
 from sceneql.march import march_kernels as kernels
-from sceneql.march.driver import driver, energy, jacobian
+from sceneql.march.driver import driver, energy, jacobian, limit
 from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
 from sceneql.march.first_step import first_step
 from sceneql.march.pace import Pace
@@ -53,6 +53,8 @@ class Statistics:
     """Impacts of exact contacts."""
     evaluations: int = 0
     """Evaluations of the rate."""
+    orderings: int = 0
+    """How many times linear systems were ordered anew, since pairs came near that had no place in the Jacobian."""
     seconds: float = 0.0
     """Run time of the compiled steps [s]."""
 
@@ -108,6 +110,7 @@ class March:
     def _engage(self, stepper: Stepper) -> None:
         """Continue with a method."""
         method, control, needs = stepper.method, stepper.control, stepper.needs
+        self._engaged = stepper
         if needs.jacobian and self._with_jacobian is not None:
             self.system = self._with_jacobian()
             self.floats = np.concatenate([self.floats, self.system.floats[len(self.floats) :]])
@@ -128,7 +131,7 @@ class March:
         # Islands without exact contacts have no events: the kernels that find them are not even loaded.
         event = function("sceneql.march.events_kernels:find_event") if system.pairs else None
         self._energy = energy(system) if needs.newton and (needs.at_rest or not system.damped) else None
-        self._limit = None
+        self._limit = limit(system)
         self._functions = addresses(
             self._step, self._dense, *self.driver, self._jacobian, event, self._energy, self._limit
         )
@@ -139,6 +142,7 @@ class March:
         self._settings = np.array(prepared.settings, dtype=np.float64)
         self._numbers = np.array(prepared.numbers, dtype=np.int64)
         self._work = np.zeros(prepared.work)
+        self._kept = prepared.kept
         self._measure(prepared)
         self.prepared_text = prepared.text
         self._counts[kernels.ADAPTIVE] = control.adaptive
@@ -146,6 +150,26 @@ class March:
         self._counts[kernels.LAST_STAGE] = -1 if local and between else method.last_stage
         self._counts[kernels.CONTROLS] = control.self_controlled
         self._counts[kernels.HALVES] = control.halves
+        # The last stage of Newton's method is a state that it has reached without letting surfaces pass one another.
+        self._counts[kernels.WATCHED] = self._limit is not None and not (needs.newton and method.last_stage >= 0)
+
+    def _grow(self) -> bool:
+        """Lay the island out with more places in its Jacobian, and go on with what the method remembers."""
+        self.floats[channels.GROWS] = 0.0
+        system = self.system.grown(self.floats)
+        if system is None:
+            return False
+        memory, method = (self._settings, self._numbers, self._work), self._engaged.method
+        self.floats, self.system = system.after(self.floats), system
+        self._engage(self._engaged)
+        self.statistics.orderings += 1
+        counts = (len(method.settings), len(method.numbers), self._kept)
+        for new, old, count in zip((self._settings, self._numbers, self._work), memory, counts, strict=True):
+            if self._kept:
+                new[:count] = old[:count]
+        if self._kept:
+            self._settings[0] = 0.0
+        return True
 
     def _measure(self, prepared: Prepared) -> None:
         """Go on with the sizes that entries have had, where the method before measured errors by these, too."""
@@ -339,6 +363,8 @@ class March:
                     break
             elif status == kernels.REACHED and target > self._step_end:
                 self._pass_breakpoint()
+            elif status == kernels.GROWS and self._grow():
+                continue
             elif not self._goes_on(status):
                 break
         done = self.statistics

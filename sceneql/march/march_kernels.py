@@ -24,13 +24,27 @@ STEPS, REJECTED, EVENTS, REPEATS, LEFT, INDEX, GRID, PENDING = range(8)
 """Tallies; impacts since time moved; steps left in this call; the entry that a failure names; grid points passed; the
 pair whose impact is due (-1: none)."""
 
-ADAPTIVE, ORDER, LOCAL, LAST_STAGE, CONTROLS, HALVES, HELD, SWAPPED, ACTS, ALTERED, CRAWLED, SETTLES, COUNTS = range(
-    8, 21
-)
+(
+    ADAPTIVE,
+    ORDER,
+    LOCAL,
+    LAST_STAGE,
+    CONTROLS,
+    HALVES,
+    HELD,
+    SWAPPED,
+    ACTS,
+    ALTERED,
+    CRAWLED,
+    SETTLES,
+    WATCHED,
+    COUNTS,
+) = range(8, 22)
 """Properties of solver and island (system.Stepper); whether a body rests on a local contact (channels.HOLDS); whether
 the arrays of the step's start and end are swapped, for the end of a step is the next one's start; whether there are
 kernels that act after steps (Assembly.after_step), and whether they changed anything after the last one; successive
-steps that have hardly moved time; whether there are such kernels that act on samples, too."""
+steps that have hardly moved time; whether there are such kernels that act on samples, too; whether surfaces may pass
+one another in a whole step (Assembly.limit)."""
 
 SHORTEST = 1e-3
 """Part of a fixed step below which it is not halved any more."""
@@ -41,7 +55,7 @@ MOST_CRAWLED = 2000
 """Such steps in a row, or shorter than any, after which the march is stuck: an impact or a breakpoint takes far fewer
 to leave."""
 
-REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK = range(6)
+REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK, CROSSING, GROWS = range(8)
 
 MOST_REPEATS = 100
 """Impacts for each pair at one instant before the contacts count as contradictory."""
@@ -157,14 +171,22 @@ def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, f
     """Step until the error is accepted: (end of the step [s], status). A fixed step is tried once, but halved where
     its equations have no solution; contacts, too, may end it before the next point of the time grid."""
     adaptive = counts[ADAPTIVE] > 0
-    rejected = False
+    rejected = crossing = False
     while True:
         h = t1 - t0
         error = step(functions, t0, h, y0, rate0, y1, work, settings, numbers, floats, ints)
+        if floats[channels.GROWS] != 0.0:
+            return t1, GROWS
         large = beyond(y1, clock[LIMIT]) > 0
         bad = first_bad(y1) if large else -1
         if bad >= 0:
             error = math.inf
+        crossing = False
+        if counts[WATCHED] > 0 and bad < 0 and (error <= 1.0 or not adaptive):
+            crossing = pointers.limit_at(functions[pointers.AT_LIMIT])(t1, y0, y1, floats, ints) < 1.0
+            if crossing:
+                error = math.inf
+                bad = largest(rate0)
         if bad < 0 and (error <= 1.0 or not adaptive):
             if adaptive:
                 controls = counts[CONTROLS] > 0
@@ -176,14 +198,14 @@ def try_steps(step, functions, t0, t1, y0, rate0, y1, work, settings, numbers, f
         counts[REJECTED] += 1
         counts[INDEX] = bad if bad >= 0 else largest(rate0)
         if counts[CONTROLS] > 0:
-            h = min(work[0], 0.9 * h)
+            h = 0.3 * h if crossing else min(work[0], 0.9 * h)
         else:
             h *= next_factor(error, 1.0, counts[ORDER], True) if adaptive else 0.5
         # A shorter step may round to the same end.
         if adaptive and not (t0 + 0.1 * h > t0 and t0 + h < t1 and h >= clock[LEAST]):
-            return t1, STEP_TOO_SMALL
+            return t1, CROSSING if crossing else STEP_TOO_SMALL
         if not adaptive and (counts[HALVES] == 0 or h < SHORTEST * clock[STEP]):
-            return t1, NOT_FINITE
+            return t1, CROSSING if crossing else NOT_FINITE
         rejected = True
         t1 = t0 + h
 

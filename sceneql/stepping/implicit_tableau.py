@@ -150,6 +150,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         numbers=np.concatenate([method.numbers, [len(method.settings), room], plan.numbers]),
         work=(5 + stages) * len(system.y) + room + plan.store,
         text=text,
+        kept=(5 + stages) * len(system.y),
     )
 
 

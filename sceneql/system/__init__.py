@@ -24,6 +24,7 @@ Kernel signatures (numba; the types are in signatures_kernels.py), all ``-> None
                                             steps
     dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out)   the solution inside the step, 0 <= theta <= 1
 
+    limit(t, y, changed, floats, ints) -> part   how far from y to `changed` surfaces stay apart (Assembly.limit)
     slopes(t, y, entries, floats, ints)     adds the derivatives of one term (see Slopes)
     jacobian(functions, t, y, values, floats, ints)   the derivative of the island's rate (see Pattern)
 
@@ -40,7 +41,7 @@ the surface).
 
 from sceneql.system.assembly import Assembly, Mode
 from sceneql.system.fields import Cells, Grid
-from sceneql.system.state import Bodies, ModelState, Place, Turning
+from sceneql.system.state import Bodies, ModelState, Place, Skin, Turning
 from sceneql.system.stepping import Control, IslandFacts, Method, Needs, Prepared, Stepper
 from sceneql.system.terms import Pattern, Slopes, Stage
 from sceneql.system.ties import Drive, Led, Mover, Tied, TieRow
@@ -62,6 +63,7 @@ __all__ = [
     "Pattern",
     "Place",
     "Prepared",
+    "Skin",
     "Slopes",
     "Stage",
     "Stepper",

@@ -75,6 +75,22 @@ class Assembly(Protocol):
         potential where they are 0.
         """
 
+    def limit(self, kernel: str, ints: Sequence[int]) -> None:
+        """Add what keeps surfaces apart: the largest part of a change of the state that lets none pass another.
+
+        ``kernel`` is ``"package.module:function"``, ``(t, y, changed, floats, ints) -> float``, 1 where the whole way
+        in a line from y to ``changed`` is free. Newton's method asks it of each update, from states where surfaces are
+        apart; other methods of their whole step, which a tolerance then shortens, and which fails where its length is
+        given.
+        """
+
+    def grows(self, grow: Callable[[Any], bool]) -> None:
+        """Say that the places of slopes may become more during a run, as what comes near depends on one another.
+
+        A slopes kernel that misses a place sets floats[channels.GROWS]. The march then calls ``grow`` with the floats;
+        it returns whether the slopes of its term, given by a function, have more places now. None are taken away.
+        """
+
     def tied_drift(self, kernel: str, ints: Sequence[int]) -> None:
         """Add what changes the momenta before a splitting's drift, so that it ends where ties hold (RATTLE).
 

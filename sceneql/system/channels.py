@@ -5,7 +5,7 @@ memories of words follow. Where a solver needs slopes, three arrays of the state
 where they are.
 """
 
-RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, HEAD = range(10)
+RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, GROWS, HEAD = range(11)
 """
 RATES: how many times the rate was evaluated.
 
@@ -29,6 +29,9 @@ POSITIVE: not 0 where the Jacobian is asked for the positive slopes of terms (Sl
 STAGE: the coefficient a [s] of an implicit stage y = base + a f(t, y), its base in BASE; else one of the three below.
 
 STAGES: how many implicit stages there were.
+
+GROWS: not 0 where slopes have no place in the Jacobian yet (Assembly.grows): Newton's method gives up, and the march
+takes the step again when the island has been laid out anew.
 """
 
 NO_SLOPES, OUTSIDE, BETWEEN = 0.0, -1.0, -2.0

@@ -27,6 +27,18 @@ class Turning:
     to the body's; the moments of a body without a free motion of its own are 0."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Skin:
+    """The surface of a solid between its masses, which nothing passes."""
+
+    triangles: Any
+    """(k, 3) int: bodies, counterclockwise from outside."""
+    held: Any
+    """(bodies, 3) bool: components that do not move freely."""
+    stiffness: float
+    """Its elastic modulus [Pa]: the pressure at which a barrier lets through half a gap or so."""
+
+
 @dataclass(frozen=True, slots=True)
 class Bodies:
     """Masses in an island's state, as offsets: body k has its center of mass at y[position_at + 3k : +3] [m]."""
@@ -50,6 +62,8 @@ class Bodies:
     """(m, 2) int: the bodies at the ends of these springs; None without springs."""
     turning: Turning | None = None
     """How they turn; None for point masses."""
+    skin: Skin | None = None
+    """The surface that they span; None for masses alone."""
 
 
 @dataclass(frozen=True, slots=True)

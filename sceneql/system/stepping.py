@@ -26,6 +26,9 @@ class Prepared:
     """How the method solves this island, for `explain`."""
     alone: Any = None
     """(n,) bool: entries whose errors are measured by their own sizes; None: none are."""
+    kept: int = 0
+    """Floats at the start of the scratch with which the method goes on where the island's Jacobian has more places;
+    then its settings and numbers too, but the first setting, its factored matrix's coefficient; 0: it starts anew."""
     scales: tuple[int, int] = (0, 0)
     """Where in the settings the sizes begin that entries have had, and how many; another method goes on with them."""
 

@@ -71,6 +71,9 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         if len(targets) > 1 and (not others or (isinstance(kind, Contact) and kind.mutual)):
             for target in targets[1:]:
                 tie(targets[0], target)
+        if any(getattr(tasks[target].kind, "has_skin", False) for target in targets):
+            for target in targets[1:]:
+                tie(targets[0], target)
         rigid = [target for target in targets if getattr(tasks[target].kind, "turns", False)]
         for target in rigid[1:]:
             tie(rigid[0], target)

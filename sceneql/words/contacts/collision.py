@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from sceneql.contacts import layout
-from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Ref, Scalar, field, quantity_type
+from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Problem, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
 
@@ -18,6 +18,9 @@ RIGID = ("points", "normals", "forces")
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
 EXACT = "sceneql.contacts.collision_kernels"
+BARRIER = -3
+"""Where in the remembered integers those of a barrier begin."""
+NO_RESTITUTION = "elastic solids have no restitution: they bounce by their own elasticity"
 LOCAL = "sceneql.contacts.back_off_kernels"
 SHAPES = "sceneql.contacts.shapes"
 MOST_CUT = 4096
@@ -55,6 +58,12 @@ class Collision(Contact):
     slides has the forces of Coulomb's law at every stage of the solver, whose order it keeps. Where several faces turn
     and slide on one another at once, its forces are not unique and its steps short: mode `local` takes such piles.
 
+    Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
+    no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There
+    is no restitution; friction is Coulomb's but below a slip of 0.01 % of the solids' size a second, and within
+    implicit steps by the normal forces of the step's start. An edge of an object that is sharper than the elements may
+    enter between these places.
+
     Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
     at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
     8 cm/s on Earth: smaller bounces need a solver of shorter steps, by `largest_step` or `step`, or mode `exact`.
@@ -79,7 +88,13 @@ class Collision(Contact):
     restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)
     friction: Scalar = field("Coulomb's coefficient of friction.", "0", at_least=0)
     thickness: FixedLength = field("Distance to keep besides the radius.", "0 m", at_least=0)
-    mode: Literal["auto", "exact", "local"] = field("How impacts are found.", "auto")
+    mode: Literal["auto", "exact", "local", "barrier"] = field("How impacts are found.", "auto")
+    gap: FixedLength | None = field(
+        "Distance from which on elastic solids are pushed off; by default a twentieth of the sides of their elements' "
+        "faces.",
+        None,
+        above=0,
+    )
 
     def trouble(self, state: ModelState) -> str:
         """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
@@ -118,6 +133,11 @@ class Collision(Contact):
         from sceneql.contacts.impact_kernels import MOST_CUTS
 
         must_be_free(bodies.model, assembly)
+        if self.mode == "barrier":
+            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+            message = f"mode `barrier` is that of elastic solids, and '{bodies.model}' is none"
+            raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
         if not others:
             return
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
@@ -163,6 +183,38 @@ class Collision(Contact):
         assembly.term("constrain", constrain, ints, held, apart=not exact)
         assembly.remember(tally_at)
 
+    def problems(self) -> Iterator[Problem]:
+        """A restitution where there is none, and a gap that nothing has."""
+        if self.mode == "barrier" and self.restitution.span is not None:
+            yield Problem(NO_RESTITUTION, ("restitution",), at_key=True)
+        if self.mode in ("exact", "local") and self.gap is not None:
+            yield Problem(f"mode {self.mode} has no gap: the mode barrier of elastic solids has", ("gap",), at_key=True)
+
+    def assemble_skins(
+        self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> bool:
+        """Add the barrier between elastic solids and objects, unless the script asks for masses that collide."""
+        if self.mode in ("exact", "local"):
+            return False
+        from sceneql.contacts.barrier.barrier_contact import assemble
+
+        if self.restitution.span is not None:
+            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+            help = "leave it out; mode `local` has one, of the nodes as masses"
+            raise ScriptError([Diagnostic("no-restitution", NO_RESTITUTION, self.restitution.span, help)])
+        written = {ref.name: ref for ref in self.between or ()}
+        touched = [written.get(ref.name, ref) for ref in others]
+        assembly.remember(*assemble(assembly, everyone, touched, self.friction, self.gap))
+        return True
+
+    def remark(self, state: ModelState) -> str:
+        """The gap of elastic solids."""
+        if self.mode in ("exact", "local") or BARRIER not in state.ints:
+            return ""
+        gap, slip = state.floats[state.ints[state.ints.index(BARRIER) + 1] :][:2]
+        return f"elastic solids are pushed off within a gap of {gap:.3g} m; friction is smooth below {slip:.2g} m/s"
+
     def assemble_rigid(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
@@ -171,6 +223,11 @@ class Collision(Contact):
         from sceneql.contacts.distance.rigid_contact import assemble
         from sceneql.contacts.rigid_exact import group
 
+        if self.mode == "barrier":
+            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+            message = "mode `barrier` is that of elastic solids, and rigid bodies are none"
+            raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
         if self.mode == "exact":
@@ -185,7 +242,8 @@ class Collision(Contact):
 
         if output in RIGID:
             return self._rigid(output, state)
-        ints = state.ints[: state.ints.index(-1)] if -1 in state.ints else state.ints
+        marks = (k for k, each in enumerate(state.ints) if each in (-1, -2, BARRIER))
+        ints = state.ints[: next(marks, len(state.ints))]
         tallies = np.array([state.floats[at : at + len(TALLY)] for at in ints]).reshape(-1, len(TALLY))
         column = tallies[:, TALLY.index(output)]
         if output == "hits.count":

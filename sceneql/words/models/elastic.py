@@ -62,6 +62,7 @@ class Elastic(Model):
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS}
+    has_skin: ClassVar[bool] = True
 
     of: kinds.ObjectRef | None = field("The object that it fills; usually a hidden one.", None)
     spacing: kinds.FixedLength | None = field(
@@ -173,10 +174,12 @@ class Elastic(Model):
 
         from sceneql.bodies.elements import hold as holding
         from sceneql.bodies.elements.element_mesh import worst_angle
+        from sceneql.bodies.elements.skin import triangles
         from sceneql.bodies.elements.strain import Inertia, add_mass_damping, add_strain, density_of
         from sceneql.bodies.elements.strain_outputs import probe
         from sceneql.bodies.filling.tetrahedra import edges
         from sceneql.shapes.placement import rotation_matrix
+        from sceneql.system import Skin
 
         mesh, line = self.mesh(assembly), assembly.line()
         inertia, count = Inertia.of(mesh, density_of(self.density, WATER)), len(mesh.points)
@@ -221,7 +224,10 @@ class Elastic(Model):
             polygons = cache(partial(carried, self.of, spacing_of(self.of, self.spacing, assembly), mesh, assembly))
         self._made = Made(strain, probes, forces, angles, polygons)
         period = 2.0 * np.pi / strain.squared**0.5
-        return replace(bodies, period=period, tied=edges(mesh.cells[:, :4])[0])
+        first, shear = (np.asarray(one) for one in self.law.law.moduli(mesh.points))
+        stiffness = float(np.min(shear * (3.0 * first + 2.0 * shear) / (first + shear)))
+        skin = Skin(triangles(mesh), held, stiffness)
+        return replace(bodies, period=period, tied=edges(mesh.cells[:, :4])[0], skin=skin)
 
     def remark(self, state: ModelState) -> str:
         """Its elements, their worst angle, and what its law cannot do."""

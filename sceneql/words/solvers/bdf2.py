@@ -87,4 +87,5 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         numbers=np.concatenate([stepper.method.numbers, [room], plan.numbers]),
         work=ARRAYS * len(system.y) + room + plan.store,
         text=plan.text,
+        kept=ARRAYS * len(system.y),
     )

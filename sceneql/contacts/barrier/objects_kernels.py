@@ -1,0 +1,131 @@
+# mypy: ignore-errors
+"""The force of a barrier between the points of a skin and objects, with friction."""
+
+import math
+
+import sceneql.system.channels as channels
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts import layout as surfaces
+from sceneql.contacts.barrier import objects_layout as layout
+from sceneql.contacts.barrier.barrier_kernels import mobilized, push
+from sceneql.contacts.shape_kernels import facing, surface, velocity
+from sceneql.system.signatures_kernels import TERM
+
+SURELY = 0.5
+"""Part of the distance from a surface that is no plane which counts as known: in front of the sharp edges of combined
+solids the distance is estimated."""
+
+
+@lean_inlined
+def ends(ints, p):
+    """The two nodes of a point, by their places in the list: twice the same for a node."""
+    nodes = ints[layout.NODES]
+    if p < nodes:
+        return p, p
+    at = ints[layout.LIST] + nodes + 2 * (p - nodes)
+    return ints[at], ints[at + 1]
+
+
+@lean_inlined
+def place(y, ints, start, p):
+    """A component triple of a point, from ``start`` in y on: its position or its velocity."""
+    i, j = ends(ints, p)
+    a, b = start + 3 * ints[ints[layout.LIST] + i], start + 3 * ints[ints[layout.LIST] + j]
+    return 0.5 * (y[a] + y[b]), 0.5 * (y[a + 1] + y[b + 1]), 0.5 * (y[a + 2] + y[b + 2])
+
+
+@lean_inlined
+def distance(floats, ints, p, j, x, y, z, reach):
+    """Distance and normal of object j at the place of point p; beyond ``reach`` as far as known."""
+    at = layout.HEAD + surfaces.OBJECT * j
+    if ints[at + surfaces.FLAT] != 0:
+        return facing(floats, ints, at, x, y, z)
+    if ints[at + surfaces.MOVING] != 0:
+        return surface(floats, ints, at, x, y, z)
+    known = ints[layout.KNOWN] + layout.KNOW * (ints[layout.OBJECTS] * p + j)
+    u, v, w = x - floats[known], y - floats[known + 1], z - floats[known + 2]
+    least = floats[known + layout.DISTANCE] - math.sqrt(u * u + v * v + w * w)
+    if least > reach:
+        return least, 0.0, 0.0, 0.0
+    found = surface(floats, ints, at, x, y, z)
+    floats[known], floats[known + 1], floats[known + 2] = x, y, z
+    floats[known + layout.DISTANCE] = SURELY * found[0]
+    return found
+
+
+@lean_inlined
+def sliding(y, floats, ints, p, j, a, b, c):
+    """The velocity of point p across a normal, relative to object j, at the place that y tells."""
+    at = layout.HEAD + surfaces.OBJECT * j
+    u, v, w = place(y, ints, ints[layout.VELOCITY], p)
+    if ints[at + surfaces.MOVING] != 0:
+        x, y_, z = place(y, ints, ints[layout.POSITION], p)
+        d, e, f = velocity(floats, ints, at, x, y_, z)
+        u, v, w = u - d, v - e, w - f
+    along = a * u + b * v + c * w
+    return u - along * a, v - along * b, w - along * c
+
+
+@lean_inlined
+def load(floats, ints, p, d):
+    """The normal force [N] on a point at a distance."""
+    numbers = ints[layout.NUMBERS]
+    area = floats[ints[layout.AREAS] + p]
+    return area * floats[numbers + layout.STIFFNESS] * push(d / floats[numbers + layout.GAP])
+
+
+@lean_inlined
+def lag(n, floats, ints):
+    """Within implicit stages friction has the loads and normals of the step's start, once for each stage."""
+    first, gap = ints[layout.LAGGED], floats[ints[layout.NUMBERS] + layout.GAP]
+    if floats[first] == floats[channels.STAGES]:
+        return
+    floats[first] = floats[channels.STAGES]
+    start = floats[floats.size - channels.BEFORE * n : floats.size - channels.BEFORE * n + n]
+    for p in range(ints[layout.NODES] + ints[layout.EDGES]):
+        x, y, z = place(start, ints, ints[layout.POSITION], p)
+        for j in range(ints[layout.OBJECTS]):
+            at = first + 1 + layout.LAG * (ints[layout.OBJECTS] * p + j)
+            d, a, b, c = distance(floats, ints, p, j, x, y, z, gap)
+            floats[at] = load(floats, ints, p, d) if 0.0 < d < gap else 0.0
+            floats[at + 1], floats[at + 2], floats[at + 3] = a, b, c
+
+
+@lean_inlined
+def add(rate, y, ints, p, x, y_, z):
+    """Add a force to the two nodes of a point, and take its power from the work."""
+    i, j = ends(ints, p)
+    for node in (i, j):
+        at = ints[layout.VELOCITY] + 3 * ints[ints[layout.LIST] + node]
+        rate[at] += 0.5 * x
+        rate[at + 1] += 0.5 * y_
+        rate[at + 2] += 0.5 * z
+        rate[ints[layout.WORK]] -= 0.5 * (x * y[at] + y_ * y[at + 1] + z * y[at + 2])
+
+
+@lean(TERM, inner=True)
+def force(t, y, rate, floats, ints):
+    """Adds the push of the barrier along the normal, and friction across it."""
+    numbers, objects = ints[layout.NUMBERS], ints[layout.OBJECTS]
+    gap, slip = floats[numbers + layout.GAP], floats[numbers + layout.SLIP]
+    friction = floats[ints[layout.FRICTION]]
+    lagged = friction > 0.0 and floats[channels.STAGE] > 0.0
+    if lagged:
+        lag(y.size, floats, ints)
+    for p in range(ints[layout.NODES] + ints[layout.EDGES]):
+        px, py, pz = place(y, ints, ints[layout.POSITION], p)
+        for j in range(objects):
+            d, a, b, c = distance(floats, ints, p, j, px, py, pz, gap)
+            pressed = 0.0
+            if d < gap:
+                pressed = load(floats, ints, p, d)
+                add(rate, y, ints, p, pressed * a, pressed * b, pressed * c)
+            if friction == 0.0:
+                continue
+            if lagged:
+                at = ints[layout.LAGGED] + 1 + layout.LAG * (objects * p + j)
+                pressed, a, b, c = floats[at], floats[at + 1], floats[at + 2], floats[at + 3]
+            if pressed > 0.0:
+                u, v, w = sliding(y, floats, ints, p, j, a, b, c)
+                drag = -friction * pressed * mobilized(math.sqrt(u * u + v * v + w * w), slip)
+                add(rate, y, ints, p, drag * u, drag * v, drag * w)

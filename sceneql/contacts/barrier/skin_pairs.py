@@ -1,0 +1,152 @@
+"""The barrier between skins: of several solids, and of one with itself. Imports numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.contacts.barrier import pairs_layout as layout
+from sceneql.contacts.barrier.standing import areas_of
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly, Bodies, Slopes
+
+KERNELS = "sceneql.contacts.barrier.skins_kernels:force"
+ENERGY = "sceneql.contacts.barrier.skins_energy_kernels:energy"
+LIMIT = "sceneql.contacts.barrier.skins_limit_kernels:limit"
+SLOPES = "sceneql.contacts.barrier.skins_slopes_kernels:slopes"
+
+ROOM = 48
+"""Pairs for each vertex that there is room for, and for each edge; of those that press, a quarter."""
+AHEAD = 0.3
+"""Pairs within the gap and this part of the mean side of triangles get places together."""
+
+
+@dataclass
+class Places:
+    """The pairs of vertices that have been near so far."""
+
+    count: int
+    keys: NDArray[int64]
+    """Ascending, i * count + j."""
+
+    def add(self, vertices: Any) -> bool:
+        """Add all pairs among rows of four vertices (k, 4); whether any is new."""
+        fours = np.asarray(vertices, dtype=np.int64).reshape(-1, 4)
+        more = (fours[:, :, None] * self.count + fours[:, None, :]).ravel()
+        before = len(self.keys)
+        self.keys = np.union1d(self.keys, more)
+        return len(self.keys) > before
+
+
+def add_pairs(
+    assembly: Assembly,
+    everyone: Sequence[Bodies],
+    friction_at: int,
+    gap: float,
+    slip: float,
+    side: float,
+) -> None:
+    """Add the barrier between the skins of ``everyone``; ``side``: the mean side of their triangles [m].
+
+    Raises ScriptError where skins cross or touch at the start.
+    """
+    vertices, triangles, held, stiffness, places = [], [], [], [], []
+    first = 0
+    for number, bodies in enumerate(everyone):
+        skin = bodies.skin
+        assert skin is not None
+        nodes, which = np.unique(skin.triangles, return_inverse=True)
+        triangles.append(first + which.reshape(-1, 3))
+        first += len(nodes)
+        own = [bodies.position_at + 3 * nodes, bodies.velocity_at + 3 * nodes]
+        vertices.append(np.column_stack([*own, np.full_like(nodes, bodies.work_at), np.full_like(nodes, number)]))
+        held.append(skin.held[nodes])
+        stiffness.append(np.full(len(nodes), skin.stiffness))
+        places.append(assembly.start()[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)[nodes])
+    rest, corners = np.concatenate(places), np.concatenate(triangles)
+    sides = np.sort(corners[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, of_side = np.unique(sides, axis=0, return_inverse=True)
+    thirds = np.repeat(areas_of(rest[corners]) / 3.0, 3)
+    areas = [np.bincount(corners.ravel(), thirds, len(rest)), np.bincount(of_side.ravel(), thirds, len(edges))]
+    points_most, edges_most, lagged_most = ROOM * len(rest), ROOM * len(edges), ROOM // 4 * len(edges)
+    cells = 2 * len(edges) + 1
+    rows = np.column_stack([np.concatenate(vertices), np.concatenate(held).astype(np.int64)])
+    lists = np.concatenate([rows.ravel(), corners.ravel(), edges.ravel()]).astype(np.int64)
+    head = [
+        *(len(rest), len(corners), len(edges), layout.HEAD),
+        assembly.floats([gap, slip, side]),
+        friction_at,
+        assembly.floats(np.concatenate(areas)),
+        assembly.floats(np.concatenate(stiffness)),
+        assembly.floats(rest),
+        assembly.floats(np.zeros(layout.AT + 3 * len(rest))),
+        *(assembly.floats(np.zeros(2 * points_most)), points_most),
+        *(assembly.floats(np.zeros(2 * edges_most)), edges_most),
+        *(assembly.floats(np.zeros(cells + 1 + len(edges))), cells),
+        *(assembly.floats(np.zeros(layout.LAG * lagged_most)), lagged_most),
+        layout.HEAD + len(lists),
+    ]
+    ints = np.concatenate([np.array(head, dtype=np.int64), lists])
+    known = Places(len(rest), np.arange(len(rest), dtype=np.int64) * (len(rest) + 1))
+    velocities = rows[:, layout.VELOCITY]
+
+    def grow(floats: Floats) -> bool:
+        near = listed(floats, ints)
+        soon = near[near[:, 0] < gap + AHEAD * side]
+        return known.add(soon[:, 1:]) or known.add(near[:, 1:])
+
+    def slopes() -> Slopes:
+        from sceneql.system import Slopes
+
+        row, column = np.divmod(known.keys, known.count)
+        starts = np.searchsorted(row, np.arange(known.count + 1))
+        by = [rows[column, which] for which in (layout.POSITION, layout.VELOCITY)]
+        own = np.concatenate([ints, starts, column])
+        return Slopes(SLOPES, np.tile(velocities[row], 2), np.concatenate(by), own, blocks=True)
+
+    start = assembly.start(), assembly.numbers()
+    _must_be_apart(start, ints, rows, rest, everyone, assembly)
+    assembly.term("force", KERNELS, ints.tolist(), slopes, energy=ENERGY)
+    assembly.limit(LIMIT, ints.tolist())
+    assembly.grows(grow)
+
+
+def listed(floats: Floats, ints: Any) -> Floats:
+    """(k, 5) distance and four vertices of each pair that is listed."""
+    from sceneql.contacts.barrier.growth_kernels import measure
+
+    memory = int(ints[layout.MEMORY])
+    count = int(floats[memory + layout.POINT_PAIRS] + floats[memory + layout.EDGE_PAIRS])
+    found = np.zeros((count, 5))
+    measure(floats, ints, found.reshape(-1))
+    return found
+
+
+def _must_be_apart(
+    start: tuple[Floats, Floats], ints: Any, rows: Any, rest: Floats, everyone: Sequence[Bodies], assembly: Assembly
+) -> None:
+    """Raise ScriptError where two skins touch or cross at the start."""
+    from sceneql.contacts.barrier.pairs_kernels import known
+
+    y, floats = start
+    known(y, floats, ints)
+    near = listed(floats, ints)
+    body = rows[:, layout.BODY]
+    touching = near[near[:, 0] <= 1e-9 * float(np.abs(rest).max())]
+    if not len(touching):
+        return
+    one, other = int(touching[0, 1]), int(touching[0, 3])
+    x, z, w = rest[one]
+    names = [everyone[int(body[k])].model for k in (one, other)]
+    what = f"'{names[0]}' touches itself" if names[0] == names[1] else f"'{names[0]}' touches '{names[1]}'"
+    text = f"{what} at the start, at ({x:.4g}, {z:.4g}, {w:.4g}) m"
+    raise ScriptError([Diagnostic("starts-inside", text, assembly.line(), "leave a distance between them")])

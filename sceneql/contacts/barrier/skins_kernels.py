@@ -1,0 +1,118 @@
+# mypy: ignore-errors
+"""The force of the barrier between skins, with friction."""
+
+import math
+
+import sceneql.system.channels as channels
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.barrier import pairs_layout as layout
+from sceneql.contacts.barrier.barrier_kernels import barrier, mobilized, push
+from sceneql.contacts.barrier.pairs_kernels import known, vertex
+from sceneql.contacts.barrier.weights_kernels import listed, node, product, stencil
+from sceneql.system.signatures_kernels import TERM
+
+
+@lean_inlined
+def add(rate, y, ints, k, x, y_, z):
+    """Add a force to a vertex, and take its power from the work."""
+    at = vertex(ints, k)
+    v = ints[at + layout.VELOCITY]
+    rate[v] += x
+    rate[v + 1] += y_
+    rate[v + 2] += z
+    rate[ints[at + layout.WORK]] -= x * y[v] + y_ * y[v + 1] + z * y[v + 2]
+
+
+@lean_inlined
+def keep(floats, ints, m, edges, found):
+    """Note a pair that presses for friction, where there is room."""
+    memory = ints[layout.MEMORY]
+    count = int(floats[memory + layout.LAGGED])
+    if count == ints[layout.MOST_LAGGED]:
+        floats[memory + layout.CROWDED] += 1.0
+        return
+    at = ints[layout.LAG_AT] + layout.LAG * count
+    for k in range(4):
+        floats[at + k] = node(floats, ints, m, edges, k)
+        floats[at + layout.WEIGHTS + k] = found[4 + k]
+    for k in range(3):
+        floats[at + layout.NORMAL + k] = found[1 + k]
+    floats[at + layout.LOAD] = found[9] * found[10] * push(found[0] / found[8])
+    floats[memory + layout.LAGGED] = count + 1.0
+
+
+@lean_inlined
+def keep_all(y, floats, ints):
+    """Note all pairs that press at a state."""
+    floats[ints[layout.MEMORY] + layout.LAGGED] = 0.0
+    if not known(y, floats, ints):
+        return
+    for edges in (False, True):
+        for m in range(listed(floats, ints, edges)):
+            found = stencil(y, floats, ints, m, edges)
+            if 0.0 < found[0] < math.inf:
+                keep(floats, ints, m, edges, found)
+
+
+@lean_inlined
+def sliding(y, floats, ints, at):
+    """The velocity of a lagged pair across its normal."""
+    u = v = w = 0.0
+    for k in range(4):
+        p, weight = ints[vertex(ints, int(floats[at + k])) + layout.VELOCITY], floats[at + layout.WEIGHTS + k]
+        u, v, w = u + weight * y[p], v + weight * y[p + 1], w + weight * y[p + 2]
+    a, b, c = floats[at + layout.NORMAL], floats[at + layout.NORMAL + 1], floats[at + layout.NORMAL + 2]
+    along = a * u + b * v + c * w
+    return u - along * a, v - along * b, w - along * c
+
+
+@lean(TERM, inner=True)
+def force(t, y, rate, floats, ints):
+    """Adds the push of the barrier, and friction across it."""
+    memory, slip = ints[layout.MEMORY], floats[ints[layout.NUMBERS] + layout.SLIP]
+    friction = floats[ints[layout.FRICTION]]
+    if friction > 0.0:
+        if floats[channels.STAGE] <= 0.0:
+            floats[memory + layout.STAGE] = -1.0
+            keep_all(y, floats, ints)
+        elif floats[memory + layout.STAGE] != floats[channels.STAGES]:
+            floats[memory + layout.STAGE] = floats[channels.STAGES]
+            before = floats.size - channels.BEFORE * y.size
+            keep_all(floats[before : before + y.size], floats, ints)
+    if not known(y, floats, ints):
+        rate[ints[vertex(ints, 0) + layout.VELOCITY]] = math.nan
+        return
+    for edges in (False, True):
+        for m in range(listed(floats, ints, edges)):
+            found = stencil(y, floats, ints, m, edges)
+            d = found[0]
+            if d == math.inf:
+                continue
+            pressed = found[9] * found[10] * push(d / found[8])
+            for k in range(4):
+                f = pressed * found[4 + k]
+                add(rate, y, ints, node(floats, ints, m, edges, k), f * found[1], f * found[2], f * found[3])
+            if found[11] > 0.0:
+                i, j = node(floats, ints, m, edges, 0), node(floats, ints, m, edges, 1)
+                k, n = node(floats, ints, m, edges, 2), node(floats, ints, m, edges, 3)
+                p, q, r, s = ints[vertex(ints, i)], ints[vertex(ints, j)], ints[vertex(ints, k)], ints[vertex(ints, n)]
+                a, b, c = product(y, p, q, r, s)
+                # The slope of |u x v|^2 is 2 v x (u x v) by u, and 2 (u x v) x u by v.
+                less = 2.0 * found[9] * found[8] * barrier(d / found[8]) * found[11]
+                u, v, w = y[s] - y[r], y[s + 1] - y[r + 1], y[s + 2] - y[r + 2]
+                x, y_, z = less * (v * c - w * b), less * (w * a - u * c), less * (u * b - v * a)
+                add(rate, y, ints, i, x, y_, z)
+                add(rate, y, ints, j, -x, -y_, -z)
+                u, v, w = y[q] - y[p], y[q + 1] - y[p + 1], y[q + 2] - y[p + 2]
+                x, y_, z = less * (b * w - c * v), less * (c * u - a * w), less * (a * v - b * u)
+                add(rate, y, ints, k, x, y_, z)
+                add(rate, y, ints, n, -x, -y_, -z)
+    if friction == 0.0:
+        return
+    for m in range(int(floats[memory + layout.LAGGED])):
+        at = ints[layout.LAG_AT] + layout.LAG * m
+        u, v, w = sliding(y, floats, ints, at)
+        drag = -friction * floats[at + layout.LOAD] * mobilized(math.sqrt(u * u + v * v + w * w), slip)
+        for k in range(4):
+            f = drag * floats[at + layout.WEIGHTS + k]
+            add(rate, y, ints, int(floats[at + k]), f * u, f * v, f * w)

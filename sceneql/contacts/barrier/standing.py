@@ -1,0 +1,96 @@
+"""A barrier between the skin of a solid and what stands. Imports numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.contacts.barrier import objects_layout as layout
+from sceneql.contacts.colliders import surfaces
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.kinds import Ref
+    from sceneql.system import Assembly, Bodies, Slopes
+
+KERNELS = "sceneql.contacts.barrier.objects_kernels:force"
+ENERGY = "sceneql.contacts.barrier.objects_energy_kernels:energy"
+LIMIT = "sceneql.contacts.barrier.objects_limit_kernels:limit"
+SLOPES = "sceneql.contacts.barrier.objects_slopes_kernels:slopes"
+
+
+def add_objects(
+    assembly: Assembly,
+    bodies: Bodies,
+    refs: Sequence[Ref],
+    friction_at: int,
+    numbers: tuple[float, float, float],
+) -> None:
+    """Add the barrier between the skin of ``bodies`` and objects; ``numbers``: of objects_layout.NUMBERS.
+
+    Raises ScriptError for an object that cannot be collided with, or that the skin touches at the start.
+    """
+    skin = bodies.skin
+    assert skin is not None
+    nodes, which = np.unique(skin.triangles, return_inverse=True)
+    corners = which.reshape(-1, 3)
+    sides = np.sort(corners[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    edges, of_side = np.unique(sides, axis=0, return_inverse=True)
+    places = assembly.start()[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)
+    areas = areas_of(places[skin.triangles])
+    # Of the four triangles between corners and middles each corner of each has a third.
+    own = np.bincount(corners.ravel(), np.repeat(areas / 12.0, 3), len(nodes))
+    middle = np.bincount(of_side.ravel(), np.repeat(areas / 4.0, 3), len(edges))
+    objects = surfaces(refs, assembly, layout.HEAD)
+    points = len(nodes) + len(edges)
+    head = (
+        *(bodies.position_at, bodies.velocity_at, bodies.work_at),
+        *(len(nodes), len(edges), layout.HEAD + len(objects)),
+        assembly.floats(numbers),
+        friction_at,
+        assembly.floats(np.concatenate([own, middle])),
+        assembly.floats(np.zeros(1 + layout.LAG * points * len(refs))),
+        assembly.floats(np.full(layout.KNOW * points * len(refs), -1.0)),
+        len(refs),
+    )
+    ints = (*head, *objects, *nodes.tolist(), *edges.ravel().tolist(), *np.ravel(skin.held[nodes]).astype(int).tolist())
+    _must_be_apart(bodies, refs, places[nodes], nodes, ints, numbers[layout.GAP], assembly)
+
+    def slopes() -> Slopes:
+        from sceneql.system import Slopes
+
+        rows, columns = (np.concatenate([np.arange(len(nodes)), edges[:, side].ravel()]) for side in ([0, 1], [1, 0]))
+        at = [bodies.velocity_at + 3 * nodes[rows]] * 2
+        by = [start + 3 * nodes[columns] for start in (bodies.position_at, bodies.velocity_at)]
+        return Slopes(SLOPES, np.concatenate(at), np.concatenate(by), blocks=True)
+
+    assembly.term("force", KERNELS, ints, slopes, energy=ENERGY)
+    assembly.limit(LIMIT, ints)
+
+
+def areas_of(corners: Floats) -> Floats:
+    """(k,) [m^2] of triangles (k, 3, 3)."""
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    found: Floats = 0.5 * np.linalg.norm(across, axis=1)
+    return found
+
+
+def _must_be_apart(
+    bodies: Bodies, refs: Sequence[Ref], places: Floats, nodes: Any, ints: Any, gap: float, assembly: Assembly
+) -> None:
+    """Raise ScriptError where a node of the skin starts on or in an object."""
+    from sceneql.contacts.barrier.nearest_node_kernels import nearest
+
+    d, node, other = nearest(assembly.start(), assembly.numbers(), np.array(ints, dtype=np.int64))
+    if d > 0.0:
+        return
+    x, y, z = places[node]
+    where = f"{-d:.3g} m deep" if d < -1e-9 * float(np.abs(places).max()) else "on its surface"
+    ref = refs[other]
+    text = f"'{bodies.model}' starts inside '{ref.name}', {where} at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+    text = text if "deep" in where else f"'{bodies.model}' starts on '{ref.name}' at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+    help = f"leave a distance: forces begin at the gap of {gap:.3g} m"
+    raise ScriptError([Diagnostic("starts-inside", text, ref.span or assembly.line(), help)])

@@ -1,0 +1,218 @@
+"""Contact of elastic solids by a barrier: nothing passes, friction is Coulomb's, forces are slopes of energies."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.random import Generator, Philox
+
+from sceneql.contacts.barrier import barrier_kernels
+from sceneql.contacts.barrier.distance_kernels import edge_edge, point_triangle
+from sceneql.failure import RunFailure
+from sceneql.march.driver import energy, limit
+from sceneql.pipeline import load
+from sceneql.run.run import Run
+
+LAW = "law: {neo_hookean: {modulus: 50 kPa, poisson: 0.3}}"
+CUBE = "block: {size: 0.2 0.2 0.2 m, cells: [2, 2, 2]}, element: p1"
+
+
+barrier, push, steepness, mobilized, friction_potential = (
+    getattr(barrier_kernels, name).py_func
+    for name in ("barrier", "push", "steepness", "mobilized", "friction_potential")
+)
+
+
+def run_of(tmp_path, text):
+    path = tmp_path / "scene.yaml"
+    path.write_text(text + "outputs: {film: {image: {size: 32 18}}}\n", encoding="utf-8")
+    return Run(load(path, pruned=False)).islands[0]
+
+
+def two_cubes(tmp_path, solver="bdf2: {step: 5 ms}", friction=0.0, more="", speed=2.0):
+    """Two cubes that fly at one another, turned, so that edges cross."""
+    return run_of(
+        tmp_path,
+        f"clock: {{end: 0.2 s}}\nsolvers: {{main: {{{solver}}}}}\nmodels:\n"
+        f"  one: {{elastic: {{{CUBE}, {LAW}, position: -0.15 0 0 m, velocity: {speed} 0 0 m/s}}}}\n"
+        f"  two: {{elastic: {{{CUBE}, {LAW}, position: 0.15 0.05 0.02 m, rotation: {{xyz: 20 40 20 deg}}}}}}\n"
+        f"contacts: {{touch: {{collision: {{between: [one, two], friction: {friction}}}}}}}\n{more}",
+    )
+
+
+def dropped(tmp_path, solver, friction=0.0):
+    return run_of(
+        tmp_path,
+        f"clock: {{end: 0.25 s}}\nsolvers: {{main: {{{solver}}}}}\nobjects: {{floor: plane}}\n"
+        f"models: {{body: {{elastic: {{{CUBE}, {LAW}, position: 0 0.2 0 m, rotation: {{xyz: 15 0 25 deg}}}}}}}}\n"
+        "forces: [gravity]\n"
+        f"contacts: {{touch: {{collision: {{between: [body, floor], friction: {friction}}}}}}}\n",
+    )
+
+
+def skins(island):
+    """Places (n, 3) and triangles (m, 3) of all skins."""
+    places, triangles, first = [], [], 0
+    for bodies in island.bodies.values():
+        places.append(island.y[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3))
+        triangles.append(bodies.skin.triangles + first)
+        first += bodies.count
+    return np.concatenate(places), np.concatenate(triangles)
+
+
+def crossings(places, triangles):
+    """How many edges pass through triangles, each pair tried."""
+    found = 0
+    a, b, c = (places[triangles[:, k]] for k in range(3))
+    across = np.cross(b - a, c - a)
+    for i, j in np.unique(np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0):
+        p, q = places[i], places[j]
+        first, last = (np.einsum("ij,ij->i", end - a, across) for end in (p, q))
+        k = np.flatnonzero((first * last < 0) & ~((triangles == i) | (triangles == j)).any(axis=1))
+        hit = p + (first[k] / (first[k] - last[k]))[:, None] * (q - p)
+        sides = [
+            np.einsum("ij,ij->i", np.cross(v[k] - u[k], hit - u[k]), across[k]) for u, v in ((a, b), (b, c), (c, a))
+        ]
+        found += int(((sides[0] > 0) & (sides[1] > 0) & (sides[2] > 0)).sum())
+    return found
+
+
+def to_segment(p, a, b):
+    t = np.clip((p - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
+    return np.linalg.norm(p - a - t * (b - a))
+
+
+def test_distances_are_those_to_the_nearest_feature():
+    draw = Generator(Philox(1))
+    for k in range(400):
+        x = draw.standard_normal((4, 3)) * (1.0, 1.0, 0.01 if k % 3 == 0 else 1.0)
+        d, *_, u, v, w = point_triangle(x.ravel(), 0, 3, 6, 9)
+        p, a, b, c = x
+        normal = np.cross(b - a, c - a)
+        inside = all(np.cross(t - s, p - s) @ normal > 0 for s, t in ((a, b), (b, c), (c, a)))
+        plane = abs((p - a) @ normal) / np.linalg.norm(normal)
+        known = plane if inside else min(to_segment(p, s, t) for s, t in ((a, b), (b, c), (c, a)))
+        assert d == pytest.approx(known, rel=1e-9)
+        assert np.linalg.norm(p - u * a - v * b - w * c) == pytest.approx(d, rel=1e-9)
+        d, *_, s, t = edge_edge(x.ravel(), 0, 3, 6, 9)
+        ends = [to_segment(p, b, c), to_segment(a, b, c), to_segment(b, p, a), to_segment(c, p, a)]
+        grid = np.linspace(0, 1, 41)
+        tried = np.linalg.norm((p + grid[:, None] * (a - p))[:, None] - (b + grid[:, None] * (c - b))[None], axis=2)
+        assert d <= min(*ends, tried.min()) * (1 + 1e-9)
+        assert np.linalg.norm(p + s * (a - p) - b - t * (c - b)) == pytest.approx(d, rel=1e-9)
+
+
+def test_parallel_edges_have_a_distance():
+    x = np.array([0.0, 0, 0, 1, 0, 0, 0.25, 0.5, 0, 2, 0.5, 0])
+    assert edge_edge(x, 0, 3, 6, 9)[0] == pytest.approx(0.5)
+
+
+def test_the_barrier_and_friction_are_the_slopes_of_their_potentials():
+    for s in (0.01, 0.3, 0.9, 0.999):
+        h = 1e-6 * s
+        assert -(barrier(s + h) - barrier(s - h)) / (2 * h) == pytest.approx(push(s), rel=1e-5, abs=1e-9)
+        assert -(push(s + h) - push(s - h)) / (2 * h) == pytest.approx(steepness(s), rel=1e-5, abs=1e-9)
+        change = friction_potential(2 * s + h, 1.0) - friction_potential(2 * s - h, 1.0)
+        assert change / (2 * h) == pytest.approx(2 * s * mobilized(2 * s, 1.0), rel=1e-5)
+    assert barrier(1.0) == push(1.0) == steepness(1.0) == 0.0
+
+
+def test_forces_between_skins_are_slopes_of_their_energy_and_positive_stiffness_is_near_theirs(tmp_path):
+    island = two_cubes(tmp_path)
+    island.advance(0.0)
+    one = island.bodies["one"]
+    march = island.march
+    stored = energy(march.system)
+    y = island.y.copy()
+    own = slice(one.position_at, one.position_at + 3 * one.count)
+    y[own] += np.tile([0.022, 0.0, 0.0], one.count)
+    y[own] += 1e-4 * Generator(Philox(3)).standard_normal(3 * one.count)
+    alone = stored(0.0, island.y, march.floats, march.system.ints)
+    assert stored(0.0, y, march.floats, march.system.ints) > alone + 1e-6
+    masses = np.repeat(march.floats[one.mass_at :][: one.count], 3)
+    forces = march.rate(0.0, y)[one.velocity_at :][: 3 * one.count] * masses
+    for seed in range(3):
+        way, h = np.zeros(len(y)), 1e-8
+        way[own] = Generator(Philox(seed)).standard_normal(3 * one.count)
+        change = stored(0.0, y + h * way, march.floats, march.system.ints)
+        change -= stored(0.0, y - h * way, march.floats, march.system.ints)
+        assert change / (2 * h) == pytest.approx(-forces @ way[own], rel=2e-4)
+
+
+def test_a_limit_is_short_of_crossing(tmp_path):
+    island = two_cubes(tmp_path)
+    island.advance(0.0)
+    one, _ = island.bodies.values()
+    march, y = island.march, island.y.copy()
+    ask = limit(march.system)
+    own = slice(one.position_at, one.position_at + 3 * one.count)
+    places, triangles = skins(island)
+    for seed in range(8):
+        changed = y.copy()
+        way = 0.3 * Generator(Philox(seed)).standard_normal(3) + (0.3, 0.0, 0.0)
+        changed[own] += np.tile(way, one.count) + 0.02 * Generator(Philox(seed)).standard_normal(3 * one.count)
+        part = ask(0.0, y, changed, march.floats, march.system.ints)
+        whole = (changed - y)[own].reshape(-1, 3)
+        for share in np.linspace(0, part, 12):
+            moved = places.copy()
+            moved[: one.count] += share * whole
+            assert crossings(moved, triangles) == 0
+
+
+@pytest.mark.parametrize("solver", ["bdf2: {step: 5 ms}", "implicit_midpoint: {step: 5 ms}"])
+def test_nothing_passes_at_any_step_and_momentum_is_kept(tmp_path, solver):
+    island = two_cubes(tmp_path, solver)
+    for t in np.linspace(0, 0.2, 41):
+        island.advance(t)
+        assert crossings(*skins(island)) == 0
+    momentum = sum(
+        (
+            island.march.floats[b.mass_at :][: b.count, None] * island.y[b.velocity_at :][: 3 * b.count].reshape(-1, 3)
+        ).sum(0)
+        for b in island.bodies.values()
+    )
+    assert momentum == pytest.approx([2.0 * 8.0, 0.0, 0.0], abs=1e-6)
+    two = island.bodies["two"]
+    assert island.y[two.velocity_at :][: 3 * two.count].reshape(-1, 3)[:, 0].mean() > 0.5
+
+
+@pytest.mark.parametrize("solver", ["bdf2: {step: 5 ms}", "verlet: {step: 0.2 ms}"])
+def test_a_solid_stays_above_a_floor_and_its_energy_is_counted(tmp_path, solver):
+    island = dropped(tmp_path, solver)
+    for t in np.linspace(0, 0.25, 26):
+        island.advance(t)
+        assert skins(island)[0][:, 1].min() > 0.0
+    assert island.y[next(iter(island.bodies.values())).velocity_at + 1 :: 3].max() > 0.1
+
+
+def test_pairs_that_come_near_get_places_once(tmp_path):
+    island = two_cubes(tmp_path)
+    island.advance(0.2)
+    assert 1 <= island.march.statistics.orderings <= 12
+
+
+def test_a_given_step_of_an_explicit_method_fails_where_surfaces_would_pass(tmp_path):
+    island = two_cubes(tmp_path, "rk4: {step: 1 ms}", speed=1000.0)
+    with pytest.raises(RunFailure, match="surfaces would pass through one another"):
+        island.advance(0.2)
+
+
+@pytest.mark.parametrize("friction", [0.49, 0.51])
+def test_a_block_slides_or_sticks_on_an_incline(tmp_path, friction):
+    angle, stiff = math.atan(0.5), 1e8
+    slope = f"{9.81 * math.sin(angle)} {-9.81 * math.cos(angle)} 0 m/s^2"
+    island = run_of(
+        tmp_path,
+        "clock: {end: 0.5 s}\nsolvers: {main: {bdf2: {step: 5 ms, newton: 1e-8}}}\nobjects: {floor: plane}\n"
+        f"models: {{body: {{elastic: {{block: {{size: 0.4 0.2 0.4 m, cells: [2, 1, 2]}}, element: p1, "
+        f"position: 0 0.100997582 0 m, "
+        f"law: {{neo_hookean: {{modulus: {stiff} Pa, poisson: 0.3}}}}}}}}}}\n"
+        f"forces: {{down: {{gravity: {{acceleration: {slope}}}}}}}\n"
+        f"contacts: {{touch: {{collision: {{between: [body, floor], friction: {friction}, gap: 1 mm}}}}}}\n",
+    )
+    body = island.bodies["body"]
+    island.advance(0.0)
+    start = island.y[body.position_at :][: 3 * body.count : 3].mean()
+    island.advance(0.5)
+    moved = island.y[body.position_at :][: 3 * body.count : 3].mean() - start
+    assert moved == pytest.approx(max(0.0, 9.81 * 0.25 * (0.5 - friction) / math.sqrt(5)), abs=1e-3)
