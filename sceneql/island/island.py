@@ -335,10 +335,11 @@ class IslandAssembly:
         counts = (count for _, count in (*groups, *exact, *local, *after, *settling, *free, *tied))
         first_blocks = list(accumulate(counts, initial=1))
         ints = lay_out(self._pairs, self._frees, bool(tied), blocks, first_blocks, pairs)
-        found, derived = full(len(y)) if jacobian else None, None
+        found, derived, border = full(len(y)) if jacobian else None, None, 0
         if slopes is not None:
             masses = [(at, -1 if at in self._matrices else inverse_at, n) for at, inverse_at, n in self._masses]
-            found, derived, more = section(len(ints), len(y), slopes, masses, self._pairs)
+            border = max((one.border for one, _ in slopes), default=0)
+            found, derived, more = section(len(ints), len(y), slopes, masses, self._pairs, border)
             ints = np.concatenate([ints, more])
         names = [tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free, tied)]
         structure = Structure(
@@ -351,6 +352,7 @@ class IslandAssembly:
             tied=names[4],
             varying=bool(self._varying),
             slopes=derived,
+            bordered=border > 0,
             energies=self._energies(groups, blocks[1:first_exact]) if slopes is not None else None,
         )
         partner = np.full(len(y), -1, dtype=np.int64)
@@ -376,6 +378,7 @@ class IslandAssembly:
             grids=tuple(self.fields.values()),
             masses=tuple(self._masses),
             inertia=tuple(self._matrices.items()),
+            border=border,
             alike=tuple(self._alike),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
             damped=any(block.damped for block in blocks[1:first_exact]),
@@ -421,6 +424,8 @@ class IslandAssembly:
             found += value_slopes(inputs.reading(self._varying), self._terms, [one for one, _ in found], layout, inputs)
         except (WithoutSlopes, ScriptError) as error:  # `_program` reports the latter with all other errors
             self._unsloped = str(error)
+            return None
+        if self._size <= BY_DIFFERENCES and any(one.border for one, _ in found):
             return None
         return [one for one in found if len(one[0].rows)]
 

@@ -1,0 +1,194 @@
+# mypy: ignore-errors
+"""The derivatives of ties, that border the linear systems of implicit stages with their rows (system.Slopes.border).
+
+With a the rates of velocities and momenta, forces f of rows and g(y, a) = J a' + bias = 0 their equations, a' being the
+accelerations, a change of y changes a by that of all other forces, by d(J^T f)/dy and by J^T df, so that dg = 0. In the
+system (1 - s F) d = r of a stage s, F being all of da/dy, the unknowns s df border the rest: their rows are
+(G + s dg/dy) d = G r, with G = dg/da. So what is dense in F, as every force of a tie follows all the others, is never
+written.
+
+J, d(J^T f)/dy and dg/dy are those of two bodies alone, by central differences of the rows by the numbers of each:
+exact in velocities and momenta, in which they are quadratic.
+"""
+
+from sceneql.bodies.rigid.tie_kernels import (
+    EASE_AT,
+    MOVED_AT,
+    MOVERS,
+    MOVERS_AT,
+    ROWS,
+    ROWS_AT,
+)
+from sceneql.bodies.rigid.tie_rows_kernels import (
+    AT_A,
+    AT_BIAS,
+    AT_FORCE,
+    AT_INVERSE,
+    AT_J,
+    AT_MASS,
+    AT_SIZE,
+    AT_T,
+    AT_TWIST,
+    AT_W,
+    DISTANCE,
+    FIRST,
+    KIND,
+    MOMENTUM,
+    MOVED,
+    MOVER,
+    NUMBERS,
+    POSITION,
+    ROTATION,
+    ROW_INTS,
+    SCRATCH,
+    SECOND,
+    VELOCITY,
+    cross,
+    put,
+    see,
+    turned,
+    write_row,
+)
+from sceneql.compiled.kernels import kernel, lean_inlined
+from sceneql.system.signatures_kernels import TERM
+
+X, Q, V, L, OWN = 0, 3, 7, 10, 13
+"""Numbers of a body: position, quaternion, velocity, angular momentum."""
+PLACES = 2 * V
+"""Columns of d(J^T f)/dy: position and quaternion of both bodies; its 12 rows are velocity and momentum of both."""
+FORCES, ASKED, GIVEN, DIAGONAL = 12 * PLACES, 12 * PLACES + 12, 12 * PLACES + 12 + 2 * OWN, 12 * PLACES + 24 + 2 * OWN
+ENTRIES = DIAGONAL + 1
+"""Entries of a row of ties: d(J^T f)/dy; J^T, in the column of its force; - dg/dy; G; less than 0 on the diagonal."""
+TURN = 1e-5
+"""Change of a quaternion, as a part of its length: differences are exact to its square."""
+PART = 1e-5
+"""Change of a position, as a part of the length of a rod; other rows are linear in it."""
+
+
+@lean_inlined
+def torque(y, floats, body, momentum):
+    """The rate of a body's angular momentum at its angular acceleration: I w' + w x L."""
+    g, w = body + AT_INVERSE, body + AT_W
+    xx, yy, zz = floats[g], floats[g + 4], floats[g + 8]
+    xy, xz, yz = floats[g + 1], floats[g + 2], floats[g + 5]
+    cx, cy, cz = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
+    by, bz, cc = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
+    scale = 1.0 / (xx * cx + xy * cy + xz * cz)
+    tx, ty, tz = floats[body + AT_TWIST], floats[body + AT_TWIST + 1], floats[body + AT_TWIST + 2]
+    mx, my, mz = cross(floats[w], floats[w + 1], floats[w + 2], y[momentum], y[momentum + 1], y[momentum + 2])
+    return (
+        scale * (cx * tx + cy * ty + cz * tz) + mx,
+        scale * (cy * tx + by * ty + bz * tz) + my,
+        scale * (cz * tx + bz * ty + cc * tz) + mz,
+    )
+
+
+@lean_inlined
+def difference(y, floats, ints, at, body, c):
+    """The change of one number of the mover of ints[at:] for differences of what is linear in positions."""
+    if c < Q or V <= c < L:
+        return 1.0
+    if c < V:
+        q = ints[at + ROTATION]
+        return TURN * (abs(y[q]) + abs(y[q + 1]) + abs(y[q + 2]) + abs(y[q + 3]))
+    g = body + AT_INVERSE
+    return 1.0 / (floats[g] + floats[g + 4] + floats[g + 8])
+
+
+@lean_inlined
+def left(floats, to, a, b):
+    """J a' + bias of a row, at the accelerations of two movers."""
+    total = floats[to + AT_BIAS]
+    for c in range(6):
+        total += floats[to + AT_J + c] * floats[a + AT_A + c] + floats[to + AT_J + 6 + c] * floats[b + AT_A + c]
+    return total
+
+
+@lean_inlined
+def moves(floats, ints, at, body):
+    """Whether forces move the mover of ints[at:]."""
+    return ints[at + POSITION] >= 0 and floats[body + AT_MASS] > 0.0
+
+
+@lean_inlined
+def entry_of(ints, at, c):
+    """The entry of y that is number c of a body; -1: a mass has none."""
+    if c < Q:
+        return ints[at + POSITION] + c
+    if c < V:
+        return ints[at + ROTATION] + c - Q if ints[at + ROTATION] >= 0 else -1
+    if c < L:
+        return ints[at + VELOCITY] + c - V
+    return ints[at + MOMENTUM] + c - L if ints[at + ROTATION] >= 0 else -1
+
+
+@kernel(TERM, inner=True)
+def hold(t, y, entries, floats, ints):
+    """Of each row ENTRIES, at the forces and accelerations that tie_kernels.hold has just found."""
+    spare = ints[ints.size - 1]
+    for k in range(ints[ROWS]):
+        row = ints[ROWS_AT] + ROW_INTS * k
+        to, first = ints[row + SCRATCH], ENTRIES * k
+        weight = 0.0
+        for side in range(2):
+            mover = ints[row + FIRST + side]
+            at, body = ints[MOVERS_AT] + MOVER * mover, ints[MOVED_AT] + MOVED * mover
+            if not moves(floats, ints, at, body):
+                continue
+            for c in range(6):
+                if c < 3 or ints[at + ROTATION] >= 0:
+                    j, asked = floats[to + AT_J + 6 * side + c], floats[to + AT_T + 6 * side + c]
+                    entries[first + FORCES + 6 * side + c] += j
+                    entries[first + GIVEN + 6 * side + c] += j if c < 3 else asked
+                    weight += j * asked
+        # A little, as where forces are found, so that rows that others imply have a force.
+        entries[first + DIAGONAL] -= floats[ints[EASE_AT]] * weight if weight > 0.0 else 1.0
+        for side in range(2):
+            mover = ints[row + FIRST + side]
+            at, body = ints[MOVERS_AT] + MOVER * mover, ints[MOVED_AT] + MOVED * mover
+            if not moves(floats, ints, at, body):
+                continue
+            q, momentum = ints[at + ROTATION], ints[at + MOMENTUM]
+            px = py = pz = 0.0
+            if q >= 0:
+                px, py, pz = torque(y, floats, body, momentum)
+            a = spare if side == 0 else ints[MOVED_AT] + MOVED * ints[row + FIRST]
+            b = spare if side == 1 else ints[MOVED_AT] + MOVED * ints[row + SECOND]
+            force = floats[to + AT_FORCE]
+            for c in range(OWN):
+                i = entry_of(ints, at, c)
+                if i < 0:
+                    continue
+                kept, step = y[i], difference(y, floats, ints, at, body, c)
+                if c < Q:
+                    rod = ints[row + KIND] == DISTANCE
+                    step = PART * floats[ints[row + NUMBERS] + 6] if rod else floats[to + AT_SIZE]
+                step = (kept + step) - kept
+                for way in (0.5 / step, -0.5 / step):
+                    y[i] = kept + (step if way > 0.0 else -step)
+                    see(y, floats, spare, ints, at)
+                    put(floats, spare + AT_A, floats[body + AT_A], floats[body + AT_A + 1], floats[body + AT_A + 2])
+                    if q >= 0:
+                        gx, gy, gz = cross(
+                            floats[spare + AT_W],
+                            floats[spare + AT_W + 1],
+                            floats[spare + AT_W + 2],
+                            y[momentum],
+                            y[momentum + 1],
+                            y[momentum + 2],
+                        )
+                        put(
+                            floats,
+                            spare + AT_TWIST,
+                            *turned(floats, spare + AT_INVERSE, px - gx, py - gy, pz - gz),
+                        )
+                    write_row(floats, ints, row, a, b)
+                    entries[first + ASKED + OWN * side + c] -= way * left(floats, to, a, b)
+                    if c < V:
+                        for j in range(12):
+                            acted = ints[row + FIRST + j // 6]
+                            if moves(floats, ints, ints[MOVERS_AT] + MOVER * acted, ints[MOVED_AT] + MOVED * acted):
+                                entries[first + PLACES * j + V * side + c] += way * force * floats[to + AT_J + j]
+                y[i] = kept
+            own, other = ints[MOVED_AT] + MOVED * ints[row + FIRST], ints[MOVED_AT] + MOVED * ints[row + SECOND]
+            write_row(floats, ints, row, own, other)
