@@ -3,7 +3,6 @@
 from functools import partial
 
 import numpy as np
-import pytest
 
 import runs
 from sceneql.island import island
@@ -15,6 +14,7 @@ from sceneql.run.run import Run
 
 watch = partial(runs.watch, pruned=False)
 INERTIA = "mass: 2 kg, inertia: 0.1 0.2 0.25 kg*m^2"
+TILT = "about: 1 2 3, angle: 40 deg"
 MANY = f"""
 clock: {{end: 1 s}}
 objects: {{cart: {{box: {{size: 0.1 0.1 0.1 m, position: [0.3 m*sin(4*time/(1 s)), 3 m, 0 m]}}}}}}
@@ -23,7 +23,7 @@ models:
     rigid:
       bodies:
         a: {{{INERTIA}, position: 0.5 0.1 0 m, spin: 0.3 1 2 rad/s, points: {{hook: 0.1 0.2 0.3 m}}}}
-        b: {{{INERTIA}, position: 1.5 0 0.2 m, rotation: {{about: 1 2 3, angle: 40 deg}}, points: {{eye: -0.2 0.1 0 m}}}}
+        b: {{{INERTIA}, position: 1.5 0 0.2 m, rotation: {{{TILT}}}, points: {{eye: -0.2 0.1 0 m}}}}
         c: {{{INERTIA}, position: 2.5 0.2 0 m, spin: 1 2 0.5 rad/s, velocity: 1 0 2 m/s}}
         d: {{{INERTIA}, position: 0 2.5 0 m}}
         e: {{{INERTIA}, position: 4 0 0 m}}
@@ -60,8 +60,7 @@ def system_of(folder, script, time):
     path.write_text(script)
     run = Run(load(path, pruned=False))
     run.at(time)
-    march = run.islands[0].march
-    return march
+    return run.islands[0].march
 
 
 def test_systems_that_ties_border_are_solved_as_those_of_all_slopes(tmp_path, monkeypatch):

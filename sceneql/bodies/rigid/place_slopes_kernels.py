@@ -13,7 +13,6 @@ from sceneql.bodies.rigid.place_kernels import (
     INVERSE_AT,
     MOMENTUM_AT,
     ROTATION_AT,
-    VELOCITY_AT,
     arm,
 )
 from sceneql.bodies.rigid.rigid_kernels import body_spin, times_symmetric, to_body, to_world
@@ -44,7 +43,7 @@ def moved_by(y, floats, ints, at, out):
     q, momentum, inertia = ints[at + ROTATION_AT], ints[at + MOMENTUM_AT], ints[at + INERTIA_AT]
     rx, ry, rz = arm(y, floats, ints, at)
     wx, wy, wz = to_world(y, q, *body_spin(y, floats, q, momentum, inertia))
-    sx, sy, sz = wy * rz - wz * ry, wz * rx - wx * rz, wx * ry - wy * rx
+    _sx, _sy, _sz = wy * rz - wz * ry, wz * rx - wx * rz, wx * ry - wy * rx
     lx, ly, lz = y[momentum], y[momentum + 1], y[momentum + 2]
     a, b, c, d = y[q], y[q + 1], y[q + 2], y[q + 3]
     scale = 2.0 / (a * a + b * b + c * c + d * d)

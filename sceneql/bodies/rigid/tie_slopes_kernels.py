@@ -11,10 +11,11 @@ J, d(J^T f)/dy and dg/dy are those of two bodies alone, by central differences o
 exact in velocities and momenta, in which they are quadratic.
 """
 
+import math
+
 from sceneql.bodies.rigid.tie_kernels import (
     EASE_AT,
     MOVED_AT,
-    MOVERS,
     MOVERS_AT,
     ROWS,
     ROWS_AT,
@@ -26,7 +27,6 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_INVERSE,
     AT_J,
     AT_MASS,
-    AT_SIZE,
     AT_T,
     AT_TWIST,
     AT_W,
@@ -122,73 +122,86 @@ def entry_of(ints, at, c):
     return ints[at + MOMENTUM] + c - L if ints[at + ROTATION] >= 0 else -1
 
 
+@lean_inlined
+def look(y, floats, ints, at, body, spare, px, py, pz):
+    """Write a mover anew, at the accelerations of `body` and the rate (px, py, pz) of its angular momentum."""
+    see(y, floats, spare, ints, at)
+    put(floats, spare + AT_A, floats[body + AT_A], floats[body + AT_A + 1], floats[body + AT_A + 2])
+    if ints[at + ROTATION] >= 0:
+        k, w = ints[at + MOMENTUM], spare + AT_W
+        gx, gy, gz = cross(floats[w], floats[w + 1], floats[w + 2], y[k], y[k + 1], y[k + 2])
+        put(floats, spare + AT_TWIST, *turned(floats, spare + AT_INVERSE, px - gx, py - gy, pz - gz))
+
+
+@lean_inlined
+def add_constant(entries, floats, ints, k, first, second):
+    """Add what row k has of its last evaluation; whether its movers, given by their floats, are moved."""
+    row = ints[ROWS_AT] + ROW_INTS * k
+    to, own = ints[row + SCRATCH], ENTRIES * k
+    weight = 0.0
+    for side in range(2):
+        at = ints[MOVERS_AT] + MOVER * ints[row + FIRST + side]
+        if not moves(floats, ints, at, first if side == 0 else second):
+            continue
+        for c in range(6):
+            if c < 3 or ints[at + ROTATION] >= 0:
+                j, weighed = floats[to + AT_J + 6 * side + c], floats[to + AT_T + 6 * side + c]
+                entries[own + FORCES + 6 * side + c] += j
+                entries[own + GIVEN + 6 * side + c] += j if c < 3 else weighed
+                weight += j * weighed
+    # A little, as where forces are found, so that rows that others imply have a force.
+    entries[own + DIAGONAL] -= floats[ints[EASE_AT]] * weight if weight > 0.0 else 1.0
+
+
 @kernel(TERM, inner=True)
 def hold(t, y, entries, floats, ints):
     """Of each row ENTRIES, at the forces and accelerations that tie_kernels.hold has just found."""
     spare = ints[ints.size - 1]
-    for k in range(ints[ROWS]):
-        row = ints[ROWS_AT] + ROW_INTS * k
-        to, first = ints[row + SCRATCH], ENTRIES * k
-        weight = 0.0
+    begin = 0
+    while begin < ints[ROWS]:
+        row, end, rod = ints[ROWS_AT] + ROW_INTS * begin, begin, math.inf
+        while end < ints[ROWS]:
+            other = ints[ROWS_AT] + ROW_INTS * end
+            if ints[other + FIRST] != ints[row + FIRST] or ints[other + SECOND] != ints[row + SECOND]:
+                break
+            if ints[other + KIND] == DISTANCE:
+                rod = min(rod, floats[ints[other + NUMBERS] + 6])
+            end += 1
+        one, two = ints[MOVED_AT] + MOVED * ints[row + FIRST], ints[MOVED_AT] + MOVED * ints[row + SECOND]
+        for k in range(begin, end):
+            add_constant(entries, floats, ints, k, one, two)
+        first = moves(floats, ints, ints[MOVERS_AT] + MOVER * ints[row + FIRST], one)
+        second = moves(floats, ints, ints[MOVERS_AT] + MOVER * ints[row + SECOND], two)
+        acted, acting = 0 if first else 6, 12 if second else 6
         for side in range(2):
-            mover = ints[row + FIRST + side]
-            at, body = ints[MOVERS_AT] + MOVER * mover, ints[MOVED_AT] + MOVED * mover
-            if not moves(floats, ints, at, body):
+            at, body = ints[MOVERS_AT] + MOVER * ints[row + FIRST + side], two if side == 1 else one
+            if not (second if side == 1 else first):
                 continue
-            for c in range(6):
-                if c < 3 or ints[at + ROTATION] >= 0:
-                    j, asked = floats[to + AT_J + 6 * side + c], floats[to + AT_T + 6 * side + c]
-                    entries[first + FORCES + 6 * side + c] += j
-                    entries[first + GIVEN + 6 * side + c] += j if c < 3 else asked
-                    weight += j * asked
-        # A little, as where forces are found, so that rows that others imply have a force.
-        entries[first + DIAGONAL] -= floats[ints[EASE_AT]] * weight if weight > 0.0 else 1.0
-        for side in range(2):
-            mover = ints[row + FIRST + side]
-            at, body = ints[MOVERS_AT] + MOVER * mover, ints[MOVED_AT] + MOVED * mover
-            if not moves(floats, ints, at, body):
-                continue
-            q, momentum = ints[at + ROTATION], ints[at + MOMENTUM]
             px = py = pz = 0.0
-            if q >= 0:
-                px, py, pz = torque(y, floats, body, momentum)
-            a = spare if side == 0 else ints[MOVED_AT] + MOVED * ints[row + FIRST]
-            b = spare if side == 1 else ints[MOVED_AT] + MOVED * ints[row + SECOND]
-            force = floats[to + AT_FORCE]
+            if ints[at + ROTATION] >= 0:
+                px, py, pz = torque(y, floats, body, ints[at + MOMENTUM])
+            a, b = one if side == 1 else spare, spare if side == 1 else two
             for c in range(OWN):
                 i = entry_of(ints, at, c)
                 if i < 0:
                     continue
                 kept, step = y[i], difference(y, floats, ints, at, body, c)
-                if c < Q:
-                    rod = ints[row + KIND] == DISTANCE
-                    step = PART * floats[ints[row + NUMBERS] + 6] if rod else floats[to + AT_SIZE]
+                if c < Q and rod < math.inf:
+                    step = PART * rod
                 step = (kept + step) - kept
                 for way in (0.5 / step, -0.5 / step):
                     y[i] = kept + (step if way > 0.0 else -step)
-                    see(y, floats, spare, ints, at)
-                    put(floats, spare + AT_A, floats[body + AT_A], floats[body + AT_A + 1], floats[body + AT_A + 2])
-                    if q >= 0:
-                        gx, gy, gz = cross(
-                            floats[spare + AT_W],
-                            floats[spare + AT_W + 1],
-                            floats[spare + AT_W + 2],
-                            y[momentum],
-                            y[momentum + 1],
-                            y[momentum + 2],
-                        )
-                        put(
-                            floats,
-                            spare + AT_TWIST,
-                            *turned(floats, spare + AT_INVERSE, px - gx, py - gy, pz - gz),
-                        )
-                    write_row(floats, ints, row, a, b)
-                    entries[first + ASKED + OWN * side + c] -= way * left(floats, to, a, b)
-                    if c < V:
-                        for j in range(12):
-                            acted = ints[row + FIRST + j // 6]
-                            if moves(floats, ints, ints[MOVERS_AT] + MOVER * acted, ints[MOVED_AT] + MOVED * acted):
-                                entries[first + PLACES * j + V * side + c] += way * force * floats[to + AT_J + j]
+                    look(y, floats, ints, at, body, spare, px, py, pz)
+                    for k in range(begin, end):
+                        own = ints[ROWS_AT] + ROW_INTS * k
+                        to = ints[own + SCRATCH]
+                        write_row(floats, ints, own, a, b)
+                        entries[ENTRIES * k + ASKED + OWN * side + c] -= way * left(floats, to, a, b)
+                        if c < V:
+                            force, into = way * floats[to + AT_FORCE], ENTRIES * k + V * side + c
+                            for j in range(acted, acting):
+                                entries[into + PLACES * j] += force * floats[to + AT_J + j]
                 y[i] = kept
-            own, other = ints[MOVED_AT] + MOVED * ints[row + FIRST], ints[MOVED_AT] + MOVED * ints[row + SECOND]
-            write_row(floats, ints, row, own, other)
+            for k in range(begin, end):
+                write_row(floats, ints, ints[ROWS_AT] + ROW_INTS * k, one, two)
+        begin = end
