@@ -64,7 +64,7 @@ def system_of(folder, script, time):
 
 
 def test_systems_that_ties_border_are_solved_as_those_of_all_slopes(tmp_path, monkeypatch):
-    monkeypatch.setattr(island, "BY_DIFFERENCES", 0)
+    monkeypatch.setattr(island, "TIED", 0)
     march = system_of(tmp_path, MANY.replace("SOLVER", "bdf2: {step: 1 ms}"), 0.1)
     system, t = march.system, 0.1
     assert system.border == 5 + 3 + 1 + 1 + 5 + 5 + 5 + 1 + 6

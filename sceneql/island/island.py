@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from sceneql.system import Bodies, Grid, Mode, Slopes, Stage, Tied
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "tie", "close", "constrain")
+TIED = 150
+"""Entries of y up to which the Jacobian of an island with ties is found by differences, which are as fast."""
 VECTORS = 12
 """Arrays of the state's size that a run keeps: states and rates at a step's ends, and the stages of a solver."""
 
@@ -425,7 +427,7 @@ class IslandAssembly:
         except (WithoutSlopes, ScriptError) as error:  # `_program` reports the latter with all other errors
             self._unsloped = str(error)
             return None
-        if self._size <= BY_DIFFERENCES and any(one.border for one, _ in found):
+        if self._size <= TIED and any(one.border for one, _ in found):
             return None
         return [one for one in found if len(one[0].rows)]
 
