@@ -152,7 +152,7 @@ def _slopes_at(rows: Sequence[Expr], torque: bool) -> tuple[Constants, Callable[
         ]
         imports = (
             "from sceneql.bodies.rigid.place_kernels import position, velocity",
-            f"from sceneql.bodies.rigid.place_slopes_kernels import {added}",
+            "from sceneql.bodies.rigid.place_slopes_kernels import add_at_one, add_torque",
         )
         return write_term("force_at_slopes", constants, AT + PLACE_INTS, lines, imports)
 

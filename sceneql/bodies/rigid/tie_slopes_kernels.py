@@ -47,6 +47,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     put,
     see,
     turned,
+    turning,
     write_row,
 )
 from sceneql.compiled.kernels import kernel, lean_inlined
@@ -63,24 +64,6 @@ TURN = 1e-5
 """Change of a quaternion, as a part of its length: differences are exact to its square."""
 PART = 1e-5
 """Change of a position, as a part of the length of a rod; other rows are linear in it."""
-
-
-@lean_inlined
-def torque(y, floats, body, momentum):
-    """The rate of a body's angular momentum at its angular acceleration: I w' + w x L."""
-    g, w = body + AT_INVERSE, body + AT_W
-    xx, yy, zz = floats[g], floats[g + 4], floats[g + 8]
-    xy, xz, yz = floats[g + 1], floats[g + 2], floats[g + 5]
-    cx, cy, cz = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
-    by, bz, cc = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
-    scale = 1.0 / (xx * cx + xy * cy + xz * cz)
-    tx, ty, tz = floats[body + AT_TWIST], floats[body + AT_TWIST + 1], floats[body + AT_TWIST + 2]
-    mx, my, mz = cross(floats[w], floats[w + 1], floats[w + 2], y[momentum], y[momentum + 1], y[momentum + 2])
-    return (
-        scale * (cx * tx + cy * ty + cz * tz) + mx,
-        scale * (cy * tx + by * ty + bz * tz) + my,
-        scale * (cz * tx + bz * ty + cc * tz) + mz,
-    )
 
 
 @lean_inlined
@@ -179,7 +162,7 @@ def hold(t, y, entries, floats, ints):
                 continue
             px = py = pz = 0.0
             if ints[at + ROTATION] >= 0:
-                px, py, pz = torque(y, floats, body, ints[at + MOMENTUM])
+                px, py, pz = turning(y, floats, body, ints[at + MOMENTUM])
             a, b = one if side == 1 else spare, spare if side == 1 else two
             for c in range(OWN):
                 i = entry_of(ints, at, c)
