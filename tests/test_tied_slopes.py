@@ -173,7 +173,7 @@ def test_many_bodies_on_springs_at_their_points_take_implicit_methods(tmp_path):
     )
     springs = "\n".join(
         f"  u{k}: {{spring: {{from: many.b{k}.up, to: {k} 1 0 m, stiffness: 50 N/m, damping: 1 N*s/m}}}}\n"
-        f"  s{k}: {{spring: {{from: many.b{k}.end, to: many.b{(k + 1) % count}.start, stiffness: 9 N/m, rest: 0.3 m}}}}"
+        f"  s{k}: {{spring: {{from: many.b{k}.end, to: many.b{abs(k - 1)}.start, stiffness: 9 N/m, rest: 0.3 m}}}}"
         for k in range(count)
     )
     script = f"""
