@@ -24,8 +24,8 @@ PLACE = ("x", "y", "z")
 MOTION = (*PLACE, "vx", "vy", "vz")
 CHARGE = Symbol("q")
 HEAD = 9
-AT = 2
-"""First of the integers of a place on a body."""
+AT, PLACE_INTS = 2, 8
+"""First of the integers of a place on a body, and how many these are."""
 ZERO = Number(0.0)
 NAMES = {name: f"own_{name}" for name in (*MOTION, "m", "q")} | {TIME_SYMBOL: "t"}
 """The kernel's names of a mass's own numbers: `y` is the state."""
@@ -99,6 +99,8 @@ def add_force_at(
 
     The formulas' place and velocity are the place's own; ``counted``: its power is added to the work.
     """
+    from sceneql.system import Slopes
+
     for row in rows:
         assembly.stop_at_breakpoints(row)
     constants = Constants()
@@ -107,18 +109,63 @@ def add_force_at(
     lines = [
         f"    if floats[ints[{AT + 3}]] == 0.0:",
         "        return",
-        f"    {', '.join(NAMES[name] for name in MOTION[:3])} = position(y, floats, ints, {AT})",
-        f"    {', '.join(NAMES[name] for name in MOTION[3:])} = velocity(y, floats, ints, {AT})",
-        "    own_m = floats[ints[1]]",
+        *_motion_at(),
         *(f"    {line}" for line in printer.lines),
         f"    power = {'twist' if torque else 'push'}(y, out, floats, ints, {AT}, {forces})",
         *([f"    out[ints[{AT + 2}]] -= power"] if counted else []),
     ]
     imports = ("from sceneql.bodies.rigid.place_kernels import position, push, twist, velocity",)
-    kernel = write_term("force_at", constants, AT + len(place.ints), lines, imports)
+    kernel = write_term("force_at", constants, AT + PLACE_INTS, lines, imports)
     inputs = [assembly.value(Value(expr)) for expr in constants.inputs]
     head = (assembly.floats(constants.values), place.bodies.mass_at + place.body)
-    assembly.term("force", kernel, (*head, *place.ints, *inputs))
+    # As in `add_force`, the derivatives' constants are stored now.
+    more, slopes_kernel = _slopes_at(rows, torque)
+    values = [assembly.value(Value(expr)) for expr in more.inputs]
+    ints = (assembly.floats(more.values), head[1], *place.ints, *values)
+
+    def slopes() -> Slopes:
+        from sceneql.bodies.rigid.place_slopes import force_places, torque_places
+
+        places = torque_places(place.ints) if torque else force_places([(place.ints, place.ints)])
+        return Slopes(slopes_kernel(), *places, ints)
+
+    assembly.term("force", kernel, (*head, *place.ints, *inputs), slopes)
+
+
+def _slopes_at(rows: Sequence[Expr], torque: bool) -> tuple[Constants, Callable[[], str]]:
+    """The constants of the derivatives of a force, or torque, at a place on a body; and their kernel."""
+    constants = Constants()
+    printer = Printer(NAMES, {}, constants)
+    forces = ", ".join(printer.name(constants.lift(row)) for row in rows)
+    found = [differentiate(row, Symbol(name)) for row in rows for name in MOTION]
+    names = [printer.name(constants.lift(expr)) for expr in found]
+    added = "add_torque" if torque else "add_at_one"
+
+    def kernel() -> str:
+        lines = [
+            f"    if floats[ints[{AT + 3}]] == 0.0:",
+            "        return",
+            *_motion_at(),
+            *(f"    {line}" for line in printer.lines),
+            f"    slopes = np.array([{', '.join(f'1.0 * ({name})' for name in names)}])",
+            f"    {added}(y, floats, ints, {AT}, {forces}, slopes, out)",
+        ]
+        imports = (
+            "from sceneql.bodies.rigid.place_kernels import position, velocity",
+            "from sceneql.bodies.rigid.place_slopes_kernels import add_at_one, add_torque",
+        )
+        return write_term("force_at_slopes", constants, AT + PLACE_INTS, lines, imports)
+
+    return constants, kernel
+
+
+def _motion_at() -> list[str]:
+    """Lines that read the motion of a place on a body."""
+    return [
+        f"    {', '.join(NAMES[name] for name in MOTION[:3])} = position(y, floats, ints, {AT})",
+        f"    {', '.join(NAMES[name] for name in MOTION[3:])} = velocity(y, floats, ints, {AT})",
+        "    own_m = floats[ints[1]]",
+    ]
 
 
 def _slopes(rows: Sequence[Expr]) -> tuple[list[tuple[int, int]], Callable[[], str], Constants]:

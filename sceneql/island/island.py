@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from sceneql.system import Bodies, Grid, Mode, Slopes, Stage, Tied
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "tie", "close", "constrain")
+TIED = 150
+"""Entries of y up to which the Jacobian of an island with ties is found by differences, which are as fast."""
 VECTORS = 12
 """Arrays of the state's size that a run keeps: states and rates at a step's ends, and the stages of a solver."""
 
@@ -352,10 +354,11 @@ class IslandAssembly:
         counts = (count for _, count in (*groups, *exact, *local, *after, *settling, *free, *tied, *limits))
         first_blocks = list(accumulate(counts, initial=1))
         ints = lay_out(self._pairs, self._frees, bool(tied), blocks, first_blocks, pairs)
-        found, derived = full(len(y)) if jacobian else None, None
+        found, derived, border = full(len(y)) if jacobian else None, None, 0
         if slopes is not None:
             masses = [(at, -1 if at in self._matrices else inverse_at, n) for at, inverse_at, n in self._masses]
-            found, derived, more = section(len(ints), len(y), slopes, masses, self._pairs)
+            border = max((one.border for one, _ in slopes), default=0)
+            found, derived, more = section(len(ints), len(y), slopes, masses, self._pairs, border)
             ints = np.concatenate([ints, more])
         names = [tuple(kernels[0] for kernels, _ in some) for some in (local, after, settling, free, tied, limits)]
         structure = Structure(
@@ -369,6 +372,7 @@ class IslandAssembly:
             limits=names[5],
             varying=bool(self._varying),
             slopes=derived,
+            bordered=border > 0,
             energies=self._energies(groups, blocks[1:first_exact]) if slopes is not None else None,
         )
         partner = np.full(len(y), -1, dtype=np.int64)
@@ -400,6 +404,7 @@ class IslandAssembly:
             grids=tuple(self.fields.values()),
             masses=tuple(self._masses),
             inertia=tuple(self._matrices.items()),
+            border=border,
             alike=tuple(self._alike),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
             damped=any(block.damped for block in blocks[1:first_exact]),
@@ -445,6 +450,8 @@ class IslandAssembly:
             found += value_slopes(inputs.reading(self._varying), self._terms, [one for one, _ in found], layout, inputs)
         except (WithoutSlopes, ScriptError) as error:  # `_program` reports the latter with all other errors
             self._unsloped = str(error)
+            return None
+        if self._size <= TIED and any(one.border for one, _ in found):
             return None
         return [one for one in found if len(one[0].rows)]
 

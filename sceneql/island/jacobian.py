@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import accumulate
 from typing import TYPE_CHECKING
 
@@ -37,9 +38,16 @@ def full(size: int) -> Pattern | None:
 
 
 def section(
-    at: int, size: int, slopes: Sequence[tuple[Slopes, Sequence[int]]], masses: Triples, pairs: Triples
+    at: int,
+    size: int,
+    slopes: Sequence[tuple[Slopes, Sequence[int]]],
+    masses: Triples,
+    pairs: Triples,
+    border: int = 0,
 ) -> tuple[Pattern, tuple[str, ...], Numbers]:
     """The pattern of ``size`` rows, the kernels in order, and the section of integers that begins at ints[at].
+
+    With a border there are twice as many rows and columns more (Slopes.border), and room for a rate.
 
     ``slopes`` with the integers of each; ``masses``: (velocity_at, inverse_at, count) of each model of masses, -1 where
     their inertia is a matrix, which multiplies no rows;
@@ -52,7 +60,9 @@ def section(
     from sceneql.compiled.threads_kernels import threads, tile_address
     from sceneql.island.jacobian_kernels import block_tile, single_tile
 
-    found, lists = _pattern(size, [one for one, _ in ordered], masses, pairs)
+    found, lists = _pattern(size + 2 * border, [one for one, _ in ordered], masses, pairs)
+    if border:
+        found = replace(found, room=found.room + size, tallies=found.tallies[found.tallies < size])
     count, blocks, singles = found.count, len(found.blocks), len(lists[2]) // 3 - 1
     groups_at = at + layout.HEAD
     terms_at = groups_at + len(by_kernel) + 1

@@ -42,6 +42,8 @@ class Structure:
     slopes: tuple[str, ...] | None = None
     """The kernels of the Jacobian, of positive slopes too where those are others ("kernel|positive"); None: there is
     none, or it is found by differences."""
+    bordered: bool = False
+    """Whether slopes need the rate at their state (Slopes.border)."""
     energies: tuple[str, ...] | None = None
     """For each of ``terms`` the kernel of its energy, empty where it moves nothing; None: the island has no potential,
     or no slopes."""
@@ -89,6 +91,8 @@ class System:
     """For each model of masses: offset of velocities in y, offset of inverse masses in floats, number of masses."""
     inertia: tuple[tuple[int, Any], ...] = ()
     """Offset of the velocities and the sparse matrix of each of these whose inertia is one (Assembly.inertia)."""
+    border: int = 0
+    """Unknowns that border the linear systems of implicit stages (Slopes.border)."""
     alike: tuple[tuple[int, int], ...] = ()
     """Offset and number of further entries of y that are of one size."""
     terms: tuple[Origin, ...] = ()

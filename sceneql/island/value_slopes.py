@@ -111,7 +111,8 @@ def value_slopes(
     for one in known:
         for places in (one.rows, one.columns):
             first_of = np.asarray(places, dtype=np.int64)[:, None]
-            used[(first_of + np.arange(3 if one.blocks else 1)).ravel()] = True
+            entries = (first_of + np.arange(3 if one.blocks else 1)).ravel()
+            used[entries[entries < layout.size]] = True
     read = [place for one in slopes.values() for readings in one.readings for place, _ in readings]
     if layout.sums()[read].any():
         raise WithoutSlopes("a value that reads a sum over the state")

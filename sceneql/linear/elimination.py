@@ -29,7 +29,7 @@ class Left:
     unit: int
     """Entries of a unit: 1 or 3. Values are blocks of as many rows and columns, row by row."""
     core: Numbers
-    """(m,) entries of y."""
+    """(m,) entries of y, then unknowns that border the system (Slopes.border)."""
     positions: Numbers
     """(p, 3): position, velocity, index among the Jacobian's values of the 1 in the position's row."""
     first: Numbers
@@ -55,28 +55,38 @@ def kinds_of(system: System, inverse: Floats) -> Kinds:
     """Find the positions with rows dx/dt = v, and fixed or idle entries; ``inverse`` masses (n,)."""
     pattern = system.pattern
     assert pattern is not None
-    n = len(system.y)
-    (rows, columns), known, partner = pattern.others.T, pattern.known, system.partner
+    n, border = len(system.y), system.border
+    (rows, columns), known, partner = pattern.others.T, pattern.known, partners(system)
     in_blocks, by_blocks = ((pattern.blocks[:, side, None] + _THREE).ravel() for side in (0, 1))
     off = (rows != columns) & known
     # Rows with entries other than their own velocity are no such positions.
-    alien = np.bincount(rows[off & (columns != partner[rows])], minlength=n) > 0
+    alien = np.bincount(rows[off & (columns != partner[rows])], minlength=len(partner)) > 0
     alien[in_blocks] = True
     ones = off & (columns == partner[rows])
-    one = np.full(n, -1, dtype=np.int64)
+    one = np.full(len(partner), -1, dtype=np.int64)
     one[rows[ones]] = 9 * len(pattern.blocks) + np.flatnonzero(ones)
     position = (partner >= 0) & ~alien & (one >= 0)
-    used = np.zeros(n, dtype=bool)
+    used = np.zeros(len(partner), dtype=bool)
     for entries in (rows[known], columns[known], in_blocks, by_blocks, partner[partner >= 0]):
         used[entries] = True
     tally = ~used & (partner < 0)
-    return Kinds(~position & (inverse != 0.0) & ~tally, position, tally, one)
+    tally[n:] = False
+    core = ~position & (inverse != 0.0) & ~tally
+    core[n + border :] = False
+    return Kinds(core, position, tally, one)
+
+
+def partners(system: System) -> Numbers:
+    """For each row of the pattern that is a position the index of its velocity, else -1."""
+    return np.concatenate([system.partner, np.full(2 * system.border, -1, dtype=np.int64)])
 
 
 def left_by_masses(system: System, kinds: Kinds) -> Left | None:
     """The system in units of three; None where its unknowns are not all velocities of whole masses."""
-    pattern, partner = system.pattern, system.partner
+    pattern, partner = system.pattern, partners(system)
     assert pattern is not None
+    if system.border:
+        return None
     core = np.flatnonzero(kinds.core)
     rows, columns = pattern.blocks.T
     mine = kinds.core[rows]
@@ -104,9 +114,9 @@ def left_by_entries(system: System, kinds: Kinds) -> Left:
 
 
 def _left(system: System, kinds: Kinds, unit: int, rows: Numbers, columns: Numbers, places: Numbers) -> Left:
-    partner = system.partner
+    partner = partners(system)
     core, eliminated = np.flatnonzero(kinds.core), np.flatnonzero(kinds.position)
-    number, rank = (np.full(len(system.y), -1, dtype=np.int64) for _ in range(2))
+    number, rank = (np.full(len(partner), -1, dtype=np.int64) for _ in range(2))
     number[core] = np.arange(len(core)) // unit
     rank[eliminated] = np.arange(len(eliminated))
     mine = kinds.core[rows]
@@ -159,6 +169,22 @@ class Inertia:
         return Inertia(np.column_stack([places, rows, columns]), held, np.concatenate([free, values]))
 
 
+def borders(system: System, left: Left, pattern: Any) -> Numbers:
+    """(k, 4): place among the values of the matrix, of a unit of one entry, its row, entry of y, place in the Jacobian
+    of what the rows of the border hold of rates; ``pattern``: the units' CSR, indices sorted."""
+    n, border, m = len(system.y), system.border, len(left.core)
+    if not border:
+        return np.zeros((0, 4), dtype=np.int64)
+    assert system.pattern is not None
+    number = np.full(n + 2 * border, -1, dtype=np.int64)
+    number[left.core] = np.arange(m)
+    rows, columns = system.pattern.rows, system.pattern.columns
+    places = np.flatnonzero((rows >= n + border) & (number[columns] >= 0) & (columns < n))
+    own, entries = number[rows[places] - border], columns[places]
+    keys = np.repeat(np.arange(m, dtype=np.int64), np.diff(pattern.indptr)) * m + pattern.indices
+    return np.column_stack([np.searchsorted(keys, own * m + number[entries]), own, entries, places])
+
+
 def inertia_places(system: System, left: Left) -> Numbers:
     """(k, 2) rows and columns (units) where the reduced matrix has inertia."""
     rows, columns, _ = _entries(system, left)
@@ -167,7 +193,7 @@ def inertia_places(system: System, left: Left) -> Numbers:
 
 def _entries(system: System, left: Left) -> tuple[Numbers, Numbers, Floats]:
     """Rows, columns (unknowns) and values of all matrices between unknowns."""
-    number = np.full(len(system.y), -1, dtype=np.int64)
+    number = np.full(len(partners(system)), -1, dtype=np.int64)
     number[left.core] = np.arange(len(left.core))
     rows, columns, values = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)], [np.zeros(0)]
     for velocity_at, matrix in system.inertia:

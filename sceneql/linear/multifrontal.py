@@ -58,19 +58,26 @@ class Plan:
 
 
 def plan(
-    pattern: Any, groups: Groups | None = None, points: Floats | None = None, unit: int = 1, exact: bool = True
+    pattern: Any,
+    groups: Groups | None = None,
+    points: Floats | None = None,
+    unit: int = 1,
+    exact: bool = True,
+    border: int = 0,
 ) -> Plan:
     """Analyze a symmetric (n, n) scipy CSR pattern that has its whole diagonal (and may be grouped already).
 
     ``points`` (n, 3): where the unknowns lie in space, for an order by nested dissection; else by minimum degree.
     ``unit``: so many unknowns for each of the n; value k of the pattern is a block of unit x unit, row by row. Not
-    ``exact``: solutions may have errors of some percent, for an iteration that corrects them.
+    ``exact``: solutions may have errors of some percent, for an iteration that corrects them. ``border``: so many of
+    the last unknowns have diagonals that may vanish, and are eliminated after all that they are coupled to.
     """
     import numpy as np
 
     groups = groups or grouped(pattern)
     if points is None:
-        order, parents = elimination_order(groups.graph)
+        late = np.array([members[0] >= len(pattern.indptr) - 1 - border for members in groups.members])
+        order, parents = elimination_order(groups.graph, late if border else None)
         graph = groups.graph[order][:, order]
     else:
         blocks, parents = dissected(groups.graph, points[[members[0] for members in groups.members]])

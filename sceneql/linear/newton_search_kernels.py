@@ -44,6 +44,7 @@ from sceneql.linear.newton_kernels import (
     norm,
 )
 from sceneql.linear.stage_kernels import (
+    BORDER,
     CORE_AT,
     POSITIONS,
     POSITIONS_AT,
@@ -81,7 +82,7 @@ def prescribe(change, residual, y, plan):
     """Put entries that no unknown moves, as the velocities of guided pins, where they will be."""
     for k in range(y.size):
         change[k] = 1.0
-    for k in range(plan[CORE_AT], plan[CORE_AT] + plan[UNKNOWNS]):
+    for k in range(plan[CORE_AT], plan[CORE_AT] + plan[UNKNOWNS] - plan[BORDER]):
         change[plan[k]] = 0.0
     at = plan[POSITIONS_AT]
     for k in range(at, at + 3 * plan[POSITIONS], 3):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from numpy import int64
+    from numpy import bool_, int64
     from numpy.typing import NDArray
 
 
@@ -98,14 +98,32 @@ def postorder(parent: list[int]) -> list[int]:
     return order
 
 
-def elimination_order(graph: Any) -> tuple[NDArray[int64], list[int]]:
-    """Vertices in the order of elimination, postordered, and the parents by place in that order."""
+def elimination_order(graph: Any, late: NDArray[bool_] | None = None) -> tuple[NDArray[int64], list[int]]:
+    """Vertices in the order of elimination, postordered, and the parents by place in that order.
+
+    ``late`` (n,): vertices that come after all their neighbors that are not late.
+    """
     import numpy as np
 
     order = minimum_degree(graph)
+    if late is not None:
+        order = _put_off(graph, order, late)
     parent = elimination_tree(graph[order][:, order])
     after = np.array(postorder(parent), dtype=np.int64)
     place = np.empty(len(after) + 1, dtype=np.int64)
     place[after] = np.arange(len(after))
     place[-1] = -1
     return order[after], place[np.array(parent, dtype=np.int64)[after]].tolist()
+
+
+def _put_off(graph: Any, order: NDArray[int64], late: NDArray[bool_]) -> NDArray[int64]:
+    """An order in which late vertices follow the last of their neighbors that are not."""
+    import numpy as np
+
+    place = np.empty(len(order))
+    place[order] = np.arange(len(order))
+    after = place.copy()
+    for vertex in np.flatnonzero(late).tolist():
+        beside = graph.indices[graph.indptr[vertex] : graph.indptr[vertex + 1]]
+        after[vertex] = max(place[vertex], place[beside[~late[beside]]].max(initial=-1.0) + 0.5)
+    return np.argsort(after, kind="stable").astype(np.int64)

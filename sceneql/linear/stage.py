@@ -59,7 +59,7 @@ def stage_plan(system: System, exact: bool = False, signs: bool = False) -> Stag
 
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.compiled.threads_kernels import threads, tile_address
-    from sceneql.linear.elimination import Inertia, kinds_of
+    from sceneql.linear.elimination import Inertia, borders, kinds_of
     from sceneql.linear.solver_kernels import FACTOR_SYSTEM, NEGATIVES, SOLVE_SYSTEM
     from sceneql.linear.stage_kernels import HEAD, assemble_tile, compare_tile
 
@@ -75,8 +75,9 @@ def stage_plan(system: System, exact: bool = False, signs: bool = False) -> Stag
     square = left.unit**2
     parts, diagonal = _parts(left, pattern)
     inertia = Inertia.of(system, left, pattern)
+    bordering = borders(system, left, pattern)
     lists = [left.core, left.positions.ravel(), parts.ravel(), diagonal, _twins(pattern), solver.numbers, left.tallies]
-    lists += [inertia.entries.ravel(), inertia.held]
+    lists += [inertia.entries.ravel(), inertia.held, bordering.ravel()]
     starts = list(accumulate((len(part) for part in lists), initial=HEAD))
     counts = [len(system.y), len(left.core), square * pattern.nnz, len(left.positions), len(left.tallies)]
     kernels = (
@@ -88,7 +89,7 @@ def stage_plan(system: System, exact: bool = False, signs: bool = False) -> Stag
     told = solver.counts and (signs or system.structure.energies is not None)
     negatives = number_of(solver.kernels.negatives, NEGATIVES) if told else -1
     head = [*counts, *starts[:7], solver.factors, 0, *kernels, left.unit, *shared, negatives]
-    head += [len(inertia.entries), len(inertia.held), *starts[7:9]]
+    head += [len(inertia.entries), len(inertia.held), *starts[7:9], system.border, len(bordering), starts[9]]
     assert len(head) == HEAD
     numbers = np.concatenate([np.asarray(part, dtype=np.int64) for part in (head, *lists)])
     store = square * pattern.nnz + solver.factors + solver.work + 2 * tiles + len(left.core)
@@ -122,7 +123,10 @@ def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solv
     pattern = _pattern(left, inertia_places(system, left))
     if one_grid(system, left.core):
         return left, pattern, _over_grids(system, left.core, pattern)
-    solver = None if by_masses is not None else _factored(pattern, 1, _points(system, left), exact)
+    solver = None
+    if by_masses is None:
+        points = None if system.border else _points(system, left)
+        solver = _factored(pattern, 1, points, exact, system.border)
     return left, pattern, solver or _iterations(pattern)
 
 
@@ -146,7 +150,7 @@ def _inverse_masses(system: System) -> Floats:
     import numpy as np
 
     assert system.pattern is not None
-    inverse = np.ones(len(system.y))
+    inverse = np.ones(len(system.y) + 2 * system.border)
     for velocity_at, inverse_at, count in _masses(system):
         if inverse_at < 0:
             continue
@@ -230,6 +234,8 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     few = (system.partner < 0).sum() <= SMALL
     if few:
         return ("sceneql.linear.dense_systems_kernels",)
+    if system.border:
+        return ("sceneql.linear.multifrontal_kernels", "sceneql.linear.multifrontal_general_kernels")
     return (  # the process beside begins with the first, this one with the last
         "sceneql.linear.multifrontal_forward_kernels",
         "sceneql.linear.multifrontal_kernels",
@@ -238,8 +244,9 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     )
 
 
-def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _Solver | None:
-    """A factorization on a pattern of units; None where it would fill in too much."""
+def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool, border: int = 0) -> _Solver | None:
+    """A factorization on a pattern of units; None where it would fill in too much, unless it has a border, for which
+    iterations are no good."""
     import numpy as np
 
     size = pattern.shape[0]
@@ -263,12 +270,13 @@ def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool) -> _S
     groups = grouped(pattern) if unit == 1 else Groups(list(np.arange(size).reshape(-1, 1)), pattern)
     count = groups.graph.shape[0]
     solid = groups.graph.nnz > (SOLID + 1) * count and count > SOLID_GROUPS
-    if solid or count > MOST_GROUPS:
+    if (solid or count > MOST_GROUPS) and not border:
         return None
-    plan = multifrontal.plan(pattern, groups, points, unit, exact)
-    if plan.operations > MOST_OPERATIONS:
+    plan = multifrontal.plan(pattern, groups, points, unit, exact, border)
+    if plan.operations > MOST_OPERATIONS and not border:
         return None
-    text = f"sparse factorization of {m} unknowns, {plan.factors:.3g} numbers in its factors"
+    tied = f", {border} of them forces of ties" if border else ""
+    text = f"sparse factorization of {m} unknowns{tied}, {plan.factors:.3g} numbers in its factors"
     return _Solver(
         multifrontal_kernels,
         plan.numbers,

@@ -8,7 +8,9 @@ none), diagonal, twins (the place of the transposed block), the solver's own, ta
 the matrix is symmetric; the numbers of the solver's kernels; unknowns of a unit (1, or 3 of a mass: blocks are square,
 row by row); tiles of blocks, the numbers of threads_kernels.threads, the addresses of the tiles' kernels; the number of
 the kernel that counts negative eigenvalues (-1: none); numbers and places of the entries of inertia that is a matrix,
-and of the values that are held (elimination.Inertia)]. ``scales``: factors of the rows, 1 for those of such inertia;
+and of the values that are held (elimination.Inertia); of the unknowns, how many of the last border the system
+(system.Slopes.border), number and place of what their rows hold of rates (4: place among the values, row, entry of y,
+place in the Jacobian)]. ``scales``: factors of the rows, 1 for those of such inertia;
 then Inertia.numbers. ``store``: values of the matrix, factors, scratch, two numbers a tile, and last a right side
 (unknowns,).
 """
@@ -23,7 +25,8 @@ from sceneql.system.signatures_kernels import A, F, I
 SIZE, UNKNOWNS, VALUES, POSITIONS, TALLIES = range(5)
 CORE_AT, POSITIONS_AT, PARTS_AT, DIAGONAL_AT, TWINS_AT, SOLVER_AT, TALLIES_AT = range(5, 12)
 FACTORS, SYMMETRIC, FACTOR, SOLVE, UNIT = range(12, 17)
-TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, NEGATIVES, INERTIA, HELD, INERTIA_AT, HELD_AT, HEAD = range(17, 28)
+TILES, ENTRY, THREADS, ASSEMBLE, COMPARE, NEGATIVES, INERTIA, HELD, INERTIA_AT, HELD_AT = range(17, 27)
+BORDER, BORDERS, BORDERS_AT, HEAD = range(27, 31)
 
 ROUNDING = 1e-13
 """Differences of transposed values up to this part of the largest value count as rounding."""
@@ -59,7 +62,7 @@ def add_inertia(plan, scales, values):
     unit, at, m = plan[UNIT], plan[DIAGONAL_AT], plan[UNKNOWNS]
     for k in range(plan[HELD_AT], plan[HELD_AT] + plan[HELD]):
         values[plan[k]] = 0.0
-    for k in range(m):
+    for k in range(m - plan[BORDER]):
         if scales[m + k] < 0.0:
             inside = k % unit
             values[(plan[at + k // unit] * unit + inside) * unit + inside] += scales[k]
@@ -84,7 +87,7 @@ def along(plan, scales, p, q):
     """Scalar product of the unknowns' entries of p and q, by the inertia."""
     m, core = plan[UNKNOWNS], plan[CORE_AT]
     total = 0.0
-    for k in range(m):
+    for k in range(m - plan[BORDER]):
         if plan[INERTIA] == 0 or scales[m + k] < 0.0:
             total += scales[k] * p[plan[core + k]] * q[plan[core + k]]
     for k in range(plan[INERTIA]):
@@ -100,11 +103,13 @@ def assemble(plan, a, jacobian, scales, values):
         assemble_tile(0, a, jacobian, values, scales, plan)
     else:
         over_threads(plan[ENTRY], plan[THREADS], plan[ASSEMBLE], plan[TILES], a, jacobian, values, scales, plan)
+    for at in range(plan[BORDERS_AT], plan[BORDERS_AT] + 4 * plan[BORDERS], 4):
+        values[plan[at]] += jacobian[plan[at + 3]]
     unit, at = plan[UNIT], plan[DIAGONAL_AT]
     if plan[INERTIA] > 0:
         add_inertia(plan, scales, values)
         return
-    for k in range(plan[UNKNOWNS]):
+    for k in range(plan[UNKNOWNS] - plan[BORDER]):
         inside = k % unit
         values[(plan[at + k // unit] * unit + inside) * unit + inside] += scales[k]
 
@@ -183,11 +188,16 @@ def through_positions(plan, a, jacobian, r, b):
 def solve_stage(plan, a, jacobian, scales, store, r):
     """Solve (1 - a J) d = r by the factors; d takes the place of r, in the size of y. False: no convergence."""
     m = plan[UNKNOWNS]
+    own_entries = m - plan[BORDER]
     factors = store[plan[VALUES] :]
     b = store[store.size - m :]
     core, positions = plan[CORE_AT], plan[POSITIONS_AT]
-    for k in range(m):
+    for k in range(own_entries):
         b[k] = r[plan[core + k]]
+    for k in range(own_entries, m):
+        b[k] = 0.0
+    for at in range(plan[BORDERS_AT], plan[BORDERS_AT] + 4 * plan[BORDERS], 4):
+        b[plan[at + 1]] += jacobian[plan[at + 3]] * r[plan[at + 2]]
     if plan[INERTIA] > 0:
         by_inertia(plan, scales, r, b)
     through_positions(plan, a, jacobian, r, b)
@@ -198,7 +208,7 @@ def solve_stage(plan, a, jacobian, scales, store, r):
         b[k] *= scales[k]
     own, work = plan[plan[SOLVER_AT] :], factors[plan[FACTORS] :]
     solved = solve_at(plan[SOLVE])(own, store, factors, b, work, plan[SYMMETRIC] == 1)
-    for k in range(m):
+    for k in range(own_entries):
         r[plan[core + k]] = b[k]
     for at in range(positions, positions + 3 * plan[POSITIONS], 3):
         r[plan[at]] += a * jacobian[plan[at + 2]] * r[plan[at + 1]]

@@ -18,6 +18,11 @@ from sceneql.island import layout
 from sceneql.island.system import Structure, System
 
 TABLE = f"ints[{layout.TABLE_AT}]"
+BORDERED = (
+    "    end = ints[s] + ints[s + 1]",
+    "    rate_at(functions[AT_RATE])(t, y, values[end : end + y.size], floats, ints)",
+)
+"""Lines that evaluate the rate behind the Jacobian's values, for slopes that need what terms write."""
 REFRESH = f"    refresh(t, y, floats, ints[ints[{TABLE}] : ints[{TABLE} + 1]])"
 
 
@@ -113,12 +118,14 @@ def jacobian_text(structure: Structure) -> str:
         "from sceneql.compiled.kernels import lean",
         *(["from sceneql.compiled.numba.lazy_kernels import lazy"] if lazily else []),
         *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
+        *(["from sceneql.compiled.pointers_kernels import AT_RATE, rate_at"] if structure.bordered else []),
         "from sceneql.island.jacobian_kernels import gather",
         "from sceneql.system.signatures_kernels import ENERGY, JACOBIAN, TERM",
         *(f'lazy_{k} = lazy("{name}", {"ENERGY" if name in energies else "TERM"})' for k, name in enumerate(lazily)),
         *("", "", "@lean(JACOBIAN)", "def jacobian(functions, t, y, values, floats, ints):"),
         *([REFRESH] if structure.varying else []),
         f"    s = ints[{layout.SLOPES_AT}]",
+        *(BORDERED if structure.bordered else []),
         "    for k in range(ints[s], ints[s] + ints[s + 1]):",
         "        values[k] = 0.0",
     ]

@@ -38,7 +38,7 @@ def radau_systems(system: System) -> Systems:
     """Choose and prepare the linear solver of an island whose Jacobian has a pattern."""
     from sceneql.stepping.eliminated_systems import elimination
 
-    few = _unknowns(system) <= FULL and not system.inertia
+    few = _unknowns(system) <= FULL and not system.inertia and not system.border
     return _full(elimination(system)) if few else _sparse(system)
 
 
@@ -58,7 +58,7 @@ def likely_kernels(system: System) -> tuple[str, ...]:
 
     if system.pattern is None:
         return ()
-    if _unknowns(system) <= FULL and not system.inertia:
+    if _unknowns(system) <= FULL and not system.inertia and not system.border:
         return ("sceneql.stepping.radau_full_kernels",)
     return ("sceneql.stepping.radau_sparse_kernels", *likely(system))
 

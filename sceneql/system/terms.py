@@ -54,6 +54,11 @@ class Slopes:
     the stages of Newton's method (Needs.newton), or between steps for others that need slopes (channels.STAGE), which
     on small islands take differences."""
 
+    border: int = 0
+    """Unknowns m that border the linear systems of implicit stages, as the forces of ties, that depend on rates: of y
+    with n entries they have the rows and columns n to n + m. What such a row holds of d(rates) stands in the row n + m
+    and so on, at the columns of these rates. The rate is evaluated at the state before the kernel is called."""
+
     @property
     def entries(self) -> int:
         """Length of the kernel's slice."""

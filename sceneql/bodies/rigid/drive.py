@@ -63,6 +63,7 @@ class Driven(Joint):
         import numpy as np
 
         from sceneql.bodies.rigid.tie_rows_kernels import ANGLE, MOVED, POINT, ROW
+        from sceneql.bodies.rigid.tie_slopes import drive_slopes
         from sceneql.bodies.rigid.tie_system import integers
         from sceneql.system import Place
 
@@ -80,7 +81,7 @@ class Driven(Joint):
         if kind == "turn":
             assembly.after_step("sceneql.bodies.rigid.drive_kernels:follow", ints, samples=True)
         if any(value is not None for value in (force, stiffness, damping)):
-            assembly.term("force", "sceneql.bodies.rigid.drive_kernels:drive", ints)
+            assembly.term("force", "sceneql.bodies.rigid.drive_kernels:drive", ints, lambda: drive_slopes(ints))
         return (effort, *ints), self._bounds(ints, motor, effort, assembly)
 
     def _bounds(self, motion: tuple[int, ...], motor: Motor | None, effort: int, assembly: Assembly) -> Drive | None:

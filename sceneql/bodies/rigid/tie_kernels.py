@@ -41,6 +41,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     put,
     see,
     turned,
+    turning,
     write_row,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
@@ -59,6 +60,8 @@ the first where the rows of the second begin, counted from that row's first valu
 EASE, LITTLE = 1e-9, 1e-13
 """Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: the less where no row follows from others at the
 start, so that light bodies may hold heavy ones."""
+COARSE = 1e-10
+"""Part of an acceleration that sums of large forces may round off."""
 LEFT = 1e-13
 """What may be left of an equation, against the numbers that it is a sum of."""
 SHARE = 1e-2
@@ -195,6 +198,31 @@ def add(rate, floats, ints):
                         rate[ints[at + MOMENTUM] + c] += force * floats[to + AT_J + 6 * side + 3 + c]
 
 
+@lean_inlined
+def unlike(a, b, c, x, y, z):
+    """Whether a vector differs from another by more than rounding would do."""
+    apart, size = max(abs(a - x), abs(b - y), abs(c - z)), max(abs(x), abs(y), abs(z))
+    return apart > COARSE * size
+
+
+@lean(types.void(A, A, A, I))
+def sharpen(y, rate, floats, ints):
+    """Take the accelerations themselves where the forces of ties on a light body are so large that sums round them."""
+    for m in range(ints[MOVERS]):
+        at, to = ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m
+        inverse = floats[to + AT_MASS]
+        if ints[at + POSITION] < 0 or inverse == 0.0:
+            continue
+        v, x, y_, z = ints[at + VELOCITY], floats[to + AT_A], floats[to + AT_A + 1], floats[to + AT_A + 2]
+        if unlike(inverse * rate[v], inverse * rate[v + 1], inverse * rate[v + 2], x, y_, z):
+            rate[v], rate[v + 1], rate[v + 2] = x / inverse, y_ / inverse, z / inverse
+        if ints[at + ROTATION] >= 0:
+            k = ints[at + MOMENTUM]
+            x, y_, z = turning(y, floats, to, k)
+            if unlike(rate[k], rate[k + 1], rate[k + 2], x, y_, z):
+                rate[k], rate[k + 1], rate[k + 2] = x, y_, z
+
+
 @lean(TERM, inner=True)
 def hold(t, y, rate, floats, ints):
     """Adds the forces [N] and torques [N m] of all ties."""
@@ -203,6 +231,7 @@ def hold(t, y, rate, floats, ints):
         press(y, rate, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
     balance(floats, ints, AT_BIAS, AT_BIAS)
     add(rate, floats, ints)
+    sharpen(y, rate, floats, ints)
 
 
 @lean_inlined

@@ -123,6 +123,31 @@ def press(y, rate, floats, to, ints, at):
 
 
 @lean_inlined
+def times_inertia(floats, mover, x, y, z):
+    """The inertia of a mover that turns, in the world's axes, times a vector: by the inverse of its inverse."""
+    g = mover + AT_INVERSE
+    xx, yy, zz = floats[g], floats[g + 4], floats[g + 8]
+    xy, xz, yz = floats[g + 1], floats[g + 2], floats[g + 5]
+    ax, ay, az = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
+    by, bz, cz = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
+    scale = 1.0 / (xx * ax + xy * ay + xz * az)
+    return (
+        scale * (ax * x + ay * y + az * z),
+        scale * (ay * x + by * y + bz * z),
+        scale * (az * x + bz * y + cz * z),
+    )
+
+
+@lean_inlined
+def turning(y, floats, mover, momentum):
+    """The rate of a mover's angular momentum, at its angular acceleration: I w' + w x L."""
+    w, twist = mover + AT_W, mover + AT_TWIST
+    mx, my, mz = cross(floats[w], floats[w + 1], floats[w + 2], y[momentum], y[momentum + 1], y[momentum + 2])
+    tx, ty, tz = times_inertia(floats, mover, floats[twist], floats[twist + 1], floats[twist + 2])
+    return tx + mx, ty + my, tz + mz
+
+
+@lean_inlined
 def arm(floats, mover, at):
     """A place r at floats[at:], in a mover's axes, in the world's; and w x r and w x (w x r) of the mover's spin."""
     rx, ry, rz = turned(floats, mover + AT_R, floats[at], floats[at + 1], floats[at + 2])

@@ -12,7 +12,7 @@ from sceneql.system import Led, Place
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Assembly, Mover, Tied
+    from sceneql.system import Assembly, Mover, Slopes, Tied
 
 KERNELS = "sceneql.bodies.rigid.tie_kernels"
 KINDS = ("point", "angle", "distance", "gear")
@@ -107,7 +107,14 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     if redundant(ties, numbers)[1] == 0:
         assembly.write(ease, [kernels.LITTLE])
     _must_agree(ties, numbers)
-    assembly.term("tie", f"{KERNELS}:hold", ints)
+    spare = assembly.floats(np.zeros(MOVED))
+
+    def slopes() -> Slopes:
+        from sceneql.bodies.rigid.tie_slopes import tie_slopes
+
+        return tie_slopes(ints, spare, len(assembly.start()))
+
+    assembly.term("tie", f"{KERNELS}:hold", ints, slopes)
     assembly.tie_ints = ints
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
     if free:  # else where parts are led to is known at the end of a step alone

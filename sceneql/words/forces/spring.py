@@ -87,7 +87,9 @@ class Spring(Force):
         speeds = tuple(self._speed(place, value, assembly) for place, value in zip(places, values, strict=True))
         if max(end[-1] for end in ends) >= 0:
             ints = (*ends[0], *ends[1], *law, *speeds)
-            assembly.term("force", "sceneql.words.forces.spring_on_bodies_kernels:spring", ints)
+            assembly.term(
+                "force", "sceneql.words.forces.spring_on_bodies_kernels:spring", ints, lambda: _body_slopes(ends)
+            )
         else:
             ints = (*ends[0][:3], *ends[1][:3], *law, *speeds)
             more = (*ints, ends[0][3], ends[1][3])
@@ -147,3 +149,14 @@ def _slopes(ends: Sequence[tuple[int, ...]], ints: Sequence[int]) -> Slopes:
     pairs = [(one[1], other[which]) for one in masses for which in (0, 1) for other in masses]
     rows, columns = (np.concatenate(places) for places in zip(*((r + i, c + j) for r, c in pairs), strict=True))
     return Slopes(f"{kernels}:spring", rows, columns, ints, positive=f"{kernels}:positive")
+
+
+def _body_slopes(ends: Sequence[tuple[int, ...]]) -> Slopes:
+    """Those of a spring to a point of a body: see spring_on_bodies_slopes_kernels."""
+    from sceneql.bodies.rigid.place_slopes import force_places
+    from sceneql.system import Slopes
+
+    kernels = "sceneql.words.forces.spring_on_bodies_slopes_kernels"
+    moving = [end for end in ends if end[0] >= 0]
+    rows, columns = force_places([(one, other) for one in moving for other in moving])
+    return Slopes(f"{kernels}:spring", rows, columns, positive=f"{kernels}:positive")
