@@ -70,6 +70,7 @@ class IslandAssembly:
     _size: int = 0
     _bodies: int = 0
     _ranges: list[tuple[int, int, str, tuple[Span | None, ...]]] = field(default_factory=list)
+    _rests: list[tuple[int, Floats]] = field(default_factory=list)
     _names: list[tuple[int, int, Callable[[int], str]]] = field(default_factory=list)
     _pairs: list[tuple[int, int, int]] = field(default_factory=list)
     _alike: list[tuple[int, int]] = field(default_factory=list)
@@ -119,6 +120,13 @@ class IslandAssembly:
         if named is not None:
             self._names.append((first, len(start), named))
         return first
+
+    def displaced(self, at: int, values: Any) -> None:
+        """Let entries start elsewhere than at rest (system.Assembly)."""
+        y = self.start()
+        self._rests.append((at, y[at : at + len(values)].copy()))
+        y[at : at + len(values)] = values
+        self._starts = [y]
 
     def room(self, entries: float, span: Span | None) -> None:
         """Raise LimitRefused where a state of so many entries exceeds memory; call it before making large arrays."""
@@ -377,6 +385,7 @@ class IslandAssembly:
             masses=tuple(self._masses),
             inertia=tuple(self._matrices.items()),
             alike=tuple(self._alike),
+            rests=tuple(self._rests),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
             damped=any(block.damped for block in blocks[1:first_exact]),
         )

@@ -85,6 +85,8 @@ class System:
     """Offset of the velocities and the sparse matrix of each of these whose inertia is one (Assembly.inertia)."""
     alike: tuple[tuple[int, int], ...] = ()
     """Offset and number of further entries of y that are of one size."""
+    rests: tuple[tuple[int, Floats], ...] = ()
+    """Offset and values at rest of entries of y that start elsewhere."""
     terms: tuple[Origin, ...] = ()
     """The origins of the terms of the rate, in the order in which they act."""
     damped: bool = False
