@@ -21,8 +21,8 @@ BETWEEN = (0.0573, 0.3017, 0.7219, 0.9411)
 TERMS = len(PLACES)
 FIRST, SHORTEST = 1 / 16, 1e-7
 """The first piece tried and the shortest, relative to what it is a part of and to the run."""
-STATE = 2 + TERMS + TERMS - 1
-"""Of a mode: q, q', the load and its derivatives, q integrated up to four times."""
+SERIES = 18
+"""Terms of the series of the exponential of a matrix of norm 1."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,8 +38,6 @@ class Modes:
         ``load`` (m, terms): f and its derivatives at the beginning. By the exponential of a matrix for each mode, in
         units of h (Van Loan 1978, IEEE Trans. Automat. Control 23, 395-404).
         """
-        from scipy.linalg import expm
-
         m, terms = load.shape
         if h == 0.0:
             return q.copy(), speed.copy(), np.zeros((m, terms - 1))
@@ -55,9 +53,26 @@ class Modes:
         start = np.zeros((m, size))
         start[:, 0], start[:, 1] = q, h * speed / unit
         start[:, 2 : 2 + terms] = load * h ** np.arange(2, 2 + terms)
-        end = np.einsum("mij,mj->mi", expm(matrix), start)
+        end = (exponentials(matrix) @ start[:, :, None])[:, :, 0]
         integrals = end[:, 2 + terms :] * h ** np.arange(1, terms)
         return end[:, 0], end[:, 1] * unit / h, integrals
+
+
+def exponentials(matrices: Floats) -> Floats:
+    """(m, k, k) of matrices (m, k, k), by their series and squares (Moler & Van Loan 2003, SIAM Review 45, 3-49)."""
+    found = np.empty_like(matrices)
+    halvings = np.maximum(0, np.ceil(np.log2(np.abs(matrices).sum(axis=2).max(axis=1, initial=1.0)))).astype(int)
+    for times in np.unique(halvings):
+        mine = halvings == times
+        small = matrices[mine] / 2.0**times
+        one = np.broadcast_to(np.eye(small.shape[1]), small.shape)
+        total = one
+        for k in range(SERIES, 0, -1):
+            total = one + small @ total / k
+        for _ in range(times):
+            total = total @ total
+        found[mine] = total
+    return found
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,7 +101,7 @@ def next_piece(
 ) -> Piece | None:
     """A piece that begins at an instant, at most ``length`` [s] long; None: loads are not smooth there.
 
-    ``loads`` (k,) at a time [s]; ``allowed``: by how much polynomials may differ from these.
+    ``loads`` (k,) at a time [s]; ``allowed``: by how much polynomials may differ from these, relative to the largest.
     """
     stop = next_breakpoint(stops, start, end)
     h = min(length, stop - start)
@@ -106,7 +121,8 @@ def next_piece(
         powers = to_powers @ np.array([seen(share) for share in PLACES])
         between = np.array(BETWEEN)
         found = np.vander(between, TERMS, increasing=True) @ powers
-        if np.abs(found - np.array([seen(share) for share in BETWEEN])).max(initial=0.0) <= allowed:
+        errors = np.abs(found - np.array([seen(share) for share in BETWEEN]))
+        if errors.max(initial=0.0) <= allowed * max(np.abs(one).max(initial=0.0) for one in known.values()):
             return Piece(start, min(start + h, stop), (powers * (factorials / h ** np.arange(TERMS))[:, None]).T)
         h *= 0.5
     return None

@@ -21,7 +21,9 @@ OUTPUTS: Mapping[str, Gives] = {
         quantity_type(dim.FREQUENCY, (None,)),
         "Of its lowest modes, `modes` in number; those of motions without strain are 0.",
     ),
-    "mode_shapes": Gives(Type((None, None, 3)), "By mode, how far each node moves, relative to the one that most does."),
+    "mode_shapes": Gives(
+        Type((None, None, 3)), "By mode, how far each node moves, relative to the one that most does."
+    ),
 }
 
 
@@ -88,7 +90,9 @@ class Resting:
         mass = csr_array(kron(self.strain.inertia.matrix, eye_array(3), format="csr"))
         free = self._free()
         stiffness = stiffness_at(self.strain, self.places, floats)
-        squares, found = lowest(stiffness[free][:, free], mass[free][:, free], count, np.repeat(self.places, 3, axis=0)[free])
+        squares, found = lowest(
+            stiffness[free][:, free], mass[free][:, free], count, np.repeat(self.places, 3, axis=0)[free]
+        )
         shapes = np.zeros((len(squares), mass.shape[0]))
         shapes[:, free] = found.T
         shapes = shapes.reshape(len(squares), -1, 3)
