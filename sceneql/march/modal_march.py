@@ -112,7 +112,7 @@ class ModalMarch(March):
     def _loads(self, t: float) -> Floats:
         """(m (1 + tallies),) the loads on the modes at rest, then those whose work each tally counts."""
         rate = self.rate(t, self._rest)
-        forces = self._weighed.T @ rate[self._found.velocities]
+        forces: Floats = self._weighed.T @ rate[self._found.velocities]
         if not len(self._tallies):
             return forces
         m = len(forces)
@@ -134,7 +134,8 @@ class ModalMarch(March):
             y = self._rest.copy()
             y[self._found.velocities] = sign * (self._shapes @ way)
             ends.append(self.rate(t, y)[self._tallies])
-        return 0.5 * (ends[0] - ends[1])
+        power: Floats = 0.5 * (ends[0] - ends[1])
+        return power
 
     def _told(self) -> str:
         squares = self._modes.squares
