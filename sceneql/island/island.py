@@ -72,6 +72,7 @@ class IslandAssembly:
     _size: int = 0
     _bodies: int = 0
     _ranges: list[tuple[int, int, str, tuple[Span | None, ...]]] = field(default_factory=list)
+    _rests: list[tuple[int, Floats]] = field(default_factory=list)
     _names: list[tuple[int, int, Callable[[int], str]]] = field(default_factory=list)
     _pairs: list[tuple[int, int, int]] = field(default_factory=list)
     _alike: list[tuple[int, int]] = field(default_factory=list)
@@ -123,6 +124,13 @@ class IslandAssembly:
         if named is not None:
             self._names.append((first, len(start), named))
         return first
+
+    def displaced(self, at: int, values: Any) -> None:
+        """Let entries start elsewhere than at rest (system.Assembly)."""
+        y = self.start()
+        self._rests.append((at, y[at : at + len(values)].copy()))
+        y[at : at + len(values)] = values
+        self._starts = [y]
 
     def room(self, entries: float, span: Span | None) -> None:
         """Raise LimitRefused where a state of so many entries exceeds memory; call it before making large arrays."""
@@ -406,6 +414,7 @@ class IslandAssembly:
             inertia=tuple(self._matrices.items()),
             border=border,
             alike=tuple(self._alike),
+            rests=tuple(self._rests),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
             damped=any(block.damped for block in blocks[1:first_exact]),
         )

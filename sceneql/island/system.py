@@ -95,6 +95,8 @@ class System:
     """Unknowns that border the linear systems of implicit stages (Slopes.border)."""
     alike: tuple[tuple[int, int], ...] = ()
     """Offset and number of further entries of y that are of one size."""
+    rests: tuple[tuple[int, Floats], ...] = ()
+    """Offset and values at rest of entries of y that start elsewhere."""
     terms: tuple[Origin, ...] = ()
     """The origins of the terms of the rate, in the order in which they act."""
     damped: bool = False

@@ -33,6 +33,9 @@ class Assembly(Protocol):
         name of each, for messages.
         """
 
+    def displaced(self, at: int, values: Any) -> None:
+        """Let entries of y start with other values than they were reserved with, which are those of rest."""
+
     def pair(self, position_at: int, velocity_at: int, count: int) -> None:
         """Say that y[velocity_at + k] is the velocity of y[position_at + k] (for methods that use it)."""
 

@@ -86,6 +86,8 @@ class Strain:
     squared: float
     """Bound of the squared angular frequencies [1/s^2] of small motions: that of an element alone (Irons 1970)."""
     inertia: Inertia
+    slopes: Callable[[], Slopes]
+    """Those of its forces."""
 
     def energy(self, state: ModelState) -> float:
         """The energy of strain [J]."""
@@ -189,7 +191,7 @@ def add_strain(
     stiffest = numbers[:, -2] + 2.0 * numbers[:, -1]
     steep = np.einsum("eqni,eqni->eq", gradients, gradients).ravel() * stiffest * volumes.ravel()
     bound = float(np.max(steep.reshape(elements, points).sum(axis=1) / inertia.least))
-    return Strain(mesh, ints, volumes, kernels, bound, inertia)
+    return Strain(mesh, ints, volumes, kernels, bound, inertia, slopes)
 
 
 def density_of(formula: Formula | None, default: float) -> Callable[[Floats], Floats]:

@@ -11,12 +11,14 @@ from pydantic import PrivateAttr
 
 from sceneql import kinds
 from sceneql.bodies import bodies as masses
+from sceneql.bodies.elements import modes as solid_modes
 from sceneql.bodies.elements import strain_outputs
 from sceneql.bodies.elements.block import Block
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
 from sceneql.bodies.elements.load import Load
+from sceneql.bodies.elements.modes import Bent
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.kinds import Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
 from sceneql.quantities import dimension as dim
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
     from sceneql.bodies.elements.element import Element
     from sceneql.bodies.elements.element_mesh import ElementMesh
+    from sceneql.bodies.elements.modes import Resting
     from sceneql.bodies.elements.skin import Carried, Skin
     from sceneql.bodies.elements.strain import Strain
     from sceneql.frame import Floats, Shape
@@ -52,6 +55,8 @@ class Made:
     """Least and largest angle [rad] between faces of an element."""
     polygons: Callable[[], Carried] | None
     """What it is drawn by in place of its faces; made at the first call."""
+    modes: Resting
+    """What its modes are of."""
 
 
 class Elastic(Model):
@@ -61,7 +66,7 @@ class Elastic(Model):
     in `hold`, `loads`, `probes` and formulas are those of the material, before the solid is moved or turned.
     """
 
-    gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS}
+    gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS, **solid_modes.OUTPUTS}
     has_skin: ClassVar[bool] = True
 
     of: kinds.ObjectRef | None = field("The object that it fills; usually a hidden one.", None)
@@ -93,6 +98,8 @@ class Elastic(Model):
     spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,))] = field(
         "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
     )
+    modes: int = field("How many of its modes `frequencies` and `mode_shapes` tell, the lowest first.", 12, at_least=1)
+    bent: Bent | None = field("One of its modes that it starts displaced by.", None)
     radius: kinds.FixedLength = field("Radius of its nodes in contacts.", "1 mm", at_least=0)
     look: Literal["object", "elements"] = field(
         "How it draws itself: as the object's own polygons, which its elements carry, or as the faces of these.",
@@ -222,7 +229,11 @@ class Elastic(Model):
             from sceneql.bodies.elements.skin import carried
 
             polygons = cache(partial(carried, self.of, spacing_of(self.of, self.spacing, assembly), mesh, assembly))
-        self._made = Made(strain, probes, forces, angles, polygons)
+        resting = solid_modes.Resting(strain, places, held)
+        if self.bent is not None:
+            away = resting.modes(assembly.numbers(), self.bent.mode).start(self.bent, line)
+            assembly.displaced(bodies.position_at, (places + away).ravel())
+        self._made = Made(strain, probes, forces, angles, polygons, resting)
         period = 2.0 * np.pi / strain.squared**0.5
         first, shear = (np.asarray(one) for one in self.law.law.moduli(mesh.points))
         stiffness = float(np.min(shear * (3.0 * first + 2.0 * shear) / (first + shear)))
@@ -248,6 +259,8 @@ class Elastic(Model):
         assert state.bodies is not None
         if output in strain_outputs.BY_INERTIA:
             return strain_outputs.by_inertia(output, self.solid, state)
+        if output in solid_modes.OUTPUTS:
+            return self._made.modes.modes(state.floats, self.modes).read(output)
         if output in masses.BODY_OUTPUTS:
             own = self.solid.energy(state) if output == "potential" else 0.0
             if output == "energy":

@@ -1,0 +1,131 @@
+"""The lowest modes of a stiffness and a mass: K s = w^2 M s, by Lanczos' method with the inverse of K + shift M."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sceneql.frame import Floats
+
+DENSE = 240
+"""Unknowns up to which all modes are found."""
+SHIFT = 1e-7
+"""The shift, by the median of K_ii/M_ii: free bodies, whose K is singular, have a factorization by it."""
+ZERO = 1e-12
+"""Squares below that part of the median are zero but for rounding."""
+MORE = 4
+"""So many more are sought, so that the last ones of several equal squares are not missed."""
+BLOCK = 8
+"""Vectors at a time: more than the modes of most symmetries that share a frequency."""
+LOOKS = 4
+"""After so many blocks the modes found are looked at."""
+EXACT, ALONE = 1e-9, 1e-20
+"""Relative error of shapes; squares of vectors' lengths, relative to the largest, that are rounding."""
+
+
+def lowest(stiffness: Any, mass: Any, count: int, points: Floats) -> tuple[Floats, Floats]:
+    """Squared angular frequencies (k,) [1/s^2], ascending, and shapes (n, k) with s^T M s = 1 [kg^-1/2].
+
+    ``stiffness`` [N/m] and ``mass`` [kg]: sparse symmetric (n, n), the latter positive definite; k is ``count`` or n.
+    ``points`` (n, 3): where the unknowns lie in space.
+    A square below 0 is of an unstable rest. The largest entry of a shape is above 0. Sources: Ericsson & Ruhe
+    (1980), Math. Comp. 35, 1251-1268; Grimes, Lewis & Simon (1994), SIAM J. Matrix Anal. Appl. 15, 228-272.
+    """
+    n = mass.shape[0]
+    count = min(count, n)
+    if not count:
+        return np.zeros(0), np.zeros((n, 0))
+    scale = float(np.median(np.abs(stiffness.diagonal()) / mass.diagonal()))
+    if n <= max(DENSE, 2 * (count + MORE) + 20):
+        from scipy.linalg import eigh
+
+        squares, shapes = eigh(stiffness.toarray(), mass.toarray())
+    else:
+        squares, shapes = _sparse(stiffness, mass, count + MORE, points, SHIFT * (scale or 1.0))
+    order = np.argsort(squares, kind="stable")[:count]
+    squares, shapes = squares[order], shapes[:, order]
+    squares = np.where(np.abs(squares) <= ZERO * scale, 0.0, squares)
+    largest = shapes[np.abs(shapes).argmax(axis=0), np.arange(count)]
+    return squares, shapes * np.where(largest < 0.0, -1.0, 1.0)
+
+
+def _sparse(stiffness: Any, mass: Any, count: int, points: Floats, shift: float) -> tuple[Floats, Floats]:
+    """By Lanczos' method in blocks, so that several equal squares are found, all vectors kept orthogonal."""
+    n = mass.shape[0]
+    solve = _inverse(stiffness, mass, points, shift)
+    block = np.random.Generator(np.random.Philox(1)).standard_normal((n, BLOCK))
+    block, _ = _orthonormal(block, mass)
+    basis, weighed = np.zeros((n, 0)), np.zeros((n, 0))
+    projected = np.zeros((0, 0))
+    while True:
+        basis, weighed = np.hstack([basis, block]), np.hstack([weighed, mass @ block])
+        width, whole = block.shape[1], basis.shape[1]
+        found = solve(weighed[:, -width:])
+        along = weighed.T @ found
+        found -= basis @ along
+        again = weighed.T @ found  # once leaves what rounding put back
+        found -= basis @ again
+        along += again
+        larger = np.zeros((whole, whole))
+        larger[: whole - width, : whole - width] = projected
+        larger[:, whole - width :], larger[whole - width :, :] = along, along.T
+        projected = larger
+        block, left = _orthonormal(found, mass)
+        full = not block.shape[1] or whole + block.shape[1] > n
+        if not full and (whole < 2 * count or whole // BLOCK % LOOKS):
+            continue
+        inverses, vectors = np.linalg.eigh(projected)
+        best = slice(max(0, whole - count), whole)
+        errors = np.linalg.norm(left @ vectors[-width:, best], axis=0)
+        done = whole >= count and (errors <= EXACT * inverses[best]).all()
+        if done or full:
+            return _ritz(stiffness, mass, basis @ vectors[:, best])
+
+
+def _ritz(stiffness: Any, mass: Any, shapes: Floats) -> tuple[Floats, Floats]:
+    """Squares and shapes within the span of shapes: errors of squares are then of second order in those of shapes."""
+    from scipy.linalg import eigh
+
+    squares, ways = eigh(shapes.T @ (stiffness @ shapes), shapes.T @ (mass @ shapes))
+    return squares, shapes @ ways
+
+
+def _orthonormal(block: Floats, mass: Any) -> tuple[Floats, Floats]:
+    """Vectors that span a block with s^T M s = 1, and the block by these; what is no more than rounding is left out."""
+    whole: Floats = np.eye(block.shape[1])
+    for _ in range(2):
+        gram = block.T @ (mass @ block)
+        squares, ways = np.linalg.eigh(0.5 * (gram + gram.T))
+        kept = squares > ALONE * squares.max(initial=0.0)
+        root = np.sqrt(squares[kept])
+        block = block @ (ways[:, kept] / root)
+        whole = (ways[:, kept] * root).T @ whole
+    return block, whole
+
+
+def _inverse(stiffness: Any, mass: Any, points: Floats, shift: float) -> Callable[[Floats], Floats]:
+    """The solution with K + shift M of each column (n, k)."""
+    from scipy.sparse import csr_array
+
+    from sceneql.linear import multifrontal, multifrontal_kernels
+    from sceneql.linear.multifrontal_layout import SINGLE_FACTOR
+
+    whole = csr_array(stiffness + shift * mass)
+    whole.sum_duplicates()
+    whole.sort_indices()
+    plan = multifrontal.plan(whole, points=points)
+    plan.numbers[SINGLE_FACTOR] = -1
+    factors, work = np.zeros(plan.factors), np.zeros(plan.work)
+    multifrontal_kernels.factor_system(plan.numbers, whole.data, factors, work, True)
+
+    def solve(right: Floats) -> Floats:
+        found = np.array(right.T, dtype=np.float64, order="C")
+        for one in found:
+            multifrontal_kernels.solve_system(plan.numbers, whole.data, factors, one, work, True)
+        return found.T
+
+    return solve
