@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from sceneql.contacts import layout
 from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ class Collision(Contact):
     details smaller than a cell on both are not seen, all else to a millionth of the size. Where a step would take such
     a shape farther than half its thickness it is cut; a pair has at most 12 points. Bodies may be held by ties, which
     are found with the contacts; those that a tie joins do not touch each other. `points`, `normals` and `forces` tell
-    of it, hits and rest do not. Masses do not touch rigid bodies.
+    of it, hits and rest do not.
 
     Mode `exact`, asked for by name, is for few rigid bodies of exact shapes, ties included, and what stands: all
     contacts that approach are reflected together until none approaches (Smith et al. 2012), and what rests, rolls or
@@ -166,18 +167,34 @@ class Collision(Contact):
     def assemble_rigid(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
-        """Add the contacts of rigid bodies with one another and with objects. Raises ScriptError for mode `exact`."""
+        """Add the contacts of rigid bodies with one another, with objects and with masses, and of masses with objects.
+
+        Raises ScriptError for mode `exact` where it does not cover them.
+        """
         from sceneql.contacts.colliders import OFTEN
         from sceneql.contacts.distance.rigid_contact import assemble
+        from sceneql.contacts.distance.rigid_masses import Masses
         from sceneql.contacts.rigid_exact import group
 
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
+        rigid = [bodies for bodies in everyone if bodies.turning is not None]
+        points = [bodies for bodies in everyone if bodies.turning is None]
+        if self.mode == "exact" and points:
+            message = f"mode `exact` has no contacts of masses, as of '{points[0].model}', with rigid bodies"
+            help = "mode: local has; or give the masses a `collision` of their own with the objects they may touch"
+            raise ScriptError([Diagnostic("invalid", message, assembly.line(), help)])
         if self.mode == "exact":
-            assembly.remember(*group.assemble(assembly, everyone, touched, self.restitution, self.friction))
+            assembly.remember(*group.assemble(assembly, rigid, touched, self.restitution, self.friction))
             return
         assembly.step_at_most(OFTEN)
-        assembly.remember(-1, *assemble(assembly, everyone, touched, self.restitution, self.friction))
+        masses, tallies = None, ()
+        if points:
+            nan = float("nan")
+            tallies = (assembly.floats([0.0, nan, nan, 0.0, nan]),)
+            masses = Masses(points, self.thickness, *tallies)
+        told = assemble(assembly, rigid, touched, self.restitution, self.friction, masses)
+        assembly.remember(*tallies, -1, *told)
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output over all its models: counts add up, the first time is the earliest, the last the latest."""

@@ -1,0 +1,98 @@
+"""Masses that rigid bodies collide with: their rows among the bodies, and the surfaces that they meet."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from sceneql.contacts import layout
+from sceneql.contacts.colliders import must_be_free, must_be_outside, surface_of
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.kinds import Ref
+    from sceneql.system import Assembly, Bodies
+
+MOST_CUT = 4096
+"""Masses above which no step is cut at an impact: looking costs more than it gives."""
+
+
+@dataclass(frozen=True, slots=True)
+class Solid:
+    """What masses meet."""
+
+    number: int
+    """Among the shapes of the step."""
+    ref: Ref
+    center: Floats
+    """(3,) the center of mass in the axes of its object [m]."""
+    place: Floats
+    """(7,) center of mass and quaternion at the start."""
+
+
+@dataclass(frozen=True, slots=True)
+class Masses:
+    """The models of masses of a contact."""
+
+    everyone: Sequence[Bodies]
+    thickness: float
+    """Distance to keep besides the radii [m]."""
+    tally_at: int
+    """Offset of the tally of impacts."""
+
+    def rows(self, assembly: Assembly) -> list[tuple[int, ...]]:
+        """The integers of the masses as bodies of the step (velocity_step_kernels).
+
+        Raises ScriptError for masses that ties hold.
+        """
+        # Nothing turns them: any inertia does.
+        inertia_at = assembly.floats([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+        found = []
+        for bodies in self.everyone:
+            must_be_free(bodies.model, assembly)
+            for k in range(bodies.count):
+                x, v = bodies.position_at + 3 * k, bodies.velocity_at + 3 * k
+                found.append((x, v, -1, -1, bodies.mass_at + k, inertia_at, bodies.work_at))
+        return found
+
+    def written(self, at: int, first: int, solids: Sequence[Solid], assembly: Assembly) -> list[int]:
+        """The integers of mass_points_kernels, to stand at ``at``; ``first``: number of the first mass.
+
+        Raises ScriptError for masses that start inside a solid, and for one that cannot be collided with.
+        """
+        from sceneql.contacts.distance import mass_points_kernels as kernels
+        from sceneql.contacts.impact_kernels import MOST_CUTS
+
+        few = sum(bodies.count for bodies in self.everyone) <= MOST_CUT
+        memory_at = assembly.floats([0.0, 0.0, 0.0] if few else [float("inf"), 0.0, MOST_CUTS])
+        surfaces_at = kernels.HEAD + kernels.MODEL * len(self.everyone)
+        objects_at = surfaces_at + kernels.TOUCHED * len(solids)
+        records: list[int] = []
+        surfaces = []
+        for k, solid in enumerate(solids):
+            head, data, relative = surface_of(solid.ref, solid.center, solid.place, assembly)
+            surfaces.append((head, data))
+            records += [solid.number, assembly.floats(relative), at + objects_at + layout.OBJECT * k]
+        models: list[int] = []
+        for bodies in self.everyone:
+            models += [first, bodies.count, bodies.position_at, bodies.velocity_at]
+            models += [bodies.inverse_at, bodies.mass_at, bodies.radius_at]
+            first += bodies.count
+            here = (bodies.position_at, *(0 for _ in range(layout.INVERSE - 1)), bodies.inverse_at, 0, bodies.count)
+            spare = (0 for _ in range(layout.OBJECTS - layout.BODIES - 1))
+            ints = (*here, *spare, len(surfaces), *_laid(surfaces, layout.HEAD))
+            must_be_outside(bodies.model, [solid.ref for solid in solids], ints, assembly)
+        head = [len(self.everyone), assembly.floats([self.thickness]), memory_at, self.tally_at]
+        head += [len(solids), at + surfaces_at]
+        return [*head, *models, *records, *_laid(surfaces, at + objects_at)]
+
+
+def _laid(surfaces: Sequence[tuple[tuple[int, ...], tuple[int, ...]]], at: int) -> list[int]:
+    """The integers of surfaces, to stand at ``at``, and behind them those of their shapes."""
+    heads: list[int] = []
+    tail: list[int] = []
+    for head, data in surfaces:
+        heads += [*head, at + layout.OBJECT * len(surfaces) + len(tail)]
+        tail += data
+    return heads + tail
