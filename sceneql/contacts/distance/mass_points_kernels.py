@@ -43,7 +43,7 @@ MODELS, THICKNESS_AT, MEMORY_AT, TALLY_AT, SURFACES, SURFACES_AT, HEAD = range(7
 """Integers from MASSES_AT on: number of models of masses; offsets of the distance to keep besides the radii, of the
 memory (END, WHOLE, CUTS of contacts/layout.py), of the tally of impacts; number of the shapes that masses may touch,
 and where their integers begin, which follow the models'."""
-FIRST, COUNT, POSITION, VELOCITY, INVERSE, MASS, RADIUS, MODEL = range(8)
+FIRST, COUNT, POSITION, VELOCITY, INVERSE, MASS, RADIUS, WORK, MODEL = range(9)
 """Integers of a model: the number of its first mass among the bodies, how many, offsets of what they have."""
 NUMBER, RELATIVE_AT, OBJECT_AT, TOUCHED = range(4)
 """Integers of a shape: its number, the offset of the place of its surface in its body's axes, from the center (7), and
@@ -306,6 +306,10 @@ def mass_points(h, floats, ints, y0, y1, places, ends, motions, before, number, 
                 gap = d - reach
                 if gap >= -DEEP * size_of(floats, ints, model, k, shape):
                     continue
+                begun = surface(floats, ints, at, path[0], path[1], path[2])[0] - reach
+                if gap >= begun - DEEP * size_of(floats, ints, model, k, shape):
+                    continue  # it began as deep: `push_out` is for it
+                gap -= min(begun, 0.0)
                 ahead = 1
                 p = PLACE * shape
                 nx, ny, nz = to_world(ends, p + 3, *to_body(places, p + 3, nx, ny, nz))
@@ -316,6 +320,8 @@ def mass_points(h, floats, ints, y0, y1, places, ends, motions, before, number, 
             px, py, pz = place(path, s)
             d, nx, ny, nz = surface(floats, ints, at, px, py, pz)
             gap = nx * (path[0] - px) + ny * (path[1] - py) + nz * (path[2] - pz) + d - reach
+            if gap < -DEEP * size_of(floats, ints, model, k, shape):
+                gap = 0.0
         who, where = with_room(who, where, contacts)
         write(
             h, floats, ints, y0, y1, places, mass, model, shape, ahead, s, gap, nx, ny, nz, motions, before,
@@ -353,6 +359,28 @@ def cut_at_impact(t0, t1, floats, ints, y0, y1, places, ends, motions, before):
     if 0 < hits <= FEW:
         floats[memory + layout.CUTS] += 1.0
         floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + (1.0 - SHORT) * least * h)
+
+
+@kernel(types.void(F, A, I, A, A, A, A, A, A))
+def push_out(h, floats, ints, y0, y1, places, ends, motions, before):
+    """Move masses out of what they began in, as where their radii reach into it at the start, without a velocity."""
+    near = candidates(h, floats, ints, y0, y1, places, motions, before)
+    for c in range(near.size // 3):
+        model, record = near[3 * c + 1], near[3 * c + 2]
+        k, p = near[3 * c] - ints[model + FIRST], PLACE * ints[record + NUMBER]
+        if floats[ints[model + INVERSE] + k] == 0.0:
+            continue
+        x, at = ints[model + POSITION] + 3 * k, ints[record + OBJECT_AT]
+        u, v, w = seen_from(places, ends, p, y1[x] - ends[p], y1[x + 1] - ends[p + 1], y1[x + 2] - ends[p + 2])
+        d, nx, ny, nz = surface(floats, ints, at, places[p] + u, places[p + 1] + v, places[p + 2] + w)
+        d -= reach_to(floats, ints, model, k)
+        if d < -DEEP * size_of(floats, ints, model, k, ints[record + NUMBER]):
+            n = to_world(ends, p + 3, *to_body(places, p + 3, nx, ny, nz))
+            of = MOTION * near[3 * c]
+            for j in range(3):
+                y1[x + j] -= d * n[j]
+                force = floats[ints[model + MASS] + k] * (motions[of + j] - before[of + j]) / h
+                y1[ints[model + WORK]] -= d * n[j] * force
 
 
 @kernel(types.void(F, A, I, A, I, A, N))

@@ -69,6 +69,7 @@ cut = lazy("sceneql.contacts.distance.skin_pair_kernels:cut", F(F, A, I, N, N, A
 MASSES = "sceneql.contacts.distance.mass_points_kernels"
 mass_points = lazy(f"{MASSES}:mass_points", types.Tuple((I, A, N))(F, A, I, A, A, A, A, A, A, N, I, A, N))
 cut_at_impact = lazy(f"{MASSES}:cut_at_impact", types.void(F, F, A, I, A, A, A, A, A, A))
+push_out = lazy(f"{MASSES}:push_out", types.void(F, A, I, A, A, A, A, A, A))
 tally = lazy(f"{MASSES}:tally", types.void(F, A, I, A, I, A, N))
 
 ROUNDS = 12
@@ -401,6 +402,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     floats[ints[LOOSE_AT]] += loose > 0
     tell(floats, ints, who, where, first, h)
     if some_masses:
+        push_out(h, floats, ints, y0, y1, places, ends, motions, before)
         tally(t0, floats, ints, before, who, where, first)
     move_all(y0, y1, free, floats, ints, bodies_at, every, ties, touched, masses, found, before)
     if tied:

@@ -77,7 +77,7 @@ class Masses:
         models: list[int] = []
         for bodies in self.everyone:
             models += [first, bodies.count, bodies.position_at, bodies.velocity_at]
-            models += [bodies.inverse_at, bodies.mass_at, bodies.radius_at]
+            models += [bodies.inverse_at, bodies.mass_at, bodies.radius_at, bodies.work_at]
             first += bodies.count
             here = (bodies.position_at, *(0 for _ in range(layout.INVERSE - 1)), bodies.inverse_at, 0, bodies.count)
             spare = (0 for _ in range(layout.OBJECTS - layout.BODIES - 1))
