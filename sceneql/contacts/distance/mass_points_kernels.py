@@ -41,20 +41,24 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 MODELS, THICKNESS_AT, MEMORY_AT, TALLY_AT, SURFACES, SURFACES_AT, HEAD = range(7)
 """Integers from MASSES_AT on: number of models of masses; offsets of the distance to keep besides the radii, of the
-memory (END, WHOLE, CUTS of contacts/layout.py), of the tally of impacts; number of the shapes that masses may touch,
-and where their integers begin, which follow the models'."""
+memory (END, WHOLE, CUTS of contacts/layout.py, then LONGEST, LONGER), of the tally of impacts; number of the shapes
+that masses may touch, and where their integers begin, which follow the models'."""
 FIRST, COUNT, POSITION, VELOCITY, INVERSE, MASS, RADIUS, WORK, MODEL = range(9)
 """Integers of a model: the number of its first mass among the bodies, how many, offsets of what they have."""
 NUMBER, RELATIVE_AT, OBJECT_AT, TOUCHED = range(4)
 """Integers of a shape: its number, the offset of the place of its surface in its body's axes, from the center (7), and
 where the integers of its surface (contacts/layout.py) begin."""
 
+LONGEST, LONGER = 3, 4
+"""In the memory: the longest step in which springs of masses are stable beside contacts, whose impulses the solver does
+not see; the steps that were longer while masses on springs touched something."""
 FEW = 8
 """Masses with an impact in a step above which it is not cut at the first."""
 SHORT = 1e-3
 """Part of the way to an impact by which a cut step ends before it."""
-DEEP = 1e-7
-"""Part of its radius, or of the body's reach, by which a mass may be inside at the end of a step."""
+DEEP, ROUGH = 1e-7, 1e-3
+"""Parts of its radius, or of the body's reach: by which a mass may be inside at the end of a step, and within which it
+touches in any case."""
 BOUNCED = 1
 """Name of a contact that is an impact."""
 
@@ -314,9 +318,12 @@ def mass_points(h, floats, ints, y0, y1, places, ends, motions, before, number, 
                 p = PLACE * shape
                 nx, ny, nz = to_world(ends, p + 3, *to_body(places, p + 3, nx, ny, nz))
         if ahead == 0:
-            s = first_contact(path, floats, ints, at, reach)
-            if s == NEVER:
-                continue
+            # What is as near as to rest comes nearer, too, once something else holds the body.
+            d, nx, ny, nz = surface(floats, ints, at, path[0], path[1], path[2])
+            if number > 0 or d - reach > ROUGH * size_of(floats, ints, model, k, shape):
+                s = first_contact(path, floats, ints, at, reach)
+                if s == NEVER:
+                    continue
             px, py, pz = place(path, s)
             d, nx, ny, nz = surface(floats, ints, at, px, py, pz)
             gap = nx * (path[0] - px) + ny * (path[1] - py) + nz * (path[2] - pz) + d - reach
@@ -383,15 +390,18 @@ def push_out(h, floats, ints, y0, y1, places, ends, motions, before):
                 y1[ints[model + WORK]] -= d * n[j] * force
 
 
-@kernel(types.void(F, A, I, A, I, A, N))
-def tally(t, floats, ints, before, who, where, contacts):
-    """Count the impacts of masses."""
-    n, at = ints[BODIES], ints[ints[MASSES_AT] + TALLY_AT]
+@kernel(types.void(F, F, A, I, A, I, A, N))
+def tally(t, h, floats, ints, before, who, where, contacts):
+    """Count the impacts of masses, and steps too long for their springs."""
+    n, at, touching = ints[BODIES], ints[ints[MASSES_AT] + TALLY_AT], 0.0
+    memory = ints[ints[MASSES_AT] + MEMORY_AT]
     first = ints[ints[MASSES_AT] + HEAD + FIRST]
     for j in range(contacts):
         to, a, b = WHERE * j, who[WHO * j + BODY_A], who[WHO * j + BODY_B]
         mine = a >= first or b >= ints[SHAPES]
         push = abs(where[to + AT_PUSH]) + abs(where[to + AT_PUSH + 1]) + abs(where[to + AT_PUSH + 2])
+        if mine and push > 0.0 and h > floats[memory + LONGEST]:
+            touching = 1.0
         if not mine or who[WHO * j + FIRST_NAME] != BOUNCED or push == 0.0:
             continue
         arm = to + AT_ARM_A
@@ -404,3 +414,4 @@ def tally(t, floats, ints, before, who, where, contacts):
                 where[to + AT_NORMAL], where[to + AT_NORMAL + 1], where[to + AT_NORMAL + 2],
             )  # fmt: skip
         count_hit(floats, at, t, -speed)
+    floats[memory + LONGER] += touching

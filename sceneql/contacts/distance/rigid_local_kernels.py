@@ -17,7 +17,7 @@ from sceneql.bodies.rigid.groups_kernels import MASS, solve_groups
 from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_POINT, AT_PUSH, BODY_A, BODY_B, WHERE, WHO
 from sceneql.bodies.rigid.tied_rows_kernels import ROW_BODIES_AT, ROWS, begin_ties, first_stop, rouse, write_ties
 from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tied_to
-from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, Q_AT, X_AT, gather
+from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import POINT as MASS_SHAPE
@@ -54,7 +54,7 @@ from sceneql.contacts.distance.rigid_layout import (
     TIES,
     TIES_AT,
 )
-from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, recall, with_room
+from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, note_places, recall, with_room
 from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept_box
 from sceneql.linear.block_order_kernels import filled
 from sceneql.linear.bounded_rows_kernels import ROW
@@ -70,7 +70,7 @@ MASSES = "sceneql.contacts.distance.mass_points_kernels"
 mass_points = lazy(f"{MASSES}:mass_points", types.Tuple((I, A, N))(F, A, I, A, A, A, A, A, A, N, I, A, N))
 cut_at_impact = lazy(f"{MASSES}:cut_at_impact", types.void(F, F, A, I, A, A, A, A, A, A))
 push_out = lazy(f"{MASSES}:push_out", types.void(F, A, I, A, A, A, A, A, A))
-tally = lazy(f"{MASSES}:tally", types.void(F, A, I, A, I, A, N))
+tally = lazy(f"{MASSES}:tally", types.void(F, F, A, I, A, I, A, N))
 
 ROUNDS = 12
 """Most solutions of a step."""
@@ -278,20 +278,6 @@ def tell(floats, ints, who, where, contacts, h):
         floats[ints[CROWDED_AT]] += 1.0
 
 
-@lean(types.void(A, A, I, N), inner=True)
-def note_places(y, places, ints, unit):
-    """Write the places of the bodies in a state; ``unit`` 1: with quaternions of length 1."""
-    for k in range(ints[BODIES]):
-        x, q = ints[ints[BODIES_AT] + BODY_INTS * k + X_AT], ints[ints[BODIES_AT] + BODY_INTS * k + Q_AT]
-        whole = 1.0
-        if q >= 0 and unit == 1:
-            whole = math.sqrt(y[q] ** 2 + y[q + 1] ** 2 + y[q + 2] ** 2 + y[q + 3] ** 2)
-        for c in range(3):
-            places[PLACE * k + c] = y[x + c]
-        for c in range(4):
-            places[PLACE * k + 3 + c] = y[q + c] / whole if q >= 0 else 1.0 * (c == 0)
-
-
 @kernel(BACK_OFF, inner=True)
 def back_off(t0, t1, y0, rate0, y1, floats, ints):
     """Resolve the contacts of the step in y1, with the ties of what touches.
@@ -403,7 +389,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     tell(floats, ints, who, where, first, h)
     if some_masses:
         push_out(h, floats, ints, y0, y1, places, ends, motions, before)
-        tally(t0, floats, ints, before, who, where, first)
+        tally(t0, h, floats, ints, before, who, where, first)
     move_all(y0, y1, free, floats, ints, bodies_at, every, ties, touched, masses, found, before)
     if tied:
         end_ties(h, y0, floats, ties, rows, who, where, contacts, n, some)

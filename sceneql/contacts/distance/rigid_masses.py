@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -31,6 +32,19 @@ class Solid:
     """(7,) center of mass and quaternion at the start."""
 
 
+def masses_of(everyone: Sequence[Bodies], thickness: float, assembly: Assembly) -> Masses:
+    """The masses of a contact, with their tally and memory; bounds the steps that a tolerance chooses."""
+    from sceneql.contacts.impact_kernels import MOST_CUTS
+
+    # Impulses at the end of a step are to springs as an explicit method is: stable up to 2 / (2 pi / period).
+    longest = min(bodies.period for bodies in everyone) / math.pi
+    assembly.step_at_most(longest)
+    few = sum(bodies.count for bodies in everyone) <= MOST_CUT
+    cuts = [0.0, 0.0, 0.0] if few else [float("inf"), 0.0, float(MOST_CUTS)]
+    nan = float("nan")
+    return Masses(everyone, thickness, assembly.floats([0.0, nan, nan, 0.0, nan]), assembly.floats([*cuts, longest, 0]))
+
+
 @dataclass(frozen=True, slots=True)
 class Masses:
     """The models of masses of a contact."""
@@ -40,6 +54,8 @@ class Masses:
     """Distance to keep besides the radii [m]."""
     tally_at: int
     """Offset of the tally of impacts."""
+    memory_at: int
+    """Offset of the memory of mass_points_kernels."""
 
     def rows(self, assembly: Assembly) -> list[tuple[int, ...]]:
         """The integers of the masses as bodies of the step (velocity_step_kernels).
@@ -62,10 +78,7 @@ class Masses:
         Raises ScriptError for masses that start inside a solid, and for one that cannot be collided with.
         """
         from sceneql.contacts.distance import mass_points_kernels as kernels
-        from sceneql.contacts.impact_kernels import MOST_CUTS
 
-        few = sum(bodies.count for bodies in self.everyone) <= MOST_CUT
-        memory_at = assembly.floats([0.0, 0.0, 0.0] if few else [float("inf"), 0.0, MOST_CUTS])
         surfaces_at = kernels.HEAD + kernels.MODEL * len(self.everyone)
         objects_at = surfaces_at + kernels.TOUCHED * len(solids)
         records: list[int] = []
@@ -83,7 +96,7 @@ class Masses:
             spare = (0 for _ in range(layout.OBJECTS - layout.BODIES - 1))
             ints = (*here, *spare, len(surfaces), *_laid(surfaces, layout.HEAD))
             must_be_outside(bodies.model, [solid.ref for solid in solids], ints, assembly)
-        head = [len(self.everyone), assembly.floats([self.thickness]), memory_at, self.tally_at]
+        head = [len(self.everyone), assembly.floats([self.thickness]), self.memory_at, self.tally_at]
         head += [len(solids), at + surfaces_at]
         return [*head, *models, *records, *_laid(surfaces, at + objects_at)]
 

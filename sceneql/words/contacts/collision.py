@@ -86,6 +86,10 @@ class Collision(Contact):
         """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
         at = [k for k, each in enumerate(state.ints) if each == -1]
         endless = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
+        longer, longest = self._too_long(state)
+        if longer:
+            told = f"in {longer:.0f} steps longer than {longest:.2g} s masses on springs touched something: "
+            return told + "where rigid bodies collide, too, such steps can make energy: shorter ones, or `auto`, do not"
         if endless:
             return f"at {endless:.0f} instants impacts had no end: rigid bodies were let be there for a step"
         loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
@@ -94,6 +98,15 @@ class Collision(Contact):
         if not loose:
             return ""
         return f"in {loose:.0f} steps contacts of rigid bodies were not solved: friction there is not exact"
+
+    def _too_long(self, state: ModelState) -> tuple[float, float]:
+        """Steps that were too long for the springs of masses beside rigid bodies, and how long they may be [s]."""
+        if -3 not in state.ints:
+            return 0.0, 0.0
+        from sceneql.contacts.distance.mass_points_kernels import LONGER, LONGEST
+
+        at = state.ints[state.ints.index(-3) + 1]
+        return float(state.floats[at + LONGER]), float(state.floats[at + LONGEST])
 
     def _rigid(self, output: str, state: ModelState) -> Any:
         """Points, normals and forces of the contacts of rigid bodies at the end of the latest step (n, 3)."""
@@ -173,7 +186,7 @@ class Collision(Contact):
         """
         from sceneql.contacts.colliders import OFTEN
         from sceneql.contacts.distance.rigid_contact import assemble
-        from sceneql.contacts.distance.rigid_masses import Masses
+        from sceneql.contacts.distance.rigid_masses import masses_of
         from sceneql.contacts.rigid_exact import group
 
         written = {ref.name: ref for ref in self.between or ()}
@@ -188,13 +201,12 @@ class Collision(Contact):
             assembly.remember(*group.assemble(assembly, rigid, touched, self.restitution, self.friction))
             return
         assembly.step_at_most(OFTEN)
-        masses, tallies = None, ()
-        if points:
-            nan = float("nan")
-            tallies = (assembly.floats([0.0, nan, nan, 0.0, nan]),)
-            masses = Masses(points, self.thickness, *tallies)
+        masses = masses_of(points, self.thickness, assembly) if points else None
         told = assemble(assembly, rigid, touched, self.restitution, self.friction, masses)
-        assembly.remember(*tallies, -1, *told)
+        if masses is not None:
+            assembly.remember(masses.tally_at, -1, *told, -3, masses.memory_at)
+        else:
+            assembly.remember(-1, *told)
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output over all its models: counts add up, the first time is the earliest, the last the latest."""
