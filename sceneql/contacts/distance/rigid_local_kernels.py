@@ -16,7 +16,7 @@ import sceneql.system.channels as channels
 from sceneql.bodies.rigid.groups_kernels import MASS, solve_groups
 from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_POINT, AT_PUSH, BODY_A, BODY_B, WHERE, WHO
 from sceneql.bodies.rigid.tied_rows_kernels import ROW_BODIES_AT, ROWS, begin_ties, first_stop, rouse, write_ties
-from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tied_to
+from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tell_work, tied_to
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
@@ -392,4 +392,5 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         tally(t0, h, floats, ints, before, who, where, first)
     move_all(y0, y1, free, floats, ints, bodies_at, every, ties, touched, masses, found, before)
     if tied:
+        tell_work(floats, ties, rows, found, before)
         end_ties(h, y0, floats, ties, rows, who, where, contacts, n, some)

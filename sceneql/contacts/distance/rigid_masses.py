@@ -64,7 +64,7 @@ class Masses:
         """
         # Nothing turns them: any inertia does.
         inertia_at = assembly.floats([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
-        found = []
+        found: list[tuple[int, ...]] = []
         for bodies in self.everyone:
             must_be_free(bodies.model, assembly)
             for k in range(bodies.count):
@@ -96,9 +96,9 @@ class Masses:
             spare = (0 for _ in range(layout.OBJECTS - layout.BODIES - 1))
             ints = (*here, *spare, len(surfaces), *_laid(surfaces, layout.HEAD))
             must_be_outside(bodies.model, [solid.ref for solid in solids], ints, assembly)
-        head = [len(self.everyone), assembly.floats([self.thickness]), self.memory_at, self.tally_at]
-        head += [len(solids), at + surfaces_at]
-        return [*head, *models, *records, *_laid(surfaces, at + objects_at)]
+        begin = [len(self.everyone), assembly.floats([self.thickness]), self.memory_at, self.tally_at]
+        begin += [len(solids), at + surfaces_at]
+        return [*begin, *models, *records, *_laid(surfaces, at + objects_at)]
 
 
 def _laid(surfaces: Sequence[tuple[tuple[int, ...], tuple[int, ...]]], at: int) -> list[int]:
