@@ -246,17 +246,6 @@ solvers: {main: {semi_implicit_euler: {step: 5 ms}}}
     assert np.abs(end - start).max() < 1e-12
 
 
-def test_masses_and_bodies_in_one_contact_are_refused(tmp_path):
-    script = """objects: {o: {box: {position: 0 0.5 0 m}}, floor: plane}
-models: {it: {rigid: {of: o}}, net: {mass_spring: {masses: {a: {position: 0 2 0 m}}}}}
-contacts: {c: {collision: {between: [net, %s]}}}
-outputs: {t: {record: {of: [it.energy, net.energy]}}}
-"""
-    for other in ("it", "o", "o, floor"):
-        assert "masses do not touch rigid bodies, and 'net' has masses" in complaint(tmp_path, script % other)
-    assert not complaint(tmp_path, script % "floor")
-
-
 def test_a_body_may_be_named_by_its_object_too(tmp_path):
     objects, bodies = stack([1])
     ((places,),) = watch(

@@ -130,6 +130,17 @@ def test_a_torque_in_time_is_a_motor_without_aim(tmp_path):
     assert effort == pytest.approx(3 * np.cos(8), abs=1e-12)
 
 
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_what_a_motor_gives_is_the_energy_that_the_body_has_and_hands_on(tmp_path, solver):
+    script = MOTOR.replace("SOLVER", solver).replace("MOTOR", "speed: 2 rad/s, torque: 5 N*m").replace("LOAD", "-1")
+    for given, angle, kinetic in watch(tmp_path, script, [0.06, 1, 4], "u.given", "u.angle", "a.kinetic"):
+        assert given == pytest.approx(kinetic + angle, abs=1e-9)  # the load takes 1 N m times the angle
+    script = MOTOR.replace("SOLVER", "dop853: {tolerance: 1e-11}").replace("LOAD", "0")
+    script = script.replace("MOTOR", 'torque: "3 N*m*cos(2*time/(1 s))"')
+    ((given,),) = watch(tmp_path, script, [4], "u.given")
+    assert given == pytest.approx(0.125 * (6 * np.sin(8)) ** 2, abs=1e-9)
+
+
 def test_explain_tells_where_steps_are_of_order_one(tmp_path):
     script = PENDULUM.replace("PART", "0").replace("SOLVER", "auto")
     watch(tmp_path, f"{script}outputs: {{table: {{record: {{of: [a.energy]}}}}}}", [0], "u.angle")

@@ -15,6 +15,7 @@ from sceneql.kinds import Collider, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
+    from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies
 
 OFTEN = 1 / 240
@@ -72,9 +73,6 @@ def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assemb
 
 def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """An object's integers without the last, and the further integers of its shape."""
-    from sceneql.compiled.numbered_kernels import number_of
-    from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE
-
     kind = cast(Object, assembly.object(ref))
     try:
         noted = _Noted(assembly)
@@ -97,15 +95,59 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
         help = f"name under `between` what may touch, without '{ref.name}'"
         place = ref.span or assembly.line()
         raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", place, help)]) from None
+    places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
+    flat = int(here.flat and not is_moving(kind))
+    return (*_kernels(here), *places, *poses, flat), here.data
+
+
+def _kernels(here: Collider) -> list[int]:
+    """The numbers of a shape's four kernels."""
+    from sceneql.compiled.numbered_kernels import number_of
+    from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE
+
     shape = import_module(here.kernels)
     signatures = {"surface": SURFACE_TYPE, "bend": BEND_TYPE, "clear": CLEAR_TYPE}
     numbers = [number_of(getattr(shape, name), signature) for name, signature in signatures.items()]
     if not hasattr(shape, "near"):
         shape = import_module("sceneql.contacts.near_kernels")
-    numbers.append(number_of(shape.near, NEAR_TYPE))
-    places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
-    flat = int(here.flat and not is_moving(kind))
-    return (*numbers, *places, *poses, flat), here.data
+    return [*numbers, number_of(shape.near, NEAR_TYPE)]
+
+
+def surface_of(
+    ref: Ref, center: Floats, place: Floats, assembly: Assembly
+) -> tuple[tuple[int, ...], tuple[int, ...], Floats]:
+    """The integers of the surface of a solid that something else puts in place, without the last, and the further ones.
+
+    And its place (7,), position and quaternion, in the solid's axes from ``center`` (3,), which is in those of its
+    object; ``place`` (7,): of the solid at the start. Raises ScriptError for one that cannot be collided with.
+    """
+    import numpy as np
+
+    from sceneql.bodies.rigid.turning import quaternion
+    from sceneql.shapes.placement import rotation_matrix
+
+    kind = cast(Object, assembly.object(ref))
+    try:
+        with doing(f"looking at the surface of {ref.name}"):
+            here = _collider(kind, assembly)
+    except (TypeError, ValueError) as error:
+        help = f"name under `between` what may touch, without '{ref.name}'"
+        at = ref.span or assembly.line()
+        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", at, help)]) from None
+    values = [getattr(kind, name, None) for name in ("position", "rotation")]
+    rests = (np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))
+    x, q = (
+        np.asarray(assembly.initial(value), dtype=float) if isinstance(value, Value) else rest
+        for value, rest in zip(values, rests, strict=True)
+    )
+    own, numbers = rotation_matrix(q).T, assembly.numbers()
+    relative = own @ (numbers[here.position_at :][:3] - x) - center
+    turn = own @ rotation_matrix(numbers[here.rotation_at :][:4])
+    body = rotation_matrix(place[3:])
+    position = assembly.floats(place[:3] + body @ relative)
+    rotation = assembly.floats(quaternion(body @ turn))
+    head = (*_kernels(here), position, rotation, here.size_at, here.depth_at, 0, position, rotation, position, rotation)
+    return (*head, int(here.flat)), here.data, np.concatenate([relative, quaternion(turn)])
 
 
 class _Noted:

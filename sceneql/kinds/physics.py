@@ -269,7 +269,7 @@ class Contact(Kind):
     def assemble_rigid(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
-        """Add its terms for all models of rigid bodies at once."""
+        """Add its terms for all models at once, where there are rigid bodies among them."""
         raise NotImplementedError
 
     def assemble_skins(

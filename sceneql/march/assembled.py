@@ -122,10 +122,9 @@ class Assembled:
                     return
             rigid = [(bodies, refs) for bodies, refs in masses if bodies.turning is not None]
             if rigid and not kind.mutual:
-                kind.assemble_rigid(contact, self.assembly, [bodies for bodies, _ in rigid], rigid[0][1])
-            for bodies, refs in masses if not kind.mutual else ():
-                if bodies.turning is None:
-                    kind.assemble(contact, self.assembly, bodies, refs)
+                kind.assemble_rigid(contact, self.assembly, [bodies for bodies, _ in masses], rigid[0][1])
+            for bodies, refs in masses if not kind.mutual and not rigid else ():
+                kind.assemble(contact, self.assembly, bodies, refs)
 
 
 def models_of(graph: SimulationGraph, island: Island) -> Assembled:

@@ -15,7 +15,7 @@ from sceneql.bodies.rigid.tied_rows_kernels import (
     first_stop,
     write_ties,
 )
-from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tied_to
+from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tell_work, tied_to
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel
 from sceneql.linear.bounded_rows_kernels import ROW
@@ -60,4 +60,5 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     for k in range(own[DRIVES] if loose > 0 else 0):
         floats[own[drive_of(own, k) + EFFORT_AT] + 1] += 1.0
     move_all(y0, y1, free, floats, ints, bodies_at, every, own, touched, masses, found, before)
+    tell_work(floats, own, rows, found, before)
     end_ties(h, y0, floats, own, rows, who, where, 0, every, some)

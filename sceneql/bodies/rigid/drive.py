@@ -75,8 +75,10 @@ class Driven(Joint):
         none = assembly.floats([0.0])
         values = [none if value is None else assembly.value(value) for value in (force, stiffness, damping)]
         held = next(side.mover for side in (first, second) if isinstance(side.mover, Place))
-        law = (values[0], values[1], assembly.floats([rest]), values[2], held.bodies.work_at, assembly.floats([0.0]))
-        effort = assembly.floats([0.0, 0.0])
+        given = -1 if force is None else assembly.state([0.0])
+        law = (values[0], values[1], assembly.floats([rest]), values[2], held.bodies.work_at, given)
+        law = (*law, assembly.floats([0.0]))
+        effort = assembly.floats([0.0, 0.0, 0.0])
         ints = (*integers(first.mover), *integers(second.mover), *row, scratch, *law)
         if kind == "turn":
             assembly.after_step("sceneql.bodies.rigid.drive_kernels:follow", ints, samples=True)
@@ -114,6 +116,8 @@ class Driven(Joint):
         """How far and how fast it has gone; force and torque."""
         if output == "effort":
             return self._effort(state)
+        if output == "given":
+            return self._given(state)
         if output not in ("angle", "shift", "speed"):
             return super().read(output, state)
         far, fast = self._motion(state)
@@ -147,6 +151,13 @@ class Driven(Joint):
         own = state.ints[-(LAST_AT + 1) :]
         force = 0.0 if self.read("broken", state) else float(state.floats[own[FORCE_AT]])
         return force + float(state.floats[state.ints[-(LAST_AT + 2)]])
+
+    def _given(self, state: ModelState) -> float:
+        """The energy that its motor has given to the bodies."""
+        from sceneql.bodies.rigid.drive_kernels import GIVEN_AT, LAST_AT
+
+        at = state.ints[-(LAST_AT + 1) :][GIVEN_AT]
+        return float(state.y[at]) if at >= 0 else float(state.floats[state.ints[-(LAST_AT + 2)] + 2])
 
     def _motion(self, state: ModelState) -> tuple[float, float]:
         import numpy as np

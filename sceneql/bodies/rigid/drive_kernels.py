@@ -31,11 +31,11 @@ from sceneql.compiled.kernels import kernel, lean
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I
 
 ROW_AT, SCRATCH_AT = 2 * MOVER, 2 * MOVER + ROW_INTS
-FORCE_AT, STIFFNESS_AT, REST_AT, DAMPING_AT, WORK_AT, LAST_AT = range(SCRATCH_AT + 1, SCRATCH_AT + 7)
+FORCE_AT, STIFFNESS_AT, REST_AT, DAMPING_AT, WORK_AT, GIVEN_AT, LAST_AT = range(SCRATCH_AT + 1, SCRATCH_AT + 8)
 """Behind two movers and a row (tie_rows_kernels): offsets of what `see` writes of both; of the force, of stiffness,
-rest and damping; of the work in y; of how far it was at the end of the last step, by which turns are counted. A row of
-kind POINT is a shift along n_b; any other a turn about n_b, its numbers directions across that axis, one of a and one
-of b, and n_b."""
+rest and damping; of the work in y, and there of the energy that the force gave (-1: none); of how far it was at the
+end of the last step, by which turns are counted. A row of kind POINT is a shift along n_b; any other a turn about
+n_b, its numbers directions across that axis, one of a and one of b, and n_b."""
 
 
 @lean(types.UniTuple(F, 2)(A, A, I))
@@ -81,6 +81,8 @@ def drive(t, y, rate, floats, ints):
                 for c in range(3):
                     rate[ints[at + MOMENTUM] + c] += total * floats[to + 6 * side + 3 + c]
     rate[ints[WORK_AT]] += (lost - given) * fast
+    if ints[GIVEN_AT] >= 0:
+        rate[ints[GIVEN_AT]] += given * fast
 
 
 @kernel(AFTER_STEP, inner=True)

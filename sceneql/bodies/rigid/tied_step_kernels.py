@@ -222,6 +222,24 @@ def tell_forces(h, y0, floats, own, rows, who, where, contacts, n):
         floats[to + AT_PUSH] = floats[to + AT_FORCE] + (0.0 if own[FIRST_STEP] == 1 else floats[to + AT_PUSH])
 
 
+@lean(types.void(A, I, A, A, A))
+def tell_work(floats, own, rows, found, before):
+    """Add what motors gave in the step to the bodies that are solved, behind their efforts."""
+    for k in range(own[DRIVES]):
+        drive = own[drive_of(own, k) : drive_of(own, k) + DRIVE]
+        number = own[own[TIES_AT] + TIE_ROWS] + 4 * k + 2
+        c, sides, speed = ROW * number, own[ROW_BODIES_AT] + 2 * number, 0.0
+        # As in `move`: of a steady group the mean velocity of the step, else that at its end.
+        part = 0.5 if floats[own[ACTIVE_AT] + drive[DRIVE_GROUP]] == STEADY else 1.0
+        for side in range(2):
+            if own[sides + side] >= 0:
+                of = 6 * own[sides + side]
+                for i in range(6):
+                    mean = part * found[of + i] + (1.0 - part) * before[of + i]
+                    speed += rows[c + ROW_J + 6 * side + i] * mean
+        floats[drive[EFFORT_AT] + 2] += rows[c + ROW_X] * speed
+
+
 @lean(types.void(A, I))
 def forget(floats, own):
     """No force by which ties answer contacts."""

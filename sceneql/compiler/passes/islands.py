@@ -71,12 +71,10 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         if len(targets) > 1 and (not others or (isinstance(kind, Contact) and kind.mutual)):
             for target in targets[1:]:
                 tie(targets[0], target)
-        if any(getattr(tasks[target].kind, "has_skin", False) for target in targets):
+        solids = (getattr(tasks[target].kind, what, False) for target in targets for what in ("has_skin", "turns"))
+        if any(solids):
             for target in targets[1:]:
                 tie(targets[0], target)
-        rigid = [target for target in targets if getattr(tasks[target].kind, "turns", False)]
-        for target in rigid[1:]:
-            tie(rigid[0], target)
         for surface in others:
             for other in reads(surface, tasks):
                 for target in targets:
@@ -137,13 +135,6 @@ def _touching(
             found.error("no-collider", f"'{ref.name}': {why}", ref.span, help=help)
     ties = list(dict.fromkeys(driver.get(name, name) for name in ties))
     targets = [name for name in ties if name in models]
-    turning = [name for name in targets if getattr(tasks[name].kind, "turns", False)]
-    for ref in task.kind.ties() if turning and not task.kind.mutual else ():
-        name = driver.get(ref.name, ref.name)
-        if name in targets and name not in turning:
-            text = f"masses do not touch rigid bodies, and '{ref.name}' has masses, '{turning[0]}' bodies"
-            help = f"give '{ref.name}' a contact of its own, with the objects that it may touch"
-            found.error("no-collider", text, ref.span, help=help)
     surfaces = [name for name in ties if isinstance(tasks[name].kind, Object)]
     if not targets:
         targets = [n for n in models if getattr(tasks[n].kind, "has_bodies", False)]

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
 
-CORE, HALF_SPACE, SKINNED = range(3)
+CORE, HALF_SPACE, SKINNED, POINT = range(4)
 """Kinds: a polyhedron, segment or point with a radius; all on one side of a plane; what is met by its skin alone
-(contact_skins.py), here a ball around it."""
+(contact_skins.py), here a ball around it; a mass, which meets the others by itself (mass_points_kernels.py)."""
 COPLANAR = 1e-9
 """Angle [rad] between triangles of a convex hull up to which they are parts of one face."""
 VERTICES = 2
@@ -61,6 +61,11 @@ class Convex:
     def normals(self) -> Floats:
         """Of a CORE: the outer unit normals of its faces (f, 3)."""
         return self.floats[VERTICES + 3 * int(self.ints[0]) :].reshape(-1, 3)
+
+
+def mass() -> Convex:
+    """What stands for a mass among the shapes."""
+    return Convex(POINT, np.zeros(0), np.zeros(0, dtype=np.int64))
 
 
 def ball(radius: float, center: Sequence[float] | Floats = (0.0, 0.0, 0.0)) -> Convex:

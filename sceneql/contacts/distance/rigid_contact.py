@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from sceneql.contacts.distance import led
+from sceneql.contacts.distance.rigid_masses import Solid
 from sceneql.kinds import Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 
 if TYPE_CHECKING:
     from sceneql.contacts.distance.convex import Convex
+    from sceneql.contacts.distance.rigid_masses import Masses
     from sceneql.contacts.distance.rigid_shapes import Shapes
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies
@@ -23,7 +25,12 @@ KERNEL = "sceneql.contacts.distance.rigid_local_kernels:back_off"
 
 
 def assemble(
-    assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref], restitution: Value, friction: Value
+    assembly: Assembly,
+    everyone: Sequence[Bodies],
+    others: Sequence[Ref],
+    restitution: Value,
+    friction: Value,
+    masses: Masses | None = None,
 ) -> tuple[int, ...]:
     """Add the contacts of rigid bodies; the offsets of count, points, normals, forces, loose and crowded steps.
 
@@ -42,6 +49,7 @@ def assemble(
     leads: list[tuple[int, ...]] = []
     moving: list[tuple[Ref | None, Floats]] = []
     standing: list[Ref | None] = []
+    centers: list[Floats] = []
     start = assembly.start()
     for bodies in everyone:
         turning = bodies.turning
@@ -54,8 +62,10 @@ def assemble(
             if numbers[bodies.inverse_at + k] == 0.0:
                 fixed.append((shape, place))
                 standing.append(ref)
+                centers.append(center)
                 still.append(x)
                 continue
+            centers.insert(len(moving), center)
             moving.append((ref, place))
             rows.append(body_integers(bodies, k, assembly))
             shapes.append(shape)
@@ -67,20 +77,25 @@ def assemble(
             leads.append((len(fixed), *led.lead(ref, kind, place, assembly)))
         fixed.append((shape, place))
         standing.append(ref)
-    n = len(rows)
+        centers.append(np.zeros(3))
+    r = len(rows)
+    points = [] if masses is None else masses.rows(assembly)
+    rows, n = [*rows, *points], r + len(points)
     leads = [(n + first, *rest) for first, *rest in leads]
-    everything = [*shapes, *(shape for shape, _ in fixed)]
-    count, most = len(everything), CONTACTS * n + 64
+    real = [*shapes, *(shape for shape, _ in fixed)]
+    everything = [*shapes, *(convex.mass() for _ in points), *(shape for shape, _ in fixed)]
+    count, most = len(everything), CONTACTS * r + 64 + 2 * len(points)
     places = np.zeros((count, PLACE))
     for k, (_, place) in enumerate(fixed):
         places[n + k] = place
     names = [*(ref for ref, _ in moving), *standing]
     ties = tied_step(assembly, rows, not assembly.driven)
-    shape_of = {at: k for k, at in enumerate([*(row[0] for row in rows), *still])}
+    shape_of = {at: k for k, at in enumerate([*(row[0] for row in rows[:r]), *still])}
     between = [] if ties is None else [[shape_of.get(at, -1) for at in pair] for pair in ties.joined]
     joined = {(min(pair), max(pair)) for pair in between if min(pair) >= 0}
     starts = [*(place for _, place in moving), *(place for _, place in fixed)]
-    must_be_apart(known, everything, starts, n, names, joined, assembly)
+    must_be_apart(known, real, starts, r, names, joined, assembly)
+    joined = {(a, b if b < r else b + len(points)) for a, b in joined}
     held = []
     if ties is not None:
         assembly.driven, rows, held = True, ties.bodies, ties.ints(assembly)
@@ -100,11 +115,20 @@ def assemble(
     skins = known.written(everything, skins_at)
     head = [n, count, rigid_layout.HEAD, bodies_at, places_at, room_at, room, kept_at, names_at, most]
     head += [assembly.value(restitution), assembly.value(friction), *found, loose, crowded]
-    head += [len(rows), ties_at, len(held), joined_at, len(leads), leads_at, skins_at if skins else 0]
+    masses_at = skins_at + len(skins) if points else 0
+    head += [len(rows), ties_at, len(held), joined_at, len(leads), leads_at, skins_at if skins else 0, masses_at]
+    meets = []
+    if masses is not None:
+        solids = [
+            Solid(k if k < r else k + len(points), ref, center, place)
+            for k, (ref, center, place) in enumerate(zip(names, centers, starts, strict=True))
+            if ref is not None
+        ]
+        meets = masses.written(masses_at, r, solids, assembly)
     names_room = [0] * (WHO * most)
     ints = [*head, *integers.tolist(), *(number for row in rows for number in row), *held]
     ints += [len(joined), *(number for pair in sorted(joined) for number in pair), *names_room]
-    ints += [*(number for one in leads for number in one), *skins]
+    ints += [*(number for one in leads for number in one), *skins, *meets]
     assembly.contact("local", (KERNEL,), [int(number) for number in ints], 0)
     return (*found, loose, crowded)
 

@@ -16,10 +16,11 @@ import sceneql.system.channels as channels
 from sceneql.bodies.rigid.groups_kernels import MASS, solve_groups
 from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_POINT, AT_PUSH, BODY_A, BODY_B, WHERE, WHO
 from sceneql.bodies.rigid.tied_rows_kernels import ROW_BODIES_AT, ROWS, begin_ties, first_stop, rouse, write_ties
-from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tied_to
-from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, Q_AT, X_AT, gather
+from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tell_work, tied_to
+from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts.distance.convex import POINT as MASS_SHAPE
 from sceneql.contacts.distance.convex import SHAPE, SKINNED
 from sceneql.contacts.distance.first_touch_kernels import first_touch
 from sceneql.contacts.distance.first_touch_kernels import move as place_after
@@ -39,6 +40,7 @@ from sceneql.contacts.distance.rigid_layout import (
     LEDS,
     LEDS_AT,
     LOOSE_AT,
+    MASSES_AT,
     MOST_KEPT,
     NORMALS_AT,
     PLACES_AT,
@@ -52,7 +54,7 @@ from sceneql.contacts.distance.rigid_layout import (
     TIES,
     TIES_AT,
 )
-from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, recall, with_room
+from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, note_places, recall, with_room
 from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept_box
 from sceneql.linear.block_order_kernels import filled
 from sceneql.linear.bounded_rows_kernels import ROW
@@ -64,6 +66,11 @@ skin_points = lazy(
     types.Tuple((I, A, N))(F, A, I, N, N, A, A, A, F, N, I, A, N),
 )
 cut = lazy("sceneql.contacts.distance.skin_pair_kernels:cut", F(F, A, I, N, N, A, A, F))
+MASSES = "sceneql.contacts.distance.mass_points_kernels"
+mass_points = lazy(f"{MASSES}:mass_points", types.Tuple((I, A, N))(F, A, I, A, A, A, A, A, A, N, I, A, N))
+cut_at_impact = lazy(f"{MASSES}:cut_at_impact", types.void(F, F, A, I, A, A, A, A, A, A))
+push_out = lazy(f"{MASSES}:push_out", types.void(F, A, I, A, A, A, A, A, A))
+tally = lazy(f"{MASSES}:tally", types.void(F, F, A, I, A, I, A, N))
 
 ROUNDS = 12
 """Most solutions of a step."""
@@ -117,6 +124,10 @@ def sweep(h, floats, ints, places, motions, before, more, boxes, room):
     """Write the boxes around all that the shapes sweep, wider by what they reach at the speeds of ``before``."""
     n, head = ints[BODIES], ints[SHAPES_AT]
     for k in range(ints[SHAPES]):
+        if ints[head + SHAPE * k] == MASS_SHAPE:
+            for c in range(3):
+                boxes[BOX * k + c], boxes[BOX * k + 3 + c] = math.inf, -math.inf
+            continue
         reach, margin = floats[ints[head + SHAPE * k + 1] + 1], 0.0
         if k < n:
             margin = h * reach_of(before, MOTION * k, reach) + more * reach
@@ -281,22 +292,17 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         part = first_stop(h, y0, y1, floats, ties)
         if part < 1.0:
             floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + part * h)
-    if asked and ints[SKINS_AT] == 0:
+    if asked and ints[SKINS_AT] == 0 and ints[MASSES_AT] == 0:
         return
     places = floats[ints[PLACES_AT] : ints[PLACES_AT] + PLACE * shapes]
     room = floats[ints[ROOM_AT] : ints[ROOM_AT] + ints[ROOM]]
     size = MOTION * max(shapes, every)
     motions, before, masses = np.zeros(size), np.zeros(size), np.empty(MASS * every)
     boxes = np.empty(BOX * shapes)
+    note_places(y0, places, ints, 0)
     # What stands has the numbers behind the bodies with shapes: those without one come once that is looked at.
     for k in range(n):
-        own = bodies_at + BODY_INTS * k
-        x, q = ints[own + X_AT], ints[own + Q_AT]
-        for c in range(3):
-            places[PLACE * k + c] = y0[x + c]
-        for c in range(4):
-            places[PLACE * k + 3 + c] = y0[q + c]
-        gather(y0, y0, y1, floats, ints, own, masses, MASS * k, motions, before, MOTION * k)
+        gather(y0, y0, y1, floats, ints, bodies_at + BODY_INTS * k, masses, MASS * k, motions, before, MOTION * k)
     seen, ends = np.zeros(MOTION * shapes), copied(places)
     for k in range(ints[LEDS]):
         own = ints[LEDS_AT] + LED * k
@@ -306,8 +312,14 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         for c in range(MOTION):
             before[MOTION * at + c] = seen[MOTION * at + c] = motions[MOTION * at + c]
     sweep(h, floats, ints, places, motions, before, 1e-3, boxes, room)
-    pairs = pairs_of(boxes, shapes)
+    pairs, some_masses = pairs_of(boxes, shapes), ints[MASSES_AT] > 0
+    if some_masses:
+        note_places(y1, ends, ints, 1)
     if asked:
+        if some_masses:
+            cut_at_impact(t0, t1, floats, ints, y0, y1, places, ends, motions, before)
+        if ints[SKINS_AT] == 0:
+            return
         most = shortened(h, floats, ints, places, motions, before, pairs)
         if most < 0.999 * h:
             floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + most)
@@ -315,7 +327,11 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     who, where, contacts = contacts_at_start(h, floats, ints, places, motions, before, pairs, room)
     kept = int(floats[ints[COUNT_AT]])
     floats[ints[COUNT_AT]] = 0.0
-    if pairs.shape[0] == 0 and not tied:
+    if some_masses:
+        who, where, contacts = mass_points(
+            h, floats, ints, y0, y1, places, ends, motions, before, 0, who, where, contacts
+        )
+    if pairs.shape[0] == 0 and not tied and contacts == 0:
         return
     names = ints[ints[KEPT_NAMES_AT] : ints[KEPT_NAMES_AT] + WHO * ints[MOST_KEPT]]
     recall(who, where, contacts, names, floats[ints[KEPT_AT] : ints[KEPT_AT] + 3 * ints[MOST_KEPT]], kept)
@@ -353,11 +369,7 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
                 for c in range(MOTION):
                     found[MOTION * k + c] = motions[MOTION * k + c]
         place_all(h, y0, y1, free, floats, ints, bodies_at, every, ties, touched, found, motions)
-        for k in range(n):
-            x, q = ints[bodies_at + BODY_INTS * k + X_AT], ints[bodies_at + BODY_INTS * k + Q_AT]
-            whole = math.sqrt(y1[q] ** 2 + y1[q + 1] ** 2 + y1[q + 2] ** 2 + y1[q + 3] ** 2)
-            for c in range(PLACE):
-                ends[PLACE * k + c] = y1[x + c] if c < 3 else y1[q + c - 3] / whole
+        note_places(y1, ends, ints, 1)
         if number == ROUNDS - 1:
             break
         last = contacts
@@ -366,11 +378,19 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         who, where, contacts = contacts_at_end(
             h, floats, ints, places, seen, before, boxes, ends, who, where, contacts, room
         )
+        if some_masses:
+            who, where, contacts = mass_points(
+                h, floats, ints, y0, y1, places, ends, seen, before, number + 1, who, where, contacts
+            )
         more = some and again(h, y0, y1, free, floats, ties, rows)
         if contacts == last and not more:
             break
     floats[ints[LOOSE_AT]] += loose > 0
     tell(floats, ints, who, where, first, h)
+    if some_masses:
+        push_out(h, floats, ints, y0, y1, places, ends, motions, before)
+        tally(t0, h, floats, ints, before, who, where, first)
     move_all(y0, y1, free, floats, ints, bodies_at, every, ties, touched, masses, found, before)
     if tied:
+        tell_work(floats, ties, rows, found, before)
         end_ties(h, y0, floats, ties, rows, who, where, contacts, n, some)

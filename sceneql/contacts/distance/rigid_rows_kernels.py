@@ -4,6 +4,8 @@
 The list grows as it needs. A point is known from step to step by its pair and its name (manifold_kernels).
 """
 
+import math
+
 import numpy as np
 from numba import types
 
@@ -21,8 +23,10 @@ from sceneql.bodies.rigid.point_list import (
     WHERE,
     WHO,
 )
+from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, Q_AT, X_AT
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT
+from sceneql.contacts.distance.rigid_layout import BODIES, BODIES_AT
 from sceneql.linear.block_order_kernels import longer
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -41,6 +45,20 @@ def with_room(who, where, count):
     for k in range(WHERE * count):
         wider[k] = where[k]
     return longer(who, WHO * count, WHO * more), wider
+
+
+@lean(types.void(A, A, I, N), inner=True)
+def note_places(y, places, ints, unit):
+    """Write the places of the bodies in a state; ``unit`` 1: with quaternions of length 1."""
+    for k in range(ints[BODIES]):
+        x, q = ints[ints[BODIES_AT] + BODY_INTS * k + X_AT], ints[ints[BODIES_AT] + BODY_INTS * k + Q_AT]
+        whole = 1.0
+        if q >= 0 and unit == 1:
+            whole = math.sqrt(y[q] ** 2 + y[q + 1] ** 2 + y[q + 2] ** 2 + y[q + 3] ** 2)
+        for c in range(3):
+            places[PLACE * k + c] = y[x + c]
+        for c in range(4):
+            places[PLACE * k + 3 + c] = y[q + c] / whole if q >= 0 else 1.0 * (c == 0)
 
 
 @lean_inlined

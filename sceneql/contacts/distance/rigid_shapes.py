@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.contacts.distance import convex
-from sceneql.contacts.distance.convex import SHAPE, SKINNED, Convex
+from sceneql.contacts.distance.convex import POINT, SHAPE, SKINNED, Convex
 from sceneql.failure import RunFailure
 from sceneql.island.start import Start
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -78,7 +78,8 @@ class Shapes:
         tail: list[int] = []
         for shape in shapes:
             begins.append(at + len(shapes) + len(tail))
-            tail += self.skin(shape).written(begins[-1], self._assembly)
+            if shape.kind != POINT:
+                tail += self.skin(shape).written(begins[-1], self._assembly)
         return [*begins, *tail]
 
     def gaps(

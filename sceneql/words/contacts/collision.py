@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from sceneql.contacts import layout
 from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Problem, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ class Collision(Contact):
     details smaller than a cell on both are not seen, all else to a millionth of the size. Where a step would take such
     a shape farther than half its thickness it is cut; a pair has at most 12 points. Bodies may be held by ties, which
     are found with the contacts; those that a tie joins do not touch each other. `points`, `normals` and `forces` tell
-    of it, hits and rest do not. Masses do not touch rigid bodies.
+    of it, hits and rest do not.
 
     Mode `exact`, asked for by name, is for few rigid bodies of exact shapes, ties included, and what stands: all
     contacts that approach are reflected together until none approaches (Smith et al. 2012), and what rests, rolls or
@@ -100,6 +101,10 @@ class Collision(Contact):
         """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
         at = [k for k, each in enumerate(state.ints) if each == -1]
         endless = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
+        longer, longest = self._too_long(state)
+        if longer:
+            told = f"in {longer:.0f} steps longer than {longest:.2g} s masses on springs touched something: "
+            return told + "where rigid bodies collide, too, such steps can make energy: shorter ones, or `auto`, do not"
         if endless:
             return f"at {endless:.0f} instants impacts had no end: rigid bodies were let be there for a step"
         loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
@@ -108,6 +113,15 @@ class Collision(Contact):
         if not loose:
             return ""
         return f"in {loose:.0f} steps contacts of rigid bodies were not solved: friction there is not exact"
+
+    def _too_long(self, state: ModelState) -> tuple[float, float]:
+        """Steps that were too long for the springs of masses beside rigid bodies, and how long they may be [s]."""
+        if -3 not in state.ints:
+            return 0.0, 0.0
+        from sceneql.contacts.distance.mass_points_kernels import LONGER, LONGEST
+
+        at = state.ints[state.ints.index(-3) + 1]
+        return float(state.floats[at + LONGER]), float(state.floats[at + LONGEST])
 
     def _rigid(self, output: str, state: ModelState) -> Any:
         """Points, normals and forces of the contacts of rigid bodies at the end of the latest step (n, 3)."""
@@ -218,9 +232,13 @@ class Collision(Contact):
     def assemble_rigid(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
-        """Add the contacts of rigid bodies with one another and with objects. Raises ScriptError for mode `exact`."""
+        """Add the contacts of rigid bodies with one another, with objects and with masses, and of masses with objects.
+
+        Raises ScriptError for mode `exact` where it does not cover them.
+        """
         from sceneql.contacts.colliders import OFTEN
         from sceneql.contacts.distance.rigid_contact import assemble
+        from sceneql.contacts.distance.rigid_masses import masses_of
         from sceneql.contacts.rigid_exact import group
 
         if self.mode == "barrier":
@@ -230,11 +248,22 @@ class Collision(Contact):
             raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
+        rigid = [bodies for bodies in everyone if bodies.turning is not None]
+        points = [bodies for bodies in everyone if bodies.turning is None]
+        if self.mode == "exact" and points:
+            message = f"mode `exact` has no contacts of masses, as of '{points[0].model}', with rigid bodies"
+            help = "mode: local has; or give the masses a `collision` of their own with the objects they may touch"
+            raise ScriptError([Diagnostic("invalid", message, assembly.line(), help)])
         if self.mode == "exact":
-            assembly.remember(*group.assemble(assembly, everyone, touched, self.restitution, self.friction))
+            assembly.remember(*group.assemble(assembly, rigid, touched, self.restitution, self.friction))
             return
         assembly.step_at_most(OFTEN)
-        assembly.remember(-1, *assemble(assembly, everyone, touched, self.restitution, self.friction))
+        masses = masses_of(points, self.thickness, assembly) if points else None
+        told = assemble(assembly, rigid, touched, self.restitution, self.friction, masses)
+        if masses is not None:
+            assembly.remember(masses.tally_at, -1, *told, -3, masses.memory_at)
+        else:
+            assembly.remember(-1, *told)
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output over all its models: counts add up, the first time is the earliest, the last the latest."""
