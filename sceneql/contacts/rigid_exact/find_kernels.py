@@ -87,8 +87,8 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 TOUCHES = 1e-10
 """Gap, in parts of the size of the smaller body, up to which shapes touch."""
-DEEP = 2e-6
-"""Overlap, in the same parts, with which bodies may start."""
+DEEP = 1e-3
+"""Overlap, in the same parts, up to which a point is a contact: a step's error leaves far less."""
 FEATURE = 1e-7
 """Distance from a feature, in parts of the body's size, up to which a point is on it."""
 PARALLEL = 1e-6
@@ -287,9 +287,9 @@ def smaller(floats, ints, a, b):
     return min(floats[fa + REACH], floats[fb + REACH])
 
 
-@lean(types.void(F, A, A, I, F, A, I))
-def find(t, y, floats, ints, deep, points, names):
-    """Write the contacts of all pairs that touch, as kept; those overlap by ``deep`` at most, in parts of their size.
+@lean(types.void(F, A, A, I, A, I))
+def find(t, y, floats, ints, points, names):
+    """Write the contacts of all pairs that touch, as kept.
 
     Which of them slide is by their speeds. ``points``, ``names``: room of a manifold.
     """
@@ -310,7 +310,7 @@ def find(t, y, floats, ints, deep, points, names):
         )
         for k in range(found):
             p, rec = CORNER * k, next + RECORD * count
-            if points[p + 6] > margin or points[p + 6] < -deep * smaller(floats, ints, a, b) - margin:
+            if points[p + 6] > margin or points[p + 6] < -DEEP * smaller(floats, ints, a, b) - margin:
                 continue
             if count == most:
                 floats[memory + CROWDED] += 1.0

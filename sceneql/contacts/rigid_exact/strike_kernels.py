@@ -70,7 +70,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     solve_rows,
     write_rows,
 )
-from sceneql.contacts.rigid_exact.find_kernels import DEEP, begin, find, smaller, start_step
+from sceneql.contacts.rigid_exact.find_kernels import begin, find, smaller, start_step
 from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
 
 APPROACHES = 1e-13
@@ -235,19 +235,19 @@ def impact(t, y, pair, floats, ints):
         again = floats[memory + AGAIN] + 1.0 if t == floats[memory + LATEST] else 0.0
         floats[memory + LATEST], floats[memory + AGAIN] = t, again
         floats[memory + ENDLESS] += again == ENDURANCE
-        find(t, y, floats, ints, 1e-9, points, names)
+        find(t, y, floats, ints, points, names)
         strike(t, y, floats, ints)
         keep(floats, ints, False)
         begin(t, y, floats, ints)
     elif floats[memory + STARTED] == 0.0:
         floats[memory + STARTED] = 1.0
-        find(t, y, floats, ints, DEEP, points, names)
+        find(t, y, floats, ints, points, names)
         keep(floats, ints, False)
         begin(t, y, floats, ints)
         floats[channels.CHANGED] = 1.0
     elif floats[memory + KEPT] > 0.0:
         floats[memory + AGAIN] = 0.0
-        find(t, y, floats, ints, 1e-9, points, names)
+        find(t, y, floats, ints, points, names)
         keep(floats, ints, True)
         begin(t, y, floats, ints)
         floats[channels.CHANGED] = 1.0
