@@ -30,6 +30,7 @@ from sceneql.contacts.impact_kernels import count_hit
 from sceneql.contacts.rigid_exact.contact_kernels import (
     BIAS,
     PAIR,
+    PUSHES,
     RECORD,
     ROWS,
     SHAPE_A,
@@ -77,6 +78,8 @@ APPROACHES = 1e-13
 """Speed of approach, in parts of the speeds that it is a sum of, that counts."""
 PARTS, STILL = 1e-9, 1e-12
 """Speed away from each other, in the same parts and [m/s], from which a contact is not kept."""
+DRIFT = 1e-3
+"""The same of a contact that pushed in the step before: what the step's error leaves is closed after it."""
 MOST_ROUNDS = 500
 """Reflections at one instant, after which all contacts end their approach together, without restitution."""
 LOWEST = 1e-12
@@ -216,7 +219,8 @@ def keep(floats, ints, old):
     for k in range(int(floats[memory + KEPT])):
         rec, to = ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * kept
         a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
-        if abs(floats[rec + SPEED]) > STILL + PARTS * pace(floats, rec, a, b):
+        parts = DRIFT if old and floats[rec + PUSHES] > 0.0 else PARTS
+        if abs(floats[rec + SPEED]) > STILL + parts * pace(floats, rec, a, b):
             continue
         if old and floats[ints[KEPT_AT] + int(floats[rec + PAIR])] == 0.0:
             continue
