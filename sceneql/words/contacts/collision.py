@@ -87,6 +87,9 @@ class Collision(Contact):
         endless = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
         if endless:
             return f"at {endless:.0f} instants impacts had no end: rigid bodies were let be there for a step"
+        jammed = sum(state.floats[state.ints[k + 2]] for k, each in enumerate(state.ints) if each == -2)
+        if jammed:
+            return f"at {jammed:.0f} instants no force fitted the slip of rigid bodies: friction stopped it at once"
         loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
         if crowded:
             return f"in {crowded:.0f} steps rigid bodies had more contacts than outputs have room for: all acted"
@@ -166,14 +169,21 @@ class Collision(Contact):
     def assemble_rigid(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
-        """Add the contacts of rigid bodies with one another and with objects. Raises ScriptError for mode `exact`."""
+        """Add the contacts of rigid bodies with one another and with objects.
+
+        Raises ScriptError for a shape that is not covered, and for what mode `exact` does not take.
+        """
         from sceneql.contacts.colliders import OFTEN
         from sceneql.contacts.distance.rigid_contact import assemble
         from sceneql.contacts.rigid_exact import group
 
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
-        if self.mode == "exact":
+        why = group.why_local(assembly, everyone, touched) if self.mode == "auto" else ""
+        assembly.contact_why = "asked for by the script"
+        if self.mode == "auto":
+            assembly.contact_why = f"chosen, for {why}" if why else "chosen for a few balls"
+        if self.mode == "exact" or (self.mode == "auto" and not why):
             assembly.remember(*group.assemble(assembly, everyone, touched, self.restitution, self.friction))
             return
         assembly.step_at_most(OFTEN)
