@@ -192,8 +192,8 @@ def _contact_remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
 
 def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
     """Why an island's contacts work in their mode."""
-    if any(bodies is not None and bodies.turning is not None for bodies in run.bodies.values()):
-        return "the one that rigid bodies have"
+    if run.assembly.contact_why:
+        return run.assembly.contact_why
     if run.assembly.contact_mode == "barrier":
         return "the one that elastic solids have"
     kinds = [graph.tasks[contact].kind for contact, _, _ in run.island.contacts]

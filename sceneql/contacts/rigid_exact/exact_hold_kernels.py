@@ -47,10 +47,12 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     AT_PUSH,
     AT_WEIGHED,
     COUNT_AT,
+    COUNTED,
     FORCES,
     FORCES_AT,
     FRICTION_AT,
     GAPS,
+    JAMMED,
     KEPT,
     LOOSE,
     MEMORY_AT,
@@ -68,6 +70,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     UNIT,
     UNITS_AT,
     WORKS_AT,
+    count_energy,
     follow_all,
     kick,
     left_at,
@@ -77,6 +80,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     sizes_at,
     solution_at,
     solve_rows,
+    within_reason,
     write_rows,
 )
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, I, N
@@ -116,6 +120,17 @@ def aim(floats, ints):
             put(floats, rec + AIMED, 0.0, 0.0, 0.0)
         else:
             put(floats, rec + AIMED, sx / speed, sy / speed, sz / speed)
+
+
+@lean(types.boolean(A, I))
+def unaim(floats, ints):
+    """Let no contact have a direction of slip; whether one had."""
+    some = False
+    for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
+        at = ints[RECORDS_AT] + RECORD * k + AIMED
+        some = some or floats[at] != 0.0 or floats[at + 1] != 0.0 or floats[at + 2] != 0.0
+        put(floats, at, 0.0, 0.0, 0.0)
+    return some
 
 
 @lean(types.void(A, I, N))
@@ -218,8 +233,14 @@ def hold(t, y, rate, floats, ints):
     follow_all(floats, ints)
     aim(floats, ints)
     n = write_rows(floats, ints, FORCES, friction)
-    if not solve_rows(floats, ints, n, friction) and floats[memory + UNDECIDED] > 0.0:
-        floats[memory + LOOSE] += 1.0
+    solved = solve_rows(floats, ints, n, friction)
+    if not (solved and within_reason(floats, ints, n)) and unaim(floats, ints):
+        # No force fits the slip: friction against the pull does, and what sticks by it is stopped at once.
+        n = write_rows(floats, ints, FORCES, friction)
+        solved = solve_rows(floats, ints, n, friction)
+        floats[memory + JAMMED] += floats[memory + UNDECIDED]
+    if not solved:
+        floats[memory + LOOSE] += floats[memory + UNDECIDED]
     found = solution_at(ints)
     for i in range(n):
         unit, force = ints[UNITS_AT] + UNIT * i, floats[found + i]
@@ -304,6 +325,13 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         n = write_rows(floats, ints, SPEEDS, friction)
         # Tangents stand as ties here: what sticks has no speed.
         solve_rows(floats, ints, n, 0.0)
+        jammed = floats[memory + JAMMED] > floats[memory + COUNTED]
+        if jammed:  # an impulse without an impact, of which the energy is no error
+            floats[memory + COUNTED] = floats[memory + JAMMED]
+            count_energy(y1, floats, ints, 1.0)
         kick(y1, floats, ints, n)
+        if jammed:
+            look(t1, y1, floats, ints)
+            count_energy(y1, floats, ints, -1.0)
         changed = True
     return changed

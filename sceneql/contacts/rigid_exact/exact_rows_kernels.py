@@ -13,6 +13,8 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_MASS,
     AT_SPEED,
     AT_TWIST,
+    AT_V,
+    AT_W,
     AT_X,
     MOMENTUM,
     MOVED,
@@ -59,10 +61,31 @@ for kinds of rows, pivots and which contacts are struck, where the energy taken 
 floats: movers, places of shapes, those at the start of the step, working memory, contacts (twice), rows, the dense
 system, how many contacts each pair keeps, memory, coefficients, what outputs read."""
 
-KEPT, UNDECIDED, SINCE, STARTED, BEGUN, LOOSE, CROWDED, ENDLESS, LATEST, AGAIN, MEMORY = range(11)
+(
+    KEPT,
+    UNDECIDED,
+    SINCE,
+    STARTED,
+    BEGUN,
+    LOOSE,
+    CROWDED,
+    ENDLESS,
+    LATEST,
+    AGAIN,
+    JAMMED,
+    COUNTED,
+    SOME,
+    SINCE_SOME,
+    LIFT,
+    MEMORY,
+) = range(16)
 """Memory: how many contacts are kept; whether it is open which of them slide or leave; since when they are these [s];
 whether it has begun; when the step began [s]; solutions that were not found to rounding, contacts without room,
-instants with impacts without end; when the latest event was [s], and how many there were at that instant before."""
+instants with impacts without end; when the latest event was [s], and how many there were at that instant before;
+instants at which slip jammed, and those whose energy is counted; impacts since a time [s], by which it is told how
+close they are; the factor of the height below which none bounces."""
+BEYOND = 1e8
+"""What a force does, in parts of what it answers, beyond which slip has no force (Painleve 1895)."""
 PATIENCE, ENDURANCE = 20, 100
 """Events at one instant after which no contact is let go any more; after which the pairs that touch have none."""
 
@@ -160,9 +183,7 @@ def write_rows(floats, ints, what, friction):
         slides, pushes = floats[rec + SLIDES] > 0.0, floats[rec + PUSHES] > 0.0
         if what == IMPACTS and ints[marked + k] == 0:
             continue
-        if (what == GAPS and not pushes and floats[rec + GAP] >= 0.0) or (
-            what == SPEEDS and not pushes and floats[rec + SPEED] >= 0.0
-        ):
+        if what == GAPS and not pushes and floats[rec + GAP] >= 0.0:
             continue
         if what == FORCES:
             slides = floats[rec + AIMED] != 0.0 or floats[rec + AIMED + 1] != 0.0 or floats[rec + AIMED + 2] != 0.0
@@ -224,6 +245,19 @@ def solve_rows(floats, ints, n, friction):
     return solve_law(n, w, b, ints[kinds : kinds + n], friction, x, s, work, ints[kinds + room : kinds + room + n])
 
 
+@lean(types.boolean(A, I, N))
+def within_reason(floats, ints, n):
+    """Whether no force of a solution is far beyond those that it answers."""
+    room = ints[TIE_ROWS] + 3 * ints[MOST]
+    at, answered = ints[DENSE_AT] + room * room, 0.0
+    for i in range(n):
+        answered = max(answered, abs(floats[at + i]))
+    for i in range(ints[TIE_ROWS], n):
+        if not abs(floats[at + room + i]) * abs(floats[ints[DENSE_AT] + i * n + i]) <= BEYOND * answered:
+            return False
+    return True
+
+
 @lean_inlined
 def solution_at(ints):
     """Where x begins."""
@@ -275,3 +309,26 @@ def follow_all(floats, ints):
     for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
         rec = ints[RECORDS_AT] + RECORD * k
         follow(floats, rec, mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B])))
+
+
+@lean(F(A, A, I, N))
+def energy(y, floats, ints, m):
+    """Kinetic energy of a mover."""
+    at, mover = ints[MOVERS_AT] + MOVER * m, mover_at(ints, m)
+    if ints[at + POSITION] < 0 or floats[mover + AT_MASS] == 0.0:
+        return 0.0
+    total = 0.0
+    for c in range(3):
+        total += floats[mover + AT_V + c] ** 2 / floats[mover + AT_MASS]
+        if ints[at + ROTATION] >= 0:
+            total += floats[mover + AT_W + c] * y[ints[at + MOMENTUM] + c]
+    return 0.5 * total
+
+
+@lean(types.void(A, A, I, F))
+def count_energy(y, floats, ints, by):
+    """Add the kinetic energy of each body, times ``by``, to what contacts have taken."""
+    for m in range(ints[MOVERS]):
+        work = ints[ints[WORKS_AT] + m]
+        if work >= 0:
+            y[work] += by * energy(y, floats, ints, m)

@@ -37,6 +37,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     FACE_CORNER,
     FAST,
     FORCE,
+    GAP,
     LINE_A,
     LINE_B,
     NORMAL,
@@ -79,6 +80,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     SHAPES_AT,
     SINCE,
     UNDECIDED,
+    follow_all,
     look,
     mover_at,
     put_places,
@@ -87,8 +89,10 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 TOUCHES = 1e-10
 """Gap, in parts of the size of the smaller body, up to which shapes touch."""
-DEEP = 2e-6
-"""Overlap, in the same parts, with which bodies may start."""
+DEEP = 1e-3
+"""Overlap, in the same parts, up to which a point is a contact: a step's error leaves far less."""
+SLACK = 1e-4
+"""Gap, in the same parts, up to which a contact that pushed still is one: what a step's error leaves is closed."""
 FEATURE = 1e-7
 """Distance from a feature, in parts of the body's size, up to which a point is on it."""
 PARALLEL = 1e-6
@@ -287,15 +291,16 @@ def smaller(floats, ints, a, b):
     return min(floats[fa + REACH], floats[fb + REACH])
 
 
-@lean(types.void(F, A, A, I, F, A, I))
-def find(t, y, floats, ints, deep, points, names):
-    """Write the contacts of all pairs that touch, as kept; those overlap by ``deep`` at most, in parts of their size.
+@lean(types.void(F, A, A, I, A, I))
+def find(t, y, floats, ints, points, names):
+    """Write the contacts of all pairs that touch, as kept.
 
     Which of them slide is by their speeds. ``points``, ``names``: room of a manifold.
     """
     memory = ints[MEMORY_AT]
     look(t, y, floats, ints)
     put_places(y, floats, ints, ints[PLACES_AT])
+    follow_all(floats, ints)
     before, most = int(floats[memory + KEPT]), ints[MOST]
     count, next = 0, ints[RECORDS_AT] + RECORD * most
     room = floats[ints[ROOM_AT] : ints[ROOM_AT] + ints[ROOM]]
@@ -304,13 +309,19 @@ def find(t, y, floats, ints, deep, points, names):
         margin = TOUCHES * smaller(floats, ints, a, b)
         for c in range(3):
             margin += 1e-14 * (abs(floats[mover_at(ints, a) + AT_X + c]) + abs(floats[mover_at(ints, b) + AT_X + c]))
+        open = 0.0
+        for j in range(before):
+            old = ints[RECORDS_AT] + RECORD * j
+            if floats[old + PAIR] == pair and floats[old + PUSHES] > 0.0:
+                open = max(open, floats[old + GAP])
+        margin += min(open, SLACK * smaller(floats, ints, a, b))
         sa, sb, at = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b, ints[PLACES_AT]
         found, _, nx, ny, nz = manifold(
             floats, ints, sa, sb, floats, at + PLACE * a, at + PLACE * b, margin, points, names, room
         )
         for k in range(found):
             p, rec = CORNER * k, next + RECORD * count
-            if points[p + 6] > margin or points[p + 6] < -deep * smaller(floats, ints, a, b) - margin:
+            if points[p + 6] > margin or points[p + 6] < -DEEP * smaller(floats, ints, a, b) - margin:
                 continue
             if count == most:
                 floats[memory + CROWDED] += 1.0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from sceneql.contacts.distance.led import is_led
 from sceneql.contacts.distance.rigid_contact import must_be_apart, place_of
 from sceneql.kinds import Ref
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 from sceneql.system import Place
 
 if TYPE_CHECKING:
@@ -24,6 +24,8 @@ HOLD, SETTLE = f"{ROOM}.exact_hold_kernels:hold", f"{ROOM}.exact_hold_kernels:se
 CONTACTS = f"{ROOM}.watch_kernels:gap", f"{ROOM}.strike_kernels:impact"
 MOST = 24
 """Bodies of one contact: all their conditions are one dense system."""
+MOST_CHOSEN = 8
+"""Balls for which mode `auto` is this one."""
 FEW = 8
 """Contacts by the body that there is room for, and besides."""
 
@@ -44,6 +46,7 @@ def assemble(
     from sceneql.contacts.rigid_exact import contact_kernels, exact_law_kernels
     from sceneql.contacts.rigid_exact import exact_rows_kernels as rows
 
+    _must_be_free(assembly)
     if assembly.ints_of(HOLD):
         message = "bodies in mode `exact` collide by one `collision` an island: its contacts are solved together"
         raise ScriptError([Diagnostic("invalid", message, assembly.line(), "name all that collide in one `between`")])
@@ -102,7 +105,67 @@ def assemble(
     assembly.contact("exact", CONTACTS, ints, len(pairs) + 2 * most)
     assembly.term("tie", HOLD, ints)
     assembly.after_step(SETTLE, ints, samples=True)
-    return (tally, -1, *outputs, memory + rows.LOOSE, memory + rows.CROWDED, -2, memory + rows.ENDLESS)
+    return (
+        tally,
+        -1,
+        *outputs,
+        memory + rows.LOOSE,
+        memory + rows.CROWDED,
+        -2,
+        memory + rows.ENDLESS,
+        memory + rows.JAMMED,
+    )
+
+
+def why_local(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref]) -> str:
+    """Why mode `auto` does not take these contacts as exact; empty where it does: a few balls on what stands."""
+    import numpy as np
+
+    from sceneql.contacts.distance.convex import CORE
+
+    if not assembly.lone_contact:
+        return "several contacts"
+    if any(tie.drive is not None for tie in assembly.ties):
+        return "ties with stops, a motor or friction"
+    count, inverse = 0, assembly.numbers()
+    for bodies in everyone:
+        model: Any = assembly.object(Ref(bodies.model))
+        for k, (ref, center) in enumerate(model.solids()):
+            shape, moves = _convex(ref, center, assembly), inverse[bodies.inverse_at + k] > 0.0
+            count += moves
+            if shape is None or (moves and (shape.kind != CORE or int(shape.ints[0]) > 1)):
+                return f"'{bodies.model if ref is None else ref.name}' is no ball"
+    for ref in others:
+        kind: Any = assembly.object(ref)
+        if is_led(kind):
+            return f"'{ref.name}' moves by itself"
+        if _convex(ref, np.zeros(3), assembly) is None:
+            return f"'{ref.name}' touches by points of its surface"
+    return "" if count <= MOST_CHOSEN else f"more than {MOST_CHOSEN} bodies"
+
+
+def _convex(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex | None:
+    """The convex shape of an object in its own axes from a center; None where it has none."""
+    from sceneql.island.start import Start
+
+    if ref is None:
+        return None
+    kind: Any = assembly.object(ref)
+    try:
+        found: Convex = kind.convex(Start(assembly), center)
+    except (TypeError, ValueError):
+        return None
+    return found
+
+
+def _must_be_free(assembly: Assembly) -> None:
+    """Raise ScriptError for stops, motors and friction of ties: a step in velocities finds them, which this is not."""
+    found = Diagnostics()
+    for tie in assembly.ties:
+        if tie.drive is not None:
+            message = f"'{tie.name}' has stops, a motor or friction, which contacts in mode `exact` do not go with"
+            found.error("refuses-ties", message, tie.span, help="mode: local takes both")
+    found.raise_errors()
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +197,11 @@ def _shapes(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref
         model: Any = assembly.object(Ref(bodies.model))
         for k, (ref, center) in enumerate(model.solids()):
             x, q = bodies.position_at + 3 * k, bodies.turning.rotation_at + 4 * k
-            one = (_exactly(known.of(ref, center), ref), np.concatenate([start[x : x + 3], start[q : q + 4]]), ref)
+            one = (
+                _exactly(known.of(ref, center), ref, assembly),
+                np.concatenate([start[x : x + 3], start[q : q + 4]]),
+                ref,
+            )
             if numbers[bodies.inverse_at + k] == 0.0:
                 fixed.append(one)
             else:
@@ -144,9 +211,9 @@ def _shapes(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref
         kind: Any = assembly.object(ref)
         if is_led(kind):
             message = f"'{ref.name}' moves by itself, which rigid bodies feel in mode `local` alone"
-            raise ScriptError([Diagnostic("no-collider", message, ref.span)])
+            raise ScriptError([Diagnostic("no-collider", message, ref.span or assembly.line())])
         place = place_of(ref, assembly)
-        fixed.append((_exactly(known.of(ref, np.zeros(3), place), ref), place, ref))
+        fixed.append((_exactly(known.of(ref, np.zeros(3), place), ref, assembly), place, ref))
     shapes, places, names = (list(some) for some in zip(*solid, *fixed, strict=True))
     numbered = {bodies.position_at + 3 * k: number for number, (bodies, k) in enumerate(moving)}
     sides = [
@@ -175,12 +242,12 @@ def _tied(
     return rows, assembly.tie_ints if rows else ()
 
 
-def _exactly(shape: Convex, ref: Ref | None) -> Convex:
+def _exactly(shape: Convex, ref: Ref | None, assembly: Assembly) -> Convex:
     """A shape. Raises ScriptError where points of its surface stand for it."""
     from sceneql.contacts.distance.convex import SKINNED
 
     if shape.kind == SKINNED and ref is not None:
         message = f"'{ref.name}' touches by points of its surface, which mode `local` alone can do"
         help = "mode `exact` takes spheres, boxes, planes and convex meshes"
-        raise ScriptError([Diagnostic("no-collider", message, ref.span, help)])
+        raise ScriptError([Diagnostic("no-collider", message, ref.span or assembly.line(), help)])
     return shape

@@ -12,15 +12,6 @@ import numpy as np
 from numba import types
 
 import sceneql.system.channels as channels
-from sceneql.bodies.rigid.tie_rows_kernels import (
-    AT_MASS,
-    AT_V,
-    AT_W,
-    MOMENTUM,
-    MOVER,
-    POSITION,
-    ROTATION,
-)
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts import layout
 from sceneql.contacts.distance.manifold_kernels import MOST as MOST_CORNERS
@@ -30,6 +21,7 @@ from sceneql.contacts.impact_kernels import count_hit
 from sceneql.contacts.rigid_exact.contact_kernels import (
     BIAS,
     PAIR,
+    PUSHES,
     RECORD,
     ROWS,
     SHAPE_A,
@@ -41,6 +33,7 @@ from sceneql.contacts.rigid_exact.exact_law_kernels import BILATERAL, UNILATERAL
 from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     AGAIN,
+    BODIES,
     ENDLESS,
     ENDURANCE,
     FRICTION_AT,
@@ -49,17 +42,20 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     KEPT_AT,
     KINDS_AT,
     LATEST,
+    LIFT,
     LOOSE,
     MEMORY_AT,
     MOST,
     MOVERS,
-    MOVERS_AT,
     RECORDS_AT,
     RESTITUTION_AT,
+    SINCE_SOME,
+    SOME,
     STARTED,
     TALLY_AT,
     TIE_ROWS,
-    WORKS_AT,
+    count_energy,
+    energy,
     follow_all,
     kick,
     look,
@@ -70,37 +66,29 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     solve_rows,
     write_rows,
 )
-from sceneql.contacts.rigid_exact.find_kernels import DEEP, begin, find, smaller, start_step
+from sceneql.contacts.rigid_exact.find_kernels import begin, find, smaller, start_step
 from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
 
 APPROACHES = 1e-13
 """Speed of approach, in parts of the speeds that it is a sum of, that counts."""
 PARTS, STILL = 1e-9, 1e-12
 """Speed away from each other, in the same parts and [m/s], from which a contact is not kept."""
+DRIFT = 1e-3
+"""The same of a contact that pushed in the step before: what the step's error leaves is closed after it."""
 MOST_ROUNDS = 500
 """Reflections at one instant, after which all contacts end their approach together, without restitution."""
 LOWEST = 1e-12
 """Height of the next bounce, in parts of the size of the smaller body, from which the bodies stay together."""
+CROWD, CLOSE, HIGHEST = 100, 1e-4, 1e6
+"""Impacts by which it is told whether they are too close, for bodies that tip from corner to corner without end: so
+much of the time in which the smallest body falls by its size is between them. Then LOWEST is tenfold, HIGHEST times at
+most."""
 
 
 @lean_inlined
 def marked_at(ints):
     """Where the integers begin that say which contacts are struck."""
     return ints[KINDS_AT] + 2 * (ints[TIE_ROWS] + 3 * ints[MOST])
-
-
-@lean(F(A, A, I, N))
-def energy(y, floats, ints, m):
-    """Kinetic energy of a mover."""
-    at, mover = ints[MOVERS_AT] + MOVER * m, mover_at(ints, m)
-    if ints[at + POSITION] < 0 or floats[mover + AT_MASS] == 0.0:
-        return 0.0
-    total = 0.0
-    for c in range(3):
-        total += floats[mover + AT_V + c] ** 2 / floats[mover + AT_MASS]
-        if ints[at + ROTATION] >= 0:
-            total += floats[mover + AT_W + c] * y[ints[at + MOMENTUM] + c]
-    return 0.5 * total
 
 
 @lean(F(A, A, I))
@@ -160,10 +148,7 @@ def strike(t, y, floats, ints):
         return False
     if mark_approaching(floats, ints) > 0:
         count_hit(floats, ints[TALLY_AT], t, fastest)
-    for m in range(ints[MOVERS]):
-        work = ints[ints[WORKS_AT] + m]
-        if work >= 0:
-            y[work] += energy(y, floats, ints, m)
+    count_energy(y, floats, ints, 1.0)
     rounds = 0
     while restitution > 0.0 and rounds < MOST_ROUNDS and mark_approaching(floats, ints) > 0:
         before, part = energies(y, floats, ints), restitution
@@ -182,7 +167,7 @@ def strike(t, y, floats, ints):
     if rounds == MOST_ROUNDS and mark_approaching(floats, ints) > 0:
         floats[memory + ENDLESS] += 1.0
     # What approaches still, or would bounce lower than LOWEST, stays together.
-    caught = 0
+    caught, lowest = 0, LOWEST * floats[memory + LIFT]
     for k in range(count):
         rec = ints[RECORDS_AT] + RECORD * k
         a, b = int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B])
@@ -191,7 +176,7 @@ def strike(t, y, floats, ints):
         for side in range(2):
             for c in range(6):
                 pull += floats[rec + ROWS + 6 * side + c] * floats[pull_at(ints, b if side == 1 else a) + c]
-        low = pull < 0.0 and speed * speed < -2.0 * pull * LOWEST * smaller(floats, ints, a, b)
+        low = pull < 0.0 and speed * speed < -2.0 * pull * lowest * smaller(floats, ints, a, b)
         near = speed <= STILL + PARTS * pace(floats, rec, ma, mb)
         stays = near or (low and restitution < 1.0)
         ints[marked + k] = 1 if stays else 0
@@ -202,11 +187,27 @@ def strike(t, y, floats, ints):
         reflect(t, y, floats, ints, -1.0, 0.0)
         if math.isnan(floats[ints[TALLY_AT] + layout.REST_TIME]):
             floats[ints[TALLY_AT] + layout.REST_TIME] = t
-    for m in range(ints[MOVERS]):
-        work = ints[ints[WORKS_AT] + m]
-        if work >= 0:
-            y[work] -= energy(y, floats, ints, m)
+    count_energy(y, floats, ints, -1.0)
     return True
+
+
+@lean(types.void(F, A, I))
+def watch_crowd(t, floats, ints):
+    """Raise the lowest bounce while impacts are too close."""
+    memory = ints[MEMORY_AT]
+    floats[memory + SOME] += 1.0
+    if floats[memory + SOME] < CROWD and floats[memory + LIFT] > 0.0:
+        return
+    size = strongest = 0.0
+    for m in range(ints[BODIES]):
+        reach = smaller(floats, ints, m, m)
+        size = reach if m == 0 else min(size, reach)
+        for c in range(3):
+            strongest = max(strongest, abs(floats[pull_at(ints, m) + c]))
+    close = (t - floats[memory + SINCE_SOME]) ** 2 * strongest < (CROWD * CLOSE) ** 2 * size
+    lift = floats[memory + LIFT] * (10.0 if close else 0.1)
+    floats[memory + LIFT] = min(HIGHEST, max(1.0, lift))
+    floats[memory + SOME], floats[memory + SINCE_SOME] = 0.0, t
 
 
 @lean(types.void(A, I, types.boolean))
@@ -216,7 +217,8 @@ def keep(floats, ints, old):
     for k in range(int(floats[memory + KEPT])):
         rec, to = ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * kept
         a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
-        if abs(floats[rec + SPEED]) > STILL + PARTS * pace(floats, rec, a, b):
+        parts = DRIFT if old and floats[rec + PUSHES] > 0.0 else PARTS
+        if abs(floats[rec + SPEED]) > STILL + parts * pace(floats, rec, a, b):
             continue
         if old and floats[ints[KEPT_AT] + int(floats[rec + PAIR])] == 0.0:
             continue
@@ -235,19 +237,20 @@ def impact(t, y, pair, floats, ints):
         again = floats[memory + AGAIN] + 1.0 if t == floats[memory + LATEST] else 0.0
         floats[memory + LATEST], floats[memory + AGAIN] = t, again
         floats[memory + ENDLESS] += again == ENDURANCE
-        find(t, y, floats, ints, 1e-9, points, names)
+        watch_crowd(t, floats, ints)
+        find(t, y, floats, ints, points, names)
         strike(t, y, floats, ints)
         keep(floats, ints, False)
         begin(t, y, floats, ints)
     elif floats[memory + STARTED] == 0.0:
         floats[memory + STARTED] = 1.0
-        find(t, y, floats, ints, DEEP, points, names)
+        find(t, y, floats, ints, points, names)
         keep(floats, ints, False)
         begin(t, y, floats, ints)
         floats[channels.CHANGED] = 1.0
     elif floats[memory + KEPT] > 0.0:
         floats[memory + AGAIN] = 0.0
-        find(t, y, floats, ints, 1e-9, points, names)
+        find(t, y, floats, ints, points, names)
         keep(floats, ints, True)
         begin(t, y, floats, ints)
         floats[channels.CHANGED] = 1.0

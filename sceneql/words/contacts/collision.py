@@ -107,6 +107,9 @@ class Collision(Contact):
             return told + "where rigid bodies collide, too, such steps can make energy: shorter ones, or `auto`, do not"
         if endless:
             return f"at {endless:.0f} instants impacts had no end: rigid bodies were let be there for a step"
+        jammed = sum(state.floats[state.ints[k + 2]] for k, each in enumerate(state.ints) if each == -2)
+        if jammed:
+            return f"at {jammed:.0f} instants no force fitted the slip of rigid bodies: friction stopped it at once"
         loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
         if crowded:
             return f"in {crowded:.0f} steps rigid bodies had more contacts than outputs have room for: all acted"
@@ -234,7 +237,7 @@ class Collision(Contact):
     ) -> None:
         """Add the contacts of rigid bodies with one another, with objects and with masses, and of masses with objects.
 
-        Raises ScriptError for mode `exact` where it does not cover them.
+        Raises ScriptError for a shape that is not covered, and for what mode `exact` does not take.
         """
         from sceneql.contacts.colliders import OFTEN
         from sceneql.contacts.distance.rigid_contact import assemble
@@ -254,7 +257,13 @@ class Collision(Contact):
             message = f"mode `exact` has no contacts of masses, as of '{points[0].model}', with rigid bodies"
             help = "mode: local has; or give the masses a `collision` of their own with the objects they may touch"
             raise ScriptError([Diagnostic("invalid", message, assembly.line(), help)])
-        if self.mode == "exact":
+        why = ""
+        if self.mode == "auto":
+            why = "masses, too" if points else group.why_local(assembly, rigid, touched)
+        assembly.contact_why = "asked for by the script"
+        if self.mode == "auto":
+            assembly.contact_why = f"chosen, for {why}" if why else "chosen for a few balls"
+        if self.mode == "exact" or (self.mode == "auto" and not why):
             assembly.remember(*group.assemble(assembly, rigid, touched, self.restitution, self.friction))
             return
         assembly.step_at_most(OFTEN)
