@@ -34,8 +34,10 @@ MOST_FOUND = 600
 """Room for points that are found."""
 SLIDES = 8
 """Most steps of Newton's method along a surface."""
-NEARLY = 1e-10
+NEARLY = 1e-13
 """Sine of the angle between two surfaces up to which they face each other."""
+FLAT = 1e-6
+"""Turn of two surfaces' normals against each other [rad], over the way that a point may slide, that counts as none."""
 APART = 1e-3
 """Distance of points for the derivatives of normals, in parts of the skin's spacing."""
 
@@ -94,9 +96,10 @@ def slid(floats, ints, one, other, x, y, z, most):
         ux, uy, uz, vx, vy, vz = across(a, b, c)
         _, p, q, r = field(floats, ints, other, x, y, z)
         gu, gv = dot(p, q, r, ux, uy, uz), dot(p, q, r, vx, vy, vz)
+        opposed = dot(a, b, c, p, q, r) < 0.0
         if abs(gu) + abs(gv) <= NEARLY:
-            return dot(a, b, c, p, q, r) < 0.0, x, y, z
-        if dot(a, b, c, p, q, r) > 0.0:
+            return opposed, x, y, z
+        if not opposed:
             break
         a, b, c = a + p, b + q, c + r
         p, q, r = facing(floats, ints, one, other, x + apart * ux, y + apart * uy, z + apart * uz)
@@ -104,17 +107,22 @@ def slid(floats, ints, one, other, x, y, z, most):
         p, q, r = facing(floats, ints, one, other, x + apart * vx, y + apart * vy, z + apart * vz)
         hvu, hvv = dot(p - a, q - b, r - c, ux, uy, uz) / apart, dot(p - a, q - b, r - c, vx, vy, vz) / apart
         huv = 0.5 * (huv + hvu)
-        # A least gap has no direction in which the surfaces bend towards each other.
+        # A least gap has no direction in which the surfaces bend towards each other. Where they do not bend at all, as
+        # a cylinder along its axis on a plane, a point is as good as the next, though they are not quite parallel.
         mean, half = 0.5 * (huu + hvv), math.sqrt(0.25 * (huu - hvv) ** 2 + huv * huv)
-        least, large = mean - half, max(abs(mean + half), abs(mean - half))
-        if least < -1e-3 * large:
+        least, large = mean - half, mean + half
+        if least < -1e-3 * max(large, -least):
             break
-        more = 1e-7 * large + 1e-9 / spacing
-        huu, hvv = huu + more, hvv + more
-        det = huu * hvv - huv * huv
-        if not det > 0.0:
-            break
-        du, dv = -(hvv * gu - huv * gv) / det, -(huu * gv - huv * gu) / det
+        eu, ev = (huv, large - huu) if abs(large - huu) > abs(large - hvv) else (large - hvv, huv)
+        size = math.sqrt(eu * eu + ev * ev)
+        eu, ev = (eu / size, ev / size) if size > 0.0 else (1.0, 0.0)
+        along, other_way = eu * gu + ev * gv, eu * gv - ev * gu
+        bends, both = large * most > FLAT, least * most > FLAT
+        if (not bends or abs(along) <= NEARLY) and (not both or abs(other_way) <= NEARLY):
+            return True, x, y, z
+        along = -along / large if bends else 0.0
+        other_way = -other_way / least if both else 0.0
+        du, dv = eu * along - ev * other_way, ev * along + eu * other_way
         step = math.sqrt(du * du + dv * dv)
         if not step < 1e3 * most:
             break
@@ -161,9 +169,9 @@ def least_along(floats, ints, other, px, py, pz, tx, ty, tz, rx, ry, rz):
     at_high = dot(a, b, c, ux, uy, uz)
     if at_high * slope >= 0.0:
         return False, 0.0
-    middle = 0.0
+    middle, kept = 0.0, -1
     for turn in range(60):
-        # The secant, and every third time the mean (a kink has no slope that vanishes).
+        # The secant, by the Illinois rule, and every third time the mean (a kink has no slope that vanishes).
         part = at_low / (at_low - at_high) if turn % 3 < 2 else 0.5
         middle = low + part * (high - low)
         x, y, z, ux, uy, uz = bent(px, py, pz, tx, ty, tz, rx, ry, rz, middle)
@@ -173,8 +181,14 @@ def least_along(floats, ints, other, px, py, pz, tx, ty, tz, rx, ry, rz):
             break
         if value * at_low > 0.0:
             low, at_low = middle, value
+            if kept == 1:
+                at_high *= 0.5
+            kept = 1
         else:
             high, at_high = middle, value
+            if kept == 0:
+                at_low *= 0.5
+            kept = 0
     return True, middle
 
 

@@ -310,7 +310,8 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     if asked:
         most = shortened(h, floats, ints, places, motions, before, pairs)
         if most < 0.999 * h:
-            floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + most)
+            # In equal parts: a gap known to rounding, over a short rest, would be a velocity that is not.
+            floats[channels.STEP_END] = min(floats[channels.STEP_END], t0 + h / math.ceil(h / most))
         return
     who, where, contacts = contacts_at_start(h, floats, ints, places, motions, before, pairs, room)
     kept = int(floats[ints[COUNT_AT]])
