@@ -32,10 +32,14 @@ FOUND = 10
 """Numbers of what is found: a point of a, one of b, the gap, the normal from b to a."""
 MOST_FOUND = 600
 """Room for points that are found."""
+HERE, AWAY, LOST = range(3)
+"""Whether a least gap is found where it is looked for, is out of reach from there, or is not to be found."""
 SLIDES = 8
 """Most steps of Newton's method along a surface."""
-NEARLY = 1e-10
+NEARLY = 1e-13
 """Sine of the angle between two surfaces up to which they face each other."""
+FLAT = 1e-6
+"""Turn of two surfaces' normals against each other [rad], over the way that a point may slide, that counts as none."""
 APART = 1e-3
 """Distance of points for the derivatives of normals, in parts of the skin's spacing."""
 
@@ -80,23 +84,25 @@ def facing(floats, ints, one, other, x, y, z):
     return a + p, b + q, c + r
 
 
-@lean(types.Tuple((types.boolean, F, F, F))(A, I, N, N, F, F, F, F), inner=True)
+@lean(types.Tuple((N, F, F, F))(A, I, N, N, F, F, F, F), inner=True)
 def slid(floats, ints, one, other, x, y, z, most):
     """Where the surface of ``one`` near a point is nearest to ``other``, no farther away than ``most`` [m]; whether
-    there is such a place."""
+    that is HERE, AWAY from here, or LOST."""
     spacing = floats[ints[one + SIZES_AT] + SPACING]
     apart = APART * spacing
     sx, sy, sz = x, y, z
     for _ in range(SLIDES):
         d, nx, ny, nz = field(floats, ints, one, x, y, z)
         x, y, z = x - d * nx, y - d * ny, z - d * nz
-        _, a, b, c = field(floats, ints, one, x, y, z)
+        # The normal of a foot is that of the point.
+        a, b, c = nx, ny, nz
         ux, uy, uz, vx, vy, vz = across(a, b, c)
         _, p, q, r = field(floats, ints, other, x, y, z)
         gu, gv = dot(p, q, r, ux, uy, uz), dot(p, q, r, vx, vy, vz)
+        opposed = dot(a, b, c, p, q, r) < 0.0
         if abs(gu) + abs(gv) <= NEARLY:
-            return dot(a, b, c, p, q, r) < 0.0, x, y, z
-        if dot(a, b, c, p, q, r) > 0.0:
+            return HERE if opposed else LOST, x, y, z
+        if not opposed:
             break
         a, b, c = a + p, b + q, c + r
         p, q, r = facing(floats, ints, one, other, x + apart * ux, y + apart * uy, z + apart * uz)
@@ -104,29 +110,35 @@ def slid(floats, ints, one, other, x, y, z, most):
         p, q, r = facing(floats, ints, one, other, x + apart * vx, y + apart * vy, z + apart * vz)
         hvu, hvv = dot(p - a, q - b, r - c, ux, uy, uz) / apart, dot(p - a, q - b, r - c, vx, vy, vz) / apart
         huv = 0.5 * (huv + hvu)
-        # A least gap has no direction in which the surfaces bend towards each other.
+        # A least gap has no direction in which the surfaces bend towards each other. Where they do not bend at all, as
+        # a cylinder along its axis on a plane, a point is as good as the next, though they are not quite parallel.
         mean, half = 0.5 * (huu + hvv), math.sqrt(0.25 * (huu - hvv) ** 2 + huv * huv)
-        least, large = mean - half, max(abs(mean + half), abs(mean - half))
-        if least < -1e-3 * large:
+        least, large = mean - half, mean + half
+        if least < -1e-3 * max(large, -least):
             break
-        more = 1e-7 * large + 1e-9 / spacing
-        huu, hvv = huu + more, hvv + more
-        det = huu * hvv - huv * huv
-        if not det > 0.0:
-            break
-        du, dv = -(hvv * gu - huv * gv) / det, -(huu * gv - huv * gu) / det
+        eu, ev = (huv, large - huu) if abs(large - huu) > abs(large - hvv) else (large - hvv, huv)
+        size = math.sqrt(eu * eu + ev * ev)
+        eu, ev = (eu / size, ev / size) if size > 0.0 else (1.0, 0.0)
+        along, other_way = eu * gu + ev * gv, eu * gv - ev * gu
+        bends, both = large * most > FLAT, least * most > FLAT
+        if (not bends or abs(along) <= NEARLY) and (not both or abs(other_way) <= NEARLY):
+            return HERE, x, y, z
+        along = -along / large if bends else 0.0
+        other_way = -other_way / least if both else 0.0
+        du, dv = eu * along - ev * other_way, ev * along + eu * other_way
         step = math.sqrt(du * du + dv * dv)
-        if not step < 1e3 * most:
+        if not step < math.inf:
             break
-        by = min(1.0, most / step) if step > 0.0 else 1.0
-        x, y, z = x + by * (du * ux + dv * vx), y + by * (du * uy + dv * vy), z + by * (du * uz + dv * vz)
+        if step > 2.0 * most:
+            return AWAY, sx, sy, sz
+        x, y, z = x + du * ux + dv * vx, y + du * uy + dv * vy, z + du * uz + dv * vz
         away = (x - sx) ** 2 + (y - sy) ** 2 + (z - sz) ** 2
         if away > most * most:
-            break
+            return AWAY, sx, sy, sz
         if step < 1e-9 * spacing:
             d, nx, ny, nz = field(floats, ints, one, x, y, z)
-            return True, x - d * nx, y - d * ny, z - d * nz
-    return False, sx, sy, sz
+            return HERE, x - d * nx, y - d * ny, z - d * nz
+    return LOST, sx, sy, sz
 
 
 @lean_inlined
@@ -161,9 +173,9 @@ def least_along(floats, ints, other, px, py, pz, tx, ty, tz, rx, ry, rz):
     at_high = dot(a, b, c, ux, uy, uz)
     if at_high * slope >= 0.0:
         return False, 0.0
-    middle = 0.0
+    middle, kept = 0.0, -1
     for turn in range(60):
-        # The secant, and every third time the mean (a kink has no slope that vanishes).
+        # The secant, by the Illinois rule, and every third time the mean (a kink has no slope that vanishes).
         part = at_low / (at_low - at_high) if turn % 3 < 2 else 0.5
         middle = low + part * (high - low)
         x, y, z, ux, uy, uz = bent(px, py, pz, tx, ty, tz, rx, ry, rz, middle)
@@ -173,8 +185,14 @@ def least_along(floats, ints, other, px, py, pz, tx, ty, tz, rx, ry, rz):
             break
         if value * at_low > 0.0:
             low, at_low = middle, value
+            if kept == 1:
+                at_high *= 0.5
+            kept = 1
         else:
             high, at_high = middle, value
+            if kept == 0:
+                at_low *= 0.5
+            kept = 0
     return True, middle
 
 
@@ -188,14 +206,18 @@ def outside_box(floats, ints, skin, x, y, z):
     return math.sqrt(a * a + b * b + c * c)
 
 
-@lean(F(A, I, N, N, A, N, N, F, F, F, F, F), inner=True)
+@lean(types.UniTuple(F, 7)(A, I, N, N, A, N, N, F, F, F, F, F), inner=True)
 def beyond(floats, ints, one, other, places, at, at_other, x, y, z, r, margin):
-    """How far a ball about a point of one body is at least from another skin, roughly once it is above a margin."""
+    """How far a ball about a point of one body is at least from another skin, roughly once it is above a margin.
+
+    Below, besides: the normal there and the point, in the world.
+    """
     wx, wy, wz = to_world(places, at + 3, x, y, z)
     wx, wy, wz = wx + places[at], wy + places[at + 1], wz + places[at + 2]
     p, q, s = wx - places[at_other], wy - places[at_other + 1], wz - places[at_other + 2]
     p, q, s = to_body(places, at_other + 3, p, q, s)
     far = outside_box(floats, ints, other, p, q, s) - r
     if far > margin:
-        return far
-    return field(floats, ints, other, wx, wy, wz)[0] - r
+        return far, 0.0, 0.0, 0.0, wx, wy, wz
+    d, nx, ny, nz = field(floats, ints, other, wx, wy, wz)
+    return d - r, nx, ny, nz, wx, wy, wz

@@ -14,7 +14,9 @@ from sceneql.contacts.distance.contact_skin_kernels import (
     BOXES,
     EDGES_AT,
     FOUND,
+    HERE,
     LINKS,
+    LOST,
     MOST_FOUND,
     NODES,
     POINTS,
@@ -87,7 +89,7 @@ def edges_in(floats, ints, one, other, places, at, at_other, margin, flip, found
         r = 0.5 * math.sqrt(ex * ex + ey * ey + ez * ez)
         x, y, z = floats[b] + 0.5 * ex, floats[b + 1] + 0.5 * ey, floats[b + 2] + 0.5 * ez
         link = links + 3 * node
-        if beyond(floats, ints, one, other, places, at, at_other, x, y, z, r, margin) > margin:
+        if beyond(floats, ints, one, other, places, at, at_other, x, y, z, r, margin)[0] > margin:
             node = ints[link]
             continue
         for k in range(ints[link + 1], ints[link + 1] + ints[link + 2]):
@@ -123,23 +125,30 @@ def smooth_in(floats, ints, one, other, places, at, at_other, margin, flip, foun
         r = 0.5 * math.sqrt(ex * ex + ey * ey + ez * ez) + 0.5 * spacing
         x, y, z = floats[b] + 0.5 * ex, floats[b + 1] + 0.5 * ey, floats[b + 2] + 0.5 * ez
         link = links + 3 * node
-        if beyond(floats, ints, one, other, places, at, at_other, x, y, z, r, margin) > margin:
+        far, nx, ny, nz, wx, wy, wz = beyond(floats, ints, one, other, places, at, at_other, x, y, z, r, margin)
+        if far > margin:
             node = ints[link]
             continue
-        best, bx, by, bz, nx, ny, nz = math.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for k in range(ints[link + 1], ints[link + 1] + ints[link + 2]):
+        # The lowest by the distance and the normal in the middle is where to look from.
+        first = ints[link + 1]
+        low, lowest = math.inf, first
+        for k in range(first, first + ints[link + 2]):
             x, y, z = placed(places, at, *at3(floats, points + RECORD * k))
-            d, a, b_, c = field(floats, ints, other, x, y, z)
-            if d < best:
-                best, bx, by, bz, nx, ny, nz = d, x, y, z, a, b_, c
-        if best <= margin + spacing:
-            there, x, y, z = slid(floats, ints, one, other, bx, by, bz, r + spacing)
-            if there:
-                d, a, b_, c = field(floats, ints, other, x, y, z)
-                if d <= margin:
-                    count = put_found(flip, x, y, z, d, a, b_, c, found, count)
-            elif best <= margin:
-                count = put_found(flip, bx, by, bz, best, nx, ny, nz, found, count)
+            d = dot(nx, ny, nz, x - wx, y - wy, z - wz)
+            if d < low:
+                low, lowest = d, k
+        if ints[link + 2] > 0:
+            x, y, z = placed(places, at, *at3(floats, points + RECORD * lowest))
+            d, nx, ny, nz = field(floats, ints, other, x, y, z)
+            if d <= margin + spacing:
+                where, px, py, pz = slid(floats, ints, one, other, x, y, z, r + spacing)
+                if where == HERE:
+                    d, nx, ny, nz = field(floats, ints, other, px, py, pz)
+                    if d <= margin:
+                        count = put_found(flip, px, py, pz, d, nx, ny, nz, found, count)
+                elif d <= margin and (where == LOST or margin <= 0.0):
+                    # What lies a way off the least gap is known there: where a body rolls, its own would lift it.
+                    count = put_found(flip, x, y, z, d, nx, ny, nz, found, count)
         node += 1
     return count
 
@@ -263,12 +272,15 @@ def least_of(floats, ints, one, other, places, at, at_other, best, first):
         r = 0.5 * math.sqrt(ex * ex + ey * ey + ez * ez)
         x, y, z = floats[b] + 0.5 * ex, floats[b + 1] + 0.5 * ey, floats[b + 2] + 0.5 * ez
         link = links + 3 * node
-        if beyond(floats, ints, one, other, places, at, at_other, x, y, z, r + spacing, best) > best:
+        far, _, _, _, wx, wy, wz = beyond(floats, ints, one, other, places, at, at_other, x, y, z, r + spacing, best)
+        if far > best:
             node = ints[link]
             continue
         for k in range(ints[link + 1], ints[link + 1] + ints[link + 2]):
             x, y, z = placed(places, at, *at3(floats, points + RECORD * k))
-            best = min(best, field(floats, ints, other, x, y, z)[0] - spacing)
+            # No point is nearer than its way to the middle allows.
+            if far + r - math.sqrt((x - wx) ** 2 + (y - wy) ** 2 + (z - wz) ** 2) < best:
+                best = min(best, field(floats, ints, other, x, y, z)[0] - spacing)
         node += 1
     return best
 

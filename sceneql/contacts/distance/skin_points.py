@@ -185,5 +185,6 @@ def _at_corner(tape: Tape, p: Floats, middles: Floats, cell: float) -> Floats:
         moved = np.linalg.lstsq(up, heights, rcond=0.05)[0]
         if not np.linalg.norm(p + moved - start) < cell:
             return start
-        p, part = p + moved, 0.3 * part
+        # Curved faces leave the square of what is looked at beside the corner.
+        p, part = p + moved, 0.15 * part
     return p

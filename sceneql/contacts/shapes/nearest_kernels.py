@@ -14,6 +14,8 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 MOST_STEPS = 40
 MOST_NEWTON = 12
+FOOT = 1e-14
+"""Parts of the solid's size within which a point is the foot that is looked for."""
 FAR = 1e300
 
 
@@ -64,6 +66,14 @@ def nearest(floats, ints, at, x, y, z):
     h = np.empty((3, 3))
     apart = 1e-5 * size
     for _ in range(MOST_NEWTON):
+        ux, uy, uz = x - px - m * a, y - py - m * b, z - pz - m * c
+        if ux * ux + uy * uy + uz * uz <= (FOOT * size) ** 2 and abs(f) <= FOOT * size * math.sqrt(g2):
+            # As at once where the field is a distance.
+            g = math.sqrt(g2)
+            d = m * g
+            if d * first > 0.0 and abs(d) < 10.0 * size:
+                return d, a / g, b / g, c / g
+            break
         for k in range(3):
             _, u, v, w = slope(floats, ints, at, px + apart * (k == 0), py + apart * (k == 1), pz + apart * (k == 2))
             h[0, k], h[1, k], h[2, k] = m * (u - a) / apart, m * (v - b) / apart, m * (w - c) / apart
@@ -74,7 +84,8 @@ def nearest(floats, ints, at, x, y, z):
         dx, dy, dz = wx + add * ux, wy + add * uy, wz + add * uz
         px, py, pz, m = px - dx, py - dy, pz - dz, m + add
         f, a, b, c = slope(floats, ints, at, px, py, pz)
-        g = math.sqrt(a * a + b * b + c * c)
+        g2 = a * a + b * b + c * c
+        g = math.sqrt(g2)
         step = math.sqrt(dx * dx + dy * dy + dz * dz)
         if not (step < size and g > 0.0):
             break
