@@ -4,8 +4,9 @@
 A state of rest is a step of implicit Euler from rest that is long beside all periods, x = x0 + a^2 F(x)/m, whose
 inertia m/a^2 keeps motions that nothing resists where they are; repeated until nothing moves. `relax` comes to rest
 from afar by steps that grow: each goes down the potential (pseudo-transient continuation: Kelley & Keyes 1998, SIAM J.
-Numer. Anal. 35, 508-523). `step` follows a path of rests: it takes plain updates from the rest before and accepts
-none that leaves its tangent, so that it does not leap to another branch where a path has turned back.
+Numer. Anal. 35, 508-523). `step` follows a path of rests: each update is such a long step from the state before it, slopes have the forces that
+the update before predicted (channels.NEWTON), and none is accepted that leaves the tangent, so that it does not leap to
+another branch where a path has turned back.
 
 ``settings``: the memory of Newton's method (newton_kernels), a [s] at which the matrix's inertia outweighs its rounding
 alone, what ended the latest step; then the scales of the stage plan. ``numbers``: [entries of the Jacobian's room,
@@ -20,12 +21,28 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
-from sceneql.linear.newton_kernels import CAREFUL, FACTORED, MEMORY, foresee, largest, leave, newton
+from sceneql.linear.newton_kernels import (
+    CAREFUL,
+    FACTORED,
+    FACTORIZATIONS,
+    ITERATIONS,
+    MEMORY,
+    follow,
+    foresee,
+    largest,
+    leave,
+    newton,
+)
 from sceneql.linear.stage_kernels import (
     CORE_AT,
+    DIAGONAL_AT,
+    INERTIA,
+    INERTIA_AT,
     POSITIONS,
     POSITIONS_AT,
+    UNIT,
     UNKNOWNS,
+    assemble,
     factor_stage,
     indefinite,
     solve_stage,
@@ -44,12 +61,16 @@ FIRST, LONG = 0.01, 100.0
 LONGEST = 1e6
 """The largest a [s], where motions are so slow that LONG is not beside their periods."""
 FASTER = 4.0
-PANELS = 32
-"""Parts of a step over which the velocities of led places are summed."""
+FEW_PANELS, PANELS = 8, 32
+"""Parts of a step over which the velocities of led places are summed; few where nothing is led."""
+REGULAR = 1e-12
+"""Inertia beside the largest stiffness: more than its rounding, less than what bends most easily."""
 FAILURES = 40
 PUSH, PUSHES = 1e-3, 3
 """Part of its size by which what is at an unstable rest is moved, and how often."""
 PASSES = 30
+EASY = 7
+"""Updates of a step after which the next one is twice as long."""
 MOST = 12
 """Updates of a step along a path."""
 CONVERGES = 0.6
@@ -94,16 +115,34 @@ def from_rest(a, rest, velocity, plan, base, y):
 
 
 @lean_inlined
+def longest(plan, jacobian, scales, store):
+    """The a [s] at which inertia is REGULAR of the largest stiffness of a mass, by its own."""
+    unit, at, m, most = plan[UNIT], plan[DIAGONAL_AT], plan[UNKNOWNS], 0.0
+    assemble(plan, 1.0, jacobian, scales, store)
+    mass = store[store.size - m :]
+    for k in range(m):
+        mass[k] = 0.0 if plan[INERTIA] > 0 and scales[m + k] >= 0.0 else scales[k]
+    for k in range(plan[INERTIA]):
+        row = plan[INERTIA_AT] + 3 * k
+        if plan[row + 1] == plan[row + 2]:
+            mass[plan[row + 1]] += scales[2 * m + k]
+    for k in range(m):
+        inside = k % unit
+        stiff = store[(plan[at + k // unit] * unit + inside) * unit + inside] - mass[k]
+        if mass[k] > 0.0:
+            most = max(most, stiff / mass[k])
+    return 1.0 / math.sqrt(REGULAR * most) if most > 0.0 else LONG
+
+
+@lean_inlined
 def unstable(functions, t, y, jacobian, store, settings, plan, floats, ints):
     """Whether a rest is no least of the potential: a negative eigenvalue, beyond rounding."""
     scales = settings[SCALES_AT:]
     jacobian_at(functions[AT_JACOBIAN])(functions, t, y, jacobian, floats, ints)
     settings[FACTORED] = 0.0
+    settings[FACTORIZATIONS] += 1.0
     if settings[SIGN] == 0.0:
-        most = 0.0
-        for k in range(jacobian.size):
-            most = max(most, abs(jacobian[k]))
-        settings[SIGN] = 1.0 / math.sqrt(1e-9 * max(most, 1e-200))
+        settings[SIGN] = longest(plan, jacobian, scales, store)
     return not factor_stage(plan, settings[SIGN], jacobian, scales, store) or indefinite(plan, store)
 
 
@@ -173,82 +212,105 @@ def relax(functions, t, y, work, settings, numbers, floats, ints):
     return ASTRAY
 
 
+@lean_inlined
+def led(rate, t, h, y0, rest, own, plan, floats, ints):
+    """Move places that are led on by their own velocities (Simpson's rule); ``own``: scratch."""
+    at, moves = plan[POSITIONS_AT], False
+    for panels in (FEW_PANELS, PANELS):
+        for k in range(at, at + 3 * plan[POSITIONS], 3):
+            rest[plan[k]] = y0[plan[k]]
+        for part in range(2 * panels + 1):
+            rate(t + 0.5 * part * h / panels, y0, own, floats, ints)
+            weight = h / (6.0 * panels) * (1.0 if part in (0, 2 * panels) else 2.0 + 2.0 * (part % 2))
+            for k in range(at, at + 3 * plan[POSITIONS], 3):
+                moves = moves or own[plan[k]] != 0.0
+                rest[plan[k]] += weight * own[plan[k]]
+        if not moves:
+            break
+
+
 @lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
-    """y1, the rest at t + h on the path of y0; infinite where it is not found there."""
+    """y1, the rest at t + h on the path of y0; infinite where it is not found there.
+
+    Each update is one of rest itself: the inertia is that of a step from the state before the update, and vanishes.
+    """
     n = y0.size
     base, rest, scratch = work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 7 * n]
     jacobian = work[ARRAYS * n : ARRAYS * n + numbers[ROOM]]
     store = work[ARRAYS * n + numbers[ROOM] :]
     scales, plan = settings[SCALES_AT:], numbers[numbers[PLAN_AT] :]
     rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
-    change, residual, tangent, led = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n], scratch[3 * n :]
-    end = t + h
-    settings[FACTORED] = settings[CAREFUL] = 0.0
+    change, residual, tangent, own = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n], scratch[3 * n :]
+    end, at = t + h, plan[POSITIONS_AT]
+    settings[CAREFUL] = 0.0
     settings[ENDED] = ASTRAY
-    # Places that are led go on by their own velocities (Simpson's rule).
     for k in range(n):
         rest[k] = y0[k]
-    at = plan[POSITIONS_AT]
-    for part in range(2 * PANELS + 1):
-        rate(t + 0.5 * part * h / PANELS, y0, led, floats, ints)
-        weight = h / (6.0 * PANELS) * (1.0 if part in (0, 2 * PANELS) else 2.0 + 2.0 * (part % 2))
-        for k in range(at, at + 3 * plan[POSITIONS], 3):
-            rest[plan[k]] += weight * led[plan[k]]
-    a = LONG
-    for passes in range(PASSES):
-        rate(end, rest, led, floats, ints)
-        from_rest(a, rest, led, plan, base, y1)
+    led(rate, t, h, y0, rest, own, plan, floats, ints)
+    foresee(rest, rest, floats)
+    before = first = 0.0
+    updates, reached = 0, False
+    while updates < MOST:
+        rate(end, rest, own, floats, ints)
+        if settings[SIGN] == 0.0:
+            slopes(functions, end, rest, jacobian, floats, ints)
+            settings[SIGN] = longest(plan, jacobian, scales, store)
+        a = settings[SIGN]
+        from_rest(a, rest, own, plan, base, y1)
         leave(rate, end, a, base, y1, residual, plan, floats, ints)
-        before = first = 0.0
-        reached = False
-        for update in range(MOST):
-            foresee(y1, y1, floats)
-            floats[channels.NEWTON] = a * a
-            slopes(functions, end, y1, jacobian, floats, ints)
-            floats[channels.NEWTON] = 0.0
-            for k in range(n):
-                change[k] = residual[k]
-            for k in range(HEAD + numbers[VELOCITIES], HEAD + numbers[VELOCITIES] + numbers[TALLIES]):
-                change[numbers[k]] = 0.0
-            if not factor_stage(plan, a, jacobian, scales, store) or not solve_stage(
-                plan, a, jacobian, scales, store, change
-            ):
-                break
-            for k in range(HEAD + numbers[VELOCITIES], HEAD + numbers[VELOCITIES] + numbers[TALLIES]):
-                change[numbers[k]] = 0.0  # the work of loads stays behind by an update, and is no part of a rest
-            for k in range(n):
-                y1[k] += change[k]
-            leave(rate, end, a, base, y1, residual, plan, floats, ints)
-            size = largest(change, y0, y1, settings)
-            if update == 0:
-                first = size
-                for k in range(n):
-                    tangent[k] = y1[k]
-            elif size > COARSE:
-                for k in range(n):
-                    change[k] = y1[k] - tangent[k]
-                if size > CONVERGES * before or largest(change, y0, y1, settings) > BENDS * first:
-                    break
-            if size <= 1.0 or not size < math.inf:
-                reached = size <= 1.0
-                break
-            before = size
-        if not reached:
-            work[0] = 0.5 * h
-            return math.inf
+        floats[channels.NEWTON] = a * a
+        slopes(functions, end, y1, jacobian, floats, ints)
+        floats[channels.NEWTON] = 0.0
+        settings[FACTORED] = 0.0
+        settings[ITERATIONS] += 1.0
+        settings[FACTORIZATIONS] += 1.0
+        for k in range(n):
+            change[k] = residual[k]
+        for k in range(HEAD + numbers[VELOCITIES], HEAD + numbers[VELOCITIES] + numbers[TALLIES]):
+            change[numbers[k]] = 0.0
+        for k in range(at, at + 3 * plan[POSITIONS], 3):
+            if base[plan[k + 1]] != 0.0:
+                change[plan[k + 1]] = 0.0  # rounding, which a would multiply, of a velocity that is led
+        if not factor_stage(plan, a, jacobian, scales, store):
+            break
+        if not solve_stage(plan, a, jacobian, scales, store, change):
+            break
+        for k in range(n):
+            y1[k] += change[k]
+        follow(plan, a, base, y1)
+        for k in range(at, at + 3 * plan[POSITIONS], 3):
+            if base[plan[k + 1]] != 0.0:
+                y1[plan[k]] = rest[plan[k]]
         at_rest(y1, y0, numbers)
+        foresee(rest, y1, floats)
         for k in range(n):
             change[k] = y1[k] - rest[k]
             rest[k] = y1[k]
-        if passes > 0 and largest(change, y0, y1, settings) <= 1.0:
+        size = largest(change, y0, y1, settings)
+        updates += 1
+        if not size < math.inf:
             break
-        if passes > 4:
-            a = min(LONGEST, FASTER * a)
+        if updates == 1:
+            first = size
+            for k in range(n):
+                tangent[k] = y1[k]
+        elif size > COARSE:
+            for k in range(n):
+                change[k] = y1[k] - tangent[k]
+            if size > CONVERGES * before or largest(change, y0, y1, settings) > BENDS * first:
+                break
+        if size <= 1.0:
+            reached = True
+            break
+        before = size
+    if not reached:
+        work[0] = 0.5 * h
+        return math.inf
     if unstable(functions, end, y1, jacobian, store, settings, plan, floats, ints):
         settings[ENDED] = UNSTABLE
         work[0] = 0.5 * h
         return math.inf
     settings[ENDED] = REACHED
-    work[0] = 2.0 * h
+    work[0] = h * (2.0 if updates <= EASY else 1.0)
     return 0.0

@@ -170,7 +170,7 @@ def add_strain(
         rows = np.repeat(at, nodes, axis=1).ravel() + bodies.velocity_at
         columns = np.tile(at, nodes).ravel()
         by = [bodies.position_at, bodies.velocity_at] if retardation > 0.0 else [bodies.position_at]
-        own = [slopes_room, tiles, tile_address(strain_slopes_kernels.slopes_tile), len(ints)]
+        own = [slopes_room, tiles, tile_address(strain_slopes_kernels.slopes_tile), int(law.turns), len(ints)]
         return Slopes(
             "sceneql.bodies.elements.strain_slopes_kernels:strain",
             np.tile(rows, len(by)),

@@ -1,6 +1,11 @@
 # mypy: ignore-errors
-"""The derivatives of the forces of strain, in 3x3 blocks of two nodes of an element."""
+"""The derivatives of the forces of strain, in 3x3 blocks of two nodes of an element.
 
+Newton's method gets them with the stress that its latest update predicted (foreseen_kernels).
+"""
+
+import sceneql.system.channels as channels
+from sceneql.bodies.elements.foreseen_kernels import SEEN, TURN, foreseen, put_foreseen
 from sceneql.bodies.elements.law_kernels import SCRATCH, stiffness_at
 from sceneql.bodies.elements.strain_kernels import (
     ELEMENTS,
@@ -22,23 +27,25 @@ from sceneql.bodies.elements.strain_kernels import (
     WEIGHTS_AT,
     D,
     M,
+    P,
     look,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.system.signatures_kernels import TERM
 
-SLOPES_ROOM_AT, SLOPES_TILES, SLOPES_TILE_AT, HELD_AT = range(4)
-"""From the end of the integers, four: offset of ROOM numbers a tile; tiles, their address; ints[HELD_AT + 3 node + k]
-says whether a component is held, whose rows are 0."""
+SLOPES_ROOM_AT, SLOPES_TILES, SLOPES_TILE_AT, FORESEES, HELD_AT, OWN_INTS = range(6)
+"""From the end of the integers, OWN_INTS: offset of ROOM numbers a tile; tiles, their address; 1 where stresses are
+predicted; ints[HELD_AT + 3 node + k] says whether a component is held, whose rows are 0."""
 MOST_NODES = 10
 C = LAW + SCRATCH
 T = C + 81
 OWN = T + 27
 OTHER = OWN + 3 * MOST_NODES
-ROOM = OTHER + 3 * MOST_NODES
+SEEN_AT = OTHER + 3 * MOST_NODES
+ROOM = SEEN_AT + SEEN + TURN
 """In a tile's scratch behind that of forces: the stiffness c, a third of it by one gradient, and the derivatives of
-the mean of d and of tr E' by the nodes' places and velocities."""
+the mean of d and of tr E' by the nodes' places and velocities, the predicted stresses."""
 
 
 @lean_inlined
@@ -146,7 +153,7 @@ def hold_rows(ints, held, e, entries, to):
 @lean(TILE)
 def slopes_tile(number, positive, y, entries, floats, ints):
     """The blocks of the elements of one tile; ``positive``: not 0 where what is negative is left out."""
-    own = ints.size - 4
+    own = ints.size - OWN_INTS
     nodes, points, numbers = ints[NODES], ints[POINTS], ints[NUMBERS]
     tiles, room = ints[own + SLOPES_TILES], ints[own + SLOPES_ROOM_AT] + ROOM * number
     damped, mean = ints[RETARDATION_AT] >= 0, ints[MEAN] == 1
@@ -156,8 +163,12 @@ def slopes_tile(number, positive, y, entries, floats, ints):
     size, elements = 9 * nodes * nodes, ints[ELEMENTS]
     c = floats[room + C : room + C + 81]
     left, right = floats[room + OWN : room + OWN + 3 * nodes], floats[room + OTHER : room + OTHER + 3 * nodes]
+    predicts = definite == 0 and ints[own + FORESEES] == 1 and floats[channels.NEWTON] > 0.0
+    before = floats.size - channels.BEFORE * y.size
+    old, turned = floats[before : before + y.size], floats[room + SEEN_AT + SEEN : room + SEEN_AT + SEEN + TURN]
     for e in range(elements * number // tiles, elements * (number + 1) // tiles):
         to, moving = size * e, size * (elements + e)
+        seen = predicts and foreseen(old, y, floats, ints, e, room, c, room + SEEN_AT)
         dilatation, swelling = look(y, floats, ints, e, room)
         volume = 0.0
         for q in range(points):
@@ -179,6 +190,10 @@ def slopes_tile(number, positive, y, entries, floats, ints):
                 c,
                 floats[room + LAW : room + LAW + SCRATCH],
             )
+            if seen:
+                p, m = floats[at + P : at + P + 9], floats[at + M : at + M + 9]
+                stress = floats[room + SEEN_AT + 9 * q : room + SEEN_AT + 9 * q + 9]
+                put_foreseen(f, p, m, pressure, stress, turned, c)
             add_blocks(floats, ints, e, q, weight, room, entries, to, True)
         mirror(entries, to, nodes)
         bulk = floats[ints[NUMBERS_AT] + numbers * points * e]
@@ -212,7 +227,7 @@ def slopes_tile(number, positive, y, entries, floats, ints):
 @lean_inlined
 def over_tiles(positive, y, entries, floats, ints):
     """The blocks of all elements."""
-    own = ints.size - 4
+    own = ints.size - OWN_INTS
     if ints[own + SLOPES_TILES] == 1:
         slopes_tile(0, positive, y, entries, floats, ints)
     else:
