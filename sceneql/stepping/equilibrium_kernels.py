@@ -4,9 +4,9 @@
 A state of rest is a step of implicit Euler from rest that is long beside all periods, x = x0 + a^2 F(x)/m, whose
 inertia m/a^2 keeps motions that nothing resists where they are; repeated until nothing moves. `relax` comes to rest
 from afar by steps that grow: each goes down the potential (pseudo-transient continuation: Kelley & Keyes 1998, SIAM J.
-Numer. Anal. 35, 508-523). `step` follows a path of rests: each update is such a long step from the state before it, slopes have the forces that
-the update before predicted (channels.NEWTON), and none is accepted that leaves the tangent, so that it does not leap to
-another branch where a path has turned back.
+Numer. Anal. 35, 508-523). `step` follows a path of rests: each update is such a long step from the state before it,
+slopes have the forces that the update before predicted (channels.NEWTON), and none is accepted that leaves the tangent,
+so that it does not leap to another branch where a path has turned back.
 
 ``settings``: the memory of Newton's method (newton_kernels), a [s] at which the matrix's inertia outweighs its rounding
 alone, what ended the latest step; then the scales of the stage plan. ``numbers``: [entries of the Jacobian's room,

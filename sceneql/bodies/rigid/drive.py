@@ -76,8 +76,8 @@ class Driven(Joint):
         values = [none if value is None else assembly.value(value) for value in (force, stiffness, damping)]
         held = next(side.mover for side in (first, second) if isinstance(side.mover, Place))
         given = -1 if force is None else assembly.state([0.0])
-        law = (values[0], values[1], assembly.floats([rest]), values[2], held.bodies.work_at, given)
-        law = (*law, assembly.floats([0.0]))
+        acting = (values[0], values[1], assembly.floats([rest]), values[2])
+        law = (*acting, held.bodies.work_at, given, assembly.floats([0.0]))
         effort = assembly.floats([0.0, 0.0, 0.0])
         ints = (*integers(first.mover), *integers(second.mover), *row, scratch, *law)
         if kind == "turn":

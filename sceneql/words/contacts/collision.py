@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from sceneql.contacts import layout
 from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Problem, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
