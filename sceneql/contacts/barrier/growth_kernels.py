@@ -6,7 +6,7 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.distance_kernels import edge_edge, point_triangle
-from sceneql.contacts.barrier.weights_kernels import listed, node
+from sceneql.contacts.barrier.pair_weights_kernels import listed, node
 from sceneql.system.signatures_kernels import A, I
 
 

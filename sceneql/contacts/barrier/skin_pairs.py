@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies, Slopes
 
-KERNELS = "sceneql.contacts.barrier.skins_kernels:force"
+KERNELS = "sceneql.contacts.barrier.skin_forces_kernels:force"
 ENERGY = "sceneql.contacts.barrier.skins_energy_kernels:energy"
 LIMIT = "sceneql.contacts.barrier.skins_limit_kernels:limit"
 SLOPES = "sceneql.contacts.barrier.skins_slopes_kernels:slopes"

@@ -7,9 +7,9 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import barrier, friction_potential
+from sceneql.contacts.barrier.pair_weights_kernels import listed, stencil
 from sceneql.contacts.barrier.pairs_kernels import known
-from sceneql.contacts.barrier.skins_kernels import sliding
-from sceneql.contacts.barrier.weights_kernels import listed, stencil
+from sceneql.contacts.barrier.skin_forces_kernels import sliding
 from sceneql.system.signatures_kernels import ENERGY
 
 

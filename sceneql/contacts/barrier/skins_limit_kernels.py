@@ -9,8 +9,8 @@ import math
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.distance_kernels import edge_edge, point_triangle
+from sceneql.contacts.barrier.pair_weights_kernels import listed, node
 from sceneql.contacts.barrier.pairs_kernels import MARGIN, gone, look, vertex
-from sceneql.contacts.barrier.weights_kernels import listed, node
 from sceneql.system.signatures_kernels import LIMIT
 
 LEFT = 0.01

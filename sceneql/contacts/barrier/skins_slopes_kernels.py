@@ -10,9 +10,9 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import mobilized, mobilized_rate, steepness
+from sceneql.contacts.barrier.pair_weights_kernels import listed, node, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
-from sceneql.contacts.barrier.skins_kernels import sliding
-from sceneql.contacts.barrier.weights_kernels import listed, node, stencil
+from sceneql.contacts.barrier.skin_forces_kernels import sliding
 from sceneql.system.signatures_kernels import TERM
 
 

@@ -7,8 +7,8 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import barrier, mobilized, push
+from sceneql.contacts.barrier.pair_weights_kernels import listed, node, product, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
-from sceneql.contacts.barrier.weights_kernels import listed, node, product, stencil
 from sceneql.system.signatures_kernels import TERM
 
 
