@@ -8,6 +8,8 @@ from numpy.random import Generator, Philox
 
 import sceneql.system.channels as channels
 from runs import watch
+from sceneql.pipeline import load as load_graph
+from sceneql.run.run import Run
 from solids import Solid
 
 BAR = "block: {size: 1 0.2 0.2 m, cells: [4, 1, 1]}, law: {neo_hookean: {modulus: 20 kPa, poisson: 0.3}}"
@@ -237,14 +239,11 @@ def test_what_is_turned_inside_out_comes_back(tmp_path):
 
 def test_equilibrium_follows_a_load_that_grows(tmp_path):
     """Though a load's work, which is counted with the state, is no part of a rest."""
-    from sceneql.pipeline import load
-    from sceneql.run.run import Run
-
     loads = "loads: {tip: {where: x > 0.49, force: [0 N, time * 1 N/s, 0 N]}}"
     fields = f"{{{BAR}, element: p2, hold: {{wall: {{where: x < -0.49}}}}, {loads}}}"
     path = tmp_path / "scene.yaml"
     path.write_text(f"clock: {{end: 1 s}}\nmodels: {{body: {{elastic: {fields}}}}}\nsolvers: {{main: equilibrium}}\n")
-    run = Run(load(path, pruned=False))
+    run = Run(load_graph(path, pruned=False))
     *_, last = run.moments([0, 0.5, 1])
     solid = Solid(tmp_path, fields, time=1.0)
     places, _ = solid.rest(last.read("body", "positions"))
@@ -252,3 +251,45 @@ def test_equilibrium_follows_a_load_that_grows(tmp_path):
     assert last.read("body", "wall.force") == pytest.approx([0.0, -1.0, 0.0], abs=1e-7)
     assert np.ptp(places[:, 1]) > 0.25
     assert run.islands[0].march.floats[channels.RATES] < 2000
+
+
+STRIP = """
+clock: {{end: 2 s}}
+models:
+  body:
+    elastic:
+      block: {{size: 10 1 0.1 m, center: 5 0 0 m, cells: [{cells}, 1, 1]}}
+      element: p2
+      law: {{{law}: {{modulus: 1.2 MPa, poisson: 0}}}}
+      hold: {{wall: {{where: x < 1e-9}}}}
+      loads:
+        tip:
+          where: x > 9.9999
+          force: {{x: 0 N, y: 0 N, z: {{keys: {{0 s: 0 N, 0.3 s: 0 N, 2 s: {load} N}}, curve: linear}}}}
+      probes: {{end: 10 0 0 m}}
+solvers: {{main: equilibrium}}
+"""
+"""A strip of E I / L^2 = 1 N that a load bends."""
+
+
+@pytest.mark.parametrize(
+    ("law", "load", "drop"), [("saint_venant", 10, 0.8106090248803), ("neo_hookean", 4, 0.66996418127767)]
+)
+def test_a_thin_strip_comes_to_rest_by_few_updates(tmp_path, law, load, drop):
+    """Beside Euler's elastica; plain Newton's method takes more than 200."""
+    from sceneql.linear.newton_kernels import ITERATIONS
+
+    script = STRIP.format(law=law, cells=40, load=load)
+    path = tmp_path / "scene.yaml"
+    path.write_text(script)
+    run = Run(load_graph(path, pruned=False))
+    *_, last = run.moments([0, 2])
+    assert last.read("body", "end.displacement")[2] / 10 == pytest.approx(drop, rel=5e-4)
+    assert run.islands[0].march._settings[ITERATIONS] < 80
+
+
+def test_rest_is_that_of_the_instant_that_is_asked_for(tmp_path):
+    """Though keys lie before it, and a step might go far beyond."""
+    rows = watch(tmp_path, STRIP.format(law="saint_venant", cells=10, load=4), [0, 0.9, 1.1, 2], "body.wall.force")
+    for time, (force,) in zip((0, 0.9, 1.1, 2), rows, strict=True):
+        assert force == pytest.approx([0, 0, -4 * max(0, time - 0.3) / 1.7], abs=1e-7)

@@ -71,7 +71,7 @@ def stage_plan(system: System, exact: bool = False, signs: bool = False) -> Stag
             "take `auto`, `verlet` or `dop853`, which need none, or fewer masses",
         )
     inverse = _inverse_masses(system)
-    left, pattern, solver = _chosen(system, kinds_of(system, inverse), exact)
+    left, pattern, solver = _chosen(system, kinds_of(system, inverse), exact, signs)
     square = left.unit**2
     parts, diagonal = _parts(left, pattern)
     inertia = Inertia.of(system, left, pattern)
@@ -109,14 +109,14 @@ class _Solver:
     """Whether it counts negative eigenvalues: `negatives`."""
 
 
-def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solver]:
+def _chosen(system: System, kinds: Kinds, exact: bool, signs: bool) -> tuple[Left, Any, _Solver]:
     """The reduced system, its pattern and solver: in units of masses unless their factors fill in too much."""
     from sceneql.linear.elimination import inertia_places, left_by_entries, left_by_masses
 
     by_masses = left_by_masses(system, kinds) if kinds.core.sum() > SMALL else None
     if by_masses is not None:
         pattern = _pattern(by_masses, inertia_places(system, by_masses))
-        solver = _factored(pattern, 3, _points(system, by_masses), exact)
+        solver = _factored(pattern, 3, _points(system, by_masses), exact, signs)
         if solver is not None:
             return by_masses, pattern, solver
     left = left_by_entries(system, kinds)
@@ -126,7 +126,7 @@ def _chosen(system: System, kinds: Kinds, exact: bool) -> tuple[Left, Any, _Solv
     solver = None
     if by_masses is None:
         points = None if system.border else _points(system, left)
-        solver = _factored(pattern, 1, points, exact, system.border)
+        solver = _factored(pattern, 1, points, exact, signs, system.border)
     return left, pattern, solver or _iterations(pattern)
 
 
@@ -244,9 +244,11 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     )
 
 
-def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool, border: int = 0) -> _Solver | None:
+def _factored(
+    pattern: Any, unit: int, points: Floats | None, exact: bool, signs: bool, border: int = 0
+) -> _Solver | None:
     """A factorization on a pattern of units; None where it would fill in too much, unless it has a border, for which
-    iterations are no good."""
+    iterations are no good. They tell no signs, and are slow in thin parts at rest, which no inertia stiffens."""
     import numpy as np
 
     size = pattern.shape[0]
@@ -269,7 +271,7 @@ def _factored(pattern: Any, unit: int, points: Floats | None, exact: bool, borde
 
     groups = grouped(pattern) if unit == 1 else Groups(list(np.arange(size).reshape(-1, 1)), pattern)
     count = groups.graph.shape[0]
-    solid = groups.graph.nnz > (SOLID + 1) * count and count > SOLID_GROUPS
+    solid = not signs and groups.graph.nnz > (SOLID + 1) * count and count > SOLID_GROUPS
     if (solid or count > MOST_GROUPS) and not border:
         return None
     plan = multifrontal.plan(pattern, groups, points, unit, exact, border)

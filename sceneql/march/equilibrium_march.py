@@ -29,6 +29,9 @@ JUMPED = 1e-6
 class EquilibriumMarch(March):
     """Finds the rest of the start, then follows it through the run."""
 
+    _asked = float("inf")
+    """The instant [s] that is asked for: no step goes beyond it."""
+
     def _start(self) -> None:
         """Come to rest. Raises LimitRefused where models are held nowhere, RunFailure where there is no rest."""
         super()._start()
@@ -50,9 +53,15 @@ class EquilibriumMarch(March):
 
     def _march(self, target: float, pace: Pace) -> None:
         """Steps end at the instants that are asked for."""
+        self._asked = target
         self._step_end = min(self._step_end, target)
         super()._march(target, pace)
+        self._asked = float("inf")
         self._look_for_breakpoint(self.time)
+
+    def _look_for_breakpoint(self, time: float) -> None:
+        super()._look_for_breakpoint(time)
+        self._step_end = min(self._step_end, self._asked)
 
     def _goes_on(self, status: int) -> bool:
         """Where loads have jumped, rest is found anew; a path that has turned back ends the run."""

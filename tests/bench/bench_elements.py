@@ -17,6 +17,7 @@ from scipy.sparse import diags_array
 from scipy.sparse.linalg import cg, eigsh, splu
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+from sceneql.linear.newton_kernels import ITERATIONS
 from sceneql.pipeline import load
 from sceneql.run.run import Run
 from solids import Solid
@@ -58,14 +59,28 @@ def cook() -> None:
 
 
 def elastica() -> None:
-    """A strip bent by a load at its end: w and u there."""
+    """A strip bent by a load at its end: w and u there, by `equilibrium` and, for load 4, by plain Newton's method."""
+    strip = (
+        "{{block: {{size: 10 1 0.1 m, center: 5 0 0 m, cells: [40, 2, 1]}}, element: p2, "
+        "law: {{{law}: {{modulus: 1.2 MPa, poisson: 0}}}}, hold: {{left: {{where: x < 1e-9}}}}, "
+        "loads: {{tip: {{where: x > 9.9999, force: [0 N, 0 N, time * {load} N/s]}}}}, probes: {{end: 10 0 0 m}}}}"
+    )
     for law in ("saint_venant", "neo_hookean"):
+        for load_, exact in ELASTICA.items():
+            script = "clock: {end: 1 s}\nsolvers: {main: equilibrium}\n"
+            script += f"models: {{body: {{elastic: {strip.format(law=law, load=load_)}}}}}\n"
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder) / "scene.yaml"
+                path.write_text(script)
+                run = Run(load(path, pruned=False))
+                start = time.perf_counter()
+                *_, last = run.moments([0, 1])
+            steps = int(run.islands[0].march._settings[ITERATIONS])
+            u, w = (last.read("body", "end.displacement") / 10)[[0, 2]]
+            errors = w / exact[0] - 1, -u / exact[1] - 1
+            told(f"elastica, load {load_}, {law}, {steps} updates", *errors, seconds=time.perf_counter() - start)
         start = time.perf_counter()
-        one = solid(
-            f"{{block: {{size: 10 1 0.1 m, center: 5 0 0 m, cells: [40, 2, 1]}}, element: p2, "
-            f"law: {{{law}: {{modulus: 1.2 MPa, poisson: 0}}}}, hold: {{left: {{where: x < 1e-9}}}}, "
-            "loads: {tip: {where: x > 9.9999, force: [0 N, 0 N, time * 1 N/s]}}, probes: {end: 10 0 0 m}}"
-        )
+        one = solid(strip.format(law=law, load=1))
         places, steps = one.places, 0
         for part in range(1, 9):
             one.time = 0.5 * part
