@@ -9,11 +9,11 @@ import numpy as np
 
 from sceneql.compiled.pointers_kernels import addresses
 from sceneql.failure import LimitRefused, RunFailure
-from sceneql.linear.eigenmodes import lowest
 from sceneql.march.driver import jacobian
 from sceneql.march.march import March
 from sceneql.march.mode_loads import FIRST, Modes, Piece, next_piece
 from sceneql.march.tangent import tangent
+from sceneql.stepping.eigenmodes import lowest
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats

@@ -85,7 +85,7 @@ class Resting:
         import numpy as np
         from scipy.sparse import csr_array, eye_array, kron
 
-        from sceneql.linear.eigenmodes import lowest
+        from sceneql.stepping.eigenmodes import lowest
 
         mass = csr_array(kron(self.strain.inertia.matrix, eye_array(3), format="csr"))
         free = self._free()
