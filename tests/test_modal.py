@@ -9,10 +9,10 @@ from scipy.sparse import csr_array, diags_array
 
 from runs import complaint, watch
 from sceneql.failure import LimitRefused, RunFailure
-from sceneql.linear.eigenmodes import lowest
 from sceneql.march.mode_loads import Modes
 from sceneql.pipeline import load
 from sceneql.run.run import Run
+from sceneql.stepping.eigenmodes import lowest
 
 TORSIONAL, SPHEROIDAL = 2.501132620409, 2.639869277902
 """Frequency times radius over shear speed of the first modes of a free sphere, both five-fold (REFERENCES: Poisson's

@@ -57,7 +57,11 @@ CLAIMED = {
 }
 
 
-WORDS = [word for word in EVERY if not (solver(word).fields_only or solver(word).static)]
+WORDS = [
+    word
+    for word in EVERY
+    if not (solver(word).fields_only or solver(word).static) and solver(word).stepper().method.step
+]
 
 
 def reference(system, end):

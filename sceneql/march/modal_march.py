@@ -9,11 +9,11 @@ import numpy as np
 
 from sceneql.compiled.pointers_kernels import addresses
 from sceneql.failure import LimitRefused, RunFailure
-from sceneql.linear.eigenmodes import lowest
 from sceneql.march.driver import jacobian
 from sceneql.march.march import March
 from sceneql.march.mode_loads import FIRST, Modes, Piece, next_piece
 from sceneql.march.tangent import tangent
+from sceneql.stepping.eigenmodes import lowest
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -66,7 +66,7 @@ class ModalMarch(March):
         system, structure = self.system, self.system.structure
         if not system.masses:
             raise self._refusal(f"modes are those of masses, and '{system.ranges[0][2]}' has none")
-        if structure.exact or structure.local:
+        if structure.exact or structure.local or structure.limits:
             raise self._refusal("contacts are not linear: modes do not go through them")
         if structure.after or structure.settling or structure.free or structure.tied:
             raise self._refusal("modes are those of masses that forces alone move: here something else moves or turns")

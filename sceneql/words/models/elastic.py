@@ -11,15 +11,15 @@ from pydantic import PrivateAttr
 
 from sceneql import kinds
 from sceneql.bodies import bodies as masses
-from sceneql.bodies.elements import modes as solid_modes
+from sceneql.bodies import solid_modes
 from sceneql.bodies.elements import strain_outputs
 from sceneql.bodies.elements.block import Block
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
 from sceneql.bodies.elements.load import Load
-from sceneql.bodies.elements.modes import Bent
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
+from sceneql.bodies.solid_modes import Bent
 from sceneql.kinds import Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import suggestion
@@ -30,9 +30,9 @@ if TYPE_CHECKING:
 
     from sceneql.bodies.elements.element import Element
     from sceneql.bodies.elements.element_mesh import ElementMesh
-    from sceneql.bodies.elements.modes import Resting
     from sceneql.bodies.elements.skin import Carried, Skin
     from sceneql.bodies.elements.strain import Strain
+    from sceneql.bodies.solid_modes import Resting
     from sceneql.frame import Floats, Shape
     from sceneql.system import Assembly, Bodies, ModelState
 

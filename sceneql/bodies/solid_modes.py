@@ -85,7 +85,7 @@ class Resting:
         import numpy as np
         from scipy.sparse import csr_array, eye_array, kron
 
-        from sceneql.linear.eigenmodes import lowest
+        from sceneql.stepping.eigenmodes import lowest
 
         mass = csr_array(kron(self.strain.inertia.matrix, eye_array(3), format="csr"))
         free = self._free()
@@ -105,14 +105,14 @@ def stiffness_at(strain: Strain, places: Floats, floats: Floats) -> Any:
     import numpy as np
     from scipy.sparse import coo_array, csr_array
 
-    from sceneql.bodies.elements.strain_slopes_kernels import SLOPES_TILES, slopes_tile
+    from sceneql.bodies.elements.strain_slopes_kernels import OWN_INTS, SLOPES_TILES, slopes_tile
 
     slopes, position_at = strain.slopes(), int(strain.ints[0])
     y = np.zeros(max(int(strain.ints[1]), position_at) + places.size)
     y[position_at : position_at + places.size] = np.ravel(places)
     entries = np.zeros(slopes.entries)
     numbers = floats.copy()
-    for tile in range(int(slopes.ints[slopes.ints.size - 4 + SLOPES_TILES])):
+    for tile in range(int(slopes.ints[slopes.ints.size - OWN_INTS + SLOPES_TILES])):
         slopes_tile(tile, 0.0, y, entries, numbers, slopes.ints)
     across = np.arange(3)
     rows, columns = np.asarray(slopes.rows) - int(strain.ints[1]), np.asarray(slopes.columns) - position_at
