@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import runs
 from runs import complaint
+from sceneql.cli import cli
 from sceneql.shapes.placement import rotation_matrix
 
 FREE = """
@@ -189,3 +191,22 @@ outputs: {t: {record: {of: [it.energy, net.energy]}}}
     ):
         with pytest.raises(runs.ScriptError, match=text):
             runs.watch(tmp_path, script % (height, mode), [0], "it.energy")
+
+
+def test_steps_too_long_for_springs_beside_bodies_are_told(tmp_path):
+    script = """clock: {end: 0.3 s}
+objects: {o: {box: {size: 1 0.2 1 m, position: 0 0.1 0 m}}, floor: plane}
+models:
+  it: {rigid: {of: o}}
+  net: {cloth: {size: 0.2 0.2 m, cells: 2 2, center: 0 0.22 0 m}}
+forces: [gravity]
+contacts: {c: {collision: {restitution: 0}}}
+solvers: {main: {SOLVER}}
+outputs: {t: {record: {of: [it.energy, net.energy]}}}
+"""
+    for solver, told in (("implicit_euler: {step: 1/60 s}", True), ("auto", False)):
+        path = tmp_path / "scene.yaml"
+        path.write_text(script.replace("SOLVER", solver))
+        done = CliRunner().invoke(cli, ["render", str(path), "-o", str(tmp_path / "out")])
+        assert done.exit_code == 0, done.output
+        assert ("masses on springs touched something" in done.output) is told
