@@ -179,11 +179,9 @@ class Collision(Contact):
 
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
-        why = group.why_local(assembly, everyone, touched) if self.mode == "auto" else ""
-        assembly.contact_why = "asked for by the script"
-        if self.mode == "auto":
-            assembly.contact_why = f"chosen, for {why}" if why else "chosen for a few balls"
-        if self.mode == "exact" or (self.mode == "auto" and not why):
+        chosen = "chosen for rigid bodies, which are exact where the script asks for it"
+        assembly.contact_why = chosen if self.mode == "auto" else "asked for by the script"
+        if self.mode == "exact":
             assembly.remember(*group.assemble(assembly, everyone, touched, self.restitution, self.friction))
             return
         assembly.step_at_most(OFTEN)
