@@ -5,11 +5,13 @@ import pytest
 
 from meshes import assert_closed_manifold, cut_finer, tape_of
 from sceneql.field.tape.tape_solid import field_values
+from sceneql.frame import Implicit, Surface
 from sceneql.mesh.bounded import bounded
 from sceneql.mesh.cubes import refine
 from sceneql.mesh.dual.kept_sharp import kept_sharp
 from sceneql.mesh.measures import euler_by_piece, euler_characteristic, volume
 from sceneql.mesh.repair.folds import folds, overturned
+from sceneql.report import surface_measures
 
 TWO_CUBES = "min(max(abs(x-0.35), abs(y-0.35), abs(z)), max(abs(x+0.35), abs(y+0.35), abs(z))) - 0.35"
 LATTICE = "abs(sin(6*x)*cos(6*y+0.785) + sin(6*y+0.785)*cos(6*z) + sin(6*z)*cos(6*x)) - 0.34 + 0.156*y"
@@ -52,3 +54,13 @@ def test_smooth_solids_whose_rims_are_as_small_as_cells_have_no_folds(monkeypatc
     folded, _ = cut_finer(f"{SHEET}{rim}", 0.5, cells)
     assert len(overturned(whole, folded)) > 0
     assert euler_characteristic(folded.triangles) == euler_characteristic(found.triangles)
+
+
+def test_bench_measures_the_meshes_that_the_command_makes(monkeypatch):
+    half, drop = 1.0, "min(sqrt(x^2 + y^2 + z^2) - 0.5, sqrt((x-0.83)^2 + (y-0.04)^2 + (z-0.03)^2) - 0.04)"
+    shape = Implicit("drop", Surface((1.0, 1.0, 1.0)), tape_of(drop), (-half,) * 3, (half,) * 3)
+    monkeypatch.setattr(surface_measures, "CELLS", (16, 24))
+    made = surface_measures.mesh_runs(shape)
+    for run in made:
+        own, _ = cut_finer(drop, half, round(2 * half / run.cell))
+        assert (run.euler, run.triangles) == (4, len(own.triangles))

@@ -24,7 +24,7 @@ OFF = 1.0e-4
 TILT = 0.7548776662466927, 0.5698402909980532
 """Slopes of the rays against the axes that meshes follow: no ray runs along a side of a triangle."""
 AGREE = 0.5
-"""Cosine of the largest angle of the normals of a triangle's vertices where the surface counts as smooth: 60 degrees."""
+"""Cosine of 60 degrees, by which the normals of a triangle's vertices turn at most where the surface is smooth."""
 OVER = -0.866
 """Cosine of 150 degrees."""
 INSIDE = 1.001

@@ -1,4 +1,4 @@
-"""Unfolds a mesh where vertices of cells too coarse for the surface have passed one another. Imports numpy and numba."""
+"""Unfolds meshes whose cells are so coarse that vertices pass one another. Imports numpy and numba."""
 
 from __future__ import annotations
 
