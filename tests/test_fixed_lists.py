@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from moment import FakeMoment, const, link
+from sceneql.field.skeleton.skeleton import NODE, Skeleton
 from sceneql.field.tape.builder import TapeBuilder
 from sceneql.words.objects.blobby import Blobby
 
@@ -43,3 +44,22 @@ def test_a_fixed_list_is_one_array_that_nobody_may_write_to():
     assert not value.fixed_list().flags.writeable
     assert const([1.0, 2.0, 3.0]).fixed_list() is None
     assert link("cage", "positions", (200, 3)).fixed_list() is None
+
+
+def lexical(places, groups):
+    """The order along Morton's curve, bit by bit."""
+    low = places.min(axis=0)
+    size = (places.max(axis=0) - low).max()
+    cells = np.minimum((places - low) / size * 1024.0, 1023.0).astype(int)
+    codes = [sum(int(c >> bit & 1) << 3 * bit + k for bit in range(10) for k, c in enumerate(row)) for row in cells]
+    return np.lexsort([groups, codes])
+
+
+def test_points_that_move_lie_along_the_curve_whether_or_not_they_are_alone_in_their_groups():
+    alone, radii = np.arange(200.0), np.full((200, 2), 0.2)
+    corners = np.repeat(PLACES[:, None], 3, axis=1)
+    rows = Skeleton(corners, radii, np.ones(200), alone).rows()
+    ends = rows[1::2, 6] != NODE
+    assert np.array_equal(rows[::2][ends][:, :3], PLACES[lexical(PLACES, alone)])
+    turned = Skeleton(corners[::-1], radii, np.ones(200), alone[::-1]).rows()  # sorted by groups as well
+    assert np.array_equal(turned, rows)

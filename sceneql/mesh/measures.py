@@ -75,6 +75,25 @@ def euler_characteristic(triangles: Ints) -> int:
     return len(np.unique(triangles)) - edge_counts(triangles)[0] + len(triangles)
 
 
+def euler_by_piece(triangles: Ints) -> list[int]:
+    """Euler characteristics of the connected components of a closed 2-manifold, ascending: they tell its topology."""
+    import numpy as np
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    if not len(triangles):
+        return []
+    used, corners = np.unique(triangles, return_inverse=True)
+    a, b, c = corners.reshape(-1, 3).T
+    ends = np.concatenate([a, b]), np.concatenate([b, c])
+    count, piece = connected_components(
+        coo_array((np.ones(len(ends[0])), ends), shape=(len(used),) * 2), directed=False
+    )
+    # Three sides a triangle, each of two: V - E + F is V - F / 2.
+    found: list[int] = sorted((np.bincount(piece) - np.bincount(piece[a], minlength=count) // 2).tolist())
+    return found
+
+
 def pieces(triangles: Ints) -> int:
     """Number of connected components: the least vertex number of each is propagated until nothing changes."""
     import numpy as np

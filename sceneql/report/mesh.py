@@ -47,7 +47,7 @@ class Account:
     """[m^2]"""
     boundary_edges: int
     folded: int
-    """Triangles that face inward of the mesh itself, as of ``folds``."""
+    """Triangles that face inward of the mesh itself, as of ``overturned``, of sharp ones ``folds``."""
     unresolved: int
     """Cells without a change of sign, whether or not something smaller than they hides in them."""
     unresolved_volume: float
@@ -113,11 +113,11 @@ def mesh(
         hidden, missed, folded = None, 0.0, 0
     else:
         from sceneql.mesh.bounded import bounded
-        from sceneql.mesh.repair.folds import folds
+        from sceneql.mesh.repair.folds import folds, overturned
 
         solid = _solid(shapes, task, name, moment)
         polygons, hidden, cell, missed = _of_solid(solid, task, name, moment.time, cell, tolerance, sharp)
-        folded = len(folds(bounded(solid.tape, solid.low, solid.high), polygons))
+        folded = len((folds if sharp else overturned)(bounded(solid.tape, solid.low, solid.high), polygons))
         missed = missed if tolerance is not None and missed > tolerance else 0.0
         if solid.paint is not None:
             from sceneql.field.tape.tape_solid import paint_values
@@ -134,6 +134,7 @@ def _of_solid(
     from sceneql.mesh.cubes.grid import grid_around
     from sceneql.mesh.cubes.refine import refined
     from sceneql.mesh.cubes.tolerance import Within, polygonise_within
+    from sceneql.mesh.dual.kept_sharp import kept_sharp
 
     box = solid.tape, solid.low, solid.high
     size = max(high - low for low, high in zip(solid.low, solid.high, strict=True))
@@ -142,7 +143,7 @@ def _of_solid(
     with failing_as(name, time, task.span):
         grid_around(solid.low, solid.high, cell)
         least = cell
-        method = _kept_sharp if sharp else partial(refined, tolerance=tolerance)
+        method = kept_sharp if sharp else partial(refined, tolerance=tolerance)
         if tolerance is None:
             made = Within(*method(*box, cell), cell, 0.0)
         else:
@@ -176,14 +177,6 @@ def _account(
         unresolved_volume=0.0 if hidden is None else hidden.volume,
         missed=missed,
     )
-
-
-def _kept_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Polygons, Unresolved]:
-    """As ``refined``, but with edges and corners kept."""
-    from sceneql.mesh.cubes.unresolved import unresolved
-    from sceneql.mesh.dual.sharp import polygonise_sharp
-
-    return polygonise_sharp(tape, low, high, cell), unresolved(tape, low, high, cell)
 
 
 def _why_empty(tape: Tape, low: Corner, high: Corner, cell: float) -> str:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from sceneql.graph import SimulationGraph
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
+REFERENCE = 1e-14
+"""Tolerance of the certified intervals that these are compared with: finer than all that it judges."""
 SAMPLES = tuple(2**k for k in range(4, 13))
 CELLS = (16, 32, 64, 128, 256)
 """Cells along the longest side of an object's box."""
@@ -131,7 +133,7 @@ def ray_runs(frame: SeenFrame) -> Iterator[RayRun]:
     """
     from renderers.tracing.probe import probe
 
-    truth = probe(frame, certain=True)
+    truth = probe(frame, REFERENCE, certain=True)
     probe(frame)
     for tolerance in TOLERANCES:
         found, seconds = timed(partial(probe, frame, tolerance))
@@ -171,17 +173,17 @@ def compared(renderer: str, setting: float, seconds: float, found: Probe, truth:
 
 
 def mesh_runs(shape: Implicit) -> list[MeshRun]:
-    """A solid polygonised by smaller and smaller cells."""
-    from sceneql.mesh.cubes.polygonise import polygonise
+    """A solid polygonised by smaller and smaller cells, as by the command ``mesh``."""
+    from sceneql.mesh.cubes.refine import refined
     from sceneql.mesh.distance import hausdorff
     from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
 
     side = max(high - low for low, high in zip(shape.low, shape.high, strict=True))
-    polygonise(shape.tape, shape.low, shape.high, side / CELLS[0])
+    refined(shape.tape, shape.low, shape.high, side / CELLS[0])
     made = []
     for cells in CELLS:
         cell = side / cells
-        polygons, seconds = timed(partial(polygonise, shape.tape, shape.low, shape.high, cell))
+        (polygons, _), seconds = timed(partial(refined, shape.tape, shape.low, shape.high, cell))
         made.append((cell, seconds, polygons.vertices, polygons.triangles))
         if seconds > ENOUGH_SECONDS:
             break

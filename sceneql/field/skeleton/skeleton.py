@@ -31,6 +31,8 @@ FLAT = 1e-6
 """Sine of the angle between two sides below which a triangle is replaced by its longest side."""
 BRANCHES = 8
 """Children of a box: parts, or boxes of parts."""
+SPREAD = (16, 0x030000FF), (8, 0x0300F00F), (4, 0x030C30C3), (2, 0x09249249)
+"""Shifts and masks by which ten bits of a number come to lie three apart."""
 WIDER = 1e-9
 """Padding of boxes, relative to their size and to their distance from the origin."""
 
@@ -68,7 +70,7 @@ class Skeleton:
     @property
     def largest(self) -> Floats:
         """(p,) [m] an upper bound of each part's radius."""
-        ends: Floats = self.radii.max(axis=1)
+        ends: Floats = np.maximum(self.radii[:, 0], self.radii[:, 1])
         return ends if self.middles is None else np.fmax(ends, self.middles)
 
     def weighted(self, weights: Floats) -> Skeleton:
@@ -81,8 +83,10 @@ class Skeleton:
 
     def _plain(self) -> NDBool:
         a, b, c = self.corners.transpose(1, 0, 2)
-        _, where, count = np.unique(self.groups, return_inverse=True, return_counts=True)
-        lone = count[where] == 1
+        lone: NDBool = np.ones(len(self.groups), dtype=bool)
+        if not (self.groups[1:] > self.groups[:-1]).all():
+            _, where, count = np.unique(self.groups, return_inverse=True, return_counts=True)
+            lone = count[where] == 1
         flat = (c == a).all(axis=1) | (c == b).all(axis=1)
         plain: NDBool = lone & flat & ~self.curved & (self.radii[:, 0] == self.radii[:, 1]) & (self.kernel == 0)
         return plain
@@ -112,7 +116,8 @@ class Skeleton:
         corners[curved], radii[curved], shapes[curved] = self.corners[curved], self.radii[curved], CURVE
         if self.middles is not None:
             condition[curved] = self.middles[curved]
-        low, high = corners.min(axis=1), corners.max(axis=1)
+        low = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])  # a third of a reduction's time
+        high = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
         reach = self.largest[:, None]
         order = _order(0.5 * (low + high), self.groups)
         low, high = (low - reach)[order], (high + reach)[order]
@@ -166,6 +171,8 @@ def _sizes(n: int) -> list[int]:
 
 def _settled(corners: Floats, radii: Floats) -> tuple[Floats, Floats, Floats, Floats]:
     """(corners, radii, shapes, condition) of the parts, with degenerate triangles replaced by their longest sides."""
+    if (corners[:, 1:] == corners[:, :1]).all():  # points
+        return corners.copy(), radii.copy(), np.full(len(corners), SEGMENT), np.ones(len(corners))
     a, b, c = corners.transpose(1, 0, 2)
     normal = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     product = np.linalg.norm(b - a, axis=1) * np.linalg.norm(c - a, axis=1)
@@ -188,6 +195,8 @@ def _order(places: Floats, groups: Floats) -> Order:
     n = len(places)
     if n <= BRANCHES:
         return np.lexsort([np.arange(n), groups])
+    if (groups[1:] > groups[:-1]).all():  # each alone in its group
+        return np.argsort(_morton(places), kind="stable")
     _, where, count = np.unique(groups, return_inverse=True, return_counts=True)
     middles = np.stack([np.bincount(where, places[:, k]) for k in range(3)], axis=1) / count[:, None]
     return np.lexsort([_morton(places), groups, _morton(middles)[where]])
@@ -198,8 +207,7 @@ def _morton(places: Floats) -> Order:
     low = places.min(axis=0)
     size = float((places.max(axis=0) - low).max()) or 1.0
     cells = np.minimum((places - low) / size * 1024.0, 1023.0).astype(np.int64)
-    code = np.zeros(len(places), dtype=np.int64)
-    for bit in range(10):
-        for axis in range(3):
-            code |= (cells[:, axis] >> bit & 1) << (3 * bit + axis)
+    for shift, mask in SPREAD:
+        cells = (cells | cells << shift) & mask
+    code: Order = cells[:, 0] | cells[:, 1] << 1 | cells[:, 2] << 2
     return code

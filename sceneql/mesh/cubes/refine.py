@@ -19,6 +19,7 @@ from sceneql.mesh.cubes.tolerance import distances_off
 from sceneql.mesh.cubes.triangle_kernels import most_turn
 from sceneql.mesh.cubes.unresolved import Unresolved, hidden_in
 from sceneql.mesh.polygons import Polygons
+from sceneql.mesh.repair.unfolded import unfolded
 
 if TYPE_CHECKING:
     import numpy as np
@@ -76,9 +77,9 @@ def refined(
         if not len(more):
             # Every doubtful cell is in a group, so the fine cells account for all.
             left = hidden_in(fine_shop, owned[: len(groups)], DEEPEST if len(groups) < MANY_GROUPS else 0)
-            return stitched(whole, coarse, kept, fine, sides, curves), left
+            return unfolded(whole, stitched(whole, coarse, kept, fine, sides, curves)), left
         groups = np.unique(np.concatenate([groups, more // group]), axis=0)
-    return Polygons(coarse.places, coarse.triangles, coarse.normals), doubt
+    return unfolded(whole, Polygons(coarse.places, coarse.triangles, coarse.normals)), doubt
 
 
 def _to_cut(tape: Tape, coarse: Level, tolerance: float | None) -> list[tuple[Keys, int]]:

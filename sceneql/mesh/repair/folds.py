@@ -23,6 +23,10 @@ OFF = 1.0e-4
 """Distance from a triangle's center at which its outer side is tested, in square roots of its area."""
 TILT = 0.7548776662466927, 0.5698402909980532
 """Slopes of the rays against the axes that meshes follow: no ray runs along a side of a triangle."""
+AGREE = 0.5
+"""Cosine of 60 degrees, by which the normals of a triangle's vertices turn at most where the surface is smooth."""
+OVER = -0.866
+"""Cosine of 150 degrees."""
 INSIDE = 1.001
 """Side of the grid of squares relative to the extent of the points: none lies on its far border."""
 
@@ -47,6 +51,67 @@ def against(tape: Tape, polygons: Polygons) -> Rows:
 def folds(tape: Tape, polygons: Polygons) -> Rows:
     """(n,) rows of triangles against the gradient whose outer side is inside the closed mesh."""
     return inverted(polygons, against(tape, polygons))
+
+
+def overturned(tape: Tape, polygons: Polygons) -> Rows:
+    """(n,) rows of ``folds``, and of triangles turned over where the surface is smooth: ``wrinkles``, ``turned_over``.
+
+    For meshes whose edges are not kept: polygons that end in an edge of the solid turn there, too.
+    """
+    import numpy as np
+
+    rows = doubtful(polygons)
+    facing_in = rows[facing(tape, polygons.vertices[polygons.triangles[rows]]) < 0.0]
+    found = np.union1d(inverted(polygons, facing_in), wrinkles(polygons, facing_in))
+    return np.union1d(found, turned_over(polygons, rows))
+
+
+def wrinkles(polygons: Polygons, rows: Rows) -> Rows:
+    """Those of the rows (n,) of triangles that face against the normals of their vertices, though these agree.
+
+    The middle layer of a fold like a Z has the inside behind it, as any other triangle; but where the surface is
+    smooth, none faces so. At an edge of the solid, and on walls thinner than a cell, normals disagree.
+    """
+    import numpy as np
+
+    corners, normals = (of[polygons.triangles[rows]] for of in (polygons.vertices, polygons.normals))
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    agree = (np.einsum("tkj,tkj->tk", normals, np.roll(normals, -1, axis=1)) > AGREE).all(axis=1)
+    found: Rows = rows[agree & (np.einsum("tj,tkj->tk", across, normals) < 0.0).all(axis=1)]
+    return found
+
+
+def turned_over(polygons: Polygons, rows: Rows) -> Rows:
+    """Of triangles beside one another whose normals turn by more than OVER, though those of their vertices agree.
+
+    Those of the rows (n,) are looked at, and of each pair the one farther from its vertices' normals is told.
+    """
+    import numpy as np
+
+    from sceneql.mesh.repair.flips import Sides
+
+    near = np.zeros(len(polygons.vertices), dtype=bool)
+    near[polygons.triangles[rows]] = True
+    around = np.flatnonzero(near[polygons.triangles].sum(axis=1) > 1)
+    triangles = polygons.triangles[around].astype(np.int64)
+    if not len(triangles):
+        return rows
+    corners, slopes = polygons.vertices[triangles], polygons.normals[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = np.divide(normals, sizes, out=np.zeros_like(normals), where=sizes > 0.0)
+    means = np.einsum("tj,tkj->t", normals, slopes)
+    beside = Sides(triangles, len(polygons.vertices))
+    found = []
+    for k in range(3):
+        a, b = triangles[:, k], triangles[:, (k + 1) % 3]
+        other = beside.owners(b, a)
+        turned = np.flatnonzero((other >= 0) & (np.einsum("tj,tj->t", normals, normals[other]) < OVER))
+        of = np.concatenate([slopes[turned], slopes[other[turned]]], axis=1)
+        agree = (np.einsum("tij,tkj->tik", of, of) > 0.0).all(axis=(1, 2))
+        found.append(turned[agree & (means[turned] <= means[other[turned]])])
+    told: Rows = around[np.unique(np.concatenate(found))]
+    return told
 
 
 def inverted(polygons: Polygons, rows: Rows) -> Rows:

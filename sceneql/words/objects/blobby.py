@@ -149,6 +149,14 @@ class Blobby(Object):
 
         points = numbers(value, moment).reshape(-1, 3)
         n = len(points)
+        if not self.segments:
+            radii, weights = each(self.radius, n, "points", moment), each(self.weight, n, "points", moment)
+            return Shape(
+                np.repeat(points[:, None], 3, axis=1),
+                np.stack([radii, radii], axis=1),
+                weights,
+                np.arange(n, dtype=float),
+            )
         pairs = np.array(self.segments, dtype=int).reshape(-1, 2)
         if pairs.size and pairs.max() >= n:
             raise failure(f"there is no point {pairs.max()}: the {n} points are 0 to {n - 1}", value, moment)

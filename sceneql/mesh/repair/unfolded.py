@@ -1,0 +1,70 @@
+"""Unfolds meshes whose cells are so coarse that vertices pass one another. Imports numpy and numba."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.mesh.polygons import Polygons
+from sceneql.mesh.repair.flips import faced_outward
+from sceneql.mesh.repair.folds import overturned
+from sceneql.mesh.repair.move_vertices import settled
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Ints, Tape
+
+    Rows = NDArray[np.int64]
+
+ROUNDS = 12
+WIDENED = 3
+"""Rounds after which vertices one ring farther out are moved too."""
+MOST = 2**10
+"""Folds up to which vertices are moved; more come from a field too fine for its cells."""
+
+
+def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
+    """The polygons with vertices at folds moved along the surface to the means of their neighbors, and edges flipped.
+
+    Neither changes the topology. Folds that stay after ROUNDS are left as they were.
+    """
+    import numpy as np
+
+    best, best_rows = polygons, overturned(tape, polygons)
+    rows, found = best_rows, polygons
+    for turn in range(ROUNDS):
+        if not 0 < len(rows) <= MOST:
+            break
+        near = np.zeros(len(polygons.vertices), dtype=bool)
+        near[found.triangles[rows]] = True
+        for _ in range(turn // WIDENED):
+            near[found.triangles[near[found.triangles].any(axis=1)]] = True
+        found = _relaxed(tape, found, near)
+        rows = overturned(tape, found)
+        if len(rows) < len(best_rows):
+            best, best_rows = found, rows
+    return best
+
+
+def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_]) -> Polygons:
+    """The polygons with the chosen vertices (v,) moved, and edges flipped near them."""
+    import numpy as np
+
+    triangles = polygons.triangles.astype(np.int64)
+    star = triangles[chosen[triangles].any(axis=1)]
+    corners = np.flatnonzero(chosen & polygons.normals.any(axis=1))
+    ends = np.unique(star[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=0)
+    ends = ends[np.isin(ends[:, 0], corners)]
+    at = np.searchsorted(corners, ends[:, 0])
+    places, normals = polygons.vertices.copy(), polygons.normals.copy()
+    middles, reach = np.zeros((len(corners), 3)), np.zeros(len(corners))
+    np.add.at(middles, at, places[ends[:, 1]])
+    np.maximum.at(reach, at, np.linalg.norm(places[ends[:, 1]] - places[ends[:, 0]], axis=1))
+    middles /= np.bincount(at, minlength=len(corners))[:, None]
+    new, slopes = settled(tape, middles, reach)
+    kept = slopes.any(axis=1)
+    places[corners[kept]], normals[corners[kept]] = new[kept], slopes[kept]
+    rows = np.flatnonzero(chosen[triangles].any(axis=1))
+    flipped: Ints = faced_outward(tape, places, polygons.triangles, rows)
+    return Polygons(places, flipped, normals)

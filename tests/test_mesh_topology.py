@@ -1,0 +1,66 @@
+"""Laws of meshes' topology: edges kept sharp change none of it; folds on smooth solids are found and mended."""
+
+import numpy as np
+import pytest
+
+from meshes import assert_closed_manifold, cut_finer, tape_of
+from sceneql.field.tape.tape_solid import field_values
+from sceneql.frame import Implicit, Surface
+from sceneql.mesh.bounded import bounded
+from sceneql.mesh.cubes import refine
+from sceneql.mesh.dual.kept_sharp import kept_sharp
+from sceneql.mesh.measures import euler_by_piece, euler_characteristic, volume
+from sceneql.mesh.repair.folds import folds, overturned
+from sceneql.report import surface_measures
+
+TWO_CUBES = "min(max(abs(x-0.35), abs(y-0.35), abs(z)), max(abs(x+0.35), abs(y+0.35), abs(z))) - 0.35"
+LATTICE = "abs(sin(6*x)*cos(6*y+0.785) + sin(6*y+0.785)*cos(6*z) + sin(6*z)*cos(6*x)) - 0.34 + 0.156*y"
+TOUCHING = {  # formulas of solids that touch themselves or nearly do, half sides of their boxes, cells along these
+    "two cubes along an edge": (TWO_CUBES, 0.9, 64),
+    "lattice": (f"max({LATTICE}, abs(x) - 1, abs(y) - 1, abs(z) - 1)", 1.01, 28),
+    "cayley": ("max(4*(x^2 + y^2 + z^2) + 16*x*y*z - 1, sqrt(x^2 + y^2 + z^2) - 1.15)", 1.15, 32),
+    "two balls": ("min(sqrt((x-0.5)^2 + y^2 + z^2), sqrt((x+0.5)^2 + y^2 + z^2)) - 0.5", 1.1, 32),
+}
+SHEET = (
+    "sqrt(max(abs(sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x))/14 - 0.01, 0)^2"
+    " + max(sqrt(x^2 + y^2 + z^2) - 0.93, 0)^2) - "
+)
+
+
+@pytest.mark.parametrize("name", TOUCHING)
+def test_sharp_meshes_have_the_topology_of_others(name):
+    text, half, cells = TOUCHING[name]
+    box = tape_of(text), (-half,) * 3, (half,) * 3, 2 * half / cells
+    sharp, _ = kept_sharp(*box)
+    assert_closed_manifold(sharp)
+    assert euler_by_piece(sharp.triangles) == euler_by_piece(cut_finer(text, half, cells)[0].triangles)
+    assert not len(folds(bounded(*box[:3]), sharp))
+
+
+def test_cubes_that_touch_are_two_with_their_edges_and_corners():
+    sharp, _ = kept_sharp(tape_of(TWO_CUBES), (-0.9,) * 3, (0.9,) * 3, 1.8 / 64)
+    assert euler_by_piece(sharp.triangles) == [2, 2]
+    assert volume(sharp.vertices, sharp.triangles) == pytest.approx(2 * 0.7**3, abs=1e-12)
+    assert np.abs(field_values(tape_of(TWO_CUBES), sharp.vertices)).max() < 1e-12
+
+
+@pytest.mark.parametrize(("rim", "cells"), [(0.006, 16), (0.03, 24)])
+def test_smooth_solids_whose_rims_are_as_small_as_cells_have_no_folds(monkeypatch, rim, cells):
+    whole = bounded(tape_of(f"{SHEET}{rim}"), (-0.5,) * 3, (0.5,) * 3)
+    found, _ = cut_finer(f"{SHEET}{rim}", 0.5, cells)
+    assert_closed_manifold(found)
+    assert not len(overturned(whole, found))
+    monkeypatch.setattr(refine, "unfolded", lambda tape, polygons: polygons)
+    folded, _ = cut_finer(f"{SHEET}{rim}", 0.5, cells)
+    assert len(overturned(whole, folded)) > 0
+    assert euler_characteristic(folded.triangles) == euler_characteristic(found.triangles)
+
+
+def test_bench_measures_the_meshes_that_the_command_makes(monkeypatch):
+    half, drop = 1.0, "min(sqrt(x^2 + y^2 + z^2) - 0.5, sqrt((x-0.83)^2 + (y-0.04)^2 + (z-0.03)^2) - 0.04)"
+    shape = Implicit("drop", Surface((1.0, 1.0, 1.0)), tape_of(drop), (-half,) * 3, (half,) * 3)
+    monkeypatch.setattr(surface_measures, "CELLS", (16, 24))
+    made = surface_measures.mesh_runs(shape)
+    for run in made:
+        own, _ = cut_finer(drop, half, round(2 * half / run.cell))
+        assert (run.euler, run.triangles) == (4, len(own.triangles))
