@@ -217,6 +217,17 @@ def test_cubes_thrown_into_a_bin_are_never_in_each_other(tmp_path):
     assert max(cube_pile.deepest(2, row[0], np.array(row[1:])) for row in rows) < 1e-6 * cube_pile.SIDE
 
 
+def test_threads_do_not_change_a_bit_of_a_pile(tmp_path, monkeypatch):
+    seen = []
+    for threads in ("1", "2"):
+        monkeypatch.setenv("SCENEQL_THREADS", threads)
+        outputs = ("pile.positions", "pile.velocities", "touch.forces")
+        rows = runs.watch(tmp_path, cube_pile.script(3, 5, 0.4), [0.2, 0.4], *outputs, pruned=False)
+        seen.append([value.tobytes() for row in rows for value in row])
+    assert len(seen[0][-1]) > 0
+    assert seen[0] == seen[1]
+
+
 def test_groups_that_do_not_touch_move_as_if_each_were_alone(tmp_path):
     """A tower and, far off, a cube that slides: together as apart, to the last bit."""
     objects, bodies = stack([1, 4, 2], gap=0.01)
