@@ -22,6 +22,7 @@ DROP = "hole: {sphere: {position: 0.5 0.5 0 m, radius: 0.3 m, hidden: yes}}"
 MODELS = {
     "cloth": "cloth: {size: 1 1 m, cells: 3 3, mass: 1 kg/m^2, stretch: 10 N/m}",
     "diffusion": f"diffusion: {{{GRID}, initial: x}}",
+    "elastic": "elastic: {block: {size: 1 1 1 m, cells: 1 1 1}, element: p1, law: {linear: {modulus: 1 Pa, poisson: 0.3}}}",
     "equations": 'equations: {start: {a: 1, "a\'": 2, b: 3}, rate: {"a\'\'": -a, b: a*b}, '
     'invariants: {own: b, e: a*b}, gives: {bob: [a, b, "a\'"], twice: 2*a, some: [a, b, 0]}}',
     "equations far": "equations: {start: {a: 1, b: 3}, rate: {a: b, b: -a}, gives: {p: [a, b, a]}, unit: 2 m}",

@@ -115,14 +115,14 @@ def test_a_disk_full_at_the_end_leaves_nothing(load, monkeypatch, output):
 def test_a_disk_full_on_the_way_keeps_what_was_made(load, monkeypatch):
     from renderers.encoders import png
 
-    write = png.Writer.write
+    save = png.Writer._save
 
-    def fill(writer, picture):
+    def fill(writer, picture, path):
         if len(writer.made) == 2:
             raise OSError(errno.ENOSPC, "No space left on device")
-        write(writer, picture)
+        save(writer, picture, path)
 
-    monkeypatch.setattr(png.Writer, "write", fill)
+    monkeypatch.setattr(png.Writer, "_save", fill)
     with pytest.raises(OSError, match="No space left") as caught:
         pipeline.render(load(TABLE, FILM), folder=Path("made"))
     assert made() == ["s.data.partial.csv", "s.film.0000.png", "s.film.0001.png"]
