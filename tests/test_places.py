@@ -22,7 +22,8 @@ DROP = "hole: {sphere: {position: 0.5 0.5 0 m, radius: 0.3 m, hidden: yes}}"
 MODELS = {
     "cloth": "cloth: {size: 1 1 m, cells: 3 3, mass: 1 kg/m^2, stretch: 10 N/m}",
     "diffusion": f"diffusion: {{{GRID}, initial: x}}",
-    "elastic": "elastic: {block: {size: 1 1 1 m, cells: 1 1 1}, element: p1, law: {linear: {modulus: 1 Pa, poisson: 0.3}}}",
+    "elastic": "elastic: {block: {size: 1 1 1 m, cells: 1 1 1}, element: p1, "
+    "law: {linear: {modulus: 1 Pa, poisson: 0.3}}}",
     "equations": 'equations: {start: {a: 1, "a\'": 2, b: 3}, rate: {"a\'\'": -a, b: a*b}, '
     'invariants: {own: b, e: a*b}, gives: {bob: [a, b, "a\'"], twice: 2*a, some: [a, b, 0]}}',
     "equations far": "equations: {start: {a: 1, b: 3}, rate: {a: b, b: -a}, gives: {p: [a, b, a]}, unit: 2 m}",
@@ -43,6 +44,8 @@ MODELS = {
     "species: {u: {coefficient: 0.1, initial: x, rate: -u*v}, v: {initial: y}}}",
 }
 COMPUTED = {"momentum"}
+OF_REST = {"frequencies", "mode_shapes"}
+"""Outputs that no state changes, and that one that is none does not have."""
 """Of a mass of one kilogram momentum and velocity are one number."""
 
 
@@ -58,6 +61,8 @@ def run_of(folder: Path, model: str, force: str = "{mutual_gravity: {constant: 1
 
 def probed(kind: Model, output: str, state: ModelState) -> Any:
     """Where an output stands that copies entries of y: found by a state that numbers its own, and seen on another."""
+    if output in OF_REST:
+        return None
     size = len(state.y)
     numbers = 17.0 + np.arange(size)
     other = np.random.default_rng(2).standard_normal(size)
