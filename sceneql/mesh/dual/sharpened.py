@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Ints, Tape
+    from sceneql.frame import Floats, Tape
 
     Rows = NDArray[np.int64]
     Mask = NDArray[np.bool_]
@@ -77,7 +77,7 @@ def _turned(tape: Tape, made: Polygons, parents: Rows, cuts: Cuts) -> Rows:
     """(n,) rows of triangles, parts of cut ones, that face against the gradient at their center."""
     import numpy as np
 
-    some: Mask = cuts.cut[cuts.side_of].any(axis=1)
+    some = cuts.cut[cuts.side_of].sum(axis=1) > 0
     rows = np.flatnonzero(some[parents])
     found: Rows = rows[facing(tape, made.vertices[made.triangles[rows]]) < 0.0]
     return found
