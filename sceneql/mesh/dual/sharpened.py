@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Ints, Tape
+    from sceneql.frame import Floats, Tape
 
     Rows = NDArray[np.int64]
     Mask = NDArray[np.bool_]
@@ -38,7 +38,7 @@ WIDENED = 2
 class Cuts(NamedTuple):
     """Vertices to be put on sides and into triangles."""
 
-    side_of: Ints
+    side_of: Rows
     """(t, 3) side from vertex k to vertex k + 1 of each triangle, as a row of ``places``."""
     cut: Mask
     """(s,) which sides are cut."""
@@ -77,7 +77,8 @@ def _turned(tape: Tape, made: Polygons, parents: Rows, cuts: Cuts) -> Rows:
     """(n,) rows of triangles, parts of cut ones, that face against the gradient at their center."""
     import numpy as np
 
-    rows = np.flatnonzero(cuts.cut[cuts.side_of].any(axis=1)[parents])
+    some = cuts.cut[cuts.side_of].sum(axis=1) > 0
+    rows = np.flatnonzero(some[parents])
     found: Rows = rows[facing(tape, made.vertices[made.triangles[rows]]) < 0.0]
     return found
 
@@ -88,14 +89,13 @@ def _cuts(tape: Tape, polygons: Polygons) -> Cuts:
 
     vertices, normals, triangles = polygons.vertices, polygons.normals, polygons.triangles.astype(np.int64)
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-    keys, first, side_of = np.unique(
+    _, first, side_of = np.unique(
         ends.min(axis=1) * len(vertices) + ends.max(axis=1), return_index=True, return_inverse=True
     )
-    del keys
     side_of = side_of.reshape(-1, 3)
     ends = np.sort(ends[first], axis=1)
-    known = normals.any(axis=1)
-    cut = (np.einsum("sj,sj->s", *normals[ends].transpose(1, 0, 2)) < ALIKE) & known[ends].all(axis=1)
+    known: Mask = (normals != 0.0).any(axis=1)
+    cut: Mask = (np.einsum("sj,sj->s", *normals[ends].transpose(1, 0, 2)) < ALIKE) & known[ends].all(axis=1)
     places = np.zeros((len(ends), 3))
     rows = np.flatnonzero(cut)
     places[rows], met = _met(tape, vertices[ends[rows]], normals[ends[rows]])
