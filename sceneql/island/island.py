@@ -66,7 +66,6 @@ class IslandAssembly:
     """What its ties hold, for the term that finds all their forces."""
     tie_ints: tuple[int, ...] = ()
     driven: bool = False
-    lone_contact: bool = False
     contact_why: str = ""
     changes: list[tuple[int, int]] = field(default_factory=list)
     """(offset, count) of floats that change as bodies come and go."""

@@ -86,7 +86,6 @@ class Assembled:
             with self.word(next(name for name, _ in self.island.forces if isinstance(tasks[name].kind, Tie))):
                 add_ties(self.assembly, self.assembly.ties)
         contacts = dict.fromkeys(contact for contact, _, _ in self.island.contacts)
-        self.assembly.lone_contact = len(contacts) == 1
         # Contacts between masses come last: those with objects need the path of the whole step as the solver made it.
         for contact in sorted(contacts, key=lambda name: cast(Contact, tasks[name].kind).mutual):
             self._add_contact(contact)

@@ -191,8 +191,6 @@ class Assembly(Protocol):
     """The integers of the term that finds all ties' forces (bodies/rigid/tie_kernels.py), once it is there."""
     driven: bool
     """Whether a step lets stops, motors and friction of ties act already."""
-    lone_contact: bool
-    """Whether the island has contacts of one word alone."""
     contact_why: str
     """Why contacts of rigid bodies have their mode, for `explain`."""
 

@@ -24,8 +24,6 @@ HOLD, SETTLE = f"{ROOM}.exact_hold_kernels:hold", f"{ROOM}.exact_hold_kernels:se
 CONTACTS = f"{ROOM}.watch_kernels:gap", f"{ROOM}.strike_kernels:impact"
 MOST = 24
 """Bodies of one contact: all their conditions are one dense system."""
-MOST_CHOSEN = 8
-"""Balls for which mode `auto` is this one."""
 FEW = 8
 """Contacts by the body that there is room for, and besides."""
 
@@ -115,47 +113,6 @@ def assemble(
         memory + rows.ENDLESS,
         memory + rows.JAMMED,
     )
-
-
-def why_local(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref]) -> str:
-    """Why mode `auto` does not take these contacts as exact; empty where it does: a few balls on what stands."""
-    import numpy as np
-
-    from sceneql.contacts.distance.convex import CORE
-
-    if not assembly.lone_contact:
-        return "several contacts"
-    if any(tie.drive is not None for tie in assembly.ties):
-        return "ties with stops, a motor or friction"
-    count, inverse = 0, assembly.numbers()
-    for bodies in everyone:
-        model: Any = assembly.object(Ref(bodies.model))
-        for k, (ref, center) in enumerate(model.solids()):
-            shape, moves = _convex(ref, center, assembly), inverse[bodies.inverse_at + k] > 0.0
-            count += moves
-            if shape is None or (moves and (shape.kind != CORE or int(shape.ints[0]) > 1)):
-                return f"'{bodies.model if ref is None else ref.name}' is no ball"
-    for ref in others:
-        kind: Any = assembly.object(ref)
-        if is_led(kind):
-            return f"'{ref.name}' moves by itself"
-        if _convex(ref, np.zeros(3), assembly) is None:
-            return f"'{ref.name}' touches by points of its surface"
-    return "" if count <= MOST_CHOSEN else f"more than {MOST_CHOSEN} bodies"
-
-
-def _convex(ref: Ref | None, center: Floats, assembly: Assembly) -> Convex | None:
-    """The convex shape of an object in its own axes from a center; None where it has none."""
-    from sceneql.island.start import Start
-
-    if ref is None:
-        return None
-    kind: Any = assembly.object(ref)
-    try:
-        found: Convex = kind.convex(Start(assembly), center)
-    except (TypeError, ValueError):
-        return None
-    return found
 
 
 def _must_be_free(assembly: Assembly) -> None:

@@ -256,13 +256,9 @@ class Collision(Contact):
             message = f"mode `exact` has no contacts of masses, as of '{points[0].model}', with rigid bodies"
             help = "mode: local has; or give the masses a `collision` of their own with the objects they may touch"
             raise ScriptError([Diagnostic("invalid", message, assembly.line(), help)])
-        why = ""
-        if self.mode == "auto":
-            why = "masses, too" if points else group.why_local(assembly, rigid, touched)
-        assembly.contact_why = "asked for by the script"
-        if self.mode == "auto":
-            assembly.contact_why = f"chosen, for {why}" if why else "chosen for a few balls"
-        if self.mode == "exact" or (self.mode == "auto" and not why):
+        chosen = "chosen for rigid bodies, which are exact where the script asks for it"
+        assembly.contact_why = chosen if self.mode == "auto" else "asked for by the script"
+        if self.mode == "exact":
             assembly.remember(*group.assemble(assembly, rigid, touched, self.restitution, self.friction))
             return
         assembly.step_at_most(OFTEN)
