@@ -113,7 +113,7 @@ def gap(t, y, gaps, floats, ints):
             now += TOUCHES * smaller(floats, ints, a, b) - least
         elif h > 0.0 and now > 0.0:
             now = passed(floats, ints, a, b, h, now, motions, room)
-        if floats[memory + AGAIN] >= ENDURANCE and now <= 10.0 * TOUCHES * smaller(floats, ints, a, b):
+        if floats[memory + AGAIN] >= ENDURANCE and abs(now) <= 10.0 * TOUCHES * smaller(floats, ints, a, b):
             now = NEVER
         gaps[pair] = now
     for k in range(most):
