@@ -242,10 +242,9 @@ class Collision(Contact):
         from sceneql.contacts.distance.rigid_contact import assemble
         from sceneql.contacts.distance.rigid_masses import masses_of
         from sceneql.contacts.rigid_exact import group
+        from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
         if self.mode == "barrier":
-            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-
             message = "mode `barrier` is that of elastic solids, and rigid bodies are none"
             raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
         written = {ref.name: ref for ref in self.between or ()}
