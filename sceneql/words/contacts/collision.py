@@ -18,8 +18,8 @@ RIGID = ("points", "normals", "forces")
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
 EXACT = "sceneql.contacts.collision_kernels"
-BARRIER = -3
-"""Where in the remembered integers those of a barrier begin."""
+BARRIER, SPRINGS = -3, -4
+"""Where in the remembered integers those of a barrier begin, and that of the memory of masses beside rigid bodies."""
 NO_RESTITUTION = "elastic solids have no restitution: they bounce by their own elasticity"
 LOCAL = "sceneql.contacts.back_off_kernels"
 SHAPES = "sceneql.contacts.shapes"
@@ -118,11 +118,11 @@ class Collision(Contact):
 
     def _too_long(self, state: ModelState) -> tuple[float, float]:
         """Steps that were too long for the springs of masses beside rigid bodies, and how long they may be [s]."""
-        if -3 not in state.ints:
+        if SPRINGS not in state.ints:
             return 0.0, 0.0
         from sceneql.contacts.distance.mass_points_kernels import LONGER, LONGEST
 
-        at = state.ints[state.ints.index(-3) + 1]
+        at = state.ints[state.ints.index(SPRINGS) + 1]
         return float(state.floats[at + LONGER]), float(state.floats[at + LONGEST])
 
     def _rigid(self, output: str, state: ModelState) -> Any:
@@ -242,10 +242,9 @@ class Collision(Contact):
         from sceneql.contacts.distance.rigid_contact import assemble
         from sceneql.contacts.distance.rigid_masses import masses_of
         from sceneql.contacts.rigid_exact import group
+        from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
         if self.mode == "barrier":
-            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-
             message = "mode `barrier` is that of elastic solids, and rigid bodies are none"
             raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
         written = {ref.name: ref for ref in self.between or ()}
@@ -265,7 +264,7 @@ class Collision(Contact):
         masses = masses_of(points, self.thickness, assembly) if points else None
         told = assemble(assembly, rigid, touched, self.restitution, self.friction, masses)
         if masses is not None:
-            assembly.remember(masses.tally_at, -1, *told, -3, masses.memory_at)
+            assembly.remember(masses.tally_at, -1, *told, SPRINGS, masses.memory_at)
         else:
             assembly.remember(-1, *told)
 

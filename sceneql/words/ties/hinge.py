@@ -69,7 +69,7 @@ class Hinge(Driven):
         "angle": Gives(quantity_type(dim.ANGLE), "How far it has turned."),
         "speed": Gives(quantity_type(dim.FREQUENCY), "How fast it turns."),
         "effort": Gives(quantity_type(TORQUE), "Torque of motor, stops and friction on the first body."),
-        "given": Gives(quantity_type(dim.ENERGY), "Energy that its motor has given.", tally=True),
+        "given": Gives(quantity_type(dim.ENERGY), "Energy that its motor gave, by whole steps.", tally=True),
         **FORCES,
     }
 

@@ -65,7 +65,7 @@ class Slider(Driven):
         "shift": Gives(quantity_type(dim.LENGTH), "How far it has moved along the axis."),
         "speed": Gives(quantity_type(dim.VELOCITY), "How fast it moves."),
         "effort": Gives(quantity_type(dim.FORCE), "Force of motor, stops and friction on the first body."),
-        "given": Gives(quantity_type(dim.ENERGY), "Energy that its motor has given.", tally=True),
+        "given": Gives(quantity_type(dim.ENERGY), "Energy that its motor gave, by whole steps.", tally=True),
         **FORCES,
     }
 
