@@ -96,7 +96,7 @@ def read(output: str, solid: Strain, state: ModelState) -> Any:
         case "stress":
             return stress
         case "principal":
-            return np.linalg.eigvalsh(stress)[:, ::-1].copy()
+            return principal(stress)
     return von_mises(stress)
 
 
@@ -108,6 +108,16 @@ def cauchy(gradients: Floats, stresses: Floats) -> Floats:
         found = np.einsum("...ik,...jk->...ij", stresses, gradients) / np.linalg.det(gradients)[..., None, None]
     symmetric: Floats = 0.5 * (found + np.swapaxes(found, -1, -2))
     return symmetric
+
+
+def principal(stress: Floats) -> Floats:
+    """(n, 3) principal values of stresses (n, 3, 3), falling; NaN where an element has no volume."""
+    import numpy as np
+
+    found = np.full(stress.shape[:2], np.nan)
+    finite = np.isfinite(stress).all(axis=(1, 2))
+    found[finite] = np.linalg.eigvalsh(stress[finite])[:, ::-1]
+    return found
 
 
 def von_mises(stress: Floats) -> Any:

@@ -6,7 +6,7 @@ resist less than nothing where d differs within an element.
 """
 
 from sceneql.bodies.elements.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
-from sceneql.bodies.elements.principal_kernels import MODES, from_modes, principal
+from sceneql.bodies.elements.laws.principal_kernels import MODES, from_modes, principal
 from sceneql.bodies.elements.volume_kernels import cofactor, squares
 from sceneql.compiled.kernels import lean
 
