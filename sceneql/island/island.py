@@ -6,8 +6,7 @@ which alone decides which code is compiled.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
@@ -16,13 +15,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import sceneql.system.channels as channels
-from sceneql.failure import LimitRefused
 from sceneql.island.blocks_laid import Block, grouped, lay_out
 from sceneql.island.breakpoint_table import Breakpoint, BreakpointTable
 from sceneql.island.breakpoints import Breakpoints
 from sceneql.island.inputs import Inputs, WithoutSlopes
 from sceneql.island.jacobian import BY_DIFFERENCES, full, section
-from sceneql.island.memory import LARGEST_MEMORY
+from sceneql.island.reserved import Reserved
 from sceneql.island.system import Origin, Structure, System
 from sceneql.island.value_slopes import Layout, own_slopes, value_slopes
 from sceneql.kinds import Object, Ref, Value
@@ -37,18 +35,15 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.island.inputs import Word
     from sceneql.island.setting import Setting
-    from sceneql.quantities.span import Span
     from sceneql.system import Bodies, Grid, Mode, Slopes, Stage, Tied
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "tie", "close", "constrain")
 TIED = 150
 """Entries of y up to which the Jacobian of an island with ties is found by differences, which are as fast."""
-VECTORS = 12
-"""Arrays of the state's size that a run keeps: states and rates at a step's ends, and the stages of a solver."""
 
 
 @dataclass
-class IslandAssembly:
+class IslandAssembly(Reserved):
     """The Assembly (system/assembly.py) of one island.
 
     ``places`` gives the indices into y of a solved model's output (None: it is computed); settable until `finish`.
@@ -69,19 +64,10 @@ class IslandAssembly:
     contact_why: str = ""
     changes: list[tuple[int, int]] = field(default_factory=list)
     """(offset, count) of floats that change as bodies come and go."""
-    _starts: list[Floats] = field(default_factory=list)
-    _size: int = 0
-    _bodies: int = 0
-    _ranges: list[tuple[int, int, str, tuple[Span | None, ...]]] = field(default_factory=list)
-    _rests: list[tuple[int, Floats]] = field(default_factory=list)
-    _names: list[tuple[int, int, Callable[[int], str]]] = field(default_factory=list)
-    _pairs: list[tuple[int, int, int]] = field(default_factory=list)
     _alike: list[tuple[int, int]] = field(default_factory=list)
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
     _matrices: dict[int, Any] = field(default_factory=dict)
     """Inertia that is a matrix, by the offset of the velocities."""
-    _numbers: list[Floats] = field(default_factory=lambda: [np.zeros(channels.HEAD)])
-    _stored: int = channels.HEAD
     _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
     _exact: list[Block] = field(default_factory=list)
     _local: list[Block] = field(default_factory=list)
@@ -98,70 +84,7 @@ class IslandAssembly:
     _grids: list[Grid] = field(default_factory=list)
     _apart: bool = True
     _unsloped: str = ""
-    _word: tuple[str, Span | None, str | None] = ("island", None, None)
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
-
-    @contextmanager
-    def word(self, name: str, span: Span | None, model: str | None = None) -> Iterator[None]:
-        """Mark what is added inside the context as the part ``name``'s (a force's on ``model``)."""
-        before = self._word
-        self._word = (name, span, model)
-        try:
-            yield
-        finally:
-            self._word = before
-
-    def state(
-        self, initial: Any, spans: Sequence[Span | None] | None = None, named: Callable[[int], str] | None = None
-    ) -> int:
-        """Reserve entries of y (system.Assembly). Raises LimitRefused when the run would need too much memory."""
-        start = np.array(initial, dtype=np.float64).ravel()
-        name, span, _ = self._word
-        self.room(self._size + len(start), span)
-        first = self._size
-        self._starts.append(start)
-        self._size += len(start)
-        self._ranges.append((first, self._size, name, tuple(spans) if spans else (span,)))
-        if named is not None:
-            self._names.append((first, len(start), named))
-        return first
-
-    def displaced(self, at: int, values: Any) -> None:
-        """Let entries start elsewhere than at rest (system.Assembly)."""
-        y = self.start()
-        self._rests.append((at, y[at : at + len(values)].copy()))
-        y[at : at + len(values)] = values
-        self._starts = [y]
-
-    def room(self, entries: float, span: Span | None) -> None:
-        """Raise LimitRefused where a state of so many entries exceeds memory; call it before making large arrays."""
-        memory = 8.0 * entries * VECTORS
-        if memory > LARGEST_MEMORY:
-            raise LimitRefused(
-                f"a state of {entries:.3g} numbers needs about {memory / 2**30:.3g} GiB; at most "
-                f"{LARGEST_MEMORY / 2**30:.0f} GiB are allowed",
-                span,
-                "use fewer masses or a coarser lattice",
-            )
-
-    def pair(self, position_at: int, velocity_at: int, count: int) -> None:
-        """Say which entries are velocities of which (system.Assembly)."""
-        self._pairs.append((position_at, velocity_at, count))
-        self._bodies += count // 3
-
-    def floats(self, values: Any) -> int:
-        """Store numbers; the offset of the first."""
-        numbers = np.array(values, dtype=np.float64).ravel()
-        first = self._stored
-        self._numbers.append(numbers)
-        self._stored += len(numbers)
-        return first
-
-    def write(self, at: int, values: Any) -> None:
-        """Replace numbers (system.Assembly)."""
-        numbers = self.numbers()
-        numbers[at : at + len(values)] = values
-        self._numbers = [numbers]
 
     def value(self, value: Value) -> int:
         """Store a value, a varying one to be evaluated at stage times; the offset of its first float."""
@@ -286,10 +209,6 @@ class IslandAssembly:
     def breakpoints(self) -> Breakpoints:
         """The breakpoints of values and formulas in the run."""
         return Breakpoints(self.setting.formula, self.setting.end)
-
-    def line(self) -> Span | None:
-        """The place in the script of the word that is being assembled."""
-        return self._word[1]
 
     def place(self, link: Link) -> Place | None:
         """Where a force acts (system.Assembly)."""
@@ -427,15 +346,6 @@ class IslandAssembly:
             return None
         ends = accumulate(count for _, count in groups)
         return tuple(energies[end - 1] or "" for end in ends)
-
-    def start(self) -> Floats:
-        """The state reserved so far, at the start of the run."""
-        return np.concatenate(self._starts) if self._starts else np.zeros(0)
-
-    def numbers(self) -> Floats:
-        """The floats stored so far."""
-        self._numbers[:] = [np.concatenate(self._numbers)]  # many words ask, each after it has stored a few
-        return self._numbers[0].copy()
 
     def _program(self, inputs: Inputs) -> list[int]:
         """The program that evaluates the values that vary."""
