@@ -55,7 +55,7 @@ def test_the_ball_hits_and_rests_when_the_series_of_its_bounces_says():
 def test_the_physics_does_not_know_the_frame_rate(path):
     ends = set()
     for fps in (24, 60):
-        graph = pipeline.load(path, sets=[f"clock.fps={fps}", "clock.end=0.6 s"], pruned=False)
+        graph = pipeline.load(path, sets=[f"clock.fps={fps}", "clock.end=0.4 s"], pruned=False)
         clock = graph.settings.clock
         *_, last = pipeline.simulate(graph, [*clock.frames(clock.fps), clock.end])
         marches = [island.march for island in last.run.islands]
