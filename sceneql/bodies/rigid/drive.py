@@ -27,22 +27,18 @@ class Motor:
 
 
 class Driven(Joint):
-    """A tie that leaves one motion."""
+    """A tie that leaves one motion, with the fields that all of these have."""
+
+    if TYPE_CHECKING:
+        limits: tuple[float, float] | None
+        restitution: Value
+        friction: Value | None
+        stiffness: Value | None
+        rest: float
+        damping: Value | None
 
     def motion(self, first: Side, second: Side, assembly: Assembly) -> tuple[str, tuple[Any, ...]]:
         """Its kind, `turn` or `shift`, and its vectors (drive_kernels)."""
-        raise NotImplementedError
-
-    def spring(self) -> tuple[Value | None, float, Value | None]:
-        """Stiffness, rest and damping."""
-        raise NotImplementedError
-
-    def stops(self) -> tuple[tuple[float, float] | None, Value]:
-        """How far the motion goes at least and at most, and the restitution there."""
-        raise NotImplementedError
-
-    def rubbing(self) -> Value | None:
-        """Its dry friction."""
         raise NotImplementedError
 
     def driver(self) -> Motor | None:
@@ -52,8 +48,7 @@ class Driven(Joint):
     def problems(self) -> Iterator[Problem]:
         """Those of a tie; limits between which it does not start."""
         yield from super().problems()
-        limits, _ = self.stops()
-        if limits is not None and not limits[0] <= 0.0 <= limits[1]:
+        if self.limits is not None and not self.limits[0] <= 0.0 <= self.limits[1]:
             yield Problem("it starts at 0, which must lie between the limits", ("limits",))
 
     def assemble_motion(
@@ -70,19 +65,19 @@ class Driven(Joint):
         kind, vectors = self.motion(first, second, assembly)
         numbers, scratch = assembly.floats(vectors), assembly.floats(np.zeros(2 * MOVED + ROW))
         row = (POINT if kind == "shift" else ANGLE, 0, 0, numbers, scratch + 2 * MOVED, holds)
-        motor, (stiffness, rest, damping) = self.driver(), self.spring()
+        motor = self.driver()
         force = motor.most if motor is not None and motor.follows == "nothing" else None
         none = assembly.floats([0.0])
-        values = [none if value is None else assembly.value(value) for value in (force, stiffness, damping)]
+        values = [none if value is None else assembly.value(value) for value in (force, self.stiffness, self.damping)]
         held = next(side.mover for side in (first, second) if isinstance(side.mover, Place))
         given = -1 if force is None else assembly.state([0.0])
-        acting = (values[0], values[1], assembly.floats([rest]), values[2])
+        acting = (values[0], values[1], assembly.floats([self.rest]), values[2])
         law = (*acting, held.bodies.work_at, given, assembly.floats([0.0]))
         effort = assembly.floats([0.0, 0.0, 0.0])
         ints = (*integers(first.mover), *integers(second.mover), *row, scratch, *law)
         if kind == "turn":
             assembly.after_step("sceneql.bodies.rigid.drive_kernels:follow", ints, samples=True)
-        if any(value is not None for value in (force, stiffness, damping)):
+        if any(value is not None for value in (force, self.stiffness, self.damping)):
             assembly.term("force", "sceneql.bodies.rigid.drive_kernels:drive", ints, lambda: drive_slopes(ints))
         return (effort, *ints), self._bounds(ints, motor, effort, assembly)
 
@@ -90,7 +85,7 @@ class Driven(Joint):
         """What acts in bounds; None for nothing."""
         from sceneql.system import Drive
 
-        (limits, restitution), friction = self.stops(), self.rubbing()
+        limits, friction = self.limits, self.friction
         follows: Follows = "nothing" if motor is None else motor.follows
         if limits is None and friction is None and follows == "nothing":
             return None
@@ -102,7 +97,7 @@ class Driven(Joint):
         return Drive(
             along=motion,
             limits_at=-1 if limits is None else assembly.floats(limits),
-            restitution_at=-1 if limits is None else assembly.value(restitution),
+            restitution_at=-1 if limits is None else assembly.value(self.restitution),
             follows=follows,
             target_at=target,
             most_at=most,
@@ -127,8 +122,8 @@ class Driven(Joint):
         """That stops, motor and friction make steps of order 1."""
         motor = self.driver()
         parts = [
-            *(["stops"] if self.stops()[0] is not None else []),
-            *(["friction"] if self.rubbing() is not None else []),
+            *(["stops"] if self.limits is not None else []),
+            *(["friction"] if self.friction is not None else []),
             *(["its motor"] if motor is not None and motor.follows != "nothing" else []),
         ]
         acts = "acts" if parts in (["friction"], ["its motor"]) else "act"

@@ -104,18 +104,6 @@ class Hinge(Driven):
         side, _ = across(axis)
         return "turn", (first.direction(side), second.direction(side), second.direction(axis))
 
-    def spring(self) -> tuple[Value | None, float, Value | None]:
-        """Stiffness, rest and damping."""
-        return self.stiffness, self.rest, self.damping
-
-    def stops(self) -> tuple[tuple[float, float] | None, Value]:
-        """The limits and the restitution there."""
-        return self.limits, self.restitution
-
-    def rubbing(self) -> Value | None:
-        """The torque of dry friction."""
-        return self.friction
-
     def driver(self) -> Motor | None:
         """What the motor does."""
         if self.motor is None:

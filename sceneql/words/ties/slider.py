@@ -94,18 +94,6 @@ class Slider(Driven):
         axis = second.direction(axis_of(self.axis, assembly))
         return "shift", (first.place(first.position), second.place(first.position), axis)
 
-    def spring(self) -> tuple[Value | None, float, Value | None]:
-        """Stiffness, rest and damping."""
-        return self.stiffness, self.rest, self.damping
-
-    def stops(self) -> tuple[tuple[float, float] | None, Value]:
-        """The limits and the restitution there."""
-        return self.limits, self.restitution
-
-    def rubbing(self) -> Value | None:
-        """The force of dry friction."""
-        return self.friction
-
     def driver(self) -> Motor | None:
         """What the motor does."""
         if self.motor is None:
