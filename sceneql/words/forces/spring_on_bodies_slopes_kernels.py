@@ -12,6 +12,7 @@ from sceneql.bodies.rigid.place_slopes_kernels import COLUMNS, ROWS, add_force_s
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.system.signatures_kernels import TERM
 from sceneql.words.forces.spring_on_bodies_kernels import DAMPING_AT, REST_AT, SPEEDS_AT, STIFFNESS_AT
+from sceneql.words.forces.spring_slopes_kernels import foreseen
 
 
 @inlined
@@ -52,12 +53,7 @@ def add(y, entries, floats, ints, kept):
         old, d, w = np.zeros(3), np.zeros(3), np.zeros(3)
         between(floats[floats.size - channels.BEFORE * y.size :], floats, ints, old, w)
         between(floats[floats.size - channels.AFTER * y.size :], floats, ints, d, w)
-        before = math.sqrt(old[0] * old[0] + old[1] * old[1] + old[2] * old[2])
-        seen = old[0] * d[0] + old[1] * d[1] + old[2] * d[2]
-        seen_opening = old[0] * w[0] + old[1] * w[1] + old[2] * w[2]
-        across, turning = 0.0, 0.0
-        if before > 0.0:
-            across = (stiffness * (seen / before - rest) + damping * seen_opening / before) / length
+        across, turning = foreseen(old, d, w, stiffness, damping, rest) / length, 0.0
         inverse = 0.0
         for end in range(2):
             if ints[PLACE * end + POSITION_AT] >= 0:

@@ -28,6 +28,17 @@ def between(y, floats, ints, d, v):
 
 
 @inlined
+def foreseen(old, d, w, stiffness, damping, rest):
+    """The force [N] along ``old`` that the latest Newton update, to d with the velocity w, predicted."""
+    before = math.sqrt(old[0] * old[0] + old[1] * old[1] + old[2] * old[2])
+    if before == 0.0:
+        return 0.0
+    seen = old[0] * d[0] + old[1] * d[1] + old[2] * d[2]
+    opening = old[0] * w[0] + old[1] * w[1] + old[2] * w[2]
+    return stiffness * (seen / before - rest) + damping * opening / before
+
+
+@inlined
 def add(y, entries, floats, ints, kept):
     """Add the blocks of `spring`; ``kept``: the most negative stiffness across it, over the lighter mass."""
     n, v = np.zeros(3), np.zeros(3)
@@ -45,12 +56,7 @@ def add(y, entries, floats, ints, kept):
         old, d, w = np.zeros(3), np.zeros(3), np.zeros(3)
         between(floats[floats.size - channels.BEFORE * y.size :], floats, ints, old, w)
         between(floats[floats.size - channels.AFTER * y.size :], floats, ints, d, w)
-        before = math.sqrt(old[0] * old[0] + old[1] * old[1] + old[2] * old[2])
-        seen = old[0] * d[0] + old[1] * d[1] + old[2] * d[2]
-        seen_opening = old[0] * w[0] + old[1] * w[1] + old[2] * w[2]
-        across, turning = 0.0, 0.0
-        if before > 0.0:
-            across = (stiffness * (seen / before - rest) + damping * seen_opening / before) / length
+        across, turning = foreseen(old, d, w, stiffness, damping, rest) / length, 0.0
         inverse = 0.0
         for end in range(2):
             if ints[INVERSES_AT + end] >= 0:
