@@ -59,7 +59,7 @@ class Solid:
         system, y = self.march.system, self.state(places, speeds)
         values = np.full(system.pattern.room, np.nan)
         self.march.floats[channels.POSITIVE] = float(positive)
-        jacobian(system)(self.march._functions, self.time, y, values, self.march.floats, system.ints)
+        jacobian(system)(self.march._engaged.functions, self.time, y, values, self.march.floats, system.ints)
         self.march.floats[channels.POSITIVE] = 0.0
         n = len(y)
         matrix = coo_matrix((values[: system.pattern.count], (system.pattern.rows, system.pattern.columns)), (n, n))

@@ -201,7 +201,7 @@ def test_the_jacobian_is_the_derivative_of_the_rate(tmp_path, limiter):
     pattern = march.system.pattern
     values = np.zeros(pattern.room)
     march.rate(0.0, march.system.y)
-    functions = march._functions
+    functions = march._engaged.functions
     jacobian(march.system)(functions, 0.0, march.system.y, values, march.floats, march.system.ints)
     found = np.zeros((len(march.system.y),) * 2)
     rows = pattern.rows

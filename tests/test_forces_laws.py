@@ -278,7 +278,7 @@ def test_the_derivatives_are_those_of_the_rate(tmp_path, name):
         assert pattern.exact
         y = system.y + 0.1 * np.random.default_rng(3).standard_normal(len(system.y))
         values = np.full(pattern.room, np.nan)
-        jacobian(system)(march._functions, 0.3, y, values, march.floats.copy(), system.ints)
+        jacobian(system)(march._engaged.functions, 0.3, y, values, march.floats.copy(), system.ints)
         found = np.zeros((len(y), len(y)))
         rows = pattern.rows
         found[rows, pattern.columns] = values[: len(rows)]

@@ -14,6 +14,7 @@ from sceneql.bodies import springs as springs_module
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.island import jacobian as layout
 from sceneql.linear import stage, stage_kernels
+from sceneql.march import driver
 from sceneql.march.march import March
 from sceneql.march.modes import jacobian
 from sceneql.pipeline import load, render
@@ -230,7 +231,7 @@ def test_a_stage_system_is_solved(tmp_path, count, kind):
     plan = stage.stage_plan(system)
     assert plan.text.startswith(kind)
     values, store = np.zeros(system.pattern.room), np.zeros(plan.store)
-    march._jacobian(march._functions, 0.0, system.y, values, march.floats, system.ints)
+    driver.jacobian(march.system)(march._engaged.functions, 0.0, system.y, values, march.floats, system.ints)
     a, n = 0.3, len(system.y)
     right = np.random.default_rng(3).standard_normal(n)
     right[np.abs(jacobian(march)).sum(axis=1) == 0.0] = 0.0
@@ -258,7 +259,7 @@ def test_threads_share_the_slopes_to_the_same_bytes(tmp_path, monkeypatch):
         system = march.system
         y = system.y + 0.05 * np.random.default_rng(7).standard_normal(len(system.y))
         values = np.full(system.pattern.room, 7.0)
-        march._jacobian(march._functions, 0.0, y, values, march.floats, system.ints)
+        driver.jacobian(march.system)(march._engaged.functions, 0.0, y, values, march.floats, system.ints)
         found.append(values[: len(system.pattern.columns)].copy())
     assert found[0].tobytes() == found[1].tobytes() == found[2].tobytes()
     rows = system.pattern.rows
@@ -282,7 +283,9 @@ def test_a_chain_of_springs_has_its_dispersion(tmp_path):
     )
     march = Run(load(path)).islands[0].march
     values = np.zeros(march.system.pattern.room)
-    march._jacobian(march._functions, 0.0, march.system.y, values, march.floats, march.system.ints)
+    driver.jacobian(march.system)(
+        march._engaged.functions, 0.0, march.system.y, values, march.floats, march.system.ints
+    )
     rows, columns = march.system.pattern.rows, march.system.pattern.columns
     whole = np.zeros((len(march.system.y),) * 2)
     whole[rows, columns] = values[: len(columns)]

@@ -52,7 +52,7 @@ def dense(march, t, y):
     system = march.system
     pattern = system.pattern
     values = np.full(pattern.room, np.nan)
-    jacobian(system)(march._functions, t, y, values, march.floats.copy(), system.ints)
+    jacobian(system)(march._engaged.functions, t, y, values, march.floats.copy(), system.ints)
     matrix = np.zeros((len(y), len(y)))
     rows = pattern.rows
     matrix[rows, pattern.columns] = values[: len(rows)]

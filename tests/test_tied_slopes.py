@@ -73,7 +73,7 @@ def test_systems_that_ties_border_are_solved_as_those_of_all_slopes(tmp_path, mo
     n = len(y)
     plan = stage_plan(system, exact=True)
     values, store, a = np.zeros(system.pattern.room), np.zeros(plan.store), 0.03
-    jacobian(system)(march._functions, t, y, values, floats, system.ints)
+    jacobian(system)(march._engaged.functions, t, y, values, floats, system.ints)
     assert factor_stage(plan.numbers, a, values, plan.scales, store)
     whole = np.zeros((n, n))
     for k in range(n):

@@ -102,7 +102,7 @@ def check_derivatives(folder: Path, script: str, h: float = 1e-4, good: float = 
         assert pattern.exact, system.unsloped
         y = system.y + 0.05 * np.random.default_rng(3).standard_normal(len(system.y))
         values = np.full(pattern.room, np.nan)
-        jacobian(system)(march._functions, 0.3, y, values, march.floats.copy(), system.ints)
+        jacobian(system)(march._engaged.functions, 0.3, y, values, march.floats.copy(), system.ints)
         found = np.zeros((len(y), len(y)))
         found[pattern.rows, pattern.columns] = values[: pattern.count]
 
@@ -164,7 +164,7 @@ solvers: {main: {bdf2: {step: 1 s}}}
     march = March(run.assembly.finish(jacobian=True), Rk4().stepper(), 1.0)
     pattern, system = march.system.pattern, march.system
     values = np.zeros(pattern.room)
-    jacobian(system)(march._functions, 0.0, system.y, values, march.floats.copy(), system.ints)
+    jacobian(system)(march._engaged.functions, 0.0, system.y, values, march.floats.copy(), system.ints)
     found = np.zeros((len(system.y),) * 2)
     found[pattern.rows, pattern.columns] = values[: pattern.count]
     own, planet = run.bodies["satellite"], run.bodies["planet"]

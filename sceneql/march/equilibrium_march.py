@@ -42,7 +42,7 @@ class EquilibriumMarch(March):
         grown = True
         while grown:
             y, ints = self._y1.copy(), self.system.ints
-            found = relax(self._functions, t, y, self._work, self._settings, self._numbers, self.floats, ints)
+            found = relax(self._engaged.functions, t, y, self._work, self._settings, self._numbers, self.floats, ints)
             grown = self.floats[channels.GROWS] != 0.0 and self._grow()
         if found == UNSTABLE:
             raise self._failure("the rest that was found is unstable: the least push would leave it")

@@ -10,21 +10,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import sceneql.system.channels as channels
-from sceneql.compiled.generated import function
 from sceneql.compiled.kernels import compiled
-from sceneql.compiled.pointers_kernels import addresses
 from sceneql.doing import doing
 from sceneql.failure import LimitRefused
 from sceneql.island.breakpoint_table import before, next_breakpoint
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
 from sceneql.march import march_kernels as kernels
-from sceneql.march.driver import driver, energy, jacobian, limit
+from sceneql.march.driver import driver
+from sceneql.march.engaged import engage
 from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
 from sceneql.march.first_step import first_step
 from sceneql.march.pace import Pace
 from sceneql.march.switching import Switch
-from sceneql.system import Prepared
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -99,7 +97,7 @@ class March:
         self.corrected: Floats | None = None
         """(n,) what was taken from the state at the start, as velocities that ties forbid; None: nothing settles it."""
         self._floats_time = math.nan
-        self._alone, self._sizes = np.zeros(n, dtype=bool), np.zeros(0)
+        self._alone = np.zeros(n, dtype=bool)
         self._switch = None
         if stiff is not None:
             self._switch = Switch(stepper, stiff, self.rate, system.partner, end)
@@ -109,76 +107,36 @@ class March:
 
     def _engage(self, stepper: Stepper) -> None:
         """Continue with a method."""
-        method, control, needs = stepper.method, stepper.control, stepper.needs
-        self._engaged = stepper
-        if needs.jacobian and self._with_jacobian is not None:
+        if stepper.needs.jacobian and self._with_jacobian is not None:
             self.system = self._with_jacobian()
             self.floats = np.concatenate([self.floats, self.system.floats[len(self.floats) :]])
             self._with_jacobian = None
-        system = self.system
-        self._step = function(method.step)
-        self._jacobian = jacobian(system) if needs.jacobian else None
-        local = bool(system.structure.local)
-        between = needs.jacobian and not needs.newton
-        if local:
-            self.floats[channels.STAGE] = system.floats[channels.STAGE] if needs.jacobian else channels.NO_SLOPES
-        # A step's own dense output does not have changes made after it, which local contacts may make in every step.
-        self._mixed = between and (local or bool(system.structure.after))
-        dense = None if local and not between else method.dense
-        self._dense = kernels.hermite if dense is None else function(dense)
-        self._extend = None if method.extend is None or local else function(method.extend)
+        if self.system.structure.local:
+            slopes = stepper.needs.jacobian
+            self.floats[channels.STAGE] = self.system.floats[channels.STAGE] if slopes else channels.NO_SLOPES
+        self._engaged = engaged = engage(self.system, stepper, self.driver, self._counts)
+        self._settings, self._numbers, self._work = engaged.settings, engaged.numbers, engaged.work
+        self._alone = engaged.alone
         self._extended = math.nan
-        # Islands without exact contacts have no events: the kernels that find them are not even loaded.
-        event = function("sceneql.march.events_kernels:find_event") if system.pairs else None
-        self._energy = energy(system) if needs.newton and (needs.at_rest or not system.damped) else None
-        self._limit = limit(system)
-        self._functions = addresses(
-            self._step, self._dense, *self.driver, self._jacobian, event, self._energy, self._limit
-        )
-        if needs.prepare is None:
-            prepared = Prepared(method.settings, method.numbers, max(1, method.work) * len(system.y))
-        else:
-            prepared = function(needs.prepare)(system, stepper)
-        self._settings = np.array(prepared.settings, dtype=np.float64)
-        self._numbers = np.array(prepared.numbers, dtype=np.int64)
-        self._work = np.zeros(prepared.work)
-        self._kept = prepared.kept
-        self._measure(prepared)
-        self.prepared_text = prepared.text
-        self._counts[kernels.ADAPTIVE] = control.adaptive
-        self._counts[kernels.ORDER] = method.order
-        self._counts[kernels.LAST_STAGE] = -1 if local and between else method.last_stage
-        self._counts[kernels.CONTROLS] = control.self_controlled
-        self._counts[kernels.HALVES] = control.halves
-        # The last stage of Newton's method is a state that it has reached without letting surfaces pass one another.
-        self._counts[kernels.WATCHED] = self._limit is not None and not (needs.newton and method.last_stage >= 0)
+        self.prepared_text = engaged.text
+
+    def _take_over(self, stepper: Stepper) -> None:
+        """Continue with another method, which goes on with the sizes that entries have had."""
+        before = self._engaged
+        self._engage(stepper)
+        self._engaged.measure_as(before)
 
     def _grow(self) -> bool:
         """Lay the island out with more places in its Jacobian, and go on with what the method remembers."""
         self.floats[channels.GROWS] = 0.0
-        system = self.system.grown(self.floats)
+        system, before = self.system.grown(self.floats), self._engaged
         if system is None:
             return False
-        memory, method = (self._settings, self._numbers, self._work), self._engaged.method
         self.floats, self.system = system.after(self.floats), system
-        self._engage(self._engaged)
+        self._engage(before.stepper)
+        self._engaged.go_on(before)
         self.statistics.orderings += 1
-        counts = (len(method.settings), len(method.numbers), self._kept)
-        for new, old, count in zip((self._settings, self._numbers, self._work), memory, counts, strict=True):
-            if self._kept:
-                new[:count] = old[:count]
-        if self._kept:
-            self._settings[0] = 0.0
         return True
-
-    def _measure(self, prepared: Prepared) -> None:
-        """Go on with the sizes that entries have had, where the method before measured errors by these, too."""
-        alone = np.zeros(len(self.system.y), dtype=bool) if prepared.alone is None else prepared.alone
-        first, count = prepared.scales
-        sizes = self._settings[first : first + count]
-        if len(sizes) == len(self._sizes) and np.array_equal(alone, self._alone):
-            sizes[:] = self._sizes
-        self._alone, self._sizes = alone, sizes
 
     def _look_for_breakpoint(self, time: float) -> None:
         """Find the next breakpoint after an instant: an adaptive step ends a few ulps before it."""
@@ -195,10 +153,10 @@ class March:
     def _change(self, switch: Switch, t: float) -> None:
         """Continue with the method that a switch has chosen, if it accepts this island."""
         try:
-            self._engage(switch.active)
+            self._take_over(switch.active)
         except LimitRefused as refusal:
             switch.refuse(t, refusal.diagnostic.message)
-            self._engage(switch.active)
+            self._take_over(switch.active)
 
     def choices(self) -> list[tuple[float, str]]:
         """(time [s], method and reason) of each choice of a method by the solver; before the run, of the first."""
@@ -259,8 +217,9 @@ class March:
         if not t < t1:
             return self._settled(t, self._y1), True
         h = t1 - t0
-        altered = bool(self._counts[kernels.ALTERED]) and not self._mixed
-        if self._extend is not None and self._extended != t1 and not altered:
+        engaged = self._engaged
+        altered = bool(self._counts[kernels.ALTERED]) and not engaged.mixed
+        if engaged.extend is not None and self._extended != t1 and not altered:
             self._extend_step(t0, h)
             self._extended = t1
         y = np.empty_like(self._y1)
@@ -268,9 +227,9 @@ class March:
         settles, touched = bool(self._counts[kernels.SETTLES]) and not altered, bool(self._counts[kernels.LOCAL])
         y1 = self._sample if settles and not touched else self._y1
         steps = (self._y0, self._rate0, y1, self._rate1, self._work, self._settings, self._numbers)
-        dense = kernels.hermite if altered else self._dense
+        dense = kernels.hermite if altered else engaged.dense
         dense((t - t0) / h, h, *steps, y)
-        if self._mixed or (settles and touched):
+        if engaged.mixed or (settles and touched):
             changed = self._sample != self._y1
             if changed.any():
                 line = np.empty_like(y)
@@ -287,10 +246,9 @@ class March:
 
     def _extend_step(self, t0: float, h: float) -> None:
         """Compute the further stages of the last step's dense output; not counted, as frames must not change costs."""
-        assert self._extend is not None
         counted = self.floats[channels.RATES]
         step = (self._y0, self._rate0, self._y1, self._work, self._settings, self._numbers)
-        self._extend(self._functions, t0, h, *step, self.floats, self.system.ints)
+        self._engaged.extend(self._engaged.functions, t0, h, *step, self.floats, self.system.ints)
         self.floats[channels.RATES] = counted
         self._floats_time = math.nan
 
@@ -336,7 +294,7 @@ class March:
                 left = min(left, self._last_look + self._switch.until_look - int(counts[kernels.STEPS]))
             counts[kernels.LEFT] = left
             status = kernels.march(
-                self._functions,
+                self._engaged.functions,
                 min(target, self._step_end),
                 self._step_end,
                 self._y0,
@@ -408,7 +366,7 @@ class March:
         """Whether another method continues where the present one finds no step."""
         if status == kernels.NOT_FINITE and self._otherwise is not None:
             self.stepper, self._otherwise = self._otherwise, None
-            self._engage(self.stepper)
+            self._take_over(self.stepper)
             return True
         return status == kernels.STEP_TOO_SMALL and self._give_up()
 

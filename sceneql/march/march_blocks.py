@@ -82,7 +82,7 @@ class BlockMarch(March):
             for block in self._blocks:
                 block._start()
         tiles = min(blocks, TILES * thread_count())
-        functions, table, sums = self._blocks[0]._functions, self._table.ravel(), self._sums.ravel()
+        functions, table, sums = self._blocks[0]._engaged.functions, self._table.ravel(), self._sums.ravel()
         y, rate = self._now, self._slope
 
         def work(k: int) -> None:

@@ -1,0 +1,99 @@
+"""A method at work on an island: its compiled functions, its numbers and its memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.compiled.generated import function
+from sceneql.compiled.pointers_kernels import addresses
+from sceneql.march import march_kernels as kernels
+from sceneql.march.driver import energy, jacobian, limit
+from sceneql.system import Prepared
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.island.system import System
+    from sceneql.march.driver import Driver
+    from sceneql.system import Stepper
+
+
+@dataclass(frozen=True, slots=True)
+class Engaged:
+    """What the loop of steps needs of a method on one island."""
+
+    stepper: Stepper
+    functions: Any
+    """Addresses of the compiled functions, as `march_kernels` takes them."""
+    dense: Any
+    """State within a step from the numbers at its ends and the method's scratch."""
+    extend: Any
+    """Computes further stages that ``dense`` reads; None: it needs none."""
+    mixed: bool
+    """Whether entries that something changes after steps are read on a line, all others by ``dense``."""
+    settings: Floats
+    numbers: Any
+    work: Floats
+    """Settings, integers and scratch of the step, which it may change."""
+    kept: int
+    text: str
+    alone: Any
+    """(n,) bool: entries whose errors are measured by their own sizes."""
+    scales: tuple[int, int]
+    """`kept`, `text` and `scales` as in `Prepared`."""
+
+    @property
+    def sizes(self) -> Floats:
+        """The sizes that entries have had, a view of the settings."""
+        first, count = self.scales
+        return self.settings[first : first + count]
+
+    def measure_as(self, before: Engaged) -> None:
+        """Go on with the sizes that entries have had, where the method before measured errors by these, too."""
+        if len(self.sizes) == len(before.sizes) and np.array_equal(self.alone, before.alone):
+            self.sizes[:] = before.sizes
+
+    def go_on(self, before: Engaged) -> None:
+        """Go on with what the method has remembered on the same island, whose Jacobian had fewer places."""
+        if not self.kept:
+            return
+        counts = (len(self.stepper.method.settings), len(self.stepper.method.numbers), self.kept)
+        pairs = ((self.settings, before.settings), (self.numbers, before.numbers), (self.work, before.work))
+        for (new, old), count in zip(pairs, counts, strict=True):
+            new[:count] = old[:count]
+        self.settings[0] = 0.0
+
+
+def engage(system: System, stepper: Stepper, driver: Driver, counts: Any) -> Engaged:
+    """Put a method to work on an island, and tell the loop of steps by its ``counts`` how it goes."""
+    method, control, needs = stepper.method, stepper.control, stepper.needs
+    local = bool(system.structure.local)
+    between = needs.jacobian and not needs.newton
+    # A step's own dense output does not have changes made after it, which local contacts may make in every step.
+    mixed = between and (local or bool(system.structure.after))
+    dense = None if local and not between else method.dense
+    interpolant = kernels.hermite if dense is None else function(dense)
+    extend = None if method.extend is None or local else function(method.extend)
+    # Islands without exact contacts have no events: the kernels that find them are not even loaded.
+    event = function("sceneql.march.events_kernels:find_event") if system.pairs else None
+    slopes = jacobian(system) if needs.jacobian else None
+    potential = energy(system) if needs.newton and (needs.at_rest or not system.damped) else None
+    keeps_apart = limit(system)
+    functions = addresses(function(method.step), interpolant, *driver, slopes, event, potential, keeps_apart)
+    if needs.prepare is None:
+        prepared = Prepared(method.settings, method.numbers, max(1, method.work) * len(system.y))
+    else:
+        prepared = function(needs.prepare)(system, stepper)
+    counts[kernels.ADAPTIVE] = control.adaptive
+    counts[kernels.ORDER] = method.order
+    counts[kernels.LAST_STAGE] = -1 if local and between else method.last_stage
+    counts[kernels.CONTROLS] = control.self_controlled
+    counts[kernels.HALVES] = control.halves
+    # The last stage of Newton's method is a state that it has reached without letting surfaces pass one another.
+    counts[kernels.WATCHED] = keeps_apart is not None and not (needs.newton and method.last_stage >= 0)
+    alone = np.zeros(len(system.y), dtype=bool) if prepared.alone is None else prepared.alone
+    settings, numbers = np.array(prepared.settings, dtype=np.float64), np.array(prepared.numbers, dtype=np.int64)
+    memory = settings, numbers, np.zeros(prepared.work), prepared.kept
+    return Engaged(stepper, functions, interpolant, extend, mixed, *memory, prepared.text, alone, prepared.scales)
