@@ -12,5 +12,5 @@ with those that ties alone bring in, behind the others; where the integers of ti
 where the pairs begin that ties join, so that they do not touch, after their number; number of the objects that move by
 themselves, and where their integers begin (LED each: their shape, then led_kernels); where it stands for each shape
 where its skin begins (contact_skin_kernels), 0 where none is needed; where the integers of masses begin, which are the
-last of the bodies (mass_points_kernels; 0: none)."""
+last of the bodies (mass_near_kernels; 0: none)."""
 LED = 5

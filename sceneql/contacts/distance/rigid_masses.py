@@ -73,11 +73,11 @@ class Masses:
         return found
 
     def written(self, at: int, first: int, solids: Sequence[Solid], assembly: Assembly) -> list[int]:
-        """The integers of mass_points_kernels, to stand at ``at``; ``first``: number of the first mass.
+        """The integers of mass_near_kernels, to stand at ``at``; ``first``: number of the first mass.
 
         Raises ScriptError for masses that start inside a solid, and for one that cannot be collided with.
         """
-        from sceneql.contacts.distance import mass_points_kernels as kernels
+        from sceneql.contacts.distance import mass_near_kernels as kernels
 
         surfaces_at = kernels.HEAD + kernels.MODEL * len(self.everyone)
         objects_at = surfaces_at + kernels.TOUCHED * len(solids)
