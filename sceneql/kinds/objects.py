@@ -97,6 +97,13 @@ class Object(Kind):
         """
         raise TypeError(f"`{self._word()}` has no convex shape that they know")
 
+    def curved(self, moment: Moment) -> Any:
+        """Its smooth shape for exact contacts of rigid bodies (contacts.rigid_exact.curved), in its own axes.
+
+        Raises TypeError or ValueError where it has none that is covered.
+        """
+        raise TypeError(f"`{self._word()}` has no smooth shape that they know")
+
     def read(self, output: str, moment: Moment) -> Any:
         """An output of ``gives`` now, SI."""
         raise KeyError(output)

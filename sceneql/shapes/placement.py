@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from sceneql.kinds import Object, Position, Quantity, Rotation, Value, field
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Number, Type, Vector
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
 
 Scale = Annotated[Value, Quantity(dim.PLAIN, None)]
 """One factor, or three along the object's own axes."""
+UPRIGHT = Value(Vector((Number(1.0), Number(0.0), Number(0.0), Number(0.0)), Type((4,))))
+"""The rotation of what is not turned."""
 
 
 class Placed(Object):

@@ -155,7 +155,7 @@ def _side(ref: Ref, assembly: Assembly) -> Side:
         return Side(None, np.zeros(3), np.eye(3))
     kind = assembly.object(ref)
     if isinstance(kind, Object):
-        return _led(ref, kind, assembly)
+        return led_side(ref, kind, assembly)
     output = f"{ref.within}.position" if ref.within else "position"
     place = assembly.place(Link(ref.name, output, Type((3,), dim.LENGTH)))
     if place is None:
@@ -166,15 +166,18 @@ def _side(ref: Ref, assembly: Assembly) -> Side:
     return Side(Place(place.bodies, place.body), y[at[0] : at[0] + 3].copy(), turn)
 
 
-def _led(ref: Ref, kind: Object, assembly: Assembly) -> Side:
-    """An object that moves by itself; one that does not move is part of the world."""
+def led_side(ref: Ref, kind: Object, assembly: Assembly) -> Side:
+    """An object that moves by itself; one that does not move is part of the world.
+
+    Raises ScriptError for one without a place of its own, or whose velocity cannot be found.
+    """
     import numpy as np
 
     from sceneql.bodies.time_shift import exact_rate, rate_of_change
     from sceneql.quantities.turned import spin
-    from sceneql.shapes.placement import rotation_matrix
+    from sceneql.shapes.placement import UPRIGHT, rotation_matrix
 
-    position, rotation = getattr(kind, "position", None), getattr(kind, "rotation", None)
+    position, rotation = getattr(kind, "position", None), getattr(kind, "rotation", UPRIGHT)
     if not (isinstance(position, Value) and isinstance(rotation, Value)):
         message = f"'{ref.name}' has no position and rotation of its own"
         raise ScriptError([Diagnostic("no-position", message, ref.span)])
@@ -189,7 +192,7 @@ def _led(ref: Ref, kind: Object, assembly: Assembly) -> Side:
         spinning = spin(rotation.expr, turning)
         exprs = (velocity, spinning, rate(velocity), rate(spinning))
     except ValueError as error:
-        message = f"a tie needs to know how '{ref.name}' moves: {error}"
+        message = f"it cannot be told how '{ref.name}' moves: {error}"
         raise ScriptError([Diagnostic("no-velocity", message, ref.span)]) from None
     rates = (assembly.value(Value(expr, ref.span)) for expr in exprs)
     mover = Led(assembly.value(position), assembly.value(rotation), *rates)

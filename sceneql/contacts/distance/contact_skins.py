@@ -19,7 +19,7 @@ from sceneql.doing import doing
 from sceneql.island.start import Start
 from sceneql.kinds import Object, Ref
 from sceneql.mesh.box_tree import box_tree
-from sceneql.shapes.placement import Placed, rotation_matrix
+from sceneql.shapes.placement import UPRIGHT, Placed, rotation_matrix
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -54,7 +54,7 @@ def skin_of(ref: Ref, center: Floats, shape: Convex | None, place: Floats | None
     """
     kind: Any = assembly.object(ref)
     if isinstance(kind, Placed):
-        kind = kind.model_copy(update={"position": implicit.ORIGIN, "rotation": implicit.UPRIGHT})
+        kind = kind.model_copy(update={"position": implicit.ORIGIN, "rotation": UPRIGHT})
     own = type(kind).collider is not Object.collider
     with doing(f"looking at the surface of {ref.name}"):
         collider = kind.collider(assembly) if own else implicit.collider(cast(Object, kind), assembly)

@@ -62,6 +62,39 @@ def across(nx, ny, nz):
     return x, y, z, p, q, r
 
 
+@lean(types.void(A, N, N, N, F, F, F, F, F, F, F, F, F))
+def place(floats, at, a, b, nx, ny, nz, cx, cy, cz, gx, gy, gz):
+    """Write the slip and the rows of a contact at (cx, cy, cz) that moves at (gx, gy, gz)."""
+    xa, ya, za = three(floats, a + AT_X)
+    xb, yb, zb = three(floats, b + AT_X)
+    va = three(floats, a + AT_V)
+    vb = three(floats, b + AT_V)
+    wa = three(floats, a + AT_W)
+    wb = three(floats, b + AT_W)
+    put(floats, at + POINT, cx, cy, cz)
+    px, py, pz, qx, qy, qz = cx - xa, cy - ya, cz - za, cx - xb, cy - yb, cz - zb
+    sx, sy, sz = cross(wa[0], wa[1], wa[2], px, py, pz)
+    tx, ty, tz = cross(wb[0], wb[1], wb[2], qx, qy, qz)
+    ux, uy, uz = va[0] + sx - vb[0] - tx, va[1] + sy - vb[1] - ty, va[2] + sz - vb[2] - tz
+    part = dot(nx, ny, nz, ux, uy, uz)
+    put(floats, at + SLIDE, ux - part * nx, uy - part * ny, uz - part * nz)
+    sx, sy, sz = cross(wa[0], wa[1], wa[2], gx - va[0], gy - va[1], gz - va[2])
+    tx, ty, tz = cross(wb[0], wb[1], wb[2], gx - vb[0], gy - vb[1], gz - vb[2])
+    ux, uy, uz, lx, ly, lz = across(nx, ny, nz)
+    put(floats, at + FIRST, ux, uy, uz)
+    put(floats, at + SECOND, lx, ly, lz)
+    floats[at + BIAS + 1] = dot(ux, uy, uz, sx - tx, sy - ty, sz - tz)
+    floats[at + BIAS + 2] = dot(lx, ly, lz, sx - tx, sy - ty, sz - tz)
+    for k in range(3):
+        ex, ey, ez = (nx, ny, nz) if k == 0 else ((ux, uy, uz) if k == 1 else (lx, ly, lz))
+        row = at + ROWS + 12 * k
+        put(floats, row, ex, ey, ez)
+        put(floats, row + 3, *cross(px, py, pz, ex, ey, ez))
+        put(floats, row + 6, -ex, -ey, -ez)
+        fx, fy, fz = cross(qx, qy, qz, ex, ey, ez)
+        put(floats, row + 9, -fx, -fy, -fz)
+
+
 @lean(types.void(A, N, N, N))
 def follow(floats, at, a, b):
     """Write what a contact at floats[at:] is in the state of its movers, whose floats begin at a and b."""
@@ -154,28 +187,7 @@ def follow(floats, at, a, b):
     else:
         cx, cy, cz = xa + px - ra * nx, ya + py - ra * ny, za + pz - ra * nz
         gx, gy, gz = va[0] + sx - ra * mx, va[1] + sy - ra * my, va[2] + sz - ra * mz
-    put(floats, at + POINT, cx, cy, cz)
-    px, py, pz, qx, qy, qz = cx - xa, cy - ya, cz - za, cx - xb, cy - yb, cz - zb
-    sx, sy, sz = cross(wa[0], wa[1], wa[2], px, py, pz)
-    tx, ty, tz = cross(wb[0], wb[1], wb[2], qx, qy, qz)
-    ux, uy, uz = va[0] + sx - vb[0] - tx, va[1] + sy - vb[1] - ty, va[2] + sz - vb[2] - tz
-    part = dot(nx, ny, nz, ux, uy, uz)
-    put(floats, at + SLIDE, ux - part * nx, uy - part * ny, uz - part * nz)
-    sx, sy, sz = cross(wa[0], wa[1], wa[2], gx - va[0], gy - va[1], gz - va[2])
-    tx, ty, tz = cross(wb[0], wb[1], wb[2], gx - vb[0], gy - vb[1], gz - vb[2])
-    ux, uy, uz, lx, ly, lz = across(nx, ny, nz)
-    put(floats, at + FIRST, ux, uy, uz)
-    put(floats, at + SECOND, lx, ly, lz)
-    floats[at + BIAS + 1] = dot(ux, uy, uz, sx - tx, sy - ty, sz - tz)
-    floats[at + BIAS + 2] = dot(lx, ly, lz, sx - tx, sy - ty, sz - tz)
-    for k in range(3):
-        ex, ey, ez = (nx, ny, nz) if k == 0 else ((ux, uy, uz) if k == 1 else (lx, ly, lz))
-        row = at + ROWS + 12 * k
-        put(floats, row, ex, ey, ez)
-        put(floats, row + 3, *cross(px, py, pz, ex, ey, ez))
-        put(floats, row + 6, -ex, -ey, -ez)
-        fx, fy, fz = cross(qx, qy, qz, ex, ey, ez)
-        put(floats, row + 9, -fx, -fy, -fz)
+    place(floats, at, a, b, nx, ny, nz, cx, cy, cz, gx, gy, gz)
 
 
 @lean(F(A, N, N, N))

@@ -42,9 +42,9 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SLIDES,
     SPEED,
     dot,
-    follow,
     three,
 )
+from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
 from sceneql.contacts.rigid_exact.exact_law_kernels import ACROSS, ALONG, BILATERAL, UNILATERAL, VECTORS, solve_law
 from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -52,14 +52,15 @@ from sceneql.system.signatures_kernels import A, F, I, N
 MOVERS, SHAPES, BODIES, PAIRS, TIE_ROWS, MOST, TIES, ROOM = range(8)
 SHAPES_AT, MOVERS_AT, PAIRS_AT, TIES_AT, TIED_AT, KINDS_AT, WORKS_AT = range(8, 15)
 MOVED_AT, PLACES_AT, BEGUN_AT, ROOM_AT, RECORDS_AT, UNITS_AT, DENSE_AT, KEPT_AT, MEMORY_AT = range(15, 24)
-RESTITUTION_AT, FRICTION_AT, COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, TALLY_AT, HEAD = range(24, 32)
+RESTITUTION_AT, FRICTION_AT, COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, TALLY_AT, WHO_AT, HEAD = range(24, 33)
 """Integers of an island's exact contacts. Numbers of movers (the shapes in order, of which those that move come first,
 then what else is tied), of shapes, of those that move, of pairs, of rows of ties; room for contacts; how many integers
 the ties have; floats of working memory of distances. Where in the integers stand the shapes (convex.SHAPE), the movers
 (tie_rows_kernels), two shapes a pair, the ties' own integers, of each of their rows both movers and its floats, room
 for kinds of rows, pivots and which contacts are struck, where the energy taken from each mover counts. Offsets in the
 floats: movers, places of shapes, those at the start of the step, working memory, contacts (twice), rows, the dense
-system, how many contacts each pair keeps, memory, coefficients, what outputs read."""
+system, how many contacts each pair keeps, memory, coefficients, what outputs read. Where in the integers is room for a
+question about curved shapes (curved_find_kernels)."""
 
 (
     KEPT,

@@ -57,10 +57,11 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SLIP,
     SLOW,
     dot,
-    follow,
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
+from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_FACE, follow, own
+from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
 from sceneql.contacts.rigid_exact.exact_hold_kernels import CREEP, still
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
@@ -97,17 +98,6 @@ FEATURE = 1e-7
 """Distance from a feature, in parts of the body's size, up to which a point is on it."""
 PARALLEL = 1e-6
 """Sine of the angle of two edges up to which they have no normal."""
-
-
-@lean_inlined
-def own(floats, mover, x, y, z):
-    """A vector of the world in a mover's axes."""
-    r = mover + AT_TURN
-    return (
-        floats[r] * x + floats[r + 3] * y + floats[r + 6] * z,
-        floats[r + 1] * x + floats[r + 4] * y + floats[r + 7] * z,
-        floats[r + 2] * x + floats[r + 5] * y + floats[r + 8] * z,
-    )
 
 
 @lean(N(A, I, N, F, F, F))
@@ -261,11 +251,11 @@ def name(floats, ints, rec, pair, a, b, ax, ay, az, bx, by, bz, nx, ny, nz):
 
 @lean(F(A, I, N))
 def extent(floats, ints, rec):
-    """How far a corner is inside the face that it stands on [m]; infinity for other contacts."""
+    """How far a corner, or a curved body, is inside the face that it stands on [m]; infinity for other contacts."""
     kind = int(floats[rec + WHICH])
-    if kind != CORNER_FACE and kind != FACE_CORNER:
+    if kind != CORNER_FACE and kind != FACE_CORNER and kind != ON_FACE:
         return math.inf
-    side = 1 if kind == CORNER_FACE else 0
+    side = 0 if kind == FACE_CORNER else 1
     m = int(floats[rec + SHAPE_A + side])
     shape, mover = ints[SHAPES_AT] + SHAPE * m, mover_at(ints, m)
     if ints[shape + KIND] != CORE:
@@ -316,6 +306,13 @@ def find(t, y, floats, ints, points, names):
                 open = max(open, floats[old + GAP])
         margin += min(open, SLACK * smaller(floats, ints, a, b))
         sa, sb, at = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b, ints[PLACES_AT]
+        if is_curved(ints, sa):
+            who = ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b))
+            more = meet(floats, ints, who, margin, next + RECORD * count, most - count)[0]
+            for k in range(count, count + more):
+                follow(floats, next + RECORD * k, mover_at(ints, a), mover_at(ints, b))
+            count += more
+            continue
         found, _, nx, ny, nz = manifold(
             floats, ints, sa, sb, floats, at + PLACE * a, at + PLACE * b, margin, points, names, room
         )
@@ -339,7 +336,9 @@ def find(t, y, floats, ints, points, names):
             for c in range(3):
                 away = max(away, abs(floats[old + POINT + c] - floats[rec + POINT + c]))
             reach = smaller(floats, ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
-            if away <= 1e-3 * reach:
+            # A curved body may roll far in a step.
+            rolled = floats[rec + WHICH] == ON_FACE and floats[old + WHICH] == ON_FACE
+            if away <= 1e-3 * reach or (rolled and floats[old + SIGN] == floats[rec + SIGN]):
                 for c in range(3):
                     floats[rec + FORCE + c] = floats[old + FORCE + c]
                     floats[rec + ALONG + c] = floats[old + ALONG + c]

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 
-from sceneql.contacts.distance.led import is_led
-from sceneql.contacts.distance.rigid_contact import must_be_apart, place_of
+from sceneql.contacts.distance.rigid_contact import place_of
 from sceneql.kinds import Ref
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 from sceneql.system import Place
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
     from sceneql.contacts.distance.convex import Convex
     from sceneql.frame import Floats
     from sceneql.kinds import Value
-    from sceneql.system import Assembly, Bodies
+    from sceneql.system import Assembly, Bodies, Led
 
 ROOM = "sceneql.contacts.rigid_exact"
 HOLD, SETTLE = f"{ROOM}.exact_hold_kernels:hold", f"{ROOM}.exact_hold_kernels:settle"
@@ -41,8 +40,9 @@ def assemble(
     from sceneql.bodies.rigid.tie_rows_kernels import ROW as TIE_ROW
     from sceneql.bodies.rigid.tie_system import integers
     from sceneql.contacts.distance import convex
-    from sceneql.contacts.rigid_exact import contact_kernels, exact_law_kernels
+    from sceneql.contacts.rigid_exact import contact_kernels, curved_find_kernels, exact_law_kernels
     from sceneql.contacts.rigid_exact import exact_rows_kernels as rows
+    from sceneql.contacts.rigid_exact.curved import CURVED
 
     _must_be_free(assembly)
     if assembly.ints_of(HOLD):
@@ -62,13 +62,23 @@ def assemble(
         center = (bodies.position_at + 3 * k, bodies.velocity_at + 3 * k, bodies.inverse_at + k)
         movers.append((*center, *turns, *(6 * (-1,))))
         works.append(bodies.work_at)
-    for place in found.standing:
+    for place, led in found.standing:
+        if led is not None:
+            movers.append(integers(led))
+            works.append(-1)
+            continue
         at = assembly.floats([*place, *(0.0 for _ in range(12))])
         movers.append((*(6 * (-1,)), at, at + 3, at + 7, at + 10, at + 13, at + 16))
         works.append(-1)
     tied, ties = _tied(assembly, movers, works, TIE_ROW, integers, POSITION)
     count = len(found.shapes)
-    pairs = [(a, b) for a in range(n) for b in range(a + 1, count) if (a, b) not in found.joined]
+    # Of a pair with a curved shape, this first.
+    pairs = [
+        (b, a) if found.shapes[b].kind == CURVED else (a, b)
+        for a in range(n)
+        for b in range(a + 1, count)
+        if (a, b) not in found.joined
+    ]
     most = FEW * n + FEW
     room = len(tied) + 3 * most
     length = convex.room_length(found.shapes)
@@ -94,11 +104,12 @@ def assemble(
         list(chain(*tied)),
         [0] * (2 * room + most),
         works,
+        [0] * curved_find_kernels.WHO,
     ]
-    begins = np.cumsum([rows.HEAD, *(len(some) for some in lists)]).tolist()[:-1]
+    *begins, who_at, _ = np.cumsum([rows.HEAD, *(len(some) for some in lists)]).tolist()
     head = [len(movers), count, n, len(pairs), len(tied), most, len(ties), length, *begins]
     head += [moved, places, begun, working, records, units, dense, kept, memory]
-    head += [assembly.value(restitution), assembly.value(friction), *outputs, tally]
+    head += [assembly.value(restitution), assembly.value(friction), *outputs, tally, who_at]
     ints = [int(number) for number in chain(head, *lists)]
     assembly.contact("exact", CONTACTS, ints, len(pairs) + 2 * most)
     assembly.term("tie", HOLD, ints)
@@ -133,8 +144,8 @@ class Touching:
     """Of the bodies that move, then of what stands."""
     moving: list[tuple[Bodies, int]]
     """The bodies that move: of which, and its number among these."""
-    standing: list[Floats]
-    """Position and quaternion (7,) of what stands."""
+    standing: list[tuple[Floats, Led | None]]
+    """Position and quaternion (7,) of what stands, or how it moves by itself."""
     joined: set[tuple[int, int]]
     """Pairs of bodies that a tie joins: they do not touch."""
 
@@ -144,6 +155,7 @@ def _shapes(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref
     import numpy as np
 
     from sceneql.contacts.distance.rigid_shapes import Shapes
+    from sceneql.contacts.rigid_exact.exact_shapes import apart_exactly, exact_shape, led_by
 
     numbers, start, known = assembly.numbers(), assembly.start(), Shapes(assembly)
     moving: list[tuple[Bodies, int]] = []
@@ -155,7 +167,7 @@ def _shapes(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref
         for k, (ref, center) in enumerate(model.solids()):
             x, q = bodies.position_at + 3 * k, bodies.turning.rotation_at + 4 * k
             one = (
-                _exactly(known.of(ref, center), ref, assembly),
+                exact_shape(ref, center, None, known, assembly),
                 np.concatenate([start[x : x + 3], start[q : q + 4]]),
                 ref,
             )
@@ -164,13 +176,11 @@ def _shapes(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref
             else:
                 moving.append((bodies, k))
                 solid.append(one)
+    leds: list[Led | None] = [None] * len(fixed)
     for ref in others:
-        kind: Any = assembly.object(ref)
-        if is_led(kind):
-            message = f"'{ref.name}' moves by itself, which rigid bodies feel in mode `local` alone"
-            raise ScriptError([Diagnostic("no-collider", message, ref.span or assembly.line())])
         place = place_of(ref, assembly)
-        fixed.append((_exactly(known.of(ref, np.zeros(3), place), ref, assembly), place, ref))
+        fixed.append((exact_shape(ref, np.zeros(3), place, known, assembly), place, ref))
+        leds.append(led_by(ref, assembly))
     shapes, places, names = (list(some) for some in zip(*solid, *fixed, strict=True))
     numbered = {bodies.position_at + 3 * k: number for number, (bodies, k) in enumerate(moving)}
     sides = [
@@ -178,8 +188,9 @@ def _shapes(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref
         for tie in assembly.ties
     ]
     joined = {(min(pair), max(pair)) for pair in sides}
-    must_be_apart(known, shapes, places, len(moving), names, joined, assembly)
-    return Touching(shapes, moving, [place for _, place, _ in fixed], joined)
+    apart_exactly(known, shapes, places, len(moving), names, joined, assembly)
+    standing = list(zip((place for _, place, _ in fixed), leds, strict=True))
+    return Touching(shapes, moving, standing, joined)
 
 
 def _tied(
@@ -197,14 +208,3 @@ def _tied(
             sides.append(movers.index(one))
         rows += [(sides[0], sides[1], tie.scratch_at + row * k) for k in range(len(tie.rows))]
     return rows, assembly.tie_ints if rows else ()
-
-
-def _exactly(shape: Convex, ref: Ref | None, assembly: Assembly) -> Convex:
-    """A shape. Raises ScriptError where points of its surface stand for it."""
-    from sceneql.contacts.distance.convex import SKINNED
-
-    if shape.kind == SKINNED and ref is not None:
-        message = f"'{ref.name}' touches by points of its surface, which mode `local` alone can do"
-        help = "mode `exact` takes spheres, boxes, planes and convex meshes"
-        raise ScriptError([Diagnostic("no-collider", message, ref.span or assembly.line(), help)])
-    return shape

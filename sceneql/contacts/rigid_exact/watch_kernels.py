@@ -3,12 +3,15 @@
 
 import math
 
+from sceneql.bodies.rigid.rigid_kernels import to_world
+from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_R, AT_X, MOVED
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import CORE, SHAPE
 from sceneql.contacts.distance.core_kernels import FLOATS, KIND, REACH
-from sceneql.contacts.distance.first_touch_kernels import first_touch
+from sceneql.contacts.distance.first_touch_kernels import MOTION, first_touch, move
 from sceneql.contacts.distance.gap_kernels import gap as distance
 from sceneql.contacts.rigid_exact.contact_kernels import ALONG, EXTENT, GAP, PAIR, RECORD, SLIDE, SLIP, dot, three
+from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     AGAIN,
     BEGUN,
@@ -28,6 +31,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     SHAPES_AT,
     follow_all,
     look,
+    mover_at,
     put_places,
 )
 from sceneql.contacts.rigid_exact.find_kernels import TOUCHES, extent, smaller
@@ -35,6 +39,7 @@ from sceneql.system.signatures_kernels import GAP as SIGNATURE
 from sceneql.system.signatures_kernels import A, F, I, N
 
 NEVER = 1e300
+MOST_ADVANCES = 200
 LITTLE = 1e-5
 """Way, in parts of the size of the smaller body, on which none goes through another (nor any through a half space)."""
 INSIDE = 1e-7
@@ -62,6 +67,28 @@ def motion(floats, begun, now, h, motions, to):
     return angle
 
 
+@lean(F(A, I, N, N, N, N, A, F, F, F))
+def curved_touch(floats, ints, a, b, from_a, from_b, motions, speed, h, margin):
+    """When a curved body and another first are within a margin, at the latest; as `first_touch`, by the gap over the
+    largest speed."""
+    ma, mb = ints[ROOM_AT], ints[ROOM_AT] + MOVED
+    t = 0.0
+    for _ in range(MOST_ADVANCES):
+        for side in range(2):
+            place, to = (from_b, mb) if side == 1 else (from_a, ma)
+            moved = to + AT_INVERSE
+            move(floats, place, motions, MOTION * side, t, floats, moved)
+            for c in range(3):
+                floats[to + AT_X + c] = floats[moved + c]
+                column = to_world(floats, moved + 3, 1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2))
+                floats[to + AT_R + c], floats[to + AT_R + 3 + c], floats[to + AT_R + 6 + c] = column
+        gap = meet(floats, ints, ask(ints, -1, a, b, ma, mb), -NEVER, 0, 0)[1]
+        if gap <= margin or t >= h:
+            return t
+        t += gap / speed
+    return t
+
+
 @lean(F(A, I, N, N, F, F, A, A))
 def passed(floats, ints, a, b, h, gap, motions, room):
     """The gap of a pair after h: negative where the way to there went through each other."""
@@ -71,13 +98,18 @@ def passed(floats, ints, a, b, h, gap, motions, room):
         k = b if side == 1 else a
         shape = ints[SHAPES_AT] + SHAPE * k
         turned = motion(floats, begun + PLACE * k, now + PLACE * k, h, motions, 6 * side)
-        if ints[shape + KIND] == CORE:
+        if ints[shape + KIND] == CORE or is_curved(ints, shape):
             far += min(turned, 2.0) * floats[ints[shape + FLOATS] + REACH]
     dx, dy, dz = motions[0] - motions[6], motions[1] - motions[7], motions[2] - motions[8]
     far += h * math.sqrt(dx * dx + dy * dy + dz * dz)
     size = smaller(floats, ints, a, b)
     if far <= max(gap, LITTLE * size) or ints[ints[SHAPES_AT] + SHAPE * b + KIND] != CORE:
         return gap
+    if is_curved(ints, ints[SHAPES_AT] + SHAPE * a):
+        touch = curved_touch(
+            floats, ints, a, b, begun + PLACE * a, begun + PLACE * b, motions, far / h, h, 1e-10 * size
+        )
+        return gap if touch >= h else -(h - touch) * far / h
     touch = first_touch(
         floats, ints, ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b, floats, begun + PLACE * a,
         begun + PLACE * b, motions, 0, 6, h, -1e-9 * size, 1e-10 * size, room,
@@ -99,10 +131,13 @@ def gap(t, y, gaps, floats, ints):
     count, h = int(floats[memory + KEPT]), t - floats[memory + BEGUN]
     for pair in range(pairs):
         a, b = ints[ints[PAIRS_AT] + 2 * pair], ints[ints[PAIRS_AT] + 2 * pair + 1]
-        now = distance(
-            floats, ints, ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b, floats,
-            ints[PLACES_AT] + PLACE * a, ints[PLACES_AT] + PLACE * b, room,
-        )[0]  # fmt: skip
+        if is_curved(ints, ints[SHAPES_AT] + SHAPE * a):
+            now = meet(floats, ints, ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b)), -NEVER, 0, 0)[1]
+        else:
+            now = distance(
+                floats, ints, ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b, floats,
+                ints[PLACES_AT] + PLACE * a, ints[PLACES_AT] + PLACE * b, room,
+            )[0]  # fmt: skip
         if floats[ints[KEPT_AT] + pair] > 0.0:
             # What is kept has errors of its own; what else meets is deeper.
             least = 0.0

@@ -8,7 +8,7 @@ from sceneql.island.start import Start
 from sceneql.kinds import Collider, Formula, Moment, Object, Value
 from sceneql.quantities.dimension import LENGTH
 from sceneql.quantities.expression import Number, Type, Vector
-from sceneql.shapes.placement import Placed
+from sceneql.shapes.placement import UPRIGHT, Placed
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 SMALLEST = 1e-4
 """Thickness, relative to a solid's size, below which a fast body might pass through it."""
 ORIGIN = Value(Vector((Number(0.0), Number(0.0), Number(0.0)), Type((3,), LENGTH)))
-UPRIGHT = Value(Vector((Number(1.0), Number(0.0), Number(0.0), Number(0.0)), Type((4,))))
 
 
 def collider(kind: Object, assembly: Assembly) -> Collider:

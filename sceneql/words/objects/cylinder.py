@@ -47,6 +47,12 @@ class Cylinder(Solid):
         squares = 0.25 * r * r, half * half / 3, 0.25 * r * r
         return VolumeMoments.centered(2 * pi * r * r * half, squares).mapped(self.local(moment))
 
+    def curved(self, moment: Moment) -> Any:
+        """A column with sharp rims."""
+        from sceneql.contacts.rigid_exact.curved import column
+
+        return column(positive(moment, self.radius, "radius"), 0.5 * positive(moment, self.height, "height"))
+
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A quadric cut off at its ends."""
         r, half = positive(moment, self.radius, "radius"), 0.5 * positive(moment, self.height, "height")

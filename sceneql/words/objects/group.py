@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FieldBuilder, Moment, ObjectRef, Ref, Shaped, VolumeMoments, field
 from sceneql.shapes.apart import apart
@@ -44,6 +44,17 @@ class Group(Placed):
         """Those of its children together, where their boxes do not overlap; else None."""
         found = apart([child for _, child in self._objects(moment)], moment, measure)
         return None if found is None else found.mapped(self.local(moment))
+
+    def curved(self, moment: Moment) -> Any:
+        """That of its only child, scaled. Raises TypeError for several, ValueError where it is none any more."""
+        if len(self.members()) != 1:
+            raise TypeError("several objects together have no smooth shape")
+        (ref,) = self.members()
+        child: Any = moment.object(ref)
+        if not isinstance(child, Placed):
+            raise TypeError("it has no place of its own")
+        own = affine((0, 0, 0), (1, 0, 0, 0), moment.at(self.scale))
+        return child.curved(moment).mapped(compose(own, child.local(moment)))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """The shapes of its children."""

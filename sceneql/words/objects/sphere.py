@@ -56,6 +56,12 @@ class Sphere(Solid):
 
         return ball(positive(moment, self.radius, "radius"), -center)
 
+    def curved(self, moment: Moment) -> Any:
+        """An ellipsoid of equal axes, which a group may stretch."""
+        from sceneql.contacts.rigid_exact.curved import ellipsoid
+
+        return ellipsoid(3 * (positive(moment, self.radius, "radius"),))
+
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A quadric; under an uneven scale an ellipsoid."""
         r = positive(moment, self.radius, "radius")

@@ -38,3 +38,12 @@ class Torus(Solid):
             return None
         across = 0.5 * R * R + 0.375 * r * r
         return VolumeMoments.centered(2 * pi**2 * R * r * r, (across, 0.25 * r * r, across)).mapped(self.local(moment))
+
+    def curved(self, moment: Moment) -> Any:
+        """A ring. Raises ValueError where it has no hole."""
+        from sceneql.contacts.rigid_exact.curved import ring
+
+        radius, tube = positive(moment, self.radius, "radius"), positive(moment, self.tube, "tube")
+        if tube >= radius:
+            raise ValueError("a torus without a hole has a dent")
+        return ring(radius, tube)

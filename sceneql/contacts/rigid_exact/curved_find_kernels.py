@@ -1,0 +1,314 @@
+# mypy: ignore-errors
+"""Where a curved body touches a half space or a polyhedron, which may be rounded: their gap, and contacts.
+
+On a face touches the point that is farthest out towards it, if it is over that face rather than another; on an edge or
+at a corner what is nearest there, if the polyhedron goes away from it on all sides. A ring or column that lies flat has
+four points of its circle as corners.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
+from sceneql.bodies.rigid.tie_rows_kernels import AT_X, put, turned
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.distance.convex import CORE, SHAPE
+from sceneql.contacts.distance.core_kernels import (
+    EDGES,
+    FACES,
+    FLOATS,
+    INTS,
+    KIND,
+    POINTS,
+    RADIUS,
+    REACH,
+    VERTICES,
+    edges_at,
+    loop_at,
+)
+from sceneql.contacts.rigid_exact.contact_kernels import (
+    CORNER_FACE,
+    LINE_A,
+    LINE_B,
+    OWN_A,
+    OWN_B,
+    PAIR,
+    RADIUS_A,
+    RADIUS_B,
+    RECORD,
+    SHAPE_A,
+    SHAPE_B,
+    SIGN,
+    dot,
+    three,
+)
+from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
+from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FORM, RING, SIZES
+from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, own
+from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, out_of, slant
+from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT
+from sceneql.system.signatures_kernels import A, F, I, N
+
+FLAT = 1e-7
+"""Sine of the angle between face and circle up to which it lies flat."""
+LEAST = 1e-7
+"""Part by which what is beside a place may come nearer and the place still be the nearest."""
+PIECES = 8
+"""Pieces of an edge that are looked at for places that are nearest."""
+HALVINGS = 60
+PAIR_NAME, FIRST, SECOND, SHAPE_OF_A, SHAPE_OF_B, MOVER_A, MOVER_B, WHO = range(8)
+"""Integers of a question: the pair, numbers of both shapes, where these begin among the integers, and where both movers
+begin among the floats."""
+
+
+@lean_inlined
+def is_curved(ints, a):
+    """Whether a shape is a curved one."""
+    return ints[a + KIND] == CURVED
+
+
+@lean(N(I, N, N, N, N, N))
+def ask(ints, pair, a, b, ma, mb):
+    """Write a question about a pair of shapes, whose movers begin at ma and mb; where it stands."""
+    who = ints[WHO_AT]
+    ints[who + PAIR_NAME], ints[who + FIRST], ints[who + SECOND] = pair, a, b
+    ints[who + MOVER_A], ints[who + MOVER_B] = ma, mb
+    ints[who + SHAPE_OF_A], ints[who + SHAPE_OF_B] = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b
+    return who
+
+
+@lean_inlined
+def in_axes_of_a(floats, ma, mb, x, y, z):
+    """A place of b's axes in a's."""
+    px, py, pz = turned(floats, mb + AT_TURN, x, y, z)
+    ax, ay, az = three(floats, ma + AT_X)
+    bx, by, bz = three(floats, mb + AT_X)
+    return own(floats, ma, bx + px - ax, by + py - ay, bz + pz - az)
+
+
+@lean(types.void(A, I, N, N, N, F, N))
+def begin_record(floats, ints, rec, who, kind, radius, shape):
+    """Write a contact's shapes and kind."""
+    for c in range(RECORD):
+        floats[rec + c] = 0.0
+    floats[rec + WHICH], floats[rec + SIGN], floats[rec + RADIUS_B] = kind, 1.0, radius
+    floats[rec + SHAPE_A], floats[rec + SHAPE_B], floats[rec + PAIR] = (
+        ints[who + FIRST],
+        ints[who + SECOND],
+        ints[who + PAIR_NAME],
+    )
+    floats[rec + LINE_A] = shape
+
+
+@lean_inlined
+def on_circle(floats, f, spot, sign):
+    """One of four points of the circle of a ring or of a rim of a column."""
+    a, b = floats[f + SIZES], floats[f + SIZES + 1]
+    x = a if spot == 0 else (-a if spot == 1 else 0.0)
+    z = a if spot == 2 else (-a if spot == 3 else 0.0)
+    px, py, pz = out_of(floats, f, x, sign * b if floats[f + FORM] == COLUMN else 0.0, z)
+    return floats[f + CENTER] + px, floats[f + CENTER + 1] + py, floats[f + CENTER + 2] + pz
+
+
+@lean(types.boolean(A, I, N, N, F, F, F))
+def over_face(floats, ints, shape, face, x, y, z):
+    """Whether a place of a polyhedron's axes is over one of its faces rather than another."""
+    f, i = ints[shape + FLOATS], ints[shape + INTS]
+    normals = f + POINTS + 3 * ints[i + VERTICES]
+    first = f + POINTS + 3 * ints[loop_at(ints, i, face)[0]]
+    mine = dot(*three(floats, normals + 3 * face), x - floats[first], y - floats[first + 1], z - floats[first + 2])
+    for k in range(ints[i + FACES]):
+        at = f + POINTS + 3 * ints[loop_at(ints, i, k)[0]]
+        other = dot(*three(floats, normals + 3 * k), x - floats[at], y - floats[at + 1], z - floats[at + 2])
+        if other > mine + 1e-12 * floats[f + REACH]:
+            return False
+    return True
+
+
+FOUND = types.Tuple((N, F))(A, I, N, F, N, N)
+
+
+@lean(FOUND)
+def on_faces(floats, ints, who, margin, next, most):
+    """Contacts with the faces of b: written to floats[next:] where they are within a margin, up to ``most``.
+
+    How many there are within, and the least gap; infinity where a is over none of them.
+    """
+    sb, ma, mb = ints[who + SHAPE_OF_B], ints[who + MOVER_A], ints[who + MOVER_B]
+    fa, fb, ib = ints[ints[who + SHAPE_OF_A] + FLOATS], ints[sb + FLOATS], ints[sb + INTS]
+    solid = ints[sb + KIND] == CORE
+    radius = floats[fb + RADIUS] if solid else 0.0
+    count, least = 0, math.inf
+    bx, by, bz = three(floats, mb + AT_X)
+    ax, ay, az = three(floats, ma + AT_X)
+    for k in range(ints[ib + FACES] if solid else 1):
+        line = fb + POINTS + (3 * (ints[ib + VERTICES] + k) if solid else 0)
+        mx, my, mz = three(floats, line)
+        if solid:
+            ox, oy, oz = three(floats, fb + POINTS + 3 * ints[loop_at(ints, ib, k)[0]])
+        else:
+            far = floats[line + 3]
+            ox, oy, oz = far * mx, far * my, far * mz
+        nx, ny, nz = turned(floats, mb + AT_TURN, mx, my, mz)
+        dx, dy, dz = own(floats, ma, -nx, -ny, -nz)
+        sine = slant(floats, fa, dx, dy, dz)
+        flat = sine <= FLAT
+        for side in range(2 if floats[fa + FORM] == COLUMN else 1):
+            for spot in range(4 if flat else 1):
+                sign = -1.0 if side == 1 else 1.0
+                if flat:
+                    px, py, pz = on_circle(floats, fa, spot, sign)
+                    tube = floats[fa + SIZES + 1] if floats[fa + FORM] == RING else 0.0
+                else:
+                    px, py, pz = farthest(floats, fa, dx, dy, dz, sign)
+                    tube = 0.0
+                x, y, z = turned(floats, ma + AT_TURN, px, py, pz)
+                x, y, z = own(floats, mb, ax + x - bx, ay + y - by, az + z - bz)
+                gap = dot(mx, my, mz, x - ox, y - oy, z - oz) - radius - tube
+                if solid and not over_face(floats, ints, sb, k, x, y, z):
+                    continue
+                least = min(least, gap)
+                if gap > margin or count == most:
+                    continue
+                rec = next + RECORD * count
+                begin_record(floats, ints, rec, who, CORNER_FACE if flat else ON_FACE, radius, fa)
+                put(floats, rec + LINE_B, mx, my, mz)
+                put(floats, rec + OWN_B, ox, oy, oz)
+                floats[rec + SIGN] = sign
+                if flat:
+                    put(floats, rec + OWN_A, px, py, pz)
+                    put(floats, rec + LINE_A, 0.0, 0.0, 0.0)
+                    floats[rec + RADIUS_A] = tube
+                count += 1
+    return count, least
+
+
+@lean(FOUND)
+def at_corners(floats, ints, who, margin, next, most):
+    """As `on_faces`, at the corners of b; where no corner is the nearest of what is around it, none."""
+    sb, ma, mb = ints[who + SHAPE_OF_B], ints[who + MOVER_A], ints[who + MOVER_B]
+    fa, fb, ib = ints[ints[who + SHAPE_OF_A] + FLOATS], ints[sb + FLOATS], ints[sb + INTS]
+    radius = floats[fb + RADIUS]
+    count, least = 0, math.inf
+    for k in range(ints[ib + VERTICES]):
+        ox, oy, oz = three(floats, fb + POINTS + 3 * k)
+        x, y, z = in_axes_of_a(floats, ma, mb, ox, oy, oz)
+        gap, nx, ny, nz = away(floats, fa, x, y, z)
+        gap -= radius
+        if gap >= least and gap > margin:
+            continue
+        nearest = True
+        for e in range(ints[ib + EDGES]):
+            edge = edges_at(ints, ib) + 4 * e
+            if (ints[edge] != k and ints[edge + 1] != k) or ints[edge] == ints[edge + 1]:
+                continue
+            other = ints[edge + 1] if ints[edge] == k else ints[edge]
+            px, py, pz = in_axes_of_a(floats, ma, mb, *three(floats, fb + POINTS + 3 * other))
+            px, py, pz = px - x, py - y, pz - z
+            if dot(nx, ny, nz, px, py, pz) < -LEAST * math.sqrt(px * px + py * py + pz * pz):
+                nearest = False
+        if not nearest:
+            continue
+        least = min(least, gap)
+        if gap > margin or count == most:
+            continue
+        rec = next + RECORD * count
+        begin_record(floats, ints, rec, who, ON_CORNER, radius, fa)
+        put(floats, rec + OWN_B, ox, oy, oz)
+        count += 1
+    return count, least
+
+
+@lean_inlined
+def slope_along(floats, fa, x, y, z, ux, uy, uz, s):
+    """Distance of a curved body at a place along an edge, and how it changes along it."""
+    distance, nx, ny, nz = away(floats, fa, x + s * ux, y + s * uy, z + s * uz)
+    return distance, dot(nx, ny, nz, ux, uy, uz)
+
+
+@lean(types.boolean(A, I, N, N, N, N, F, F, F))
+def goes_away(floats, ints, sb, edge, ma, mb, nx, ny, nz):
+    """Whether both faces of an edge of b go away from a, whose normal there, in its axes, is n."""
+    fb, ib = ints[sb + FLOATS], ints[sb + INTS]
+    if ints[edge + 2] < 0 or ints[edge + 3] < 0:
+        return True
+    x, y, z = own(floats, mb, *turned(floats, ma + AT_TURN, nx, ny, nz))
+    normals = fb + POINTS + 3 * ints[ib + VERTICES]
+    one, other = normals + 3 * ints[edge + 2], normals + 3 * ints[edge + 3]
+    p, q = dot(*three(floats, one), x, y, z), dot(*three(floats, other), x, y, z)
+    both = dot(*three(floats, one), *three(floats, other))
+    return both * p - q >= -LEAST and both * q - p >= -LEAST
+
+
+@lean(F(A, N, F, F, F, F, F, F, F, F))
+def nearest_between(floats, fa, x, y, z, ux, uy, uz, low, high):
+    """Where along an edge the distance no longer falls, by bisection."""
+    for _ in range(HALVINGS):
+        s = 0.5 * (low + high)
+        if slope_along(floats, fa, x, y, z, ux, uy, uz, s)[1] < 0.0:
+            low = s
+        else:
+            high = s
+    return 0.5 * (low + high)
+
+
+@lean(FOUND)
+def on_edges(floats, ints, who, margin, next, most):
+    """As `on_faces`, between the ends of the edges of b."""
+    sb, ma, mb = ints[who + SHAPE_OF_B], ints[who + MOVER_A], ints[who + MOVER_B]
+    fa, fb, ib = ints[ints[who + SHAPE_OF_A] + FLOATS], ints[sb + FLOATS], ints[sb + INTS]
+    radius = floats[fb + RADIUS]
+    count, least = 0, math.inf
+    for e in range(ints[ib + EDGES]):
+        edge = edges_at(ints, ib) + 4 * e
+        ox, oy, oz = three(floats, fb + POINTS + 3 * ints[edge])
+        lx, ly, lz = three(floats, fb + POINTS + 3 * ints[edge + 1])
+        x, y, z = in_axes_of_a(floats, ma, mb, ox, oy, oz)
+        ux, uy, uz = in_axes_of_a(floats, ma, mb, lx, ly, lz)
+        ux, uy, uz = ux - x, uy - y, uz - z
+        length = math.sqrt(ux * ux + uy * uy + uz * uz)
+        middle = away(floats, fa, x + 0.5 * ux, y + 0.5 * uy, z + 0.5 * uz)[0]
+        if length == 0.0 or middle - 0.5 * length - radius > max(margin, least):
+            continue
+        low, before = 0.0, slope_along(floats, fa, x, y, z, ux, uy, uz, 0.0)[1]
+        for piece in range(1, PIECES + 1):
+            high = piece / PIECES
+            after = slope_along(floats, fa, x, y, z, ux, uy, uz, high)[1]
+            if before < 0.0 and after > 0.0:
+                s = nearest_between(floats, fa, x, y, z, ux, uy, uz, low, high)
+                gap, nx, ny, nz = away(floats, fa, x + s * ux, y + s * uy, z + s * uz)
+                gap -= radius
+                if (gap < least or gap <= margin) and goes_away(floats, ints, sb, edge, ma, mb, nx, ny, nz):
+                    least = min(least, gap)
+                    if gap <= margin and count < most:
+                        rec = next + RECORD * count
+                        begin_record(floats, ints, rec, who, ON_EDGE, radius, fa)
+                        put(floats, rec + OWN_B, ox, oy, oz)
+                        put(floats, rec + LINE_B, (lx - ox) / length, (ly - oy) / length, (lz - oz) / length)
+                        floats[rec + LINE_A + 1] = s * length
+                        count += 1
+            low, before = high, after
+    return count, least
+
+
+@lean(FOUND)
+def meet(floats, ints, who, margin, next, most):
+    """The contacts of a curved body a with b within a margin, written to floats[next:], up to ``most`` of them.
+
+    How many they are, and the gap.
+    """
+    count, least = on_faces(floats, ints, who, margin, next, most)
+    if ints[ints[who + SHAPE_OF_B] + KIND] != CORE:
+        return count, least
+    more, gap = on_edges(floats, ints, who, margin, next + RECORD * count, most - count)
+    count, least = count + more, min(least, gap)
+    more, gap = at_corners(floats, ints, who, margin, next + RECORD * count, most - count)
+    count, least = count + more, min(least, gap)
+    if least == math.inf:
+        # Rounding between features: the nearest corner.
+        fb, ib = ints[ints[who + SHAPE_OF_B] + FLOATS], ints[ints[who + SHAPE_OF_B] + INTS]
+        for k in range(ints[ib + VERTICES]):
+            corner = in_axes_of_a(floats, ints[who + MOVER_A], ints[who + MOVER_B], *three(floats, fb + POINTS + 3 * k))
+            least = min(least, away(floats, ints[ints[who + SHAPE_OF_A] + FLOATS], *corner)[0] - floats[fb + RADIUS])
+    return count, least

@@ -1,0 +1,119 @@
+"""The shapes of bodies and objects in exact contacts of rigid bodies, and how objects move that do so by themselves.
+
+Imports numpy: to be imported by the method that runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.bodies.rigid.joint import led_side
+from sceneql.contacts.distance import convex
+from sceneql.contacts.distance.led import is_led
+from sceneql.contacts.distance.rigid_contact import DEEP, must_be_apart
+from sceneql.contacts.rigid_exact.curved import CURVED, Curved
+from sceneql.island.start import Start
+from sceneql.kinds import Ref, Value
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
+from sceneql.shapes.placement import rotation_matrix
+from sceneql.system import Led
+
+if TYPE_CHECKING:
+    from sceneql.contacts.distance.convex import Convex
+    from sceneql.contacts.distance.rigid_shapes import Shapes
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly
+
+HELP = "mode `exact` takes spheres, ellipsoids, cylinders, tori, boxes, planes and convex meshes"
+
+
+def exact_shape(ref: Ref | None, center: Floats, place: Floats | None, known: Shapes, assembly: Assembly) -> Convex:
+    """The shape of an object from a center (3,) in its own axes; of one that stands, at a place (7,).
+
+    Raises ScriptError where points of its surface would stand for it.
+    """
+    if ref is None:
+        return known.of(ref, center, place)
+    start: Any = Start(assembly)
+    kind: Any = assembly.object(ref)
+    with suppress(TypeError, ValueError):
+        kind.convex(start, center)
+        return known.of(ref, center, place)
+    with suppress(TypeError, ValueError):
+        curved: Curved = kind.curved(start)
+        return curved.shape(center)
+    message = f"'{ref.name}' touches by points of its surface, which mode `local` alone can do"
+    raise ScriptError([Diagnostic("no-collider", message, ref.span or assembly.line(), HELP)])
+
+
+def led_by(ref: Ref, assembly: Assembly) -> Led | None:
+    """How an object moves by itself; None for one that stands. Raises ScriptError where that is not known."""
+    kind: Any = assembly.object(ref)
+    if not is_led(kind):
+        return None
+    height = getattr(kind, "height", None)
+    if isinstance(height, Value) and not height.constant:
+        message = f"the height of '{ref.name}' varies, by which mode `exact` does not follow it"
+        raise ScriptError(
+            [Diagnostic("no-collider", message, height.span, "mode: local does; a plane moves by `position`, too")]
+        )
+    mover = led_side(ref, kind, assembly).mover
+    assert isinstance(mover, Led)
+    return mover
+
+
+def apart_exactly(
+    known: Shapes,
+    shapes: Sequence[Convex],
+    places: Sequence[Floats],
+    moving: int,
+    names: Sequence[Ref | None],
+    joined: set[tuple[int, int]],
+    assembly: Assembly,
+) -> None:
+    """Raise ScriptError for bodies that start inside one another or inside what stands, and for two curved shapes."""
+    flat = [k for k, shape in enumerate(shapes) if shape.kind != CURVED]
+    number = {old: new for new, old in enumerate(flat)}
+    both = {(number[a], number[b]) for a, b in joined if a in number and b in number}
+    some, there, refs = [shapes[k] for k in flat], [places[k] for k in flat], [names[k] for k in flat]
+    must_be_apart(known, some, there, sum(k < moving for k in flat), refs, both, assembly)
+    found = Diagnostics()
+    for a, b in combinations(range(len(shapes)), 2):
+        if a >= moving or (a, b) in joined or (a in number and b in number):
+            continue
+        one, other = names[a], names[b]
+        assert one is not None
+        assert other is not None
+        if a not in number and b not in number:
+            message = f"'{one.name}' and '{other.name}' are both curved, which mode `exact` does not know to meet"
+            help = "let only those that meet collide, by `between`; mode `local` takes both"
+            found.error("no-collider", message, one.span or assembly.line(), help=help)
+            continue
+        first, second = (b, a) if a in number else (a, b)
+        gap = gap_of(shapes[first], places[first], shapes[second], places[second])
+        if -gap > DEEP * min(shapes[a].reach, shapes[b].reach):
+            message = f"'{one.name}' starts {-gap:.3g} m inside '{other.name}'"
+            found.error("starts-inside", message, assembly.line(), help="move one of them away")
+    found.raise_errors()
+
+
+def gap_of(curved: Convex, place: Floats, other: Convex, there: Floats) -> float:
+    """The gap [m] of a curved shape at a place (7,) and one that is not."""
+    from sceneql.bodies.rigid.tie_rows_kernels import AT_R, AT_X, MOVED
+    from sceneql.contacts.rigid_exact.curved_find_kernels import MOVER_A, MOVER_B, SHAPE_OF_B, WHO, meet
+
+    floats, ints = convex.joined([curved, other])
+    movers = np.zeros((2, MOVED))
+    for mover, at in zip(movers, (place, there), strict=True):
+        mover[AT_X : AT_X + 3] = at[:3]
+        mover[AT_R : AT_R + 9] = rotation_matrix(at[3:]).ravel()
+    who, asked = len(ints), np.zeros(WHO, dtype=np.int64)
+    asked[SHAPE_OF_B] = convex.SHAPE
+    asked[MOVER_A], asked[MOVER_B] = len(floats), len(floats) + MOVED
+    _, gap = meet(np.concatenate([floats, movers.ravel()]), np.concatenate([ints, asked]), who, -1e300, 0, 0)
+    return float(gap)
