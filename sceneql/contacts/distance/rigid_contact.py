@@ -30,6 +30,7 @@ def assemble(
     others: Sequence[Ref],
     restitution: Value,
     friction: Value,
+    rolling: Value,
     masses: Masses | None = None,
 ) -> tuple[int, ...]:
     """Add the contacts of rigid bodies; the offsets of count, points, normals, forces, loose and crowded steps.
@@ -117,6 +118,7 @@ def assemble(
     head += [assembly.value(restitution), assembly.value(friction), *found, loose, crowded]
     masses_at = skins_at + len(skins) if points else 0
     head += [len(rows), ties_at, len(held), joined_at, len(leads), leads_at, skins_at if skins else 0, masses_at]
+    head += [assembly.value(rolling)]
     meets = []
     if masses is not None:
         solids = [

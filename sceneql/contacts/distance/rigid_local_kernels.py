@@ -13,7 +13,7 @@ import numpy as np
 from numba import types
 
 import sceneql.system.channels as channels
-from sceneql.bodies.rigid.groups_kernels import MASS, solve_groups
+from sceneql.bodies.rigid.groups_kernels import MASS
 from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_POINT, AT_PUSH, BODY_A, BODY_B, WHERE, WHO
 from sceneql.bodies.rigid.tied_rows_kernels import ROW_BODIES_AT, ROWS, begin_ties, first_stop, rouse, write_ties
 from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tell_work, tied_to
@@ -46,6 +46,7 @@ from sceneql.contacts.distance.rigid_layout import (
     PLACES_AT,
     POINTS_AT,
     RESTITUTION_AT,
+    ROLLING_AT,
     ROOM,
     ROOM_AT,
     SHAPES,
@@ -55,6 +56,7 @@ from sceneql.contacts.distance.rigid_layout import (
     TIES_AT,
 )
 from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, note_places, recall, with_room
+from sceneql.contacts.distance.rolling_kernels import solve_rolling
 from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept_box
 from sceneql.linear.block_order_kernels import filled
 from sceneql.linear.bounded_rows_kernels import ROW
@@ -370,7 +372,10 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
         found[k] = motions[k]
     first, loose, friction, some = contacts, 0, floats[ints[FRICTION_AT]], False
     for number in range(ROUNDS):
-        loose = solve_groups(n, every, who, where, contacts, masses, motions, found, friction, rows, sides)
+        loose = solve_rolling(
+            n, every, who, where, contacts, masses, motions, before, seen, found, friction,
+            floats[ints[ROLLING_AT]], rows, sides, ints, bodies_at,
+        )  # fmt: skip
         for k in range(touched.size):
             touched[k] = 0
         for k in range(contacts):

@@ -292,11 +292,35 @@ def on_edges(floats, ints, who, margin, next, most):
     return count, least
 
 
+@lean(F(A, I, N))
+def separation(floats, ints, who):
+    """How far a curved body is on the outer side of a face of b, at most: below 0 where they overlap deeply."""
+    sb, ma, mb = ints[who + SHAPE_OF_B], ints[who + MOVER_A], ints[who + MOVER_B]
+    fa, fb, ib = ints[ints[who + SHAPE_OF_A] + FLOATS], ints[sb + FLOATS], ints[sb + INTS]
+    ax, ay, az = three(floats, ma + AT_X)
+    bx, by, bz = three(floats, mb + AT_X)
+    most = -math.inf
+    for k in range(ints[ib + FACES]):
+        mx, my, mz = three(floats, fb + POINTS + 3 * (ints[ib + VERTICES] + k))
+        ox, oy, oz = three(floats, fb + POINTS + 3 * ints[loop_at(ints, ib, k)[0]])
+        nx, ny, nz = turned(floats, mb + AT_TURN, mx, my, mz)
+        dx, dy, dz = own(floats, ma, -nx, -ny, -nz)
+        nearest = math.inf
+        for side in range(2):
+            px, py, pz = farthest(floats, fa, dx, dy, dz, -1.0 if side == 1 else 1.0)
+            x, y, z = turned(floats, ma + AT_TURN, px, py, pz)
+            x, y, z = own(floats, mb, ax + x - bx, ay + y - by, az + z - bz)
+            nearest = min(nearest, dot(mx, my, mz, x - ox, y - oy, z - oz))
+        most = max(most, nearest - floats[fb + RADIUS])
+    return most
+
+
 @lean(FOUND)
 def meet(floats, ints, who, margin, next, most):
     """The contacts of a curved body a with b within a margin, written to floats[next:], up to ``most`` of them.
 
-    How many they are, and the gap.
+    How many they are, and the gap. Where they overlap so deeply that no place of b's surface is the nearest, how far
+    the one is behind the faces of the other.
     """
     count, least = on_faces(floats, ints, who, margin, next, most)
     if ints[ints[who + SHAPE_OF_B] + KIND] != CORE:
@@ -305,10 +329,4 @@ def meet(floats, ints, who, margin, next, most):
     count, least = count + more, min(least, gap)
     more, gap = at_corners(floats, ints, who, margin, next + RECORD * count, most - count)
     count, least = count + more, min(least, gap)
-    if least == math.inf:
-        # Rounding between features: the nearest corner.
-        fb, ib = ints[ints[who + SHAPE_OF_B] + FLOATS], ints[ints[who + SHAPE_OF_B] + INTS]
-        for k in range(ints[ib + VERTICES]):
-            corner = in_axes_of_a(floats, ints[who + MOVER_A], ints[who + MOVER_B], *three(floats, fb + POINTS + 3 * k))
-            least = min(least, away(floats, ints[ints[who + SHAPE_OF_A] + FLOATS], *corner)[0] - floats[fb + RADIUS])
-    return count, least
+    return count, least if least < math.inf else separation(floats, ints, who)

@@ -81,7 +81,8 @@ def apart_exactly(
     number = {old: new for new, old in enumerate(flat)}
     both = {(number[a], number[b]) for a, b in joined if a in number and b in number}
     some, there, refs = [shapes[k] for k in flat], [places[k] for k in flat], [names[k] for k in flat]
-    must_be_apart(known, some, there, sum(k < moving for k in flat), refs, both, assembly)
+    if some:
+        must_be_apart(known, some, there, sum(k < moving for k in flat), refs, both, assembly)
     found = Diagnostics()
     for a, b in combinations(range(len(shapes)), 2):
         if a >= moving or (a, b) in joined or (a in number and b in number):

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from sceneql.contacts import layout
-from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Problem, Ref, Scalar, field, quantity_type
+from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Length, Problem, Ref, Scalar, field, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Type
 
@@ -53,11 +53,17 @@ class Collision(Contact):
     are found with the contacts; those that a tie joins do not touch each other. `points`, `normals` and `forces` tell
     of it, hits and rest do not.
 
-    Mode `exact`, asked for by name, is for few rigid bodies of exact shapes, ties included, and what stands: all
-    contacts that approach are reflected together until none approaches (Smith et al. 2012), and what rests, rolls or
-    slides has the forces of Coulomb's law at every stage of the solver, whose order it keeps. Where several faces turn
-    and slide on one another at once, its forces are not unique and its steps may become so short that a run takes
-    without end: mode `local` takes boxes that tumble, and piles.
+    `rolling` is a length: the normal force makes, at that arm, the largest moment that resists rolling and spinning. A
+    ball of radius r that rolls at v comes to rest after (7/10) v^2 r / (g rolling), what stands on a slope flatter than
+    rolling / r stays. Masses do not turn, and have none.
+
+    Mode `exact`, asked for by name, is for few rigid bodies and what stands or moves by keys and formulas, ties
+    included. Spheres, boxes, planes and convex meshes touch one another, and are touched by ellipsoids (a sphere alone
+    in a group with a scale), cylinders and tori: what rolls over their surfaces is exact. Two such curved ones do not
+    meet each other. All contacts that approach are reflected together until none approaches (Smith et al. 2012), and
+    what rests, rolls or slides has the forces of Coulomb's law at every stage of the solver, whose order it keeps.
+    Where several faces turn and slide on one another at once, its forces are not unique and its steps may become so
+    short that a run takes without end: mode `local` takes boxes that tumble, and piles.
 
     Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
     no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There
@@ -88,6 +94,11 @@ class Collision(Contact):
     )
     restitution: Scalar = field("Normal speed after an impact as a part of that before.", "0.5", at_least=0, at_most=1)
     friction: Scalar = field("Coulomb's coefficient of friction.", "0", at_least=0)
+    rolling: Length = field(
+        "Length by which the normal force makes the largest moment that resists rolling and spinning, of rigid bodies.",
+        "0 m",
+        at_least=0,
+    )
     thickness: FixedLength = field("Distance to keep besides the radius.", "0 m", at_least=0)
     mode: Literal["auto", "exact", "local", "barrier"] = field("How impacts are found.", "auto")
     gap: FixedLength | None = field(
@@ -155,6 +166,7 @@ class Collision(Contact):
 
             message = f"mode `barrier` is that of elastic solids, and '{bodies.model}' is none"
             raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
+        self._refuse_rolling(f"'{bodies.model}' has masses, which do not turn")
         if not others:
             return
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
@@ -204,8 +216,18 @@ class Collision(Contact):
         """A restitution where there is none, and a gap that nothing has."""
         if self.mode == "barrier" and self.restitution.span is not None:
             yield Problem(NO_RESTITUTION, ("restitution",), at_key=True)
+        if self.mode in ("exact", "barrier") and self.rolling.span is not None:
+            yield Problem(f"mode {self.mode} has no moment against rolling: mode local has", ("rolling",), at_key=True)
         if self.mode in ("exact", "local") and self.gap is not None:
             yield Problem(f"mode {self.mode} has no gap: the mode barrier of elastic solids has", ("gap",), at_key=True)
+
+    def _refuse_rolling(self, why: str) -> None:
+        """Raise ScriptError where the script asks for a moment against rolling that nothing would have."""
+        from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+        if self.rolling.span is not None:
+            message = f"{why}: there is no moment against rolling"
+            raise ScriptError([Diagnostic("no-rolling", message, self.rolling.span, "rigid bodies have")])
 
     def assemble_skins(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
@@ -213,6 +235,7 @@ class Collision(Contact):
         """Add the barrier between elastic solids and objects, unless the script asks for masses that collide."""
         if self.mode in ("exact", "local"):
             return False
+        self._refuse_rolling("elastic solids roll by their own elasticity")
         from sceneql.contacts.barrier.barrier_contact import assemble
 
         if self.restitution.span is not None:
@@ -263,7 +286,7 @@ class Collision(Contact):
             return
         assembly.step_at_most(OFTEN)
         masses = masses_of(points, self.thickness, assembly) if points else None
-        told = assemble(assembly, rigid, touched, self.restitution, self.friction, masses)
+        told = assemble(assembly, rigid, touched, self.restitution, self.friction, self.rolling, masses)
         if masses is not None:
             assembly.remember(masses.tally_at, -1, *told, SPRINGS, masses.memory_at)
         else:
