@@ -12,6 +12,7 @@ from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_ED
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away
 
 A_AT = np.array([1.1, 0.4, 1.3])
+NO_FIELD = np.zeros(1, dtype=np.int64)
 TIGHT = "dop853: {tolerance: 1e-12}"
 
 
@@ -41,17 +42,17 @@ def test_the_gap_of_a_curved_body_changes_as_its_row_says(shape, kind):
         # Where along the line the body is nearest, roughly.
         start, along = np.array([0.2, -0.1, 0.3]), np.linspace(-4, 4, 4001)
         places = turns[1].apply(start + along[:, None] * line)
-        gaps = [away(numbers, 0, *place)[0] for place in turns[0].inv().apply(places - A_AT)]
+        gaps = [away(numbers, NO_FIELD, 0, *place)[0] for place in turns[0].inv().apply(places - A_AT)]
         record[records.LINE_A + 1] = along[np.argmin(gaps)]
 
-        def told(t):
+        def told(t, record=record, turns=turns, motions=motions):
             begins = records.RECORD + len(numbers)
             both = [
                 mover(x + t * m[:3], Rotation.from_rotvec(t * m[3:]) * turn, m[:3], m[3:])
                 for x, turn, m in zip((A_AT, np.zeros(3)), turns, motions, strict=True)
             ]
             floats = np.concatenate([record, numbers, *both])
-            follow(floats, 0, begins, begins + MOVED)
+            follow(floats, NO_FIELD, 0, begins, begins + MOVED)
             return floats[[records.GAP, records.SPEED, records.BIAS]]
 
         h = 1e-4
@@ -89,7 +90,7 @@ EXACT = "mode: exact, restitution: 0, friction: 1"
     ],
 )
 def test_a_coin_in_steady_precession_rolls_twenty_turns(tmp_path, radius, half, tilt, solver, bound):
-    """The contact runs round at W^2 = g (a cos - b sin)/(sin (I1 cos - I3 b/a sin)); b = 0: 4 g/(a sin), Moffatt 2000."""
+    """The contact runs round at W^2 = g (a cos - b sin)/(sin (I1 cos - I3 b/a sin)): without b 4 g/(a sin)."""
     half = half or 1e-9 * radius
     alpha, aspect = np.radians(tilt), half / radius
     first, axial = radius**2 / 4 + half**2 / 3, radius**2 / 2
@@ -148,6 +149,22 @@ def test_a_lift_that_starts_and_stops_carries_a_ring_without_a_gap(tmp_path):
     rows = watch(tmp_path, objects, "of: ring, mass: 1 kg", [0.5, 1, 2], "it.position", law=EXACT)
     for (x,), t in zip(rows, [0.5, 1, 2], strict=True):
         np.testing.assert_allclose(x, [0, 0.4 + 0.2 * np.sin(3 * t), 0], atol=1e-10)
+
+
+def test_a_ball_bounces_on_an_implicit_torus_as_on_a_torus(tmp_path):
+    place = "position: 0.02 -0.1 0 m, rotation: {about: x, angle: 1 deg}"
+    field = '{field: "(x^2 + y^2 + z^2 + 0.84)^2 - 4*(x^2 + z^2)", bounds: {ball: 2}'
+    model = "of: ball, mass: 1 kg, spin: 0 0 5 rad/s"
+    found = []
+    for what in (f"{{torus: {{radius: 1 m, tube: 0.4 m, {place}}}}}", f"{{implicit: {field}, {place}}}}}"):
+        objects = {"ring": what, "ball": "{sphere: {radius: 0.2 m, position: 0.95 1.2 0.1 m}}"}
+        law = "mode: exact, restitution: 1, friction: 0.3"
+        outputs = ("it.position", "it.energy", "touch.hits.count")
+        rows = watch(tmp_path, objects, model, np.linspace(0, 1.5, 16)[1:], *outputs, law=law)
+        assert rows[-1][2] > 1
+        assert np.ptp([row[1] for row in rows]) < 1e-9
+        found.append(rows[-1][0])
+    np.testing.assert_allclose(found[1], found[0], atol=1e-7)
 
 
 @pytest.mark.parametrize(

@@ -32,6 +32,9 @@ class Object(Kind):
     grounds: ClassVar[bool] = False
     """Whether all may stand on it: a scene that has one gets no other by default."""
 
+    edgeless: ClassVar[bool] = False
+    """Whether its surface is where a field is zero, and as a rule without edges."""
+
     decorates: ClassVar[bool] = False
     """Whether a model that it reads still draws itself."""
 

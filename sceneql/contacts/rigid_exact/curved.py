@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 CURVED = 5
 """Kind of a shape, beside those of convex.py."""
-ELLIPSOID, RING, COLUMN = range(3)
+ELLIPSOID, RING, COLUMN, FIELD = range(4)
 FORM, CENTER, AXES, SIZES, FLOATS = 2, 3, 6, 15, 18
 """Numbers of a shape, behind radius (0) and reach: its form; its middle (3) and its axes (3, 3), an axis a row, in the
 body's axes; sizes (3): half axes of an ellipsoid; radius of the circle and of the tube of a ring, whose own axis is the
-second; radius and half height of a column."""
+second; radius and half height of a column; of a field where its object's integers begin (contacts/layout.py)."""
 UNEVEN = 1e-12
 """Part by which lengths of a map may differ that is taken to keep angles."""
 

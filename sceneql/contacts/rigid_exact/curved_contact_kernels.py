@@ -34,7 +34,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.contacts.rigid_exact.contact_kernels import follow as follow_flat
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, bend, farthest, wander
-from sceneql.system.signatures_kernels import A, F, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 ON_FACE, ON_EDGE, ON_CORNER = 6, 7, 8
 """Kinds of contacts, beside those of contact_kernels: of a curved body on a feature of b. LINE_A: where the numbers of
@@ -65,12 +65,12 @@ def speed_at(floats, mover, x, y, z):
 
 
 @lean_inlined
-def turns_at(floats, a, shape, p, gap, n, e):
+def turns_at(floats, ints, a, shape, p, gap, n, e):
     """How fast the normal of a curved body turns, in its own motion, while a point p of its axes moves at e, in the
     world; n and what is told are in the world, too."""
     nx, ny, nz = own(floats, a, n[0], n[1], n[2])
     ex, ey, ez = own(floats, a, e[0], e[1], e[2])
-    x, y, z = bend(floats, shape, p[0], p[1], p[2], gap, nx, ny, nz, ex, ey, ez)
+    x, y, z = bend(floats, ints, shape, p[0], p[1], p[2], gap, nx, ny, nz, ex, ey, ez)
     return turned(floats, a + AT_TURN, x, y, z)
 
 
@@ -112,8 +112,8 @@ def follow_on_face(floats, at, a, b):
     write(floats, at, a, b, gap, nx, ny, nz, mx, my, mz, cx, cy, cz, gx + ex, gy + ey, gz + ez)
 
 
-@lean(types.void(A, N, N, N))
-def follow_on_corner(floats, at, a, b):
+@lean(types.void(A, I, N, N, N))
+def follow_on_corner(floats, ints, at, a, b):
     """Write what a contact of a curved body on an edge or a corner, which may be rounded, is now."""
     shape, radius = int(floats[at + LINE_A]), floats[at + RADIUS_B]
     ox, oy, oz = three(floats, b + AT_X)
@@ -126,15 +126,15 @@ def follow_on_corner(floats, at, a, b):
     s, bends = (floats[at + LINE_A + 1] if floats[at + KIND] == ON_EDGE else 0.0), 0.0
     x, y, z = ox, oy, oz
     px, py, pz = own(floats, a, x - ax, y - ay, z - az)
-    distance, nx, ny, nz = away(floats, shape, px, py, pz)
+    distance, nx, ny, nz = away(floats, ints, shape, px, py, pz)
     if floats[at + KIND] == ON_EDGE:
         least, step = math.inf, 0.0
         for _ in range(TURNS):
             x, y, z = ox + s * tx, oy + s * ty, oz + s * tz
             px, py, pz = own(floats, a, x - ax, y - ay, z - az)
-            distance, nx, ny, nz = away(floats, shape, px, py, pz)
+            distance, nx, ny, nz = away(floats, ints, shape, px, py, pz)
             nx, ny, nz = turned(floats, a + AT_TURN, nx, ny, nz)
-            ex, ey, ez = turns_at(floats, a, shape, (px, py, pz), distance, (nx, ny, nz), (tx, ty, tz))
+            ex, ey, ez = turns_at(floats, ints, a, shape, (px, py, pz), distance, (nx, ny, nz), (tx, ty, tz))
             bends, slope = dot(tx, ty, tz, ex, ey, ez), dot(tx, ty, tz, nx, ny, nz)
             tiny = 1e-15 * (abs(px) + abs(py) + abs(pz))
             if abs(slope) > least and abs(step) > tiny:  # too far: half way back
@@ -154,14 +154,14 @@ def follow_on_corner(floats, at, a, b):
     ux, uy, uz = speed_at(floats, a, x, y, z)
     ux, uy, uz = vx - ux, vy - uy, vz - uz
     if floats[at + KIND] == ON_EDGE and bends > 0.0:
-        ex, ey, ez = turns_at(floats, a, shape, (px, py, pz), distance, (nx, ny, nz), (ux, uy, uz))
+        ex, ey, ez = turns_at(floats, ints, a, shape, (px, py, pz), distance, (nx, ny, nz), (ux, uy, uz))
         fx, fy, fz = cross(wb[0] - wa[0], wb[1] - wa[1], wb[2] - wa[2], tx, ty, tz)
         along = -(dot(fx, fy, fz, nx, ny, nz) + dot(tx, ty, tz, ex, ey, ez)) / bends
         ux, uy, uz, vx, vy, vz = (
             *(ux + along * tx, uy + along * ty, uz + along * tz),
             *(vx + along * tx, vy + along * ty, vz + along * tz),
         )
-    ex, ey, ez = turns_at(floats, a, shape, (px, py, pz), distance, (nx, ny, nz), (ux, uy, uz))
+    ex, ey, ez = turns_at(floats, ints, a, shape, (px, py, pz), distance, (nx, ny, nz), (ux, uy, uz))
     fx, fy, fz = cross(wa[0], wa[1], wa[2], nx, ny, nz)
     mx, my, mz = ex + fx, ey + fy, ez + fz
     grows = dot(nx, ny, nz, ux, uy, uz)
@@ -174,13 +174,13 @@ def follow_on_corner(floats, at, a, b):
     write(floats, at, a, b, distance - radius, -nx, -ny, -nz, -mx, -my, -mz, cx, cy, cz, gx, gy, gz)
 
 
-@lean(types.void(A, N, N, N))
-def follow(floats, at, a, b):
+@lean(types.void(A, I, N, N, N))
+def follow(floats, ints, at, a, b):
     """Write what a contact at floats[at:] is in the state of its movers, whose floats begin at a and b."""
     kind = floats[at + KIND]
     if kind == ON_FACE:
         follow_on_face(floats, at, a, b)
     elif kind == ON_EDGE or kind == ON_CORNER:
-        follow_on_corner(floats, at, a, b)
+        follow_on_corner(floats, ints, at, a, b)
     else:
         follow_flat(floats, at, a, b)

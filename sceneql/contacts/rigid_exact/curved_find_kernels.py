@@ -44,7 +44,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
-from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FORM, RING, SIZES
+from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FIELD, FORM, RING, SIZES
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, own
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, out_of, slant
 from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT
@@ -194,7 +194,7 @@ def at_corners(floats, ints, who, margin, next, most):
     for k in range(ints[ib + VERTICES]):
         ox, oy, oz = three(floats, fb + POINTS + 3 * k)
         x, y, z = in_axes_of_a(floats, ma, mb, ox, oy, oz)
-        gap, nx, ny, nz = away(floats, fa, x, y, z)
+        gap, nx, ny, nz = away(floats, ints, fa, x, y, z)
         gap -= radius
         if gap >= least and gap > margin:
             continue
@@ -221,9 +221,9 @@ def at_corners(floats, ints, who, margin, next, most):
 
 
 @lean_inlined
-def slope_along(floats, fa, x, y, z, ux, uy, uz, s):
+def slope_along(floats, ints, fa, x, y, z, ux, uy, uz, s):
     """Distance of a curved body at a place along an edge, and how it changes along it."""
-    distance, nx, ny, nz = away(floats, fa, x + s * ux, y + s * uy, z + s * uz)
+    distance, nx, ny, nz = away(floats, ints, fa, x + s * ux, y + s * uy, z + s * uz)
     return distance, dot(nx, ny, nz, ux, uy, uz)
 
 
@@ -241,12 +241,12 @@ def goes_away(floats, ints, sb, edge, ma, mb, nx, ny, nz):
     return both * p - q >= -LEAST and both * q - p >= -LEAST
 
 
-@lean(F(A, N, F, F, F, F, F, F, F, F))
-def nearest_between(floats, fa, x, y, z, ux, uy, uz, low, high):
+@lean(F(A, I, N, F, F, F, F, F, F, F, F))
+def nearest_between(floats, ints, fa, x, y, z, ux, uy, uz, low, high):
     """Where along an edge the distance no longer falls, by bisection."""
     for _ in range(HALVINGS):
         s = 0.5 * (low + high)
-        if slope_along(floats, fa, x, y, z, ux, uy, uz, s)[1] < 0.0:
+        if slope_along(floats, ints, fa, x, y, z, ux, uy, uz, s)[1] < 0.0:
             low = s
         else:
             high = s
@@ -268,16 +268,16 @@ def on_edges(floats, ints, who, margin, next, most):
         ux, uy, uz = in_axes_of_a(floats, ma, mb, lx, ly, lz)
         ux, uy, uz = ux - x, uy - y, uz - z
         length = math.sqrt(ux * ux + uy * uy + uz * uz)
-        middle = away(floats, fa, x + 0.5 * ux, y + 0.5 * uy, z + 0.5 * uz)[0]
+        middle = away(floats, ints, fa, x + 0.5 * ux, y + 0.5 * uy, z + 0.5 * uz)[0]
         if length == 0.0 or middle - 0.5 * length - radius > max(margin, least):
             continue
-        low, before = 0.0, slope_along(floats, fa, x, y, z, ux, uy, uz, 0.0)[1]
+        low, before = 0.0, slope_along(floats, ints, fa, x, y, z, ux, uy, uz, 0.0)[1]
         for piece in range(1, PIECES + 1):
             high = piece / PIECES
-            after = slope_along(floats, fa, x, y, z, ux, uy, uz, high)[1]
+            after = slope_along(floats, ints, fa, x, y, z, ux, uy, uz, high)[1]
             if before < 0.0 and after > 0.0:
-                s = nearest_between(floats, fa, x, y, z, ux, uy, uz, low, high)
-                gap, nx, ny, nz = away(floats, fa, x + s * ux, y + s * uy, z + s * uz)
+                s = nearest_between(floats, ints, fa, x, y, z, ux, uy, uz, low, high)
+                gap, nx, ny, nz = away(floats, ints, fa, x + s * ux, y + s * uy, z + s * uz)
                 gap -= radius
                 if (gap < least or gap <= margin) and goes_away(floats, ints, sb, edge, ma, mb, nx, ny, nz):
                     least = min(least, gap)
@@ -322,6 +322,8 @@ def meet(floats, ints, who, margin, next, most):
     How many they are, and the gap. Where they overlap so deeply that no place of b's surface is the nearest, how far
     the one is behind the faces of the other.
     """
+    if floats[ints[ints[who + SHAPE_OF_A] + FLOATS] + FORM] == FIELD:  # which balls alone meet
+        return at_corners(floats, ints, who, margin, next, most)
     count, least = on_faces(floats, ints, who, margin, next, most)
     if ints[ints[who + SHAPE_OF_B] + KIND] != CORE:
         return count, least

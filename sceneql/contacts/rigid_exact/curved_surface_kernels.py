@@ -11,9 +11,13 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.rigid_exact.curved import AXES, CENTER, COLUMN, ELLIPSOID, FORM, RING, SIZES
-from sceneql.system.signatures_kernels import A, F, N
+from sceneql.contacts.distance.core_kernels import REACH
+from sceneql.contacts.rigid_exact.curved import AXES, CENTER, COLUMN, ELLIPSOID, FIELD, FORM, RING, SIZES
+from sceneql.contacts.shape_kernels import surface
+from sceneql.system.signatures_kernels import A, F, I, N
 
+APART = 1e-5
+"""Distance of points for the bend of a field, in parts of its size."""
 MOST = 100
 """Steps of Newton's method, of which a few are the rule."""
 THREE = types.UniTuple(F, 3)
@@ -89,11 +93,13 @@ def wander(floats, f, dx, dy, dz, ex, ey, ez):
     return out_of(floats, f, u, v, w)
 
 
-@lean(types.UniTuple(F, 4)(A, N, F, F, F))
-def away(floats, f, px, py, pz):
+@lean(types.UniTuple(F, 4)(A, I, N, F, F, F))
+def away(floats, ints, f, px, py, pz):
     """The distance of a point of the body's axes, negative inside, and the outer unit normal at the nearest point."""
     x, y, z = into(floats, f, px - floats[f + CENTER], py - floats[f + CENTER + 1], pz - floats[f + CENTER + 2])
     a, b, c = floats[f + SIZES], floats[f + SIZES + 1], floats[f + SIZES + 2]
+    if floats[f + FORM] == FIELD:
+        return surface(floats, ints, int(a), x, y, z)
     if floats[f + FORM] == ELLIPSOID:
         t = max(a * abs(x) - a * a, b * abs(y) - b * b, c * abs(z) - c * c, -(1.0 - 1e-9) * min(a, b, c) ** 2)
         for _ in range(MOST):
@@ -131,8 +137,8 @@ def away(floats, f, px, py, pz):
     return (distance, *out_of(floats, f, x, y, z))
 
 
-@lean(THREE(A, N, F, F, F, F, F, F, F, F, F, F))
-def bend(floats, f, px, py, pz, distance, nx, ny, nz, ex, ey, ez):
+@lean(THREE(A, I, N, F, F, F, F, F, F, F, F, F, F))
+def bend(floats, ints, f, px, py, pz, distance, nx, ny, nz, ex, ey, ez):
     """How fast the normal that `away` told turns while the point moves at the rate e."""
     x, y, z = into(floats, f, px - floats[f + CENTER], py - floats[f + CENTER + 1], pz - floats[f + CENTER + 2])
     k, m, n = into(floats, f, nx, ny, nz)
@@ -140,6 +146,14 @@ def bend(floats, f, px, py, pz, distance, nx, ny, nz, ex, ey, ez):
     a, b, c = floats[f + SIZES], floats[f + SIZES + 1], floats[f + SIZES + 2]
     along = k * u + m * v + n * w
     u, v, w = u - along * k, v - along * m, w - along * n
+    if floats[f + FORM] == FIELD:
+        speed = math.sqrt(u * u + v * v + w * w)
+        if speed == 0.0:
+            return 0.0, 0.0, 0.0
+        h = APART * floats[f + REACH] / speed
+        _, p, q, r = surface(floats, ints, int(a), x + h * u, y + h * v, z + h * w)
+        _, i, j, o = surface(floats, ints, int(a), x - h * u, y - h * v, z - h * w)
+        return 0.5 * (p - i) / h, 0.5 * (q - j) / h, 0.5 * (r - o) / h
     if floats[f + FORM] == ELLIPSOID:
         # With y the nearest point, g = y / a^2 and d the distance: n' = W (x' - d n'), W = P diag(1/a^2) P / |g|.
         p, q, r = x - distance * k, y - distance * m, z - distance * n

@@ -309,7 +309,9 @@ def follow_all(floats, ints):
     """Write the kept contacts for the state that was looked at."""
     for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
         rec = ints[RECORDS_AT] + RECORD * k
-        follow(floats, rec, mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B])))
+        follow(
+            floats, ints, rec, mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
+        )
 
 
 @lean(F(A, A, I, N))

@@ -7,29 +7,37 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib import import_module
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sceneql.bodies.rigid.joint import led_side
+from sceneql.compiled.numbered_kernels import number_of
+from sceneql.contacts import layout
 from sceneql.contacts.distance import convex
+from sceneql.contacts.distance.convex import Convex
 from sceneql.contacts.distance.led import is_led
 from sceneql.contacts.distance.rigid_contact import DEEP, must_be_apart
-from sceneql.contacts.rigid_exact.curved import CURVED, Curved
+from sceneql.contacts.rigid_exact.curved import CURVED, FIELD, FORM, SIZES, Curved
+from sceneql.contacts.shape_kernels import SURFACE_TYPE
+from sceneql.contacts.shapes import implicit
+from sceneql.failure import RunFailure
 from sceneql.island.start import Start
 from sceneql.kinds import Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
-from sceneql.shapes.placement import rotation_matrix
+from sceneql.shapes.placement import UPRIGHT, Placed, rotation_matrix
 from sceneql.system import Led
 
 if TYPE_CHECKING:
-    from sceneql.contacts.distance.convex import Convex
+    from numpy.typing import NDArray
+
     from sceneql.contacts.distance.rigid_shapes import Shapes
     from sceneql.frame import Floats
     from sceneql.system import Assembly
 
-HELP = "mode `exact` takes spheres, ellipsoids, cylinders, tori, boxes, planes and convex meshes"
+HELP = "mode `exact` takes spheres, ellipsoids, cylinders, tori, boxes, planes, convex meshes and implicit surfaces"
 
 
 def exact_shape(ref: Ref | None, center: Floats, place: Floats | None, known: Shapes, assembly: Assembly) -> Convex:
@@ -47,8 +55,53 @@ def exact_shape(ref: Ref | None, center: Floats, place: Floats | None, known: Sh
     with suppress(TypeError, ValueError):
         curved: Curved = kind.curved(start)
         return curved.shape(center)
+    if kind.edgeless:
+        return field_shape(kind, ref, center, assembly)
     message = f"'{ref.name}' touches by points of its surface, which mode `local` alone can do"
     raise ScriptError([Diagnostic("no-collider", message, ref.span or assembly.line(), HELP)])
+
+
+def field_shape(kind: Any, ref: Ref, center: Floats, assembly: Assembly) -> Convex:
+    """A shape whose surface is where a field is zero, from a center (3,) in its own axes; its integers are those of an
+    object (contacts/layout.py), which `finish_fields` completes. Raises ScriptError where it cannot be touched."""
+    own = kind
+    if isinstance(kind, Placed):
+        own = kind.model_copy(update={"position": implicit.ORIGIN, "rotation": UPRIGHT})
+    try:
+        collider = implicit.collider(own, assembly)
+        low, high = own.extent(np.eye(3, 4), Start(assembly))
+    except (TypeError, ValueError, RunFailure) as error:
+        message = f"'{ref.name}' does not collide with rigid bodies: {error}"
+        raise ScriptError([Diagnostic("no-collider", message, ref.span or assembly.line())]) from None
+    reach = float(np.linalg.norm(np.maximum(np.abs(low - center), np.abs(high - center))))
+    where = [0] * layout.OBJECT
+    where[layout.SURFACE] = number_of(import_module(collider.kernels).surface, SURFACE_TYPE)
+    pose = assembly.floats([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+    where[layout.PLACE], where[layout.ROTATION] = pose, pose + 3
+    where[layout.SIZE], where[layout.DEPTH] = collider.size_at, collider.depth_at
+    floats = np.concatenate([[0.0, reach, FIELD], -center, np.eye(3).ravel(), np.zeros(3)])
+    return Convex(CURVED, floats, np.array([*where, *collider.data], dtype=np.int64))
+
+
+def joined_fields(shapes: Sequence[Convex], floats_at: int, ints_at: int) -> tuple[Floats, NDArray[np.int64]]:
+    """As `convex.joined`, with where the integers of fields stand."""
+    floats, ints = convex.joined(shapes, floats_at, ints_at)
+    for k, shape in enumerate(shapes):
+        if is_field(shape):
+            _, numbers, at = (int(number) for number in ints[convex.SHAPE * k : convex.SHAPE * (k + 1)])
+            ints[at - ints_at + layout.DATA] = at + layout.OBJECT
+            floats[numbers - floats_at + SIZES] = at
+    return floats, ints
+
+
+def is_field(shape: Convex) -> bool:
+    """Whether a shape is where a field is below zero, which balls alone meet."""
+    return bool(shape.kind == CURVED and shape.floats[FORM] == FIELD)
+
+
+def is_ball(shape: Convex) -> bool:
+    """Whether a shape is a point with a radius."""
+    return bool(shape.kind == convex.CORE and shape.ints[0] == 1)
 
 
 def led_by(ref: Ref, assembly: Assembly) -> Led | None:
@@ -96,19 +149,25 @@ def apart_exactly(
             found.error("no-collider", message, one.span or assembly.line(), help=help)
             continue
         first, second = (b, a) if a in number else (a, b)
-        gap = gap_of(shapes[first], places[first], shapes[second], places[second])
+        if is_field(shapes[first]) and not is_ball(shapes[second]):
+            which, what = (other, one) if first == b else (one, other)
+            message = f"'{which.name}' is met by balls alone in mode `exact`, and '{what.name}' is none"
+            found.error("no-collider", message, what.span or assembly.line(), help="mode `local` takes both")
+            continue
+        gap = gap_of(shapes[first], places[first], shapes[second], places[second], assembly.numbers())
         if -gap > DEEP * min(shapes[a].reach, shapes[b].reach):
             message = f"'{one.name}' starts {-gap:.3g} m inside '{other.name}'"
             found.error("starts-inside", message, assembly.line(), help="move one of them away")
     found.raise_errors()
 
 
-def gap_of(curved: Convex, place: Floats, other: Convex, there: Floats) -> float:
-    """The gap [m] of a curved shape at a place (7,) and one that is not."""
+def gap_of(curved: Convex, place: Floats, other: Convex, there: Floats, numbers: Floats) -> float:
+    """The gap [m] of a curved shape at a place (7,) and one that is not; ``numbers``: those of the island."""
     from sceneql.bodies.rigid.tie_rows_kernels import AT_R, AT_X, MOVED
     from sceneql.contacts.rigid_exact.curved_find_kernels import MOVER_A, MOVER_B, SHAPE_OF_B, WHO, meet
 
-    floats, ints = convex.joined([curved, other])
+    floats, ints = joined_fields([curved, other], len(numbers), 0)
+    floats = np.concatenate([numbers, floats])
     movers = np.zeros((2, MOVED))
     for mover, at in zip(movers, (place, there), strict=True):
         mover[AT_X : AT_X + 3] = at[:3]

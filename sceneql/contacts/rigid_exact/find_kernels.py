@@ -310,7 +310,7 @@ def find(t, y, floats, ints, points, names):
             who = ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b))
             more = meet(floats, ints, who, margin, next + RECORD * count, most - count)[0]
             for k in range(count, count + more):
-                follow(floats, next + RECORD * k, mover_at(ints, a), mover_at(ints, b))
+                follow(floats, ints, next + RECORD * k, mover_at(ints, a), mover_at(ints, b))
             count += more
             continue
         found, _, nx, ny, nz = manifold(
@@ -324,7 +324,7 @@ def find(t, y, floats, ints, points, names):
                 floats[memory + CROWDED] += 1.0
                 continue
             name(floats, ints, rec, pair, a, b, *three(points, p), *three(points, p + 3), nx, ny, nz)
-            follow(floats, rec, mover_at(ints, a), mover_at(ints, b))
+            follow(floats, ints, rec, mover_at(ints, a), mover_at(ints, b))
             count += 1
     for k in range(count):
         rec = next + RECORD * k

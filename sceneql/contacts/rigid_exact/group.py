@@ -43,6 +43,7 @@ def assemble(
     from sceneql.contacts.rigid_exact import contact_kernels, curved_find_kernels, exact_law_kernels
     from sceneql.contacts.rigid_exact import exact_rows_kernels as rows
     from sceneql.contacts.rigid_exact.curved import CURVED
+    from sceneql.contacts.rigid_exact.exact_shapes import joined_fields
 
     _must_be_free(assembly)
     if assembly.ints_of(HOLD):
@@ -95,7 +96,8 @@ def assemble(
     nan = float("nan")
     tally = assembly.floats([0.0, nan, nan, 0.0, nan])
     data = assembly.floats(convex.joined(found.shapes, 0, 0)[0])
-    _, shapes = convex.joined(found.shapes, data, rows.HEAD)
+    numbers, shapes = joined_fields(found.shapes, data, rows.HEAD)
+    assembly.write(data, numbers)
     lists = [
         shapes.tolist(),
         list(chain(*movers)),

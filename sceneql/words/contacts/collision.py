@@ -59,11 +59,12 @@ class Collision(Contact):
 
     Mode `exact`, asked for by name, is for few rigid bodies and what stands or moves by keys and formulas, ties
     included. Spheres, boxes, planes and convex meshes touch one another, and are touched by ellipsoids (a sphere alone
-    in a group with a scale), cylinders and tori: what rolls over their surfaces is exact. Two such curved ones do not
-    meet each other. All contacts that approach are reflected together until none approaches (Smith et al. 2012), and
-    what rests, rolls or slides has the forces of Coulomb's law at every stage of the solver, whose order it keeps.
-    Where several faces turn and slide on one another at once, its forces are not unique and its steps may become so
-    short that a run takes without end: mode `local` takes boxes that tumble, and piles.
+    in a group with a scale), cylinders and tori, and balls by implicit and blobby surfaces: what rolls over these is
+    exact. Two curved ones do not meet each other. All contacts that approach are reflected together until none
+    approaches (Smith et al. 2012), and what rests, rolls or slides has the forces of Coulomb's law at every stage of
+    the solver, whose order it keeps. Where several faces turn and slide on one another at once, its forces are not
+    unique and its steps may become so short that a run takes without end: mode `local` takes boxes that tumble, and
+    piles.
 
     Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
     no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There

@@ -51,6 +51,8 @@ class Blobby(Object):
     at the surface of a lone part of mean radius.
     """
 
+    edgeless: ClassVar[bool] = True
+
     gives: ClassVar[Mapping[str, Gives]] = MEASURES
 
     skeleton: tuple[Part, ...] = field("Parts of any kind, each with its radius, weight and color.", ())

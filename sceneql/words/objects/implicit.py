@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from math import cos, inf, isfinite, pi, sin, sqrt
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import field_validator
 
@@ -69,6 +69,8 @@ class Implicit(Solid):
     As a surface it is drawn as a thin sheet, seen from both sides and open at its bounds, also where the field touches
     the level and does not pass it, as (x^2 + y^2 - 1)^2 does 0; to contacts, meshes and other objects it is the solid.
     """
+
+    edgeless: ClassVar[bool] = True
 
     field: Annotated[Formula, Symbols(("x", "y", "z", "t"), PLAIN)] = described("The formula.")
     level: FixedScalar = described("The value that the formula has on the surface.", "0")
