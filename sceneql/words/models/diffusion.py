@@ -46,8 +46,6 @@ class Diffusion(Medium):
     (1980), 4.2; Crank, The Mathematics of Diffusion (1975).
     """
 
-    is_one_field = True
-
     of: Literal["concentration", "temperature", "number"] = field(
         "What spreads, which gives its unit, and a temperature's output its name.", "concentration"
     )
@@ -73,6 +71,10 @@ class Diffusion(Medium):
     def formula_dimension(cls, written: Mapping[str, Any]) -> Dimension | None:
         """That of what spreads."""
         return UNITS.get(str(written.get("of", "concentration")))
+
+    def field_count(self) -> int:
+        """One."""
+        return 1
 
     def boundaries(self) -> Iterable[Boundary]:
         """That of its field."""

@@ -202,6 +202,10 @@ class ReactionDiffusion(Medium):
                 text = f"the rate of {name} has no finite value at the start at ({x:g}, {y:g}, {z:g}) m"
                 raise ScriptError([Diagnostic("not-finite", text, one.rate.span)])
 
+    def field_count(self) -> int:
+        """One a species."""
+        return len(self.species)
+
     def layout(self, state: ModelState, output: str) -> FieldLayout:
         """Where the field of a species lies, for pictures; ``output``: its name."""
         at = state.ints[5 + list(self.species).index(output)]

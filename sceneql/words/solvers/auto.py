@@ -76,10 +76,11 @@ class Auto(Solver):
 
         from sceneql.island.jacobian import BY_DIFFERENCES
 
-        if island.grid is not None and island.floats is not None:
+        grid = island.fields.single
+        if grid is not None and island.floats is not None:
             from sceneql.grids.multigrid.separable import axes_of
 
-            if axes_of(island.grid, island.floats()) is not None:
+            if axes_of(grid, island.floats()) is not None:
                 return Exact().choose(island)
             return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1), absolute=self.absolute).choose(island)
         few = island.entries <= BY_DIFFERENCES
