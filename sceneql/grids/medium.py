@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
+    from sceneql.quantities.span import Span
     from sceneql.system import Assembly, ModelState
 
 PLACE = Annotated[Formula, Symbols(("x", "y", "z"), at_start=True)]
@@ -109,6 +110,13 @@ class Part(Record):
     def chosen(self) -> bool:
         """Whether the part has a place of its own."""
         return self.where is not None or self.near is not None
+
+    @property
+    def span(self) -> Span | None:
+        """Its line in the script, where a formula tells it."""
+        outside = None if self.robin is None else self.robin.outside
+        formulas = (self.value, self.flux, self.where, outside)
+        return next((one.span for one in formulas if one is not None), None)
 
 
 Boundary = dict[str, Part]
