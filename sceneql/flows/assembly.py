@@ -98,9 +98,11 @@ class _Builder:
             cells=Cells(cells.shape, self.periodic, np.zeros(len(cells.volumes), dtype=bool), 0, 0),
             components=self._grids(at, given, volumes, viscous, edges[1], edge_faces),
             areas=faces.areas,
+            spacing=tuple(cells.spacing.tolist()),
             ints=numbers,
             opens=self.opened,
             density=self.model.density,
+            viscosity=self.model.viscosity,
         )
         assembly.flow(flow)
         return flow

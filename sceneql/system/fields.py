@@ -60,12 +60,16 @@ class Flow:
     """Two in a flat flow, three in a deep one."""
     areas: tuple[float, ...]
     """Of a face, by axis [m^2]."""
+    spacing: tuple[float, ...]
+    """Sides of a cell [m]."""
     ints: tuple[int, ...]
     """Integers of the projection (flows/projection_kernels.py)."""
     opens: Any
     """(2 axes, cells of a side) bool, by sides: where fluid may pass."""
     density: float
     """[kg/m^3]"""
+    viscosity: float
+    """[Pa s]"""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,0 +1,75 @@
+"""How the solvers of flows are prepared, and what their steps bear."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.system import Control, Method, Needs, Prepared, Stepper
+
+if TYPE_CHECKING:
+    from sceneql.island.system import System
+    from sceneql.system import Grid
+
+CHORIN, CNAB2, SBDF2 = range(3)
+
+
+def stepper(scheme: int, order: int, step: float) -> Stepper:
+    """Fixed steps [s] of multistep_kernels.step."""
+    method = Method(
+        step="sceneql.flows.multistep_kernels:step", order=order, numbers=(scheme, 0), settings=(0.0,) * 4, last_stage=0
+    )
+    return Stepper(method, Control(first_step=step), Needs(prepare="sceneql.flows.multistep:prepare"))
+
+
+def prepare(system: System, stepper: Stepper) -> Prepared:
+    """The arrays of a step. Raises ScriptError where the island has no flow."""
+    import numpy as np
+
+    from sceneql.flows.multistep_kernels import ARRAYS, HEAD, OPERATOR
+    from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+    flow = system.fields.flow
+    if flow is None:
+        _, _, part, spans = system.ranges[0]
+        message = f"this solver marches an island with a flow, and '{part}' is none"
+        raise ScriptError([Diagnostic("no-flow", message, spans[0], "let auto march it")])
+    fixed = [grid for grid in system.fields.grids if not grid.varying]
+    fields = [grid for grid in (*flow.components, *fixed) if _spreads(grid, system.floats)]
+    operators = [
+        (one.at, *one.cells.shape, one.cells.insides_at, one.sink_at, *one.faces_at) for one in fields
+    ]
+    head = (*stepper.method.numbers, len(operators), HEAD + OPERATOR * len(operators))
+    cells = int(np.prod(flow.cells.shape))
+    volume = flow.areas[0] * flow.spacing[0]
+    left = len(system.fields.grids) - len(fixed)
+    text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
+    text += f"; {left} fields whose coefficients vary, explicit" if left else ""
+    return Prepared(
+        settings=np.array([-np.inf, -np.inf, 1.0, flow.viscosity / flow.density / volume]),
+        numbers=np.array([*head, *np.ravel(operators), *flow.ints], dtype=np.int64),
+        work=ARRAYS * len(system.y) + 2 * cells,
+        text=text,
+    )
+
+
+def _spreads(grid: Grid, floats: object) -> bool:
+    """Whether anything crosses the faces of a field's cells, or leaves them."""
+    import numpy as np
+
+    n = int(np.prod(grid.cells.shape))
+    numbers = np.asarray(floats)
+    axes = grid.faces_at[: 3 if grid.cells.shape[2] > 1 else 2]
+    return any(numbers[at : at + n].any() for at in (*axes, grid.sink_at))
+
+
+def growth(scheme: int, decay: float, turn: float, step: float) -> float:
+    """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
+    implicit, explicit = step * decay, 1j * step * turn
+    if scheme == CHORIN:
+        return abs((1.0 + explicit) / (1.0 + implicit))
+    if scheme == CNAB2:
+        a, b, c = 1.0 + 0.5 * implicit, 1.0 - 0.5 * implicit + 1.5 * explicit, 0.5 * explicit
+    else:
+        a, b, c = 1.5 + implicit, 2.0 + 2.0 * explicit, 0.5 + explicit
+    root = (b * b - 4.0 * a * c) ** 0.5
+    return max(abs(b + root), abs(b - root)) / (2.0 * abs(a))
