@@ -8,7 +8,7 @@ from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.island.system import System
-    from sceneql.system import Grid
+    from sceneql.system import Flow, Grid
 
 CHORIN, CNAB2, SBDF2 = range(3)
 
@@ -21,33 +21,40 @@ def stepper(scheme: int, order: int, step: float) -> Stepper:
     return Stepper(method, Control(first_step=step), Needs(prepare="sceneql.flows.multistep:prepare"))
 
 
+def operators_of(system: System) -> tuple[Flow, list[tuple[int, ...]], int, str]:
+    """The flow, the operators (multistep_kernels), how many of them are velocities', and a text for `explain`.
+
+    Raises ScriptError where the island has no flow.
+    """
+    from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+    flow, grids = system.fields.flow, system.fields.grids
+    if flow is None:
+        _, _, part, spans = system.ranges[0]
+        message = f"this solver marches an island with a flow, and '{part}' is none"
+        raise ScriptError([Diagnostic("no-flow", message, spans[0], "let auto march it")])
+    velocities = [grid for grid in flow.components if _spreads(grid, system.floats)]
+    fixed = [grid for grid in grids if not grid.varying]
+    fields = [*velocities, *(grid for grid in fixed if _spreads(grid, system.floats))]
+    found = [(one.at, *one.cells.shape, one.cells.insides_at, one.sink_at, *one.faces_at) for one in fields]
+    left = len(grids) - len(fixed)
+    text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
+    return flow, found, len(velocities), text + (f"; {left} fields with varying coefficients explicit" if left else "")
+
+
 def prepare(system: System, stepper: Stepper) -> Prepared:
     """The arrays of a step. Raises ScriptError where the island has no flow."""
     import numpy as np
 
     from sceneql.flows.multistep_kernels import ARRAYS, HEAD, OPERATOR
-    from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
-    flow = system.fields.flow
-    if flow is None:
-        _, _, part, spans = system.ranges[0]
-        message = f"this solver marches an island with a flow, and '{part}' is none"
-        raise ScriptError([Diagnostic("no-flow", message, spans[0], "let auto march it")])
-    fixed = [grid for grid in system.fields.grids if not grid.varying]
-    fields = [grid for grid in (*flow.components, *fixed) if _spreads(grid, system.floats)]
-    operators = [
-        (one.at, *one.cells.shape, one.cells.insides_at, one.sink_at, *one.faces_at) for one in fields
-    ]
+    flow, operators, _, text = operators_of(system)
     head = (*stepper.method.numbers, len(operators), HEAD + OPERATOR * len(operators))
-    cells = int(np.prod(flow.cells.shape))
     volume = flow.areas[0] * flow.spacing[0]
-    left = len(system.fields.grids) - len(fixed)
-    text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
-    text += f"; {left} fields whose coefficients vary, explicit" if left else ""
     return Prepared(
         settings=np.array([-np.inf, -np.inf, 1.0, flow.viscosity / flow.density / volume]),
         numbers=np.array([*head, *np.ravel(operators), *flow.ints], dtype=np.int64),
-        work=ARRAYS * len(system.y) + 2 * cells,
+        work=ARRAYS * len(system.y) + 2 * int(np.prod(flow.cells.shape)),
         text=text,
     )
 
