@@ -63,14 +63,15 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     from sceneql.flows.additive_kernels import HEAD, OPERATOR
     from sceneql.flows.multistep import operators_of
 
-    flow, operators, velocities, text = operators_of(system)
+    flow, operators, velocities, tables, text = operators_of(system)
     tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}
     blocks = [(first, last - first - (last - 1 in tallies)) for first, last, *_ in system.ranges]
     (stages,) = stepper.method.numbers
-    head = (stages, HEAD + OPERATOR * len(operators) + 2 * len(blocks), len(blocks), velocities, len(operators), 0)
+    tables_at = len(stepper.method.settings) + len(blocks) + 1
+    head = (stages, HEAD + OPERATOR * len(operators) + 2 * len(blocks), len(blocks), velocities, len(operators))
     return Prepared(
-        settings=np.array([*stepper.method.settings, *[0.0] * len(blocks), -np.inf]),
-        numbers=np.array([*head, *np.ravel(operators), *np.ravel(blocks), *flow.ints], dtype=np.int64),
+        settings=np.array([*stepper.method.settings, *[0.0] * len(blocks), -np.inf, *tables.numbers]),
+        numbers=np.array([*head, tables_at, *np.ravel(operators), *np.ravel(blocks), *flow.ints], dtype=np.int64),
         work=(13 + 2 * stages) * len(system.y),
         text=text,
     )

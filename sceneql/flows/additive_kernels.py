@@ -6,8 +6,8 @@ multistep_kernels and P the projection. So the pressure keeps to each stage, and
 velocities are found by conjugate gradients among those free of divergence, with P (1 - a L)^-1 as preconditioner.
 
 ``settings``: the tableau (e, d, b, b - b of the embedded method, nodes), the tolerance, then the size that each block of
-the state has had, and the end of the latest step. ``numbers``: [stages, where the flow's integers begin, number of blocks, operators of velocities, operators, 0], the
-operators, [offset in y, count] of each block, whose errors are measured together, the flow's integers.
+the state has had, and the end of the latest step. ``numbers``: [stages, where the flow's integers begin, number of blocks, operators of velocities, operators,
+where in the settings the tables begin], the operators, [offset in y, count] of each block, whose errors are measured together, the flow's integers.
 """
 
 import math
@@ -16,17 +16,19 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.flows.layout import AT, FACES, SKIP
+from sceneql.flows.layout import AT, FACES, SKIP, WORK
 from sceneql.flows.multistep_kernels import OPERATOR, same, solve, spread
 from sceneql.flows.projection_kernels import project
 from sceneql.system.signatures_kernels import STEP, A, F, I, N
 
-STAGES, FLOW_AT, BLOCKS, AXES, OPERATORS, _, HEAD = range(7)
+STAGES, FLOW_AT, BLOCKS, AXES, OPERATORS, TABLES_AT, HEAD = range(7)
 SPREAD = 2
 """Where the integers begin as multistep_kernels.spread reads them."""
 EXACT = 1e-9
 """Residual of a stage's velocities, in parts of their size."""
-MOST = 20
+FINE, COARSE = 1e-12, 1e-3
+"""Residuals of systems without projection, those of the preconditioner the second."""
+MOST = 30
 """Iterations of a stage."""
 
 
@@ -41,8 +43,8 @@ def product(axes, x, y, floats, numbers):
     return total
 
 
-@lean(types.void(F, A, A, A, A, A, A, I), inner=True)
-def implicit(a, wanted, y, spreading, room, more, floats, numbers):
+@lean(types.void(F, A, A, A, A, A, A, A, I), inner=True)
+def implicit(a, wanted, y, spreading, room, more, floats, tables, numbers):
     """Solve Y - a P L Y = wanted in y; wanted is free of divergence. ``room``: 4, ``more``: 4 arrays of y's size."""
     n = y.size
     one = numbers[numbers[FLOW_AT] :]
@@ -50,7 +52,7 @@ def implicit(a, wanted, y, spreading, room, more, floats, numbers):
     axes = numbers[AXES]
     for number in range(numbers[OPERATORS]):
         op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
-        solve(op, a, wanted, y, floats, room)
+        solve(op, a, wanted, y, FINE, floats, tables, floats[one[WORK] :], room)
     if axes == 0:
         return
     project(y, floats, one)
@@ -70,7 +72,7 @@ def implicit(a, wanted, y, spreading, room, more, floats, numbers):
             z[k] = r[k]
         for number in range(axes):
             op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
-            solve(op, a, r, z, floats, room)
+            solve(op, a, r, z, COARSE, floats, tables, floats[one[WORK] :], room)
         project(z, floats, one)
         now = product(axes, r, z, floats, numbers)
         part = now / before if count > 0 else 0.0
@@ -98,6 +100,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     explicit, damped = work[13 * n : (13 + s) * n], work[(13 + s) * n : (13 + 2 * s) * n]
     e, d = settings[: s * s], settings[s * s : 2 * s * s]
     b, wrong, nodes = settings[2 * s * s :], settings[2 * s * s + s :], settings[2 * s * s + 2 * s :]
+    latest = numbers[TABLES_AT] - 1
     tolerance, sizes = settings[2 * s * s + 3 * s], settings[2 * s * s + 3 * s + 1 :]
     one = numbers[numbers[FLOW_AT] :]
     rate = rate_at(functions[AT_RATE])
@@ -116,8 +119,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             project(wanted, floats, one)
             for k in range(n):
                 y1[k] = wanted[k]
-            implicit(h * d[i * s + i], wanted, y1, spreading, room, more, floats, numbers)
-        if i == 0 and same(y0, end) and settings[settings.size - 1] == t:
+            implicit(h * d[i * s + i], wanted, y1, spreading, room, more, floats, settings[numbers[TABLES_AT] :], numbers)
+        if i == 0 and same(y0, end) and settings[latest] == t:
             for k in range(n):
                 own[k] = end_rate[k]
         else:
@@ -139,7 +142,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     floats[one[SKIP]] = 0.0
     for k in range(n):
         end[k], rate1[k] = y1[k], end_rate[k]
-    settings[settings.size - 1] = t + h
+    settings[latest] = t + h
     project(rate1, floats, one)
     worst = 0.0
     for block in range(numbers[BLOCKS]):

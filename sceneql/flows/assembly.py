@@ -99,6 +99,7 @@ class _Builder:
             components=self._grids(at, given, volumes, viscous, edges[1], edge_faces),
             areas=faces.areas,
             spacing=tuple(cells.spacing.tolist()),
+            low=tuple(cells.low.tolist()),
             ints=numbers,
             opens=self.opened,
             density=self.model.density,

@@ -32,8 +32,9 @@ EDGE_FIRST = PLANS + 3 * PLAN
 EDGE_FACES = EDGE_FIRST + 18
 """The face of each edge."""
 
-COSINES, SINES, QUARTER_COSINES, QUARTER_SINES, WAVES = range(5)
-"""Modes of an axis: closed at both ends, pressure 0 at both, closed and then 0, 0 and then closed, periodic."""
+COSINES, SINES, QUARTER_COSINES, QUARTER_SINES, WAVES, NODES, NODES_FREE, FREE_NODES, FREE_FREE = range(9)
+"""Modes of an axis. Of values at centers: none crosses the ends, 0 at both, none crosses and then 0, 0 and then none
+crosses; periodic. Of values at faces, with those at both ends: 0 there, 0 and then free, free and then 0, free."""
 UPWIND, CENTRAL, KOREN = range(3)
 LANES = 16
 """Pairs of rows that are transformed side by side."""

@@ -8,7 +8,9 @@ its divergence; the pressure grows by what that takes away, less viscosity times
 
 ``settings``: start and end of the latest step, length of the one before it. ``numbers``: [scheme, 1 if there is a step
 before, number of operators, where the flow's integers begin], then of each operator OPERATOR integers (a field's offset
-in y, cells along x, y, z, volumes, 0 where nothing is solved, sinks, conductances along x, y, z).
+in y, cells along x, y, z, volumes, 0 where nothing is solved, sinks, conductances along x, y, z; offsets into the
+tables, which follow the settings, of decay rates by mode along x, y, z and of the length of all transforms; the plans of
+these, flows/layout).
 """
 
 import math
@@ -17,19 +19,21 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.flows.layout import CELLS, PRESSURE, SKIP
+from sceneql.flows.fourier_kernels import transform
+from sceneql.flows.layout import CELLS, PLAN, PRESSURE, SKIP, WORK
 from sceneql.flows.projection_kernels import less_gradient, outflow, project
 from sceneql.grids.multigrid.stencil_kernels import dot, flow, multiply
 from sceneql.system.signatures_kernels import STEP, A, F, I
 
 CHORIN, CNAB2, SBDF2 = range(3)
 SCHEME, HAS_BEFORE, OPERATORS, FLOW_AT, HEAD = range(5)
-START, END, LENGTH, VISCOSITY = range(4)
-OPERATOR = 9
+START, END, LENGTH, VISCOSITY, TABLES = range(5)
+DECAYS, SIZES_AT, PLANS_AT = 9, 12, 13
+OPERATOR = PLANS_AT + 3 * PLAN
 ARRAYS = 12
 SMALL = 1e-12
 """Residual of implicit parts, in parts of the right side."""
-MOST = 1000
+MOST = 200
 
 
 @lean_inlined
@@ -65,47 +69,60 @@ def spread(y, out, floats, numbers):
                         out[at + c] = (total - sink[c] * x[c]) / volume[c]
 
 
-@lean(types.void(I, F, A, A, A, A), inner=True)
-def solve(op, a, wanted, y, floats, room):
+@lean(types.void(A, A, A, F, A, A, I), inner=True)
+def precondition(r, z, volume, a, tables, scratch, op):
+    """z = (1 - a coefficient lap)^-1 (r / V) on the uncut box; 0 where V is 0."""
+    nx, ny, nz = op[1], op[2], op[3]
+    for c in range(z.size):
+        z[c] = r[c] / volume[c] if volume[c] > 0.0 else 0.0
+    plans = op[PLANS_AT:]
+    transform(z, nx, ny, nz, True, tables, scratch, plans)
+    for k in range(nz):
+        deep = tables[op[DECAYS + 2] + k] if nz > 1 else 0.0
+        for j in range(ny):
+            both = deep + tables[op[DECAYS + 1] + j]
+            for i in range(nx):
+                z[i + nx * (j + ny * k)] /= tables[op[SIZES_AT]] * (1.0 + a * (both + tables[op[DECAYS] + i]))
+    transform(z, nx, ny, nz, False, tables, scratch, plans)
+    for c in range(z.size):
+        z[c] = z[c] if volume[c] > 0.0 else 0.0
+
+
+@lean(types.void(I, F, A, A, F, A, A, A, A), inner=True)
+def solve(op, a, wanted, y, small, floats, tables, scratch, room):
     """Solve (V - a L) x = V wanted for the entries of an operator, in y, from the values there, by conjugate gradients
-    with the diagonal as preconditioner; where V is 0 they stay."""
+    with transforms of the box as preconditioner; where V is 0 they stay. ``small``: the residual in parts of wanted."""
     at, nx, ny, nz = op[0], op[1], op[2], op[3]
     n = nx * ny * nz
     x, volume, sink = y[at : at + n], floats[op[4] : op[4] + n], floats[op[5] : op[5] + n]
     gx, gy = floats[op[6] : op[6] + n], floats[op[7] : op[7] + n]
     gz = floats[op[8] : op[8] + (n if nz > 1 else 0)]
-    r, p, q, d = room[:n], room[n : 2 * n], room[2 * n : 3 * n], room[3 * n : 4 * n]
-    scale, plane = 1.0 / a, nx * ny
-    for k in range(nz):
-        behind, ahead = k * plane, ((k + 1) % nz) * plane
-        for j in range(ny):
-            above = ((j + 1) % ny) * nx
-            for i in range(nx):
-                c = i + nx * j + behind
-                whole = scale * volume[c] + sink[c] + gx[c] + gx[(i + 1) % nx + nx * j + behind]
-                whole += gy[c] + gy[i + above + behind]
-                if nz > 1:
-                    whole += gz[c] + gz[i + nx * j + ahead]
-                d[c] = 1.0 / whole if volume[c] > 0.0 else 0.0
+    r, p, q, z = room[:n], room[n : 2 * n], room[2 * n : 3 * n], room[3 * n : 4 * n]
+    scale = 1.0 / a
     multiply(nx, ny, nz, scale, volume, sink, gx, gy, gz, x, q)
     target = 0.0
     for c in range(n):
-        r[c] = scale * volume[c] * wanted[at + c] - q[c] if volume[c] > 0.0 else 0.0
-        target += (scale * volume[c] * wanted[at + c]) ** 2
+        if volume[c] > 0.0:
+            r[c] = volume[c] * wanted[at + c] - a * q[c]
+            target += volume[c] * wanted[at + c] ** 2
+        else:
+            r[c] = 0.0
     before = 0.0
     for count in range(MOST):
-        if not dot(r, r) > SMALL * SMALL * target:
-            break
-        now = 0.0
+        left = 0.0
         for c in range(n):
-            now += r[c] * d[c] * r[c]
+            left += r[c] * r[c] / volume[c] if volume[c] > 0.0 else 0.0
+        if not left > small * small * target:
+            break
+        precondition(r, z, volume, a, tables, scratch, op)
+        now = dot(r, z)
         part = now / before if count > 0 else 0.0
         for c in range(n):
-            p[c] = d[c] * r[c] + part * p[c]
-        step_length = now / multiply(nx, ny, nz, scale, volume, sink, gx, gy, gz, p, q)
+            p[c] = z[c] + part * p[c]
+        length = now / (a * multiply(nx, ny, nz, scale, volume, sink, gx, gy, gz, p, q))
         for c in range(n):
-            x[c] += step_length * p[c]
-            r[c] = r[c] - step_length * q[c] if volume[c] > 0.0 else 0.0
+            x[c] += length * p[c]
+            r[c] = r[c] - length * a * q[c] if volume[c] > 0.0 else 0.0
         before = now
 
 
@@ -174,7 +191,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             if floats[op[4] + c] > 0.0:
                 k = op[0] + c
                 y1[k] = y0[k] + (w * (y0[k] - before[k]) if has_before else 0.0)
-        solve(op, h * implicit / lead, wanted, y1, floats, room)
+        solve(op, h * implicit / lead, wanted, y1, SMALL, floats, settings[TABLES:], floats[one[WORK] :], room)
     if scheme != CHORIN:
         gathered = room[:cells]
         outflow(y1, gathered, floats, one)

@@ -10,7 +10,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.flows.fourier_kernels import along
+from sceneql.flows.fourier_kernels import transform
 from sceneql.flows.layout import (
     AREAS,
     AT,
@@ -22,7 +22,6 @@ from sceneql.flows.layout import (
     ITERATES,
     MOVES,
     PERIODIC,
-    PLAN,
     PLANS,
     PRESSURE,
     SCALES,
@@ -47,21 +46,12 @@ def by_transform(x, floats, ints):
     """Solve the equation of the box, in place."""
     nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
     n = nx * ny * nz
-    scratch = floats[ints[WORK] :]
-    axes = ints[AXES]
-    for way in range(2):
-        for axis in range(axes):
-            plan = ints[PLANS + PLAN * axis : PLANS + PLAN * (axis + 1)]
-            if axis == 0:
-                along(x, nx, 1, ny * nz, 1, nx, way == 0, floats, scratch, plan)
-            elif axis == 1:
-                along(x, ny, nx, nx * nz, nx, nx * ny, way == 0, floats, scratch, plan)
-            else:
-                along(x, nz, nx * ny, nx * ny, nx * ny, n, way == 0, floats, scratch, plan)
-        if way == 0:
-            spectrum = floats[ints[SPECTRUM] : ints[SPECTRUM] + n]
-            for c in range(n):
-                x[c] *= spectrum[c]
+    scratch, plans = floats[ints[WORK] :], ints[PLANS:]
+    transform(x, nx, ny, nz, True, floats, scratch, plans)
+    spectrum = floats[ints[SPECTRUM] : ints[SPECTRUM] + n]
+    for c in range(n):
+        x[c] *= spectrum[c]
+    transform(x, nx, ny, nz, False, floats, scratch, plans)
 
 
 @lean_inlined

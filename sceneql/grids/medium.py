@@ -162,7 +162,7 @@ class Medium(Model):
     corner: SIZES | None = field("Low corner of that box; by default the origin.", None)
     depth: kinds.FixedLength = field("How thick a flat domain is.", "1 m", above=0)
     cell: kinds.FixedLength = field("Largest side of a cell.", above=0)
-    drift: Drift | None = field("A given flow that carries what spreads.", None)
+    drift: Drift | None = field("A flow that carries what spreads.", None)
     probes: dict[str, SIZES] = field(
         "Places by name: the value of the cell there is an output of that name, which other parts may read while all "
         "is solved together.",
@@ -232,6 +232,8 @@ class Medium(Model):
             yield Problem(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`")
 
     def _misled(self, drift: Drift, sides: int) -> Iterable[Problem]:
+        if drift.by is not None:
+            return
         if drift.velocity is not None and drift.velocity.expr.type.shape != (sides,):
             yield Problem(f"the velocity of a drift needs {sides} components, one for each side", ("drift",))
         if drift.velocity is None and sides == 3:

@@ -62,6 +62,8 @@ class Flow:
     """Of a face, by axis [m^2]."""
     spacing: tuple[float, ...]
     """Sides of a cell [m]."""
+    low: tuple[float, ...]
+    """Low corner [m]."""
     ints: tuple[int, ...]
     """Integers of the projection (flows/projection_kernels.py)."""
     opens: Any

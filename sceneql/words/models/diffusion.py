@@ -113,6 +113,15 @@ class Diffusion(Medium):
         assembly.remember(grid.at, *ground.memory)
         self.must_hold_probes(layout_of(grid.at, ground.memory, assembly.numbers()), assembly)
 
+    def connect(self, name: str, assembly: Assembly) -> None:
+        """Add the drift by a flow that is solved. Raises ScriptError."""
+        if self.drift is not None and self.drift.by is not None:
+            from sceneql.flows.carrying import carry
+
+            grid = assembly.field_of(Link(name, _names(self.of)[0], Type((None,))))
+            if grid is not None:
+                carry(self, self.drift, [(grid, self.boundary)], assembly)
+
     def layout(self, state: ModelState, output: str = "concentration") -> FieldLayout:
         """Where its field lies, for pictures."""
         return layout_of(state.ints[0], state.ints[1:], state.floats)

@@ -102,7 +102,7 @@ class Flow(Model):
     def connect(self, name: str, assembly: Assembly) -> None:
         """Add what buoyancy does. Raises ScriptError where it reads the field of another domain."""
         if self.buoyancy is not None:
-            from sceneql.flows.lifting import add_buoyancy
+            from sceneql.flows.carrying import add_buoyancy
 
             add_buoyancy(self.buoyancy, name, assembly)
 
