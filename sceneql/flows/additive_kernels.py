@@ -66,7 +66,7 @@ def implicit(a, wanted, y, spreading, room, more, floats, tables, numbers):
     whole = product(axes, y, y, floats, numbers)
     before = 0.0
     for count in range(MOST):
-        if not product(axes, r, r, floats, numbers) > EXACT * EXACT * whole:
+        if not product(axes, r, r, floats, numbers) > exact * exact * whole:
             break
         for k in range(first, last):
             z[k] = r[k]

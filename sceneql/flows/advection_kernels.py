@@ -19,6 +19,7 @@ from sceneql.flows.layout import (
     EDGE_WEIGHTS,
     EDGES,
     FACES,
+    FRICTION,
     INVERSES,
     PERIODIC,
     PUSHES,
@@ -165,7 +166,7 @@ def advect(t, y, rate, floats, ints):
 
 @lean(TERM, inner=True)
 def rub(t, y, rate, floats, ints):
-    """V du/dt = sum of g (neighbor - u), and of the edges' beside it: viscosity; and what pushes."""
+    """V du/dt = sum of g (neighbor - u), and of the edges' beside it: viscosity; at solids; and what pushes."""
     at = ints[AT]
     for component in range(ints[AXES]):
         nx, ny, nz = sides(component, ints)
@@ -192,6 +193,7 @@ def rub(t, y, rate, floats, ints):
     for k in range(ints[FACES]):
         if floats[ints[INVERSES] + k] != 0.0:
             rate[at + k] += floats[ints[PUSHES] + k]
+            rate[at + k] -= floats[ints[FRICTION] + k] * y[at + k] * floats[ints[INVERSES] + k]
     for e in range(ints[EDGES]):
         face = ints[EDGE_FACES + e]
         given = floats[ints[EDGE_VALUES] + e] - y[at + face]

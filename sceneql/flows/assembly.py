@@ -9,6 +9,7 @@ import numpy as np
 
 from sceneql.flows import layout
 from sceneql.flows.faces import Faces
+from sceneql.flows.solids import LEAST, Solids
 from sceneql.flows.transforms import plans
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces
@@ -64,6 +65,8 @@ class _Builder:
                 self.opened[mine] = True
                 self.pressure[mine] = part.outflow.pressure
         self.viscosity = model.viscosity / model.density
+        staircase = model.edges == "staircase"
+        self.solids = Solids(model.around, self.faces, staircase, assembly) if model.around else None
 
     def build(self) -> Flow:
         assembly, faces, cells = self.assembly, self.faces, self.cells
@@ -79,11 +82,18 @@ class _Builder:
         ints[layout.PERIODIC : layout.PERIODIC + 3] = self.periodic
         ints[layout.AXES], ints[layout.AT], ints[layout.FACES] = faces.axes, at, faces.count
         ints[layout.STARTS : layout.STARTS + faces.axes] = faces.starts
+        friction, fills = np.zeros(faces.count), np.ones(faces.count)
+        if self.solids is not None:
+            areas, volumes, given, friction, fills = self._around(self.solids, areas, volumes, given)
+            x[areas == 0.0] = 0.0
         inverses = np.where(given, 0.0, 1.0 / volumes)
+        ints[layout.OWNERS] = assembly.floats([] if self.solids is None else self.solids.owners())
+        ints[layout.FILLS] = assembly.floats(fills)
+        ints[layout.FRICTION] = assembly.floats(friction)
         ints[layout.AREAS], ints[layout.INVERSES] = assembly.floats(areas), assembly.floats(inverses)
         ints[layout.SCALES] = assembly.floats(areas * inverses)
-        ints[layout.MOVES], ints[layout.PUSHES] = self._moving(at), self._push(at, pushes)
-        ints[layout.VISCOUS : layout.VISCOUS + 3] = viscous = self._viscous()
+        ints[layout.MOVES], ints[layout.PUSHES] = self._moving(at), self._push(at, pushes, fills)
+        ints[layout.VISCOUS : layout.VISCOUS + 3] = viscous = self._viscous(areas == 0.0)
         ints[layout.EDGES : layout.EDGES + 3] = (len(edge_faces), *edges[:2])
         ints[layout.EDGE_FIRST : layout.EDGE_FACES] = edges[2:]
         ints[layout.EDGE_FACES :] = edge_faces
@@ -96,7 +106,7 @@ class _Builder:
         assembly.state(self._projected(x, ints))
         flow = Flow(
             cells=Cells(cells.shape, self.periodic, np.zeros(len(cells.volumes), dtype=bool), 0, 0),
-            components=self._grids(at, given, volumes, viscous, edges[1], edge_faces),
+            components=self._grids(at, given, volumes, friction, viscous, edges[1], edge_faces),
             areas=faces.areas,
             spacing=tuple(cells.spacing.tolist()),
             low=tuple(cells.low.tolist()),
@@ -247,7 +257,7 @@ class _Builder:
                     assembly.term("internal", kernel, ints)
         return moves
 
-    def _push(self, at: int, pushes: Floats) -> int:
+    def _push(self, at: int, pushes: Floats, fills: Floats) -> int:
         """Offset of the accelerations by the pressure outside, and by a force that the script gives."""
         assembly, faces, force = self.assembly, self.faces, self.model.force
         pushing = assembly.floats(pushes)
@@ -257,7 +267,7 @@ class _Builder:
         base = assembly.floats(pushes)
         for axis in range(faces.axes):
             start, shape = faces.starts[axis], faces.shapes[axis]
-            weight = assembly.floats(np.full(np.prod(shape), 1.0 / self.model.density))
+            weight = assembly.floats(fills[start : start + int(np.prod(shape))] / self.model.density)
             arrays = (pushing + start, base + start, weight)
             box = assembly.floats(faces.box(axis))
             sizes = (shape[2], shape[1], shape[0])
@@ -265,7 +275,19 @@ class _Builder:
             assembly.term("internal", kernel, ints)
         return pushing
 
-    def _viscous(self) -> tuple[int, int, int]:
+    def _around(
+        self, solids: Solids, areas: Floats, volumes: Floats, given: Any
+    ) -> tuple[Floats, Floats, Any, Floats, Floats]:
+        """Open areas of faces, volumes of their own cells, what is given, friction at the walls, and FILLS."""
+        parts = [solids.walls(component) for component in range(self.faces.axes)]
+        opened = areas * solids.face_parts()
+        whole = np.concatenate([volume for volume, _, _ in parts])
+        inner = np.maximum(whole, LEAST)
+        friction = self.viscosity * np.concatenate([wall for _, wall, _ in parts])
+        self.shifts = [shift for _, _, shift in parts]
+        return opened, volumes * inner, given | (opened == 0.0), np.where(opened > 0.0, friction, 0.0), whole / inner
+
+    def _viscous(self, closed: Any) -> tuple[int, int, int]:
         """Offsets of the conductances of viscosity along x, y, z, by face."""
         faces, spacing = self.faces, self.cells.spacing
         found = []
@@ -282,6 +304,9 @@ class _Builder:
                 if axis == component:
                     inner = faces.volume / spacing[axis] ** 2 * self.viscosity
                     tie = np.where(tie > 0.0, inner, 0.0)
+                if self.solids is not None:
+                    shut = closed[faces.index(component).ravel()]
+                    tie = tie * self.solids.ties(component, axis, shut, self.shifts[component]).reshape(tie.shape)
                 own.append(tie.ravel())
             found.append(self.assembly.floats(np.concatenate(own)))
         return (found[0], found[1], found[2] if len(found) == 3 else found[0])
@@ -363,6 +388,12 @@ class _Builder:
                 ties[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = 0.0
             ints[layout.CONDUCTANCES + axis] = assembly.floats(ties.ravel())
         ints[layout.SINK] = assembly.floats(sink)
+        if self.solids is not None:
+            uniform = False
+            whole = sum(
+                np.bincount(np.arange(n), weights=self._around_cell(areas, axis)) for axis in range(faces.axes)
+            )
+            sink[whole == 0.0] = -1.0
         ints[layout.ITERATES] = not uniform
         ints[layout.SINGULAR] = not self.opened.any()
         inner = [faces.areas[axis] / float(cells.spacing[axis]) for axis in range(faces.axes)]
@@ -372,14 +403,26 @@ class _Builder:
         ints[layout.PRESSURE] = assembly.floats(np.zeros(n))
         ints[layout.WORK] = assembly.floats(np.zeros(room + (0 if uniform else 5 * n))) + (0 if uniform else 5 * n)
 
+    def _around_cell(self, areas: Floats, axis: int) -> Floats:
+        """By cell: the open areas of its two faces across an axis."""
+        shape = self.cells.shape[::-1]
+        own = areas[self.faces.index(axis)]
+        count = shape[2 - axis]
+        low = own.take(range(count), axis=2 - axis)
+        high = np.roll(own, -1, axis=2 - axis).take(range(count), axis=2 - axis)
+        total: Floats = (low + high).ravel()
+        return total
+
     def _grids(
-        self, at: int, given: Any, volumes: Floats, viscous: Sequence[int], weights_at: int, edge_faces: Sequence[int]
+        self, at: int, given: Any, volumes: Floats, friction: Floats, viscous: Sequence[int], weights_at: int,
+        edge_faces: Sequence[int],
     ) -> tuple[Grid, ...]:
         """Each component as a field whose conductances are those of viscosity."""
         faces, assembly = self.faces, self.assembly
         sink = np.zeros(faces.count)
         weights = assembly.numbers()[weights_at : weights_at + len(edge_faces)]
         np.add.at(sink, np.array(edge_faces, dtype=np.int64), weights)
+        sink += friction
         sinks, solved = assembly.floats(sink), assembly.floats(np.where(given, 0.0, volumes))
         found = []
         for axis in range(faces.axes):

@@ -2,7 +2,7 @@
 """What a flow that is solved does to fields in its box, and they to it, as terms."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.flows.layout import AT, AXES, CELLS, INVERSES, PERIODIC, STARTS
+from sceneql.flows.layout import AT, AXES, CELLS, FILLS, INVERSES, PERIODIC, STARTS
 from sceneql.system.signatures_kernels import TERM
 
 FLOWS, AREAS, BROUGHT, LEAVING, BOUNDARY_AREAS, VALUES, FACES, HEAD = 0, 3, 6, 7, 8, 9, 10, 11
@@ -72,4 +72,4 @@ def lift(t, y, rate, floats, ints):
                         value = 0.5 * (y[cell] + y[cell - stride])
                     else:
                         value = 0.5 * (y[cell] + y[cell + (count - 1) * stride]) if periodic else y[cell]
-                    rate[at + face] += factor * (value - reference)
+                    rate[at + face] += factor * (value - reference) * floats[one[FILLS] + face]

@@ -22,7 +22,13 @@ ITERATES, SINGULAR, SPECTRUM = 30, 31, 32
 """1: iterations, with the transform as preconditioner; 1: pressure up to a constant; by cell: 1/eigenvalue."""
 PUSHES = 33
 """By face: acceleration by given forces and pressures."""
-PLANS, PLAN = 34, 24
+FRICTION = 34
+"""By face: conductance of viscosity to the walls of solids in its own cell."""
+OWNERS = 35
+"""By face, then by cell: the number of the nearest solid."""
+FILLS = 36
+"""By face: how far a force moves its own cell, whose inertia is that of more fluid where a solid leaves it little."""
+PLANS, PLAN = 37, 24
 """Of each axis PLAN integers."""
 KIND, LENGTH, TWIDDLES, TWISTS, FACTORS = 0, 1, 2, 3, 4
 """Of a plan: the modes; length of the Fourier transform; cosines and sines of 2 pi k/length, then of pi k/(2 length);

@@ -56,15 +56,16 @@ def by_transform(x, floats, ints):
 
 @lean_inlined
 def centered(x, sink, ints):
-    """Take the mean away where the pressure is known up to a constant: over the cells that have faces."""
+    """0 in solids (sinks below 0); elsewhere less the mean where the pressure is known up to a constant."""
+    total, count = 0.0, 1
     if ints[SINGULAR] == 1:
-        total, count = 0.0, 0
+        count = 0
         for c in range(x.size):
             if sink[c] >= 0.0:
                 total += x[c]
                 count += 1
-        for c in range(x.size):
-            x[c] = x[c] - total / count if sink[c] >= 0.0 else 0.0
+    for c in range(x.size):
+        x[c] = x[c] - total / count if sink[c] >= 0.0 else 0.0
 
 
 @lean(types.void(A, A, I), inner=True)

@@ -45,6 +45,12 @@ class Flow(Model):
         "formula holds or `near` a place, or on `rest`: a `wall`, an `inflow`, an `outflow`, or `periodic`.",
         {},
     )
+    around: tuple[kinds.ObjectRef, ...] = field(
+        "Solids that stand in the flow, where they are at the start; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
+    )
+    edges: Literal["cut_cell", "staircase"] = field(
+        "How cells meet these solids: cut by them, or whole where their centers lie outside.", "cut_cell"
+    )
     advection: Literal["koren", "central", "upwind"] = field("How velocities are carried.", "koren")
     force: FORCE | None = field("A force on each cubic meter, by place and time: a component for each side.", None)
     buoyancy: Buoyancy | None = field("What a temperature or concentration does to it.", None)
@@ -60,6 +66,21 @@ class Flow(Model):
         "divergence": Gives(quantity_type(dim.FREQUENCY), "The largest divergence that the projection leaves."),
         "largest_speed": Gives(quantity_type(dim.VELOCITY), "The largest speed."),
     }
+
+    @classmethod
+    def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
+        """Those of the flow, and of each solid."""
+        around = written.get("around", ())
+        names = [around] if isinstance(around, str) else around
+        found = dict(cls.gives)
+        for name in names if isinstance(names, list | tuple) else ():
+            found[f"{name}.force"] = Gives(quantity_type(dim.FORCE, (3,)), "What the fluid does to it.")
+            found[f"{name}.torque"] = Gives(quantity_type(dim.FORCE * dim.LENGTH, (3,)), "Its torque about the origin.")
+        return found
+
+    def insides(self) -> Iterable[kinds.Ref]:
+        """The solids."""
+        return self.around
 
     def problems(self) -> Iterable[Problem]:
         """Sides that do not fit, too many cells, boundaries of no side."""
@@ -118,4 +139,10 @@ class Flow(Model):
         """An output: (cells,), (cells, 3), (3,) or float."""
         from sceneql.flows.measures import measure
 
+        name, _, what = output.rpartition(".")
+        if name:
+            from sceneql.flows.solid_forces import on_solid
+
+            number = [ref.name for ref in self.around].index(name)
+            return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)
         return measure(output, self.layout(state, output), state.ints[5:], self.density, state)
