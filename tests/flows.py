@@ -12,11 +12,11 @@ VORTEX = '{velocity: "[-cos(x)*sin(y), sin(x)*cos(y)]"}'
 class Air:
     """One flow, alone or with other models, on its way."""
 
-    def __init__(self, folder, solver="{rk4: {step: 5 ms}}", end=0.1, models="", before="", **fields):
+    def __init__(self, folder, solver="{rk4: {step: 5 ms}}", end=0.1, models="", before="", first="", **fields):
         fields = {"size": "1 1 m", "cell": "1/16 m", "density": "1 kg/m^3", "viscosity": "0.05 Pa*s", **fields}
         lines = "\n".join(f"      {key}: {value}" for key, value in fields.items() if value is not None)
         path = folder / "scene.yaml"
-        text = f"clock: {{end: {end} s, fps: 10}}\n{before}models:\n  air:\n    flow:\n{lines}\n{models}"
+        text = f"clock: {{end: {end} s, fps: 10}}\n{before}models:\n{first}  air:\n    flow:\n{lines}\n{models}"
         path.write_text(f"{text}solvers: {{main: {solver}}}\n", encoding="utf-8")
         graph = load(path, pruned=False)
         self.tasks, self.end = graph.tasks, end

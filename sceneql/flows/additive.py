@@ -33,6 +33,10 @@ IMPLICIT = (
 """ARK3(2)4L[2]SA (Kennedy & Carpenter 2003, Appl. Numer. Math. 44, 139-181)."""
 
 
+FIXED = 1e-6
+"""Stands in for the tolerance of steps of one length."""
+
+
 def stepper(tolerance: float, step: float | None, largest: float | None) -> Stepper:
     """Steps by the tolerance, or of one length [s]."""
     tableau = (
@@ -41,7 +45,7 @@ def stepper(tolerance: float, step: float | None, largest: float | None) -> Step
         *WEIGHTS,
         *(b - c for b, c in zip(WEIGHTS, EMBEDDED, strict=True)),
         *NODES,
-        tolerance,
+        tolerance if step is None else FIXED,
     )
     method = Method(
         step="sceneql.flows.additive_kernels:step", order=3, numbers=(len(NODES),), settings=tableau, last_stage=0

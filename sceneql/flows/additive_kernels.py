@@ -24,8 +24,8 @@ from sceneql.system.signatures_kernels import STEP, A, F, I, N
 STAGES, FLOW_AT, BLOCKS, AXES, OPERATORS, TABLES_AT, HEAD = range(7)
 SPREAD = 2
 """Where the integers begin as multistep_kernels.spread reads them."""
-EXACT = 1e-9
-"""Residual of a stage's velocities, in parts of their size."""
+EXACT, SHARE = 1e-10, 1e-3
+"""Residual of a stage's velocities, in parts of their size, and of the tolerance, whichever is larger."""
 FINE, COARSE = 1e-12, 1e-3
 """Residuals of systems without projection, those of the preconditioner the second."""
 MOST = 30
@@ -43,9 +43,9 @@ def product(axes, x, y, floats, numbers):
     return total
 
 
-@lean(types.void(F, A, A, A, A, A, A, A, I), inner=True)
-def implicit(a, wanted, y, spreading, room, more, floats, tables, numbers):
-    """Solve Y - a P L Y = wanted in y; wanted is free of divergence. ``room``: 4, ``more``: 4 arrays of y's size."""
+@lean(types.void(F, F, A, A, A, A, A, A, A, I), inner=True)
+def implicit(a, exact, wanted, y, spreading, room, more, floats, tables, numbers):
+    """Solve Y - a P L Y = wanted in y; wanted is free of divergence; ``exact``: the residual. ``room``: 4, ``more``: 4 arrays of y's size."""
     n = y.size
     one = numbers[numbers[FLOW_AT] :]
     first, last = one[AT], one[AT] + one[FACES]
@@ -119,7 +119,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             project(wanted, floats, one)
             for k in range(n):
                 y1[k] = wanted[k]
-            implicit(h * d[i * s + i], wanted, y1, spreading, room, more, floats, settings[numbers[TABLES_AT] :], numbers)
+            implicit(h * d[i * s + i], max(EXACT, SHARE * tolerance), wanted, y1, spreading, room, more, floats, settings[numbers[TABLES_AT] :], numbers)
         if i == 0 and same(y0, end) and settings[latest] == t:
             for k in range(n):
                 own[k] = end_rate[k]

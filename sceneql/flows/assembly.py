@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 SCHEMES = {"upwind": layout.UPWIND, "central": layout.CENTRAL, "koren": layout.KOREN}
 UNBALANCED = 1e-6
 """Net inflow, in parts of what comes in, that counts as rounding of profiles."""
+ACROSS = 1e-9
+"""Velocity of a wall across it, in parts of its largest, that counts as rounding."""
 TIMES = (0.0, 0.37, 1.0, 7.3)
 """Instants [s] at which inflows of a closed box are looked at."""
 BEGIN = "sceneql.grids.diffusion_kernels:begin"
@@ -72,6 +74,7 @@ class _Builder:
         assembly, faces, cells = self.assembly, self.faces, self.cells
         for part, _ in self.parts:
             self._must_fit(part.velocity)
+        self._must_slide()
         areas, volumes, given, pushes = self._faces()
         x = self._start(given)
         self._must_balance(areas)
@@ -111,7 +114,7 @@ class _Builder:
             spacing=tuple(cells.spacing.tolist()),
             low=tuple(cells.low.tolist()),
             ints=numbers,
-            opens=self.opened,
+            fractions=None if self.solids is None else self.solids.fractions(areas),
             density=self.model.density,
             viscosity=self.model.viscosity,
         )
@@ -123,6 +126,19 @@ class _Builder:
         if formula is not None and formula.expr.type.shape != (self.faces.axes,):
             text = f"this velocity needs {self.faces.axes} components, one for each side of the box"
             raise ScriptError([Diagnostic("wrong-shape", text, formula.span)])
+
+    def _must_slide(self) -> None:
+        """Raises ScriptError where the velocity of a wall has a part across it at the start."""
+        for part, by_axis in self._normal():
+            for axis, mine in by_axis.items():
+                if part.wall is None or part.velocity is None:
+                    continue
+                points = self.faces.points(axis)[mine - self.faces.starts[axis]]
+                parts = [np.abs(_component(part.velocity, k, points, 0.0)) for k in range(self.faces.axes)]
+                if parts[axis].max() > ACROSS * max(one.max() for one in parts):
+                    text = "a wall moves along itself: this velocity leads through it"
+                    help = "let its component across the wall be 0, or give an `inflow`"
+                    raise ScriptError([Diagnostic("invalid", text, part.velocity.span, help)])
 
     def _on_boundary(self, values: Any, kind: Any, default: Any = 0) -> Any:
         """An array by face of numbers by boundary face; ``default`` within."""

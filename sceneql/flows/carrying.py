@@ -9,6 +9,7 @@ import numpy as np
 
 from sceneql.flows.assembly import BEGIN, timed
 from sceneql.flows.faces import Faces
+from sceneql.flows.layout import AREAS
 from sceneql.grids.at_points import at_points
 from sceneql.grids.carrying import KERNELS as CARRY
 from sceneql.grids.carrying import LIMITERS
@@ -21,6 +22,7 @@ from sceneql.quantities.expression import Link
 
 if TYPE_CHECKING:
     from sceneql.flows.parts import Buoyancy
+    from sceneql.frame import Floats
     from sceneql.grids.domain.cells import Cells
     from sceneql.grids.drift import Drift
     from sceneql.grids.medium import Boundary, Medium
@@ -46,7 +48,9 @@ def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], 
     periodic = fields[0][0].cells.periodic
     _must_agree(cells.shape, cells.low, cells.spacing, periodic, flow, drift.by.name, drift.by.span)
     strength = assembly.floats([1.0])
-    areas = [assembly.floats([area]) for area in flow.areas]
+    first = flow.components[0].at
+    areas = [flow.ints[AREAS] + one.at - first for one in flow.components]
+    opened = assembly.numbers()[flow.ints[AREAS] :]
     faces = Faces(cells, periodic)
     n = len(cells.volumes)
     flows = [assembly.floats(np.zeros(n)) for _ in flow.areas]
@@ -54,7 +58,9 @@ def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], 
         mine, beside, sides = _boundary(flow, faces)
         values = _values(boundary, cells, mine, grid.at, assembly)
         brought, leaving = assembly.floats(np.zeros(n)), assembly.floats(np.zeros(n))
-        known = assembly.floats(cells.boundary.areas[mine]), values, len(mine)
+        known = assembly.floats(opened[beside - first]), values, len(mine)
+        if flow.fractions is not None:
+            _cut(grid, flow.fractions, faces, opened, drift, assembly)
         starts = [one.at for one in flow.components]
         ints = (
             *(*flows, flows[0])[:3], *(*areas, areas[0])[:3], brought, leaving, *known,
@@ -71,6 +77,22 @@ def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], 
                 *map(int, periodic), LIMITERS[drift.limiter], strength, *exchange, grid.at + n,
             ),
         )  # fmt: skip
+
+
+def _cut(grid: Grid, fractions: Floats, faces: Faces, opened: Floats, drift: Drift, assembly: Assembly) -> None:
+    """Leave of a field's cells what solids leave of the flow's. Raises ScriptError where its coefficient varies."""
+    if grid.varying:
+        text = "a field around solids has a coefficient that varies neither in time nor with the field"
+        raise ScriptError([Diagnostic("invalid", text, drift.by.span if drift.by else None)])
+    n, numbers = len(fractions), assembly.numbers()
+    volumes = fractions * numbers[grid.cells.insides_at : grid.cells.insides_at + n]
+    assembly.write(grid.cells.insides_at, volumes)
+    assembly.write(grid.volumes_at, np.where(volumes > 0.0, volumes, 1.0))
+    for axis in range(faces.axes):
+        low = tuple(slice(0, m) for m in faces.cells.shape[::-1])
+        part = opened[faces.index(axis)][low].ravel() / faces.areas[axis]
+        ties = slice(grid.faces_at[axis], grid.faces_at[axis] + n)
+        assembly.write(grid.faces_at[axis], numbers[ties] * part)
 
 
 def _must_agree(
@@ -138,7 +160,8 @@ def add_buoyancy(buoyancy: Buoyancy, name: str, assembly: Assembly) -> None:
     """Have a field lift the flow of a model. Raises ScriptError where that is none of the same box."""
     link, flow = buoyancy.by.expr, assembly.flow_of(name)
     assert isinstance(link, Link)
-    assert flow is not None
+    if flow is None:
+        return  # its own assembly has failed
     grid = assembly.field_of(link)
     if grid is None:
         text = f"'{link.task}.{link.output}' is no field on a grid that is solved with the flow"

@@ -6,7 +6,7 @@ from sceneql.flows.layout import AT, AXES, CELLS, FILLS, INVERSES, PERIODIC, STA
 from sceneql.system.signatures_kernels import TERM
 
 FLOWS, AREAS, BROUGHT, LEAVING, BOUNDARY_AREAS, VALUES, FACES, HEAD = 0, 3, 6, 7, 8, 9, 10, 11
-"""Of `through`: flows along x, y, z that are written and areas of faces; what comes in and out a second by cell, the
+"""Of `through`: flows along x, y, z that are written and areas of the faces of each; what comes in and out a second by cell, the
 areas of faces on the boundary, what comes in there has, and their number; then of each its cell, its entry in y and 1
 where it is on the high side, -1 on the low one; then cells along x, y, z, 1 where periodic, first entries in y, axes."""
 FIELD, INSIDES, EXPANSION, REFERENCE, GRAVITY, FLOW = range(6)
@@ -20,7 +20,7 @@ def through(t, y, rate, floats, ints):
     rest = ints[HEAD + 3 * m :]
     nx, ny, nz = rest[0], rest[1], rest[2]
     for axis in range(rest[9]):
-        area, to = floats[ints[AREAS + axis]], ints[FLOWS + axis]
+        areas, to = ints[AREAS + axis] - rest[6 + axis], ints[FLOWS + axis]
         sx = nx + (1 if axis == 0 and rest[3] == 0 else 0)
         sy = ny + (1 if axis == 1 and rest[4] == 0 else 0)
         closed = rest[3 + axis] == 0
@@ -29,7 +29,9 @@ def through(t, y, rate, floats, ints):
                 for i in range(nx):
                     place = i if axis == 0 else (j if axis == 1 else k)
                     face = rest[6 + axis] + i + sx * (j + sy * k)
-                    floats[to + i + nx * (j + ny * k)] = 0.0 if closed and place == 0 else area * y[face]
+                    floats[to + i + nx * (j + ny * k)] = (
+                        0.0 if closed and place == 0 else floats[areas + face] * y[face]
+                    )
     for c in range(nx * ny * nz):
         floats[ints[BROUGHT] + c] = floats[ints[LEAVING] + c] = 0.0
     for b in range(m):

@@ -58,14 +58,20 @@ def components(ints: tuple[int, ...], y: Floats) -> list[Floats]:
 
 
 def _own(ints: tuple[int, ...], floats: Floats, cells: FieldLayout, axis: int) -> Floats:
-    """Volumes of the own cells of a component's faces, half on the boundary [m^3]."""
+    """Volumes of fluid in the own cells of a component's faces, half on the boundary [m^3]."""
     shape = list(cells.shape)
     shape[axis] += not ints[layout.PERIODIC + axis]
     volumes = np.full(shape[::-1], np.prod(cells.spacing))
     if not ints[layout.PERIODIC + axis]:
         for end in (0, -1):
             volumes[tuple(end if k == 2 - axis else slice(None) for k in range(3))] *= 0.5
-    return volumes
+    first = ints[layout.STARTS + axis]
+    areas, inverses, fills = (
+        floats[ints[at] + first : ints[at] + first + volumes.size].reshape(volumes.shape)
+        for at in (layout.AREAS, layout.INVERSES, layout.FILLS)
+    )
+    free = inverses > 0.0
+    return np.where(free, fills / np.where(free, inverses, 1.0), np.where(areas > 0.0, volumes, 0.0))
 
 
 def _at_centers(ints: tuple[int, ...], y: Floats) -> list[Floats]:

@@ -35,7 +35,7 @@ from sceneql.flows.layout import (
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
 from sceneql.system.signatures_kernels import TERM, A, F, I
 
-SMALL = 1e-13
+SMALL = 1e-11
 """Residual of iterations, in parts of the right side."""
 MOST = 400
 """Iterations."""

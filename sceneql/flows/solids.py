@@ -60,6 +60,16 @@ class Solids:
         """The level of the union (k,): above 0 in the fluid."""
         return np.min([level.values(points) for level in self.levels], axis=0)
 
+    def fractions(self, areas: Floats) -> Floats:
+        """The open part of each cell, at least LEAST of those with an open face, by the open ``areas`` of faces."""
+        found = self.cells.astype(float) if self.staircase else self.open(self._centers(), range(self.faces.axes))
+        alive = np.zeros(len(found), dtype=bool)
+        for axis in range(self.faces.axes):
+            own = areas[self.faces.index(axis)] > 0.0
+            count, line = self.faces.cells.shape[axis], 2 - axis
+            alive |= (own.take(range(count), axis=line) | np.roll(own, -1, axis=line).take(range(count), axis=line)).ravel()
+        return np.where(alive, np.maximum(found, LEAST), 0.0)
+
     def owners(self) -> Any:
         """By face, then by cell: the number of the nearest solid."""
         faces = self.faces

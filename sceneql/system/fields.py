@@ -66,8 +66,8 @@ class Flow:
     """Low corner [m]."""
     ints: tuple[int, ...]
     """Integers of the projection (flows/projection_kernels.py)."""
-    opens: Any
-    """(2 axes, cells of a side) bool, by sides: where fluid may pass."""
+    fractions: Any
+    """(cells,) the part of each that solids leave open; None where there are none."""
     density: float
     """[kg/m^3]"""
     viscosity: float

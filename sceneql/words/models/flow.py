@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sceneql import kinds
-from sceneql.flows.parts import FORCE, Buoyancy, Side, Start
+from sceneql.flows.parts import FORCE, Buoyancy, Side, Start, fastest_turn
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
 from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Value, field, quantity_type
@@ -103,11 +103,14 @@ class Flow(Model):
             yield Problem(text, ("boundary", name), at_key=True)
 
     def fastest(self, name: str) -> Iterable[Oscillation]:
-        """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann's bound)."""
+        """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann), and advection."""
         spacing = [side / n for side, n in zip(self.size, counts(self.size, self.cell), strict=False)]
         decay = 4.0 * self.viscosity / self.density * sum(1.0 / side**2 for side in spacing)
         if decay > 0.0:
             yield Oscillation(0.0, decay, f"the viscosity over cells of {self.cell:g} m", ("viscosity",))
+        turn = fastest_turn(self.initial, self.boundary, self.corner or (0.0,) * len(self.size), self.size, spacing)
+        if turn > 0.0:  # a wave of four cells, which advection turns fastest: viscosity has half its largest rate there
+            yield Oscillation(0.0, 0.5 * decay, f"the flow through cells of {self.cell:g} m", ("cell",), turn)
 
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a face, and add the terms of the rate. Raises ScriptError."""
