@@ -16,7 +16,7 @@ from sceneql.island.jacobian import BY_DIFFERENCES
 from sceneql.kinds import Methods, Solver
 from sceneql.march.march import March
 from sceneql.stepping.tableau import Tableau
-from sceneql.system import Cells, Control, Grid, IslandFacts, Stepper
+from sceneql.system import Cells, Control, Fields, Grid, IslandFacts, Stepper
 from sceneql.words.solvers.auto import Auto
 from sceneql.words.solvers.implicit_euler import ImplicitEuler
 from sceneql.words.solvers.tr_bdf2 import TrBdf2
@@ -28,7 +28,7 @@ def plate(cells: int = 32, *, carried: bool = False) -> IslandFacts:
     n = cells * cells
     square = Cells((cells, cells, 1), (False,) * 3, np.zeros(n, dtype=bool), 0, 0)
     grid = Grid(square, 0, 0, n, (2 * n, 3 * n, 3 * n), varying=True, fed_at=-1, carried=carried)
-    return IslandFacts(n + 1, grid=grid, floats=lambda: np.ones(4 * n))
+    return IslandFacts(n + 1, fields=Fields((grid,), alone=True), floats=lambda: np.ones(4 * n))
 
 
 FACTS = {
@@ -148,7 +148,8 @@ def test_a_drift_has_the_general_way_at_hand():
 @pytest.mark.parametrize("linear", KERNELS)
 def test_the_linear_solver_that_is_named_is_compiled_beside(linear):
     facts = plate()
-    still = IslandFacts(facts.entries, grid=dataclasses.replace(facts.grid, varying=False))
+    grid = dataclasses.replace(facts.fields.grids[0], varying=False)
+    still = IslandFacts(facts.entries, fields=Fields((grid,), alone=True))
     beside = ImplicitEuler(linear=linear).choose(still).first.needs.beside
     assert beside[-1] == KERNELS[linear].partition(":")[0]
     assert all(find_spec(module) is not None for module in beside)

@@ -60,7 +60,7 @@ CLAIMED = {
 WORDS = [
     word
     for word in EVERY
-    if not (solver(word).fields_only or solver(word).static) and solver(word).stepper().method.step
+    if solver(word).marches == "anything" and not solver(word).static and solver(word).stepper().method.step
 ]
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
     """Settings and scratch of adi_kernels.step. Raises ScriptError where the island is not one field on a grid."""
-    grid = system.grid
+    grid = system.fields.single
     if grid is None:
         _, _, part, spans = system.ranges[0]
         message = f"alternating directions march a field on a grid, and '{part}' is none"

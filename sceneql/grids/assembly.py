@@ -101,7 +101,7 @@ class _Builder:
         ints = (self.at, nx, ny, nz, volumes, sink, fed, *faces, self.at + n)
         more = (*ints, bend, *(*ties_at, 0)[:3], reaction)
         assembly.term("close", f"{KERNELS}:spread", ints, lambda: Slopes(SLOPES, *self._slopes(periodic), more))
-        if self.drift is not None:
+        if self.drift is not None and self.drift.by is None:
             self._drifts(self.drift, flow_of(self.drift, cells, ties, given, periodic), given, periodic)
         return Grid(
             cells=Cells(cells.shape, periodic, ~self.inside, self.ground.volumes_at, self.ground.box_at),

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from itertools import product
 from typing import Annotated, Literal
 
-from sceneql.kinds import Formula, Problem, Record, Scalar, Symbols, field
+from sceneql.kinds import Formula, ModelRef, Problem, Record, Scalar, Symbols, field
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.evaluate import evaluate
@@ -22,7 +22,8 @@ that bounds h times this sum and factor by 2: the explicit Euler method. Without
 
 
 class Drift(Record):
-    """A given flow that carries the field: its velocity v, or of a flat one its stream function, v = (ds/dy, -ds/dx).
+    """A flow that carries the field: its velocity v, or of a flat one its stream function, v = (ds/dy, -ds/dx), or the
+    model that is this flow.
 
     An incompressible flow is made so within the domain: what of it would run through closed walls, or gather anywhere,
     is taken away by the gradient of a potential. Then no limiter lets new extrema arise. Through the boundary it goes
@@ -31,6 +32,7 @@ class Drift(Record):
 
     velocity: VELOCITY | None = field("The velocity [m/s]: a vector with a component for each side.", None)
     stream_function: STREAM | None = field("The stream function [m^2/s].", None)
+    by: ModelRef | None = field("A `flow` in the same box that is solved with the field: it carries it.", None)
     strength: Scalar = field("A factor of it, which may vary in time.", "1")
     incompressible: bool = field("Make it free of divergence; else what runs against a wall piles up there.", True)
     limiter: Literal["koren", "van_leer", "none"] = field(
@@ -47,8 +49,11 @@ class Drift(Record):
 
     def problems(self) -> Iterable[Problem]:
         """Both or neither of velocity and stream function, or not one number where one is needed."""
-        if (self.velocity is None) == (self.stream_function is None):
-            yield Problem("a drift has one of `velocity` and `stream_function`")
+        if sum(one is not None for one in (self.velocity, self.stream_function, self.by)) != 1:
+            yield Problem("a drift has one of `velocity`, `stream_function` and `by`")
+        elif self.by is not None:
+            if not self.incompressible or not self.strength.constant or float(self.strength.number()) != 1.0:
+                yield Problem("a flow that is solved carries as it is: `strength` and `incompressible` are of others")
         elif self.velocity is not None and self.velocity.expr.type.shape not in ((2,), (3,)):
             yield Problem("a velocity is a vector of two or three formulas, `[-y, x]`", ("velocity",))
         elif self.stream_function is not None and self.stream_function.expr.type.shape != ():
@@ -63,7 +68,7 @@ class Drift(Record):
 
     def fastest(self, corner: Sequence[float], size: Sequence[float], spacing: Sequence[float]) -> float:
         """The rate [1/s] that bounds explicit steps on a box, by samples; 0: not known."""
-        if not self.strength.constant:
+        if self.by is not None or not self.strength.constant:
             return 0.0
         try:
             velocity = self.components()

@@ -27,7 +27,7 @@ def grid_or_general(solver: Solver, linear: str, island: IslandFacts) -> Methods
     about 1. Newton's method on all slopes, with the limiter's, has no such bound: it takes over where a fixed step does
     not converge, and makes all adaptive steps.
     """
-    general, grid = solver.stepper(), island.grid
+    general, grid = solver.stepper(), island.fields.single
     if grid is None:
         return Methods(solver, general)
     many = prod(grid.cells.shape) > MOST_CARRIED[3 if grid.cells.shape[2] > 1 else 2]

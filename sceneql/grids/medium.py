@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
+    from sceneql.quantities.span import Span
     from sceneql.system import Assembly, ModelState
 
 PLACE = Annotated[Formula, Symbols(("x", "y", "z"), at_start=True)]
@@ -110,6 +111,13 @@ class Part(Record):
         """Whether the part has a place of its own."""
         return self.where is not None or self.near is not None
 
+    @property
+    def span(self) -> Span | None:
+        """Its line in the script, where a formula tells it."""
+        outside = None if self.robin is None else self.robin.outside
+        formulas = (self.value, self.flux, self.where, outside)
+        return next((one.span for one in formulas if one is not None), None)
+
 
 Boundary = dict[str, Part]
 
@@ -154,7 +162,7 @@ class Medium(Model):
     corner: SIZES | None = field("Low corner of that box; by default the origin.", None)
     depth: kinds.FixedLength = field("How thick a flat domain is.", "1 m", above=0)
     cell: kinds.FixedLength = field("Largest side of a cell.", above=0)
-    drift: Drift | None = field("A given flow that carries what spreads.", None)
+    drift: Drift | None = field("A flow that carries what spreads.", None)
     probes: dict[str, SIZES] = field(
         "Places by name: the value of the cell there is an output of that name, which other parts may read while all "
         "is solved together.",
@@ -224,6 +232,8 @@ class Medium(Model):
             yield Problem(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`")
 
     def _misled(self, drift: Drift, sides: int) -> Iterable[Problem]:
+        if drift.by is not None:
+            return
         if drift.velocity is not None and drift.velocity.expr.type.shape != (sides,):
             yield Problem(f"the velocity of a drift needs {sides} components, one for each side", ("drift",))
         if drift.velocity is None and sides == 3:

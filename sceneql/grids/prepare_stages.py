@@ -73,7 +73,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     from sceneql.grids.multigrid import linear_kernels as linear
     from sceneql.linear.newton_kernels import ABSOLUTE, MEMORY, RELATIVE
 
-    grid = system.grid
+    grid = system.fields.single
     assert grid is not None
     stages, explicit_first, _, embedded, error_order = stepper.method.numbers
     settings = stepper.method.settings

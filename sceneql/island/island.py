@@ -24,9 +24,9 @@ from sceneql.island.reserved import Reserved
 from sceneql.island.system import Origin, Structure, System
 from sceneql.island.value_slopes import Layout, own_slopes, value_slopes
 from sceneql.kinds import Object, Ref, Value
-from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
-from sceneql.system import Place
+from sceneql.system import Fields, Place
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.island.inputs import Word
     from sceneql.island.setting import Setting
-    from sceneql.system import Bodies, Grid, Mode, Slopes, Stage, Tied
+    from sceneql.system import Bodies, Flow, Grid, Mode, Slopes, Stage, Tied
 
 STAGES: tuple[Stage, ...] = ("internal", "force", "tie", "close", "constrain")
 TIED = 150
@@ -82,6 +82,7 @@ class IslandAssembly(Reserved):
     _largest_step: float = float("inf")
     _stops: set[Breakpoint] = field(default_factory=set)
     _grids: list[Grid] = field(default_factory=list)
+    _flows: dict[str, Flow] = field(default_factory=dict)
     _apart: bool = True
     _unsloped: str = ""
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
@@ -165,11 +166,23 @@ class IslandAssembly(Reserved):
         """Where the field of a link lies (system.Assembly)."""
         return self.fields.get((link.task, link.output))
 
+    def flow(self, flow: Flow) -> None:
+        """Say that part of the state is a flow (system.Assembly). Raises ScriptError for a second one."""
+        if self._flows:
+            text = f"'{next(iter(self._flows))}' is solved together with it, and an island has one flow"
+            raise ScriptError([Diagnostic("two-flows", text, self.line(), "let them not read one another")])
+        self._flows[self._word[0]] = flow
+
+    def flow_of(self, model: str) -> Flow | None:
+        """The flow of a model (system.Assembly)."""
+        return self._flows.get(model)
+
     @property
-    def only_field(self) -> Grid | None:
-        """The grid of an island that is one field and nothing that acts on it."""
-        alone = len(self._grids) == 1 and len(self._ranges) == 1
-        return self._grids[0] if alone and not self._pairs and not self.changed_between_steps else None
+    def on_grids(self) -> Fields:
+        """The fields and the flow, and whether there is anything else."""
+        alone = bool(self._ranges) and len(self._ranges) == len(self._grids) + len(self._flows)
+        alone = alone and not self._pairs and not self.changed_between_steps
+        return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone)
 
     @property
     def changed_between_steps(self) -> bool:
@@ -327,7 +340,7 @@ class IslandAssembly(Reserved):
             largest_step=self._largest_step,
             stops=BreakpointTable.of(self._stops | self.breakpoints.stops),
             pattern=found,
-            grid=self.only_field,
+            fields=self.on_grids,
             unsloped=self._unsloped,
             grids=tuple(self.fields.values()),
             masses=tuple(self._masses),

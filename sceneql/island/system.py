@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.island.breakpoint_table import BreakpointTable
 from sceneql.system.channels import ARRAYS
+from sceneql.system.fields import Fields
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -81,8 +82,7 @@ class System:
     """Breakpoints, where adaptive steps end."""
     pattern: Pattern | None = None
     """Sparsity pattern of its Jacobian; None: there is none, or it is too large to be found by differences."""
-    grid: Grid | None = None
-    """The grid, where the island is one field and nothing else."""
+    fields: Fields = field(default_factory=Fields)
     unsloped: str = ""
     """Name of the first part without slopes; empty where all have them."""
     grids: tuple[Grid, ...] = ()

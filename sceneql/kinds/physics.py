@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql.failure import Unsuitable
 from sceneql.kinds.stable_step import Oscillation, StaticMass
@@ -31,8 +31,8 @@ class Model(Kind):
     kinematic: ClassVar[bool] = False
     is_field: ClassVar[bool] = False
     """Whether it is made of fields on a grid."""
-    is_one_field: ClassVar[bool] = False
-    """Whether it is a single one (system.Grid), for solvers that are for those alone."""
+    flows: ClassVar[bool] = False
+    """Whether it is an incompressible flow (system.Flow)."""
     turns: ClassVar[bool] = False
     """Whether its bodies are rigid: those of a contact are solved together."""
     has_bodies: ClassVar[bool] = True
@@ -84,6 +84,13 @@ class Model(Kind):
     def sums_up(self, output: str) -> bool:
         """Whether an output is a sum over the run that the state holds: values that read it have no slopes."""
         return output in self.gives and self.gives[output].tally
+
+    def field_count(self) -> int:
+        """The number of fields at centers of cells (system.Grid) that it is made of."""
+        return 0
+
+    def connect(self, name: str, assembly: Assembly) -> None:
+        """Add the terms that read what other models of the island have reserved: all are assembled by now."""
 
     def items(self, output: str) -> int | None:
         """How many items an output has, where its fields tell."""
@@ -317,8 +324,8 @@ class Solver(Kind):
     """Marches a system in time. Sees only its rate, its Jacobian, its invariants and its events."""
 
     family: ClassVar[str] = "solvers"
-    fields_only: ClassVar[bool] = False
-    """Whether it marches fields on grids and nothing else."""
+    marches: ClassVar[Literal["anything", "a field", "a flow"]] = "anything"
+    """What it is for: islands of any kind, those that are one field on a grid, or those with a flow."""
     static: ClassVar[bool] = False
     """Whether it finds rests, without motion in time."""
     refuses_ties: ClassVar[str] = ""

@@ -70,7 +70,7 @@ class Assembled:
             entries=len(made.start()),
             local_contacts="local" in made.contact_mode,
             impacts=made.changed_between_steps,
-            grid=made.only_field,
+            fields=made.on_grids,
             floats=made.numbers,
             orbits=bool(forces) and made.moved_by_forces_alone and all(force.at_a_distance() for force in forces),
         )
@@ -133,6 +133,9 @@ def models_of(graph: SimulationGraph, island: Island) -> Assembled:
     for name in island.models:
         with made.word(name), doing(f"making {name}"):
             made.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, made.assembly)
+    for name in island.models:
+        with made.word(name):
+            cast(Model, graph.tasks[name].kind).connect(name, made.assembly)
     return made
 
 

@@ -24,7 +24,7 @@ class ExactMarch(March):
 
     def _engage(self, stepper: Stepper) -> None:
         """Find the modes. Raises ScriptError where the island is no field, LimitRefused where it has no such modes."""
-        grid = self.system.grid
+        grid = self.system.fields.single
         if grid is None:
             _, _, part, spans = self.system.ranges[0]
             message = f"exact marches a field on a grid, and '{part}' is none"

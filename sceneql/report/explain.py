@@ -119,7 +119,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "adaptive": control.adaptive,
         "step": None if control.adaptive else control.first_step,
         "tolerance": control.tolerance if control.adaptive else None,
-        "measure": run.solver.measure() if control.adaptive and run.march.system.grid is None else "",
+        "measure": run.solver.measure() if control.adaptive and run.march.system.fields.single is None else "",
         "step_bound": bound.step if math.isfinite(bound.step) else None,
         "bound_text": bound.text,
     }

@@ -72,7 +72,7 @@ def linear_runs(graph: SimulationGraph, island: Island) -> Iterator[LinearRun]:
         try:
             while len(times) < REPEATS:
                 march = island_by(graph, island, ImplicitEuler(step=step, linear=name)).march
-                if march.system.grid is None:
+                if march.system.fields.single is None:
                     return  # a system of several fields
                 march.advance(step)
                 times.append(march.statistics.seconds)

@@ -95,19 +95,15 @@ def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dic
     step, tolerance = settings(graph, island)
     given = {"step": step, "tolerance": tolerance}
     own = graph.tasks[island.solver]
-    field = all(cast(Model, graph.tasks[name].kind).is_one_field for name in island.models)
+    models = [cast(Model, graph.tasks[name].kind) for name in island.models]
+    suits = {"anything", *(["a flow"] if any(model.flows for model in models) else [])}
+    suits |= {"a field"} if [model.field_count() for model in models] == [1] else set()
     ties = [name for name, _ in island.forces if isinstance(graph.tasks[name].kind, Tie)]
     bound = not pivots(list(dict.fromkeys(ties)), graph.tasks)
     found: dict[str, Solver] = {own.word: cast(Solver, own.kind)}
     for word in catalogue.words("solvers"):
         cls = cast("type[Solver] | None", catalogue.load("solvers", word))
-        if (
-            cls is None
-            or word in found
-            or (cls.fields_only and not field)
-            or cls.static
-            or (cls.refuses_ties and bound)
-        ):
+        if cls is None or word in found or cls.marches not in suits or cls.static or (cls.refuses_ties and bound):
             continue
         needed = {name for name, info in cls.model_fields.items() if info.is_required()}
         if needed <= set(given):

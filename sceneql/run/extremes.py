@@ -47,7 +47,7 @@ class Extremes:
             return
         low, high = self.grid.keeps
         model = cast("Model", island.graph.tasks[self.model].kind)
-        name = self.model if model.is_one_field else f"{self.model}.{self.output}"
+        name = self.model if model.field_count() == 1 else f"{self.model}.{self.output}"
         span = island.graph.tasks[self.model].span
         if math.isinf(high):
             text = f"'{name}' has fallen to {self.value:.3g} at {self.time:.4g} s, and nothing can be less than none"

@@ -26,7 +26,7 @@ def ringing(island: IslandRun) -> Diagnostic | None:
     Of jumps, the decay rate of the roughest mode is estimated by the rate at the start over the spread of the field,
     with the bound of the cells (Gershgorin). Source: Rannacher (1984), Numer. Math. 43, 309-327.
     """
-    march, grid = island.march, island.march.system.grid
+    march, grid = island.march, island.march.system.fields.single
     control = march.stepper.control
     step = control.first_step
     if grid is None or control.adaptive or step <= 0.0:

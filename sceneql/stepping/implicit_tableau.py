@@ -141,7 +141,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     method, stages = stepper.method, stepper.method.numbers[0]
     room = system.pattern.room
     settings, text = np.array(method.settings), plan.text
-    if system.grid is not None:  # a field that drifts: grids/grid_or_general.py
+    if system.fields.single is not None:  # a field that drifts: grids/grid_or_general.py
         text += ", chosen since a drift may pass many cells in a step"
         if stepper.control.by_scale:
             settings[ABSOLUTE] *= float(np.abs(system.y).max(initial=0.0)) or 1.0

@@ -40,7 +40,7 @@ the surface).
 """
 
 from sceneql.system.assembly import Assembly, Mode
-from sceneql.system.fields import Cells, Grid
+from sceneql.system.fields import Cells, Fields, Flow, Grid
 from sceneql.system.state import Bodies, ModelState, Place, Skin, Turning
 from sceneql.system.stepping import Control, IslandFacts, Method, Needs, Prepared, Stepper
 from sceneql.system.terms import Pattern, Slopes, Stage
@@ -52,6 +52,8 @@ __all__ = [
     "Cells",
     "Control",
     "Drive",
+    "Fields",
+    "Flow",
     "Grid",
     "IslandFacts",
     "Led",

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from sceneql.kinds.word import Kind
     from sceneql.quantities.expression import Expr, Link
     from sceneql.quantities.span import Span
-    from sceneql.system.fields import Grid
+    from sceneql.system.fields import Flow, Grid
     from sceneql.system.state import Place
     from sceneql.system.ties import Tied
 
@@ -139,6 +139,12 @@ class Assembly(Protocol):
 
         Other entries of the model (tallies) must depend on the field alone, and nothing may depend on them.
         """
+
+    def flow(self, flow: Flow) -> None:
+        """Say that entries of the state are an incompressible flow, the only one of the island."""
+
+    def flow_of(self, model: str) -> Flow | None:
+        """The flow of a model; None where it is none of this island's."""
 
     def offer(self, output: str, grid: Grid) -> None:
         """Name a field output of the model that is being assembled; its tally of inflow follows its cells in y."""

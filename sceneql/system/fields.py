@@ -1,4 +1,4 @@
-"""Fields on regular grids as part of an island's state."""
+"""Fields and flows on regular grids as part of an island's state."""
 
 from __future__ import annotations
 
@@ -44,3 +44,46 @@ class Grid:
     """Whether a drift (advection) acts on it."""
     keeps: tuple[float, float] = (-math.inf, math.inf)
     """Bounds of its values by the maximum principle."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Flow:
+    """An incompressible flow on a staggered grid: a velocity component at the faces of its axis, pressure at centers.
+
+    Component a has entry i + nx (j + ny k) for the face on the low side of cell (i, j, k), with a last face beyond the
+    last cell where the axis is not periodic (Harlow and Welch 1965). Each component is a `Grid`, whose conductances are
+    those of viscosity and whose ``cells.insides_at`` are volumes that are 0 where a velocity is given.
+    """
+
+    cells: Cells
+    components: tuple[Grid, ...]
+    """Two in a flat flow, three in a deep one."""
+    areas: tuple[float, ...]
+    """Of a face, by axis [m^2]."""
+    spacing: tuple[float, ...]
+    """Sides of a cell [m]."""
+    low: tuple[float, ...]
+    """Low corner [m]."""
+    ints: tuple[int, ...]
+    """Integers of the projection (flows/projection_kernels.py)."""
+    fractions: Any
+    """(cells,) the part of each that solids leave open; None where there are none."""
+    density: float
+    """[kg/m^3]"""
+    viscosity: float
+    """[Pa s]"""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fields:
+    """The fields of an island: any number at centers of cells, and at most one flow."""
+
+    grids: tuple[Grid, ...] = ()
+    flow: Flow | None = None
+    alone: bool = False
+    """Whether the island is these fields and nothing else, which nothing changes between steps."""
+
+    @property
+    def single(self) -> Grid | None:
+        """The field, where the island is one at centers of cells and nothing else."""
+        return self.grids[0] if self.alone and self.flow is None and len(self.grids) == 1 else None

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from sceneql.system.fields import Fields
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from sceneql.frame import Floats
-    from sceneql.system.fields import Grid
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,9 +128,8 @@ class IslandFacts:
     """Whether contacts resolve impacts within a step."""
     impacts: bool = False
     """Whether contacts of any kind, tears or births change its state between steps."""
-    grid: Grid | None = None
-    """The grid, where the island is one field and nothing else."""
+    fields: Fields = field(default_factory=Fields)
     floats: Callable[[], Floats] | None = None
-    """The island's floats, which the grid's offsets are into."""
+    """The island's floats, which the offsets of fields are into."""
     orbits: bool = False
     """Whether it is masses that nothing but forces at a distance moves (Force.at_a_distance)."""

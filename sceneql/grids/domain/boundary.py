@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.grids.domain.cells import Cells
-    from sceneql.grids.medium import Boundary, Part
+    from sceneql.grids.medium import Boundary
+    from sceneql.grids.medium import Part as OfField
     from sceneql.kinds import Formula
     from sceneql.quantities.span import Span
 
@@ -55,15 +56,56 @@ class Condition:
         return weights
 
 
+class Part(Protocol):
+    """A part of the boundary as a script says it."""
+
+    @property
+    def periodic(self) -> bool:
+        """Whether the sides of its direction are one."""
+
+    @property
+    def chosen(self) -> bool:
+        """Whether it has a place of its own."""
+
+    @property
+    def where(self) -> Formula | None:
+        """Above 0 where it holds."""
+
+    @property
+    def near(self) -> tuple[float, ...] | None:
+        """The place around which it holds."""
+
+    @property
+    def within(self) -> float | None:
+        """How far around it [m]."""
+
+    @property
+    def span(self) -> Span | None:
+        """Its line in the script."""
+
+
+Said = TypeVar("Said", bound=Part)
+
+
 def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[list[Condition], tuple[bool, bool, bool]]:
     """The conditions of boundaries that are not closed, and which directions are periodic. Raises ScriptError.
 
     ``line``: the model's place in the script.
     """
+    shared, periodic = shares(boundary, cells, line)
+    found = [_condition(part, cells, mine) for part, mine in shared]
+    alive = [one for one in found if len(one.cells) and (one.open or one.resistance < float("inf"))]
+    return alive, periodic
+
+
+def shares(
+    boundary: Mapping[str, Said], cells: Cells, line: Span | None
+) -> tuple[list[tuple[Said, Any]], tuple[bool, bool, bool]]:
+    """The parts with the indices (m,) of their boundary faces, and which directions are periodic. Raises ScriptError."""
     faces = cells.boundary
     taken = np.zeros(len(faces.cells), dtype=bool)
     owner = np.full(len(faces.cells), -1)
-    found: list[Condition] = []
+    found: list[tuple[Said, Any]] = []
     periodic = [False, False, False]
     rest = [(name, part) for name, part in boundary.items() if name == "rest"]
     named = [(name, part) for name, part in boundary.items() if name != "rest"]
@@ -71,13 +113,13 @@ def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[lis
         if name not in (*cells.names, "rest") and not part.chosen:
             known = ", ".join((*cells.names, "rest"))
             text = f"the boundary has no part '{name}'"
-            raise ScriptError([Diagnostic("unknown-boundary", text, _span(part) or line, f"it has {known}")])
+            raise ScriptError([Diagnostic("unknown-boundary", text, part.span or line, f"it has {known}")])
         mine = _faces_of(name, part, cells, taken)
         both = mine & taken
         if both.any():
             other = (named + rest)[int(owner[np.flatnonzero(both)[0]])]
             text = f"the boundary's parts '{other[0]}' and '{name}' overlap on {int(both.sum())} faces"
-            raise ScriptError([Diagnostic("boundary-overlap", text, _span(part) or _span(other[1]) or line, HELP)])
+            raise ScriptError([Diagnostic("boundary-overlap", text, part.span or other[1].span or line, HELP)])
         taken |= mine
         owner[mine] = number
         if part.periodic:
@@ -90,9 +132,8 @@ def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[lis
                 raise ScriptError([Diagnostic("too-few-cells", text, line)])
             periodic[axis] = True
         else:
-            found.append(_condition(part, cells, np.flatnonzero(mine)))
-    alive = [one for one in found if len(one.cells) and (one.open or one.resistance < float("inf"))]
-    return alive, (periodic[0], periodic[1], periodic[2])
+            found.append((part, np.flatnonzero(mine)))
+    return found, (periodic[0], periodic[1], periodic[2])
 
 
 HELP = "give each face to one part: say `where` or `near`, or name other sides"
@@ -122,7 +163,7 @@ def _chosen(part: Part, points: Floats) -> Any:
     return found
 
 
-def _condition(part: Part, cells: Cells, mine: Any) -> Condition:
+def _condition(part: OfField, cells: Cells, mine: Any) -> Condition:
     faces = cells.boundary
     points = faces.points[mine]
     if cells.flat:
@@ -137,15 +178,6 @@ def _condition(part: Part, cells: Cells, mine: Any) -> Condition:
         resistance = float("inf")
     ways = faces.cells[mine], faces.areas[mine], faces.distances[mine]
     return Condition(*ways, points, formula, resistance, part.open)
-
-
-def _span(part: Part) -> Span | None:
-    """A line of the script for a part of the boundary."""
-    outside = None if part.robin is None else part.robin.outside
-    for formula in (part.value, part.flux, part.where, outside):
-        if formula is not None:
-            return formula.span
-    return None
 
 
 def held_by(boundaries: Sequence[Boundary], names: tuple[str, ...]) -> Callable[[Floats, Any], Any] | None:

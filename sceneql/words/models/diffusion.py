@@ -46,8 +46,6 @@ class Diffusion(Medium):
     (1980), 4.2; Crank, The Mathematics of Diffusion (1975).
     """
 
-    is_one_field = True
-
     of: Literal["concentration", "temperature", "number"] = field(
         "What spreads, which gives its unit, and a temperature's output its name.", "concentration"
     )
@@ -73,6 +71,10 @@ class Diffusion(Medium):
     def formula_dimension(cls, written: Mapping[str, Any]) -> Dimension | None:
         """That of what spreads."""
         return UNITS.get(str(written.get("of", "concentration")))
+
+    def field_count(self) -> int:
+        """One."""
+        return 1
 
     def boundaries(self) -> Iterable[Boundary]:
         """That of its field."""
@@ -110,6 +112,15 @@ class Diffusion(Medium):
             assembly.offer(called, grid)
         assembly.remember(grid.at, *ground.memory)
         self.must_hold_probes(layout_of(grid.at, ground.memory, assembly.numbers()), assembly)
+
+    def connect(self, name: str, assembly: Assembly) -> None:
+        """Add the drift by a flow that is solved. Raises ScriptError."""
+        if self.drift is not None and self.drift.by is not None:
+            from sceneql.flows.carrying import carry
+
+            grid = assembly.field_of(Link(name, _names(self.of)[0], Type((None,))))
+            if grid is not None:
+                carry(self, self.drift, [(grid, self.boundary)], assembly)
 
     def layout(self, state: ModelState, output: str = "concentration") -> FieldLayout:
         """Where its field lies, for pictures."""

@@ -202,6 +202,22 @@ class ReactionDiffusion(Medium):
                 text = f"the rate of {name} has no finite value at the start at ({x:g}, {y:g}, {z:g}) m"
                 raise ScriptError([Diagnostic("not-finite", text, one.rate.span)])
 
+    def connect(self, name: str, assembly: Assembly) -> None:
+        """Add the drift by a flow that is solved. Raises ScriptError."""
+        if self.drift is None or self.drift.by is None:
+            return
+        from sceneql.flows.carrying import carry
+
+        for species, one in self.species.items():
+            grid = assembly.field_of(Link(name, species, Type((None,))))
+            if grid is not None:
+                boundary = self.boundary if one.boundary is None else one.boundary
+                carry(self, self.drift, [(grid, boundary)], assembly)
+
+    def field_count(self) -> int:
+        """One a species."""
+        return len(self.species)
+
     def layout(self, state: ModelState, output: str) -> FieldLayout:
         """Where the field of a species lies, for pictures; ``output``: its name."""
         at = state.ints[5 + list(self.species).index(output)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedTime, Solver, field
 
@@ -20,7 +20,7 @@ class Adi(Solver):
     Indust. Appl. Math. 3, 28-41; Douglas & Gunn (1964), Numer. Math. 6, 428-453.
     """
 
-    fields_only: ClassVar[bool] = True
+    marches = "a field"
 
     step: FixedTime = field("Length of a step.", "10 ms", above=0)
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, Methods, Solver, field
 from sceneql.stepping.tableau import DORMAND_PRINCE
+from sceneql.words.solvers.ark3 import Ark3
 from sceneql.words.solvers.dop853 import Dop853
 from sceneql.words.solvers.dopri5 import Dopri5
 from sceneql.words.solvers.exact import Exact
@@ -39,7 +40,7 @@ class Auto(Solver):
     a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less. (On large
     nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty
     masses keep it with dopri5. A field on a grid is marched by tr_bdf2, and on a box whose coefficient and boundary
-    do not vary by exact. Errors are measured as those of `radau` are. Sources: see these words; the sign of
+    do not vary by exact; a flow, with all that is solved with it, by ark3. Errors are measured as those of `radau` are. Sources: see these words; the sign of
     stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """
 
@@ -76,12 +77,15 @@ class Auto(Solver):
 
         from sceneql.island.jacobian import BY_DIFFERENCES
 
-        if island.grid is not None and island.floats is not None:
+        grid = island.fields.single
+        if grid is not None and island.floats is not None:
             from sceneql.grids.multigrid.separable import axes_of
 
-            if axes_of(island.grid, island.floats()) is not None:
+            if axes_of(grid, island.floats()) is not None:
                 return Exact().choose(island)
             return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1), absolute=self.absolute).choose(island)
+        if island.fields.flow is not None:
+            return Ark3(tolerance=min(100.0 * self.tolerance, 0.1)).choose(island)
         few = island.entries <= BY_DIFFERENCES
         if island.local_contacts and few:
             return Methods(self, self._order_5(), bounded_by=Dopri5(tolerance=self.tolerance))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import Solver
 
@@ -19,7 +19,7 @@ class Exact(Solver):
     Numer. Anal. 7, 627-656; Strang (1999), SIAM Review 41, 135-147.
     """
 
-    fields_only: ClassVar[bool] = True
+    marches = "a field"
 
     def stepper(self) -> Stepper:
         """None: a march of its own."""

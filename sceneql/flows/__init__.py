@@ -1,0 +1,1 @@
+"""Incompressible flow on staggered grids: advection, viscosity, projection."""

@@ -1,0 +1,456 @@
+"""An incompressible flow in a box as state, numbers and terms of an island."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.flows import layout
+from sceneql.flows.faces import Faces
+from sceneql.flows.solids import LEAST, Solids
+from sceneql.flows.transforms import plans
+from sceneql.grids.at_points import at_points
+from sceneql.grids.cell_program import over_cells, over_faces
+from sceneql.grids.domain.boundary import shares
+from sceneql.kinds import Formula
+from sceneql.quantities.derivative import components, differentiate
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Number, Symbol, walk
+from sceneql.system import Cells, Flow, Grid
+
+if TYPE_CHECKING:
+    from sceneql.flows.parts import Side
+    from sceneql.frame import Floats
+    from sceneql.grids.domain.cells import Cells as Ground
+    from sceneql.system import Assembly
+    from sceneql.words.models.flow import Flow as Model
+
+SCHEMES = {"upwind": layout.UPWIND, "central": layout.CENTRAL, "koren": layout.KOREN}
+UNBALANCED = 1e-6
+"""Net inflow, in parts of what comes in, that counts as rounding of profiles."""
+ACROSS = 1e-9
+"""Velocity of a wall across it, in parts of its largest, that counts as rounding."""
+TIMES = (0.0, 0.37, 1.0, 7.3)
+"""Instants [s] at which inflows of a closed box are looked at."""
+BEGIN = "sceneql.grids.diffusion_kernels:begin"
+
+
+def add_flow(model: Model, cells: Ground, assembly: Assembly) -> Flow:
+    """Reserve an entry of y a face, and add the terms of the rate. Raises ScriptError for boundaries that do not fit."""
+    return _Builder(model, cells, assembly).build()
+
+
+def timed(expr: Expr) -> bool:
+    """Whether a formula varies in time, or with what is solved."""
+    names = ("t", TIME_SYMBOL)
+    return any(isinstance(node, Link) or (isinstance(node, Symbol) and node.name in names) for node in walk(expr))
+
+
+class _Builder:
+    def __init__(self, model: Model, cells: Ground, assembly: Assembly) -> None:
+        self.model, self.cells, self.assembly = model, cells, assembly
+        shared, self.periodic = shares(model.boundary, cells, assembly.line())
+        self.faces = Faces(cells, self.periodic)
+        self.parts: list[tuple[Side, Any]] = [(part, mine) for part, mine in shared if len(mine)]
+        count = len(cells.boundary.cells)
+        self.part_of = np.full(count, -1)
+        for number, (_, mine) in enumerate(self.parts):
+            self.part_of[mine] = number
+        self.opened = np.zeros(count, dtype=bool)
+        self.slip = np.zeros(count)
+        self.pressure = np.zeros(count)
+        for part, mine in self.parts:
+            self.slip[mine] = part.slip
+            if part.outflow is not None:
+                self.opened[mine] = True
+                self.pressure[mine] = part.outflow.pressure
+        self.viscosity = model.viscosity / model.density
+        staircase = model.edges == "staircase"
+        self.solids = Solids(model.around, self.faces, staircase, assembly) if model.around else None
+
+    def build(self) -> Flow:
+        assembly, faces, cells = self.assembly, self.faces, self.cells
+        for part, _ in self.parts:
+            self._must_fit(part.velocity)
+        self._must_slide()
+        areas, volumes, given, pushes = self._faces()
+        x = self._start(given)
+        self._must_balance(areas)
+        at = len(assembly.start())
+        edges, edge_faces = self._edges(at)
+        ints = np.zeros(layout.EDGE_FACES + len(edge_faces), dtype=np.int64)
+        ints[layout.CELLS : layout.CELLS + 3] = cells.shape
+        ints[layout.PERIODIC : layout.PERIODIC + 3] = self.periodic
+        ints[layout.AXES], ints[layout.AT], ints[layout.FACES] = faces.axes, at, faces.count
+        ints[layout.STARTS : layout.STARTS + faces.axes] = faces.starts
+        friction, fills = np.zeros(faces.count), np.ones(faces.count)
+        if self.solids is not None:
+            areas, volumes, given, friction, fills = self._around(self.solids, areas, volumes, given)
+            x[areas == 0.0] = 0.0
+        inverses = np.where(given, 0.0, 1.0 / volumes)
+        ints[layout.OWNERS] = assembly.floats([] if self.solids is None else self.solids.owners())
+        ints[layout.FILLS] = assembly.floats(fills)
+        ints[layout.FRICTION] = assembly.floats(friction)
+        ints[layout.AREAS], ints[layout.INVERSES] = assembly.floats(areas), assembly.floats(inverses)
+        ints[layout.SCALES] = assembly.floats(areas * inverses)
+        ints[layout.MOVES], ints[layout.PUSHES] = self._moving(at), self._push(at, pushes, fills)
+        ints[layout.VISCOUS : layout.VISCOUS + 3] = viscous = self._viscous(areas == 0.0)
+        ints[layout.EDGES : layout.EDGES + 3] = (len(edge_faces), *edges[:2])
+        ints[layout.EDGE_FIRST : layout.EDGE_FACES] = edges[2:]
+        ints[layout.EDGE_FACES :] = edge_faces
+        ints[layout.SCHEME], ints[layout.SKIP] = SCHEMES[self.model.advection], assembly.floats([0.0])
+        self._pressure_tables(areas, areas * inverses, ints)
+        numbers = tuple(ints.tolist())
+        for kernel in ("advect", "rub"):
+            assembly.term("close", f"sceneql.flows.advection_kernels:{kernel}", numbers)
+        assembly.term("constrain", "sceneql.flows.projection_kernels:constrain", numbers)
+        assembly.state(self._projected(x, ints))
+        flow = Flow(
+            cells=Cells(cells.shape, self.periodic, np.zeros(len(cells.volumes), dtype=bool), 0, 0),
+            components=self._grids(at, given, volumes, friction, viscous, edges[1], edge_faces),
+            areas=faces.areas,
+            spacing=tuple(cells.spacing.tolist()),
+            low=tuple(cells.low.tolist()),
+            ints=numbers,
+            fractions=None if self.solids is None else self.solids.fractions(areas),
+            density=self.model.density,
+            viscosity=self.model.viscosity,
+        )
+        assembly.flow(flow)
+        return flow
+
+    def _must_fit(self, formula: Formula | None) -> None:
+        """Raises ScriptError where a velocity has other components than the box sides."""
+        if formula is not None and formula.expr.type.shape != (self.faces.axes,):
+            text = f"this velocity needs {self.faces.axes} components, one for each side of the box"
+            raise ScriptError([Diagnostic("wrong-shape", text, formula.span)])
+
+    def _must_slide(self) -> None:
+        """Raises ScriptError where the velocity of a wall has a part across it at the start."""
+        for part, by_axis in self._normal():
+            for axis, mine in by_axis.items():
+                if part.wall is None or part.velocity is None:
+                    continue
+                points = self.faces.points(axis)[mine - self.faces.starts[axis]]
+                parts = [np.abs(_component(part.velocity, k, points, 0.0)) for k in range(self.faces.axes)]
+                if parts[axis].max() > ACROSS * max(one.max() for one in parts):
+                    text = "a wall moves along itself: this velocity leads through it"
+                    help = "let its component across the wall be 0, or give an `inflow`"
+                    raise ScriptError([Diagnostic("invalid", text, part.velocity.span, help)])
+
+    def _on_boundary(self, values: Any, kind: Any, default: Any = 0) -> Any:
+        """An array by face of numbers by boundary face; ``default`` within."""
+        found = np.full(self.faces.count, default, dtype=kind)
+        for axis in range(self.faces.axes):
+            for high in range(0 if self.periodic[axis] else 2):
+                found[self.faces.on_side(axis, high).ravel()] = values[self.faces.side(axis, high).ravel()]
+        return found
+
+    def _faces(self) -> tuple[Floats, Floats, Any, Floats]:
+        """By face: area, volume, whether its velocity is given, and the acceleration by the pressure outside."""
+        faces = self.faces
+        areas = np.concatenate([np.full(np.prod(s), a) for s, a in zip(faces.shapes, faces.areas, strict=True)])
+        volumes, signs = np.full(faces.count, faces.volume), np.zeros(faces.count)
+        for axis in range(faces.axes):
+            for high in range(0 if self.periodic[axis] else 2):
+                mine = faces.on_side(axis, high).ravel()
+                volumes[mine] *= 0.5
+                signs[mine] = -1.0 if high else 1.0
+        bounds = self._on_boundary(np.ones(len(self.opened), dtype=bool), bool)
+        given = bounds & ~self._on_boundary(self.opened, bool)
+        outside = self._on_boundary(self.pressure, float)
+        return areas, volumes, given, signs * outside / self.model.density * areas / volumes
+
+    def _given_velocity(self, time: float) -> Floats:
+        """By face: the velocity across the boundary that is given at an instant [s]; 0 elsewhere."""
+        faces = self.faces
+        found = np.zeros(faces.count)
+        for part, chosen in self._normal():
+            for axis, mine in chosen.items():
+                if part.inflow is None or part.velocity is None:
+                    continue
+                points = faces.points(axis)[mine - faces.starts[axis]]
+                found[mine] = _component(part.velocity, axis, points, time)
+        return found
+
+    def _normal(self) -> list[tuple[Side, dict[int, Any]]]:
+        """Each part with the faces that lie on it, by axis."""
+        number = self._on_boundary(self.part_of, int, -1)
+        found = []
+        for k, (part, _) in enumerate(self.parts):
+            by_axis = {}
+            for axis in range(self.faces.axes):
+                mine = self.faces.index(axis).ravel()
+                mine = mine[number[mine] == k]
+                if len(mine):
+                    by_axis[axis] = mine
+            found.append((part, by_axis))
+        return found
+
+    def _must_balance(self, areas: Floats) -> None:
+        """Raises ScriptError where fluid comes into a box that has no way out."""
+        if self.opened.any():
+            return
+        inflows = [part for part, _ in self.parts if part.inflow is not None]
+        outward = self._signs() * areas
+        for time in TIMES if inflows else ():
+            through = outward * self._given_velocity(time)
+            if abs(through.sum()) > UNBALANCED * np.abs(through).sum():
+                text = f"{abs(through.sum()):.3g} m^3/s more come {'in' if through.sum() < 0 else 'out'} than "
+                text += f"{'out' if through.sum() < 0 else 'in'} at {time:g} s, and the flow cannot be compressed"
+                help = "give a part of the boundary `outflow: {}`"
+                raise ScriptError([Diagnostic("no-way-out", text, inflows[0].span or self.assembly.line(), help)])
+
+    def _signs(self) -> Floats:
+        """By face: 1 where the boundary is on its high side, -1 where on its low side, 0 within."""
+        signs = np.zeros(self.faces.count)
+        for axis in range(self.faces.axes):
+            for high in range(0 if self.periodic[axis] else 2):
+                signs[self.faces.on_side(axis, high).ravel()] = 1.0 if high else -1.0
+        return signs
+
+    def _start(self, given: Any) -> Floats:
+        """The velocities at the start, before they lose their divergence."""
+        faces, said = self.faces, self.model.initial
+        x = np.zeros(faces.count)
+        for axis in range(faces.axes if said is not None else 0):
+            assert said is not None
+            mine = faces.index(axis).ravel()
+            if said.velocity is not None:
+                self._must_fit(said.velocity)
+                x[mine] = _component(said.velocity, axis, faces.points(axis), 0.0)
+                continue
+            assert said.stream_function is not None
+            if faces.axes == 3:
+                text = "a deep flow starts by a velocity, not by a stream function"
+                raise ScriptError([Diagnostic("invalid", text, said.stream_function.span)])
+            ends = [at_points(said.stream_function, faces.points(axis, (1 - axis, side))) for side in (0.5, -0.5)]
+            x[mine] = (1 - 2 * axis) * (ends[0] - ends[1]) / self.cells.spacing[1 - axis]
+        if said is not None and not np.isfinite(x).all():
+            formula = said.velocity or said.stream_function
+            text = "the flow at the start is not finite everywhere"
+            raise ScriptError([Diagnostic("not-finite", text, None if formula is None else formula.span)])
+        x[given] = self._given_velocity(0.0)[given]
+        return x
+
+    def _projected(self, x: Floats, ints: Any) -> Floats:
+        """Velocities free of divergence."""
+        from sceneql.flows.projection_kernels import project
+
+        own = ints.copy()
+        own[layout.AT] = 0
+        project(x, self.assembly.numbers(), own)
+        return x
+
+    def _moving(self, at: int) -> int:
+        """Offset of the rates of velocities that are given; those that vary are written at stage times."""
+        assembly = self.assembly
+        moves = assembly.floats(np.zeros(self.faces.count))
+        varying = [
+            (part, axis, mine)
+            for part, by_axis in self._normal()
+            if part.inflow is not None and part.velocity is not None and timed(part.velocity.expr)
+            for axis, mine in by_axis.items()
+        ]
+        if varying:
+            zeros = assembly.floats(np.zeros(self.faces.count))
+            assembly.term("internal", BEGIN, (self.faces.count, zeros, moves))
+        for part, axis, mine in varying:
+            assert part.velocity is not None
+            expr = components(part.velocity.expr)[axis]
+            try:
+                rates = [differentiate(expr, Symbol(name)) for name in ("t", TIME_SYMBOL)]
+            except TypeError as error:
+                text = "how fast this inflow changes is not known: it has an operation without a derivative"
+                raise ScriptError([Diagnostic("invalid", text, part.velocity.span)]) from error
+            points = assembly.floats(self.faces.points(axis)[mine - self.faces.starts[axis]])
+            ones = assembly.floats(np.ones(len(mine)))
+            for rate in rates:
+                if rate != Number(0.0):
+                    kernel, ints = over_faces(assembly, rate, at, moves, ones, points, mine.tolist())
+                    assembly.term("internal", kernel, ints)
+        return moves
+
+    def _push(self, at: int, pushes: Floats, fills: Floats) -> int:
+        """Offset of the accelerations by the pressure outside, and by a force that the script gives."""
+        assembly, faces, force = self.assembly, self.faces, self.model.force
+        pushing = assembly.floats(pushes)
+        if force is None:
+            return pushing
+        self._must_fit(force)
+        base = assembly.floats(pushes)
+        for axis in range(faces.axes):
+            start, shape = faces.starts[axis], faces.shapes[axis]
+            weight = assembly.floats(fills[start : start + int(np.prod(shape))] / self.model.density)
+            arrays = (pushing + start, base + start, weight)
+            box = assembly.floats(faces.box(axis))
+            sizes = (shape[2], shape[1], shape[0])
+            kernel, ints = over_cells(assembly, components(force.expr)[axis], at + start, arrays, sizes, box)
+            assembly.term("internal", kernel, ints)
+        return pushing
+
+    def _around(
+        self, solids: Solids, areas: Floats, volumes: Floats, given: Any
+    ) -> tuple[Floats, Floats, Any, Floats, Floats]:
+        """Open areas of faces, volumes of their own cells, what is given, friction at the walls, and FILLS."""
+        parts = [solids.walls(component) for component in range(self.faces.axes)]
+        opened = areas * solids.face_parts()
+        whole = np.concatenate([volume for volume, _, _ in parts])
+        inner = np.maximum(whole, LEAST)
+        friction = self.viscosity * np.concatenate([wall for _, wall, _ in parts])
+        self.shifts = [shift for _, _, shift in parts]
+        return opened, volumes * inner, given | (opened == 0.0), np.where(opened > 0.0, friction, 0.0), whole / inner
+
+    def _viscous(self, closed: Any) -> tuple[int, int, int]:
+        """Offsets of the conductances of viscosity along x, y, z, by face."""
+        faces, spacing = self.faces, self.cells.spacing
+        found = []
+        for axis in range(faces.axes):
+            own = []
+            for component in range(faces.axes):
+                shape = faces.shapes[component]
+                area = self._own_widths(component) * (faces.volume / spacing[axis])
+                tie = np.broadcast_to(area * (self.viscosity / spacing[axis]), shape).copy()
+                if not self.periodic[axis]:
+                    tie[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = 0.0
+                elif axis == component:
+                    tie[...] = faces.volume / spacing[axis] ** 2 * self.viscosity
+                if axis == component:
+                    inner = faces.volume / spacing[axis] ** 2 * self.viscosity
+                    tie = np.where(tie > 0.0, inner, 0.0)
+                if self.solids is not None:
+                    shut = closed[faces.index(component).ravel()]
+                    tie = tie * self.solids.ties(component, axis, shut, self.shifts[component]).reshape(tie.shape)
+                own.append(tie.ravel())
+            found.append(self.assembly.floats(np.concatenate(own)))
+        return (found[0], found[1], found[2] if len(found) == 3 else found[0])
+
+    def _own_widths(self, component: int) -> Floats:
+        """How wide the own cells of a component's faces are along its axis, in cells: half on the boundary."""
+        widths = np.ones(self.faces.shapes[component])
+        if not self.periodic[component]:
+            for end in (0, -1):
+                widths[tuple(end if k == 2 - component else slice(None) for k in range(3))] = 0.5
+        return widths
+
+    def _edges(self, at: int) -> tuple[tuple[int, ...], list[int]]:
+        """Offsets of values and weights, the first edge of each side (EDGE_FIRST), and the faces beside the edges."""
+        faces, assembly, spacing = self.faces, self.assembly, self.cells.spacing
+        firsts, sides = [-1] * 18, []
+        count = 0
+        for component in range(faces.axes):
+            for axis in range(faces.axes):
+                for high in range(0 if self.periodic[axis] or axis == component else 2):
+                    edges = faces.edges(component, axis, high)
+                    firsts[6 * component + 2 * axis + high] = count
+                    sides.append((component, axis, high, edges, count))
+                    count += len(edges.faces)
+        values, weights = np.zeros(count), np.zeros(count)
+        later: list[tuple[Expr, Any, Floats, Floats]] = []
+        for component, axis, high, edges, first in sides:
+            mine = slice(first, first + len(edges.faces))
+            width = self._own_widths(component).take(-1 if high else 0, axis=2 - axis).ravel()
+            area = self.viscosity * width * faces.volume / spacing[axis]
+            each = [area / (self.slip[one] + 0.5 * spacing[axis]) for one in edges.both]
+            weights[mine] = 0.5 * (each[0] + each[1])
+            for number, (part, _) in enumerate(self.parts):
+                if part.velocity is None:
+                    continue
+                share = sum(
+                    np.where(self.part_of[one] == number, 0.5 * w, 0.0) for one, w in zip(edges.both, each, strict=True)
+                )
+                share = np.where(weights[mine] > 0.0, share / np.where(weights[mine] > 0.0, weights[mine], 1.0), 0.0)
+                chosen = np.flatnonzero(share > 0.0)
+                if not len(chosen):
+                    continue
+                points, expr = edges.points[chosen], components(part.velocity.expr)[component]
+                if timed(expr):
+                    later.append((expr, first + chosen, share[chosen], points))
+                else:
+                    values[first + chosen] += share[chosen] * _component(part.velocity, component, points, 0.0)
+        values_at, weights_at = assembly.floats(values), assembly.floats(weights)
+        if later:
+            assembly.term("internal", BEGIN, (count, assembly.floats(values), values_at))
+        for expr, chosen, share, points in later:
+            known = assembly.floats(share), assembly.floats(points)
+            kernel, ints = over_faces(assembly, expr, at, values_at, *known, chosen.tolist())
+            assembly.term("internal", kernel, ints)
+        beside = [face for *_, edges, _ in sides for face in edges.faces.tolist()]
+        return (values_at, weights_at, *firsts), beside
+
+    def _pressure_tables(self, areas: Floats, scales: Floats, ints: Any) -> None:
+        """Write the integers of the pressure's equation."""
+        faces, cells, assembly = self.faces, self.cells, self.assembly
+        n = len(cells.volumes)
+        sink = np.zeros(n)
+        opened = []
+        uniform = True
+        for axis in range(faces.axes):
+            ends = []
+            for high in range(2):
+                side = self.opened[faces.side(axis, high).ravel()]
+                uniform &= bool(side.all() or not side.any())
+                ends.append(bool(side.all()))
+                if not self.periodic[axis]:
+                    index = np.arange(n).reshape(cells.shape[::-1]).take(-1 if high else 0, axis=2 - axis).ravel()
+                    mine = faces.on_side(axis, high).ravel()
+                    sink[index] += areas[mine] * scales[mine]
+            opened.append((ends[0], ends[1]))
+            ties = (areas * scales)[faces.index(axis)]
+            ties = ties[tuple(slice(0, m) for m in cells.shape[::-1])].copy()
+            if not self.periodic[axis]:
+                ties[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = 0.0
+            ints[layout.CONDUCTANCES + axis] = assembly.floats(ties.ravel())
+        ints[layout.SINK] = assembly.floats(sink)
+        if self.solids is not None:
+            uniform = False
+            whole = sum(
+                np.bincount(np.arange(n), weights=self._around_cell(areas, axis)) for axis in range(faces.axes)
+            )
+            sink[whole == 0.0] = -1.0
+        ints[layout.ITERATES] = not uniform
+        ints[layout.SINGULAR] = not self.opened.any()
+        inner = [faces.areas[axis] / float(cells.spacing[axis]) for axis in range(faces.axes)]
+        tables, spectrum, room = plans(cells.shape, self.periodic, opened, inner, assembly)
+        ints[layout.PLANS : layout.EDGE_FIRST] = tables
+        ints[layout.SPECTRUM] = assembly.floats(spectrum)
+        ints[layout.PRESSURE] = assembly.floats(np.zeros(n))
+        ints[layout.WORK] = assembly.floats(np.zeros(room + (0 if uniform else 5 * n))) + (0 if uniform else 5 * n)
+
+    def _around_cell(self, areas: Floats, axis: int) -> Floats:
+        """By cell: the open areas of its two faces across an axis."""
+        shape = self.cells.shape[::-1]
+        own = areas[self.faces.index(axis)]
+        count = shape[2 - axis]
+        low = own.take(range(count), axis=2 - axis)
+        high = np.roll(own, -1, axis=2 - axis).take(range(count), axis=2 - axis)
+        total: Floats = (low + high).ravel()
+        return total
+
+    def _grids(
+        self, at: int, given: Any, volumes: Floats, friction: Floats, viscous: Sequence[int], weights_at: int,
+        edge_faces: Sequence[int],
+    ) -> tuple[Grid, ...]:
+        """Each component as a field whose conductances are those of viscosity."""
+        faces, assembly = self.faces, self.assembly
+        sink = np.zeros(faces.count)
+        weights = assembly.numbers()[weights_at : weights_at + len(edge_faces)]
+        np.add.at(sink, np.array(edge_faces, dtype=np.int64), weights)
+        sink += friction
+        sinks, solved = assembly.floats(sink), assembly.floats(np.where(given, 0.0, volumes))
+        found = []
+        for axis in range(faces.axes):
+            start, shape = faces.starts[axis], faces.shapes[axis]
+            own = given[faces.index(axis).ravel()]
+            cells = Cells((shape[2], shape[1], shape[0]), self.periodic, own, solved + start, 0)
+            ties = (viscous[0] + start, viscous[1] + start, viscous[2] + start)
+            found.append(Grid(cells, at + start, solved + start, sinks + start, ties, False, -1, True))
+        return tuple(found)
+
+
+def _component(formula: Formula, axis: int, points: Floats, time: float) -> Floats:
+    """A component of a velocity at points (k, 3) [m] and an instant [s]: (k,)."""
+    one = Formula(components(formula.expr)[axis], formula.span)
+    return at_points(one, points, t=time, **{TIME_SYMBOL: time})

@@ -1,0 +1,172 @@
+"""Fields in the box of a flow that is solved: carried by it, and acting back on it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.flows.assembly import BEGIN, timed
+from sceneql.flows.faces import Faces
+from sceneql.flows.layout import AREAS
+from sceneql.grids.at_points import at_points
+from sceneql.grids.carrying import KERNELS as CARRY
+from sceneql.grids.carrying import LIMITERS
+from sceneql.grids.cell_program import over_faces
+from sceneql.grids.domain.boundary import shares
+from sceneql.grids.domain.domain import cells_of
+from sceneql.quantities.derivative import components
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import Link
+
+if TYPE_CHECKING:
+    from sceneql.flows.parts import Buoyancy
+    from sceneql.frame import Floats
+    from sceneql.grids.domain.cells import Cells
+    from sceneql.grids.drift import Drift
+    from sceneql.grids.medium import Boundary, Medium
+    from sceneql.system import Assembly, Flow, Grid
+
+THROUGH = "sceneql.flows.carrying_kernels:through"
+LIFT = "sceneql.flows.carrying_kernels:lift"
+SAME = 1e-9
+"""Difference of boxes, in parts of a cell, that counts as none."""
+
+
+def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], assembly: Assembly) -> None:
+    """Have a flow carry the fields of a model. Raises ScriptError where it is none, or fills another box.
+
+    Where fluid comes in through the boundary it brings the `value` that the field has there, or none of it.
+    """
+    assert drift.by is not None
+    flow = assembly.flow_of(drift.by.name)
+    if flow is None:
+        text = f"'{drift.by.name}' is no flow"
+        raise ScriptError([Diagnostic("no-flow", text, drift.by.span, "name a model `flow`")])
+    cells = cells_of(model, assembly)
+    periodic = fields[0][0].cells.periodic
+    _must_agree(cells.shape, cells.low, cells.spacing, periodic, flow, drift.by.name, drift.by.span)
+    strength = assembly.floats([1.0])
+    first = flow.components[0].at
+    areas = [flow.ints[AREAS] + one.at - first for one in flow.components]
+    opened = assembly.numbers()[flow.ints[AREAS] :]
+    faces = Faces(cells, periodic)
+    n = len(cells.volumes)
+    flows = [assembly.floats(np.zeros(n)) for _ in flow.areas]
+    for grid, boundary in fields:
+        mine, beside, sides = _boundary(flow, faces)
+        values = _values(boundary, cells, mine, grid.at, assembly)
+        brought, leaving = assembly.floats(np.zeros(n)), assembly.floats(np.zeros(n))
+        known = assembly.floats(opened[beside - first]), values, len(mine)
+        if flow.fractions is not None:
+            _cut(grid, flow.fractions, faces, opened, drift, assembly)
+        starts = [one.at for one in flow.components]
+        ints = (
+            *(*flows, flows[0])[:3], *(*areas, areas[0])[:3], brought, leaving, *known,
+            *cells.boundary.cells[mine].tolist(), *beside.tolist(), *sides.tolist(),
+            *cells.shape, *map(int, periodic), *(*starts, 0)[:3], len(starts),
+        )  # fmt: skip
+        assembly.term("internal", THROUGH, ints)
+        exchange = (brought, leaving, brought, leaving)
+        assembly.term(
+            "close",
+            CARRY,
+            (
+                grid.at, *cells.shape, grid.volumes_at, grid.cells.insides_at, *(*flows, flows[0])[:3],
+                *map(int, periodic), LIMITERS[drift.limiter], strength, *exchange, grid.at + n,
+            ),
+        )  # fmt: skip
+
+
+def _cut(grid: Grid, fractions: Floats, faces: Faces, opened: Floats, drift: Drift, assembly: Assembly) -> None:
+    """Leave of a field's cells what solids leave of the flow's. Raises ScriptError where its coefficient varies."""
+    if grid.varying:
+        text = "a field around solids has a coefficient that varies neither in time nor with the field"
+        raise ScriptError([Diagnostic("invalid", text, drift.by.span if drift.by else None)])
+    n, numbers = len(fractions), assembly.numbers()
+    volumes = fractions * numbers[grid.cells.insides_at : grid.cells.insides_at + n]
+    assembly.write(grid.cells.insides_at, volumes)
+    assembly.write(grid.volumes_at, np.where(volumes > 0.0, volumes, 1.0))
+    for axis in range(faces.axes):
+        low = tuple(slice(0, m) for m in faces.cells.shape[::-1])
+        part = opened[faces.index(axis)][low].ravel() / faces.areas[axis]
+        ties = slice(grid.faces_at[axis], grid.faces_at[axis] + n)
+        assembly.write(grid.faces_at[axis], numbers[ties] * part)
+
+
+def _must_agree(
+    shape: Any, low: Any, spacing: Any, periodic: Any, flow: Flow, name: str, span: Any
+) -> None:
+    """Raises ScriptError where a field's cells are not those of a flow."""
+    same = tuple(shape) == flow.cells.shape
+    axes = len(flow.areas)
+    if same:
+        apart = np.abs(np.array(spacing) - flow.spacing)[:axes], np.abs(np.array(low) - flow.low)[:axes]
+        same = all((one <= SAME * np.array(flow.spacing)[:axes]).all() for one in apart)
+    if not same:
+        text = f"the field has other cells than the flow '{name}'"
+        raise ScriptError([Diagnostic("other-domain", text, span, "give both the same `size`, `corner` and `cell`")])
+    if tuple(periodic)[:axes] != tuple(flow.cells.periodic)[:axes]:
+        text = f"the field and the flow '{name}' are not periodic in the same directions"
+        raise ScriptError([Diagnostic("other-domain", text, span, "let the boundary of both say `periodic`")])
+
+
+def _boundary(flow: Flow, faces: Faces) -> tuple[Any, Any, Any]:
+    """Of the boundary's faces, but those of periodic sides, their numbers, entries in y and sides (1 high, -1 low)."""
+    mine, beside, sides = [], [], []
+    at = flow.components[0].at
+    for axis in range(faces.axes):
+        for high in range(0 if faces.periodic[axis] else 2):
+            chosen = faces.side(axis, high).ravel()
+            mine.append(chosen)
+            beside.append(at + faces.on_side(axis, high).ravel())
+            sides.append(np.full(len(chosen), 1 if high else -1))
+    none = [np.zeros(0, dtype=np.int64)]
+    return np.concatenate([*none, *mine]), np.concatenate([*none, *beside]), np.concatenate([*none, *sides])
+
+
+def _values(boundary: Boundary, cells: Cells, mine: Any, at: int, assembly: Assembly) -> int:
+    """Offset of what fluid that comes in has, by the faces in ``mine``."""
+    place = np.full(len(cells.boundary.cells), -1)
+    place[mine] = np.arange(len(mine))
+    fixed, later = np.zeros(len(mine)), []
+    for part, chosen in shares(boundary, cells, assembly.line())[0]:
+        if part.value is None or not len(chosen):
+            continue
+        points = cells.boundary.points[chosen].copy()
+        points[:, 2] *= not cells.flat
+        if timed(part.value.expr) or "c" in {getattr(node, "name", "") for node in _nodes(part.value.expr)}:
+            later.append((components(part.value.expr)[0], place[chosen], points))
+        else:
+            fixed[place[chosen]] = at_points(part.value, points)
+    values = assembly.floats(fixed)
+    if later:
+        assembly.term("internal", BEGIN, (len(mine), assembly.floats(fixed), values))
+    for expr, chosen, points in later:
+        ones = assembly.floats(np.ones(len(chosen)))
+        kernel, ints = over_faces(assembly, expr, at, values, ones, assembly.floats(points), chosen.tolist())
+        assembly.term("internal", kernel, ints)
+    return values
+
+
+def _nodes(expr: Any) -> Any:
+    from sceneql.quantities.expression import walk
+
+    return walk(expr)
+
+
+def add_buoyancy(buoyancy: Buoyancy, name: str, assembly: Assembly) -> None:
+    """Have a field lift the flow of a model. Raises ScriptError where that is none of the same box."""
+    link, flow = buoyancy.by.expr, assembly.flow_of(name)
+    assert isinstance(link, Link)
+    if flow is None:
+        return  # its own assembly has failed
+    grid = assembly.field_of(link)
+    if grid is None:
+        text = f"'{link.task}.{link.output}' is no field on a grid that is solved with the flow"
+        raise ScriptError([Diagnostic("no-field", text, buoyancy.by.span, "name one of a `diffusion`")])
+    box = assembly.numbers()[grid.cells.box_at : grid.cells.box_at + 6]
+    _must_agree(grid.cells.shape, box[:3], box[3:], grid.cells.periodic, flow, name, buoyancy.by.span)
+    values = [assembly.value(one) for one in (buoyancy.expansion, buoyancy.reference, buoyancy.gravity)]
+    assembly.term("force", LIFT, (grid.at, grid.cells.insides_at, *values, *flow.ints))

@@ -1,0 +1,127 @@
+"""What can be read of a flow at an instant."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.flows import layout
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.grids.medium import FieldLayout
+    from sceneql.system import ModelState
+
+
+def measure(what: str, cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState) -> Any:
+    """An output of the word `flow`: (cells,), (cells, 3), (3,) or float."""
+    match what:
+        case "centers":
+            return cells.centers()
+        case "velocity":
+            return np.column_stack([*_at_centers(ints, state.y), *[np.zeros(cells.count)] * (3 - ints[layout.AXES])])
+        case "speed":
+            return np.sqrt(sum(part**2 for part in _at_centers(ints, state.y)))
+        case "largest_speed":
+            return float(np.sqrt(sum(part**2 for part in _at_centers(ints, state.y))).max())
+        case "vorticity":
+            return _vorticity(ints, cells.spacing, state)
+        case "pressure":
+            at = ints[layout.PRESSURE]
+            pressure = density * state.floats[at : at + cells.count]
+            return pressure - pressure.mean() if ints[layout.SINGULAR] else pressure
+        case "divergence":
+            from sceneql.flows.projection_kernels import outflow
+
+            out = np.zeros(cells.count)
+            outflow(state.y, out, state.floats, np.array(ints))
+            return float(np.abs(out).max() / np.prod(cells.spacing))
+    sums = [_own(ints, state.floats, cells, axis) for axis in range(ints[layout.AXES])]
+    velocities = components(ints, state.y)
+    if what == "kinetic_energy":
+        parts = [(own * u**2).sum() for own, u in zip(sums, velocities, strict=True)]
+        return float(0.5 * density * sum(parts))
+    parts = [density * (own * u).sum() for own, u in zip(sums, velocities, strict=True)]
+    return np.array([*parts, 0.0][:3])
+
+
+def components(ints: tuple[int, ...], y: Floats) -> list[Floats]:
+    """The velocities of each component at its faces (nz, ny, nx)."""
+    found = []
+    for axis in range(ints[layout.AXES]):
+        shape = list(ints[layout.CELLS : layout.CELLS + 3])
+        shape[axis] += not ints[layout.PERIODIC + axis]
+        first = ints[layout.AT] + ints[layout.STARTS + axis]
+        found.append(y[first : first + int(np.prod(shape))].reshape(shape[::-1]))
+    return found
+
+
+def _own(ints: tuple[int, ...], floats: Floats, cells: FieldLayout, axis: int) -> Floats:
+    """Volumes of fluid in the own cells of a component's faces, half on the boundary [m^3]."""
+    shape = list(cells.shape)
+    shape[axis] += not ints[layout.PERIODIC + axis]
+    volumes = np.full(shape[::-1], np.prod(cells.spacing))
+    if not ints[layout.PERIODIC + axis]:
+        for end in (0, -1):
+            volumes[tuple(end if k == 2 - axis else slice(None) for k in range(3))] *= 0.5
+    first = ints[layout.STARTS + axis]
+    areas, inverses, fills = (
+        floats[ints[at] + first : ints[at] + first + volumes.size].reshape(volumes.shape)
+        for at in (layout.AREAS, layout.INVERSES, layout.FILLS)
+    )
+    free = inverses > 0.0
+    return np.where(free, fills / np.where(free, inverses, 1.0), np.where(areas > 0.0, volumes, 0.0))
+
+
+def _at_centers(ints: tuple[int, ...], y: Floats) -> list[Floats]:
+    """Each component at the centers of cells (cells,)."""
+    found = []
+    for axis, u in enumerate(components(ints, y)):
+        if ints[layout.PERIODIC + axis]:
+            found.append((0.5 * (u + np.roll(u, -1, axis=2 - axis))).ravel())
+        else:
+            low, high = (u[tuple(cut if k == 2 - axis else slice(None) for k in range(3))] for cut in CUTS)
+            found.append((0.5 * (low + high)).ravel())
+    return found
+
+
+CUTS = (slice(0, -1), slice(1, None))
+
+
+def _vorticity(ints: tuple[int, ...], spacing: tuple[float, ...], state: ModelState) -> Floats:
+    """At centers (cells,): by differences at edges, with the velocity that is given beside walls, and their mean."""
+    axes = ints[layout.AXES]
+    u = components(ints, state.y)
+    turns = []
+    for a, b in ((0, 1),) if axes == 2 else ((1, 2), (2, 0), (0, 1)):
+        turns.append(_slope(u[b], b, a, spacing, ints, state) - _slope(u[a], a, b, spacing, ints, state))
+    return turns[0].ravel() if axes == 2 else np.sqrt(sum(turn**2 for turn in turns)).ravel()
+
+
+def _slope(
+    u: Floats, component: int, axis: int, spacing: tuple[float, ...], ints: tuple[int, ...], state: ModelState
+) -> Floats:
+    """d(component)/d(axis) at the centers of cells: the mean of the four edges of each cell (nz, ny, nx)."""
+    line = 2 - axis
+    if ints[layout.PERIODIC + axis]:
+        steps = np.roll(u, -1, axis=line) - u
+        slopes = np.concatenate([steps.take([-1], axis=line), steps], axis=line) / spacing[axis]
+    else:
+        ends = []
+        for high in range(2):
+            own = u.take([-1 if high else 0], axis=line)
+            first = ints[layout.EDGE_FIRST + 6 * component + 2 * axis + high]
+            edges = slice(first, first + own.size)
+            given, weight = (
+                state.floats[ints[at] :][edges].reshape(own.shape) for at in (layout.EDGE_VALUES, layout.EDGE_WEIGHTS)
+            )
+            step = np.where(weight > 0.0, 2.0 * (given - own), 0.0)
+            ends.append(step if high else -step)
+        slopes = np.concatenate([ends[0], np.diff(u, axis=line), ends[1]], axis=line) / spacing[axis]
+    slopes = 0.5 * (slopes.take(range(slopes.shape[line] - 1), axis=line) + slopes.take(range(1, slopes.shape[line]), axis=line))
+    other = 2 - component
+    if ints[layout.PERIODIC + component]:
+        return 0.5 * (slopes + np.roll(slopes, -1, axis=other))
+    count = slopes.shape[other]
+    return 0.5 * (slopes.take(range(count - 1), axis=other) + slopes.take(range(1, count), axis=other))

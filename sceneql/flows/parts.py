@@ -1,0 +1,156 @@
+"""What scripts say of a flow's boundary, of its start and of buoyancy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
+from typing import Annotated, Literal
+
+from sceneql import kinds
+from sceneql.grids.domain.cells import SIDES
+from sceneql.grids.medium import PLACE, SIZES
+from sceneql.kinds import Formula, Problem, Quantity, Record, Symbols, Value, field
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.dimension import PLAIN, comparable
+from sceneql.quantities.derivative import components
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import TIME_SYMBOL, Link, Symbol, walk
+from sceneql.quantities.span import Span
+from sceneql.quantities.units import describe, in_words
+
+MOVING = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.VELOCITY)]
+VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True)]
+STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_start=True)]
+FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME)]
+
+
+class Wall(Record):
+    """A wall, which fluid sticks to or slips along."""
+
+    velocity: MOVING | None = field("How it moves along itself: a vector with a component for each side.", None)
+    slip: Literal["free"] | kinds.FixedLength = field(
+        "`free`: no friction; or Navier's slip length, how far behind the wall the velocity would be the wall's.",
+        0.0,
+        at_least=0,
+    )
+
+
+class Inflow(Record):
+    """Where the velocity is given."""
+
+    velocity: MOVING = field("The velocity there, by place and time: `[0.3*y*(0.4 - y), 0]`.")
+
+
+class Outflow(Record):
+    """Where the pressure is given, and fluid leaves as the rest of the flow has it."""
+
+    pressure: Annotated[float, Quantity(dim.PRESSURE)] = field("The pressure there.", 0.0)
+
+
+class Side(Record):
+    """What holds on a part of a flow's boundary: one of wall, inflow, outflow, periodic."""
+
+    wall: Wall | None = field("A wall.", None)
+    inflow: Inflow | None = field("A given velocity.", None)
+    outflow: Outflow | None = field("A way out: a given pressure.", None)
+    periodic: bool = field("The sides of this direction are one: what leaves here comes in at the other.", False)
+    where: PLACE | None = field("Only where this formula is above 0.", None)
+    near: SIZES | None = field("Only around this place, of two or three numbers.", None)
+    within: kinds.FixedLength | None = field("How far around it.", None, above=0)
+
+    def problems(self) -> Iterable[Problem]:
+        """Errors: more than one condition, or none; a place without its size."""
+        if sum([*(one is not None for one in (self.wall, self.inflow, self.outflow)), self.periodic]) != 1:
+            yield Problem("a side of a flow has one of `wall`, `inflow`, `outflow` and `periodic`")
+        if self.periodic and self.chosen:
+            yield Problem("`periodic` holds on whole sides, without `where` or `near`")
+        if (self.near is None) != (self.within is None) or (self.near is not None and len(self.near) not in (2, 3)):
+            yield Problem("`near` is a place of two or three numbers, and goes with `within`")
+
+    @property
+    def chosen(self) -> bool:
+        """Whether the part has a place of its own."""
+        return self.where is not None or self.near is not None
+
+    @property
+    def velocity(self) -> Formula | None:
+        """The velocity that is given there."""
+        part = self.wall or self.inflow
+        return None if part is None else part.velocity
+
+    @property
+    def slip(self) -> float:
+        """Its slip length [m]; infinite where nothing holds the fluid back along it."""
+        if self.inflow is not None:
+            return 0.0
+        return float("inf") if self.wall is None or self.wall.slip == "free" else self.wall.slip
+
+    @property
+    def span(self) -> Span | None:
+        """Its line in the script, where a formula tells it."""
+        return next((one.span for one in (self.velocity, self.where) if one is not None), None)
+
+
+class Start(Record):
+    """The flow at the start."""
+
+    velocity: VELOCITY | None = field("The velocity, which loses its divergence: a component for each side.", None)
+    stream_function: STREAM | None = field("Of a flat flow the stream function s, v = (ds/dy, -ds/dx).", None)
+
+    def problems(self) -> Iterable[Problem]:
+        """Both or neither."""
+        if (self.velocity is None) == (self.stream_function is None):
+            yield Problem("a flow starts by one of `velocity` and `stream_function`")
+        elif self.stream_function is not None and self.stream_function.expr.type.shape != ():
+            yield Problem("a stream function is one number at every place", ("stream_function",))
+
+
+class Buoyancy(Record):
+    """What a field does to the flow that carries it: -expansion (field - reference) gravity (Boussinesq 1903)."""
+
+    by: Annotated[Value, Quantity(None, (None,))] = field("The field, in the same domain: `heat.temperature`.")
+    expansion: Annotated[Value, Quantity(None)] = field(
+        "The part by which density falls for a unit of the field, as `3.4e-3 1/K`; below 0 where it rises."
+    )
+    reference: Annotated[Value, Quantity(None)] = field("The value at which the density is the flow's.")
+    gravity: kinds.Acceleration = field("Gravity.", "0 -9.81 0 m/s^2")
+
+    def problems(self) -> Iterable[Problem]:
+        """A value that is no field itself; values of other dimensions."""
+        own = self.by.expr.type.dimension
+        if not isinstance(self.by.expr, Link):
+            yield Problem("this is the field of a model itself: `heat.temperature`", ("by",))
+        elif own is not None:
+            for name, wanted in (("expansion", PLAIN / own), ("reference", own)):
+                has = getattr(self, name).expr.type.dimension
+                if not comparable(has, wanted):
+                    text = f"{name} is {describe(wanted)} here, but this is {in_words(has)}"
+                    yield Problem(text, (name,), code="dimension-mismatch")
+
+
+SAMPLES = 12
+"""Samples of a velocity along each side before the run."""
+
+
+def fastest_turn(
+    start: Start | None, boundary: Mapping[str, Side], corner: Sequence[float], size: Sequence[float],
+    spacing: Sequence[float],
+) -> float:  # fmt: skip
+    """The largest sum of |u|/spacing [1/s] of what is given of a flow at its start, by samples; 0: nothing is."""
+    whole = [[low + side * k / SAMPLES for k in range(SAMPLES + 1)] for low, side in zip(corner, size, strict=True)]
+    given = [] if start is None or start.velocity is None else [(start.velocity, whole)]
+    for name, part in boundary.items():
+        if part.velocity is not None and name in SIDES[: 2 * len(size)]:
+            axis, high = divmod(SIDES.index(name), 2)
+            there = [corner[axis] + high * size[axis]]
+            given.append((part.velocity, [there if k == axis else row for k, row in enumerate(whole)]))
+    most = 0.0
+    for formula, rows in given:
+        if formula.expr.type.shape != (len(size),) or any(isinstance(node, Link) for node in walk(formula.expr)):
+            continue
+        for place in product(*rows):
+            known = {Symbol(one): x for one, x in zip("xyzt", (*place, *[0.0] * (4 - len(place))), strict=True)}
+            known[Symbol(TIME_SYMBOL)] = 0.0
+            speeds = [abs(float(evaluate(part, known))) for part in components(formula.expr)]
+            most = max(most, sum(speed / side for speed, side in zip(speeds, spacing, strict=True)))
+    return most

@@ -1,0 +1,74 @@
+"""Force and torque of a flow on the solids in it: what the momentum of the fluid loses at their walls."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.flows import layout
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.grids.medium import FieldLayout
+    from sceneql.system import ModelState
+
+
+def on_solid(
+    what: str, number: int, cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState
+) -> Floats:
+    """(3,) `force` [N] on a solid, or `torque` about the origin [N m]."""
+    force, torque = np.zeros(3), np.zeros(3)
+    floats, axes = state.floats, ints[layout.AXES]
+    count = ints[layout.FACES]
+    owners = floats[ints[layout.OWNERS] : ints[layout.OWNERS] + count + cells.count]
+    pressure = density * floats[ints[layout.PRESSURE] : ints[layout.PRESSURE] + cells.count]
+    pressure = np.where(owners[count:] == number, pressure, 0.0).reshape(cells.shape[::-1])
+    centers = cells.centers()
+    for axis in range(axes):
+        shape = list(cells.shape)
+        shape[axis] += not ints[layout.PERIODIC + axis]
+        first, n = ints[layout.STARTS + axis], int(np.prod(shape))
+        mine = slice(ints[layout.AREAS] + first, ints[layout.AREAS] + first + n)
+        areas = floats[mine].reshape(shape[::-1])
+        if ints[layout.PERIODIC + axis]:
+            low, high = areas, np.roll(areas, -1, axis=2 - axis)
+        else:
+            low, high = areas.take(range(shape[axis] - 1), axis=2 - axis), areas.take(range(1, shape[axis]), axis=2 - axis)
+        pushed = (pressure * (low - high)).ravel()
+        dragged, points = _dragged(axis, number, cells, ints, density, state, owners[first : first + n])
+        for strength, places in ((pushed, centers), (dragged, points)):
+            force[axis] += strength.sum()
+            direction = np.zeros(3)
+            direction[axis] = 1.0
+            torque += np.cross(places * strength[:, None], direction).sum(axis=0)
+    return force if what == "force" else torque
+
+
+def _dragged(
+    axis: int, number: int, cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState, owners: Floats
+) -> tuple[Floats, Floats]:
+    """Friction of a component by its faces (m,) [N], and where these are (m, 3)."""
+    floats = state.floats
+    shape = list(cells.shape)
+    shape[axis] += not ints[layout.PERIODIC + axis]
+    first, n = ints[layout.STARTS + axis], int(np.prod(shape))
+
+    def by_face(at: int) -> Floats:
+        found: Floats = floats[at + first : at + first + n].reshape(shape[::-1])
+        return found
+
+    u = state.y[ints[layout.AT] + first : ints[layout.AT] + first + n].reshape(shape[::-1])
+    shut = by_face(ints[layout.AREAS]) == 0.0
+    total = by_face(ints[layout.FRICTION]) * u
+    for other in range(ints[layout.AXES]):
+        ties, line = by_face(ints[layout.VISCOUS + other]), 2 - other
+        total += ties * u * np.roll(shut, 1, axis=line)
+        total += np.roll(ties, -1, axis=line) * u * np.roll(shut, -1, axis=line)
+    index = np.stack(np.meshgrid(*map(np.arange, shape[::-1]), indexing="ij")[::-1], axis=-1).reshape(-1, 3) + 0.5
+    index[:, axis] -= 0.5
+    points = np.array(cells.low) + index * np.array(cells.spacing)
+    if ints[layout.AXES] == 2:
+        points[:, 2] = 0.0
+    mine = (owners == number) & ~shut.ravel()
+    return density * np.where(mine, total.ravel(), 0.0), points

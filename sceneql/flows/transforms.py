@@ -1,0 +1,102 @@
+"""The tables of fast transforms for the pressure of a box."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import prod
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.flows.layout import (
+    COSINES,
+    FREE_FREE,
+    FREE_NODES,
+    LANES,
+    NODES,
+    NODES_FREE,
+    PLAN,
+    QUARTER_COSINES,
+    QUARTER_SINES,
+    SINES,
+    WAVES,
+)
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.system import Assembly
+
+KINDS = {(False, False): COSINES, (True, True): SINES, (False, True): QUARTER_COSINES, (True, False): QUARTER_SINES}
+"""Modes of values at centers by whether they are 0 at the low and the high end."""
+NODE_KINDS = {(True, True): NODES, (True, False): NODES_FREE, (False, True): FREE_NODES, (False, False): FREE_FREE}
+"""Modes of values at faces, likewise."""
+
+
+def modes(count: int, periodic: bool, zero: tuple[bool, bool], faces: bool = False) -> tuple[int, int, Floats]:
+    """The modes of an axis, the length of the complex transform, and eigenvalues (count,) of 2 x - left - right.
+
+    ``zero``: whether values are 0 at the low and the high end. ``faces``: of values at faces, both ends among them.
+    """
+    k = np.arange(count)
+    if periodic:
+        return WAVES, count, 4.0 * np.sin(np.pi * k / count) ** 2
+    if faces:
+        kind, last = NODE_KINDS[zero], count - 1
+        half = kind in (NODES_FREE, FREE_NODES)
+        turns = np.maximum(0.5 * k - 0.25, 0.0) if half else 0.5 * k
+        return kind, (4 if half else 2) * last, 4.0 * np.sin(np.pi * turns / last) ** 2
+    kind = KINDS[zero]
+    half = kind in (QUARTER_COSINES, QUARTER_SINES)
+    turns = {COSINES: 0.5 * k, SINES: 0.5 * (count - k)}.get(kind, 0.5 * (k + 0.5))
+    return kind, 2 * count if half else count, 4.0 * np.sin(np.pi * turns / count) ** 2
+
+
+def plan_of(kind: int, length: int, store: Callable[[Floats], int]) -> list[int]:
+    """The PLAN integers of an axis; ``store`` keeps numbers and gives their offset."""
+    turn, twist = 2.0 * np.pi * np.arange(length) / length, 0.5 * np.pi * np.arange(length) / length
+    waves = store(np.concatenate([np.cos(turn), np.sin(turn)]))
+    twists = store(np.concatenate([np.cos(twist), np.sin(twist)]))
+    parts = factors(length)
+    found = [kind, length, waves, twists, len(parts), *parts]
+    return found + [0] * (PLAN - len(found))
+
+
+def plans(
+    shape: tuple[int, int, int], periodic: Sequence[bool], opened: Sequence[tuple[bool, bool]],
+    conductances: Sequence[float], assembly: Assembly,
+) -> tuple[list[int], Floats, int]:  # fmt: skip
+    """Integers of all three axes, 1/eigenvalues (cells,) of the pressure's equation, and the floats of scratch
+    that transforms of cells or faces need.
+
+    ``conductances``: of the faces of each axis, two or three of them.
+    """
+    ints: list[int] = []
+    total, lengths = np.zeros(shape[::-1]), []
+    for axis in range(3):
+        if axis >= len(conductances):
+            ints += [0] * PLAN
+            continue
+        kind, length, values = modes(shape[axis], periodic[axis], opened[axis])
+        total += conductances[axis] * values.reshape([-1 if k == 2 - axis else 1 for k in range(3)])
+        ints += plan_of(kind, length, assembly.floats)
+        lengths.append(length)
+    spectrum = total.ravel()
+    least = spectrum[spectrum > 1e-12 * spectrum.max(initial=1e-300)].min(initial=np.inf)
+    inverse = 1.0 / (np.where(spectrum >= least, spectrum, least) * prod(lengths))
+    return ints, np.where(np.isfinite(inverse), inverse, 0.0), 4 * LANES * 4 * max(shape)
+
+
+def factors(n: int) -> list[int]:
+    """Fours, a two, and odd primes, whose product is n."""
+    found = []
+    for prime in (4, 2, 3, 5, 7, 11, 13):
+        while n % prime == 0:
+            found.append(prime)
+            n //= prime
+    prime = 17
+    while n > 1:
+        while n % prime == 0:
+            found.append(prime)
+            n //= prime
+        prime = prime + 2 if prime * prime <= n else n
+    return found

@@ -1,0 +1,151 @@
+"""flow: an incompressible fluid in a box."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from sceneql import kinds
+from sceneql.flows.parts import FORCE, Buoyancy, Side, Start, fastest_turn
+from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
+from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of
+from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Value, field, quantity_type
+from sceneql.kinds.stable_step import Oscillation
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Link, Type
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly, ModelState
+
+FIELDS = ("speed", "vorticity", "pressure")
+
+
+class Flow(Model):
+    """Incompressible flow, du/dt + div(u u) = -grad p/density + viscosity/density lap u + forces, div u = 0, in a box.
+
+    Velocities stand at the faces of cells, the pressure at their centers; each rate loses its divergence by a
+    projection, so explicit solvers run as they are. Where nothing is said of a side it is a wall that the fluid sticks
+    to. Advection by `koren` is limited and of order 3 where the flow is smooth, `central` keeps the energy, `upwind` is
+    of order 1. In formulas x, y, z and t are plain numbers in SI. A flat flow has x and y and a `depth`. Sources:
+    Harlow & Welch (1965), Phys. Fluids 8, 2182-2189; Chorin (1968), Math. Comp. 22, 745-762; Koren (1993).
+    """
+
+    has_bodies = False
+    flows = True
+
+    size: SIZES = field("Sides of the box: two for a flat one, three for a deep one.", above=0)
+    corner: SIZES | None = field("Low corner of the box; by default the origin.", None)
+    depth: kinds.FixedLength = field("How thick a flat box is.", "1 m", above=0)
+    cell: kinds.FixedLength = field("Largest side of a cell.", above=0)
+    density: Annotated[float, Quantity(dim.DENSITY)] = field("The density.", above=0)
+    viscosity: Annotated[float, Quantity(dim.PRESSURE * dim.TIME)] = field("The dynamic viscosity.", at_least=0)
+    initial: Start | None = field("The flow at the start; by default at rest.", None)
+    boundary: dict[str, Side] = field(
+        "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z), on any part `where` a "
+        "formula holds or `near` a place, or on `rest`: a `wall`, an `inflow`, an `outflow`, or `periodic`.",
+        {},
+    )
+    around: tuple[kinds.ObjectRef, ...] = field(
+        "Solids that stand in the flow, where they are at the start; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
+    )
+    edges: Literal["cut_cell", "staircase"] = field(
+        "How cells meet these solids: cut by them, or whole where their centers lie outside.", "cut_cell"
+    )
+    advection: Literal["koren", "central", "upwind"] = field("How velocities are carried.", "koren")
+    force: FORCE | None = field("A force on each cubic meter, by place and time: a component for each side.", None)
+    buoyancy: Buoyancy | None = field("What a temperature or concentration does to it.", None)
+
+    gives = {  # noqa: RUF012
+        "velocity": Gives(quantity_type(dim.VELOCITY, (None, 3)), "The velocity at the centers of cells."),
+        "speed": Gives(quantity_type(dim.VELOCITY, (None,)), "Its size."),
+        "vorticity": Gives(quantity_type(dim.FREQUENCY, (None,)), "Its curl: along z in a flat flow, else its size."),
+        "pressure": Gives(quantity_type(dim.PRESSURE, (None,)), "The pressure; in a closed box its mean is 0."),
+        "centers": Gives(quantity_type(dim.LENGTH, (None, 3)), "The centers of the cells."),
+        "kinetic_energy": Gives(quantity_type(dim.ENERGY), "The kinetic energy."),
+        "momentum": Gives(quantity_type(dim.MASS * dim.VELOCITY, (3,)), "The momentum."),
+        "divergence": Gives(quantity_type(dim.FREQUENCY), "The largest divergence that the projection leaves."),
+        "largest_speed": Gives(quantity_type(dim.VELOCITY), "The largest speed."),
+    }
+
+    @classmethod
+    def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
+        """Those of the flow, and of each solid."""
+        around = written.get("around", ())
+        names = [around] if isinstance(around, str) else around
+        found = dict(cls.gives)
+        for name in names if isinstance(names, list | tuple) else ():
+            found[f"{name}.force"] = Gives(quantity_type(dim.FORCE, (3,)), "What the fluid does to it.")
+            found[f"{name}.torque"] = Gives(quantity_type(dim.FORCE * dim.LENGTH, (3,)), "Its torque about the origin.")
+        return found
+
+    def insides(self) -> Iterable[kinds.Ref]:
+        """The solids."""
+        return self.around
+
+    def problems(self) -> Iterable[Problem]:
+        """Sides that do not fit, too many cells, boundaries of no side."""
+        if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
+            yield Problem("a box has two or three sides, and its corner as many numbers")
+            return
+        if self.cell < SHORTEST or min(self.size) < SHORTEST:
+            yield Problem(f"a cell is at least {SHORTEST:g} m", ("cell",), code="out-of-range")
+            return
+        shape = counts(self.size, self.cell)
+        cells = shape[0] * shape[1] * shape[2]
+        if cells > MOST_CELLS:
+            text = f"{cells:.3g} cells: at most {MOST_CELLS:,} are possible; take a larger `cell`"
+            yield Problem(text, ("cell",), code="limit-refused")
+        if min(shape[: len(self.size)]) < 2:
+            yield Problem("a flow has two cells or more along each side", ("cell",))
+        known = (*SIDES[: 2 * len(self.size)], "rest")
+        for name in [name for name, part in self.boundary.items() if name not in known and not part.chosen]:
+            text = f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
+            yield Problem(text, ("boundary", name), at_key=True)
+
+    def fastest(self, name: str) -> Iterable[Oscillation]:
+        """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann), and advection."""
+        spacing = [side / n for side, n in zip(self.size, counts(self.size, self.cell), strict=False)]
+        decay = 4.0 * self.viscosity / self.density * sum(1.0 / side**2 for side in spacing)
+        if decay > 0.0:
+            yield Oscillation(0.0, decay, f"the viscosity over cells of {self.cell:g} m", ("viscosity",))
+        turn = fastest_turn(self.initial, self.boundary, self.corner or (0.0,) * len(self.size), self.size, spacing)
+        if turn > 0.0:  # a wave of four cells, which advection turns fastest: viscosity has half its largest rate there
+            yield Oscillation(0.0, 0.5 * decay, f"the flow through cells of {self.cell:g} m", ("cell",), turn)
+
+    def assemble(self, name: str, assembly: Assembly) -> None:
+        """Reserve a number a face, and add the terms of the rate. Raises ScriptError."""
+        from sceneql.flows.assembly import add_flow
+        from sceneql.grids.domain import cells
+        from sceneql.grids.ground import Ground
+
+        corner = self.corner or (0.0,) * len(self.size)
+        ground = Ground(cells.box(self.size, corner, self.cell, self.depth), assembly)
+        flow = add_flow(self, ground.cells, assembly)
+        assembly.remember(*ground.memory, *flow.ints)
+
+    def connect(self, name: str, assembly: Assembly) -> None:
+        """Add what buoyancy does. Raises ScriptError where it reads the field of another domain."""
+        if self.buoyancy is not None:
+            from sceneql.flows.carrying import add_buoyancy
+
+            add_buoyancy(self.buoyancy, name, assembly)
+
+    def layout(self, state: ModelState, output: str) -> FieldLayout:
+        """Where the values at centers lie, for pictures."""
+        return layout_of(0, state.ints[:5], state.floats)
+
+    def shows(self, name: str) -> Value | None:
+        """Its speed."""
+        return Value(Link(name, "speed", Type((None,), dim.VELOCITY)))
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """An output: (cells,), (cells, 3), (3,) or float."""
+        from sceneql.flows.measures import measure
+
+        name, _, what = output.rpartition(".")
+        if name:
+            from sceneql.flows.solid_forces import on_solid
+
+            number = [ref.name for ref in self.around].index(name)
+            return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)
+        return measure(output, self.layout(state, output), state.ints[5:], self.density, state)

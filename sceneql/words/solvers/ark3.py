@@ -1,0 +1,36 @@
+"""ark3: an additive Runge-Kutta pair of order 3(2) for flows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.kinds import FixedScalar, FixedTime, Solver, field
+
+if TYPE_CHECKING:
+    from sceneql.system import Stepper
+
+
+class Ark3(Solver):
+    """Order 3 for flows, by an additive pair 3(2): viscosity implicit, advection explicit, each stage projected.
+
+    Steps follow the error, in parts of the largest velocity (and of the largest value of each other field), unless
+    ``step`` gives their length. The pressure belongs to each stage, so the order stays beside walls, for several
+    projections a stage. Diffusion of fields that are solved with the flow is implicit too; all else is explicit.
+    Source: Kennedy & Carpenter (2003), Appl. Numer. Math. 44, 139-181, ARK3(2)4L[2]SA.
+    """
+
+    marches = "a flow"
+
+    tolerance: FixedScalar = field("Error of a step, in parts of the largest value.", "1e-4", at_least=1e-12, below=1)
+    step: FixedTime | None = field("Length of a step, in place of a tolerance.", None, above=0)
+    largest_step: FixedTime | None = field("No step is longer.", None, above=0)
+
+    def stepper(self) -> Stepper:
+        """By the tolerance, or fixed steps."""
+        from sceneql.flows import additive
+
+        return additive.stepper(self.tolerance, self.step, self.largest_step)
+
+    def measure(self) -> str:
+        """In parts of the largest."""
+        return "of the largest value of each field" if self.step is None else ""

@@ -1,0 +1,31 @@
+"""chorin: the projection method of order 1."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.flows import multistep
+from sceneql.kinds import FixedTime, Solver, field
+
+if TYPE_CHECKING:
+    from sceneql.system import Stepper
+
+
+class Chorin(Solver):
+    """Explicit Euler for advection, implicit Euler for viscosity, then a projection; order 1: the baseline of flows.
+
+    Diffusion of fields that are solved with the flow is implicit too; all else is explicit. Source: Chorin (1968),
+    Math. Comp. 22, 745-762; Temam (1969), Arch. Rational Mech. Anal. 33, 377-385.
+    """
+
+    marches = "a flow"
+
+    step: FixedTime = field("Length of a step.", "5 ms", above=0)
+
+    def stepper(self) -> Stepper:
+        """Fixed steps."""
+        return multistep.stepper(multistep.CHORIN, 1, self.step)
+
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
+        """What decays is implicit, what turns explicit; none is told of swings."""
+        return None if frequency > 0.0 else multistep.growth(multistep.CHORIN, decay, turn, step)
