@@ -1,5 +1,6 @@
 # mypy: ignore-errors
-"""Gradients of a tape at a few points close together: densities are sums over the parts in their reach alone."""
+"""Gradients of a tape at a few points close together: densities are sums over the parts in their reach alone, and
+skeletons are not asked for values that no slope depends on."""
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.tape import tape_ops as ops
@@ -21,6 +22,36 @@ def many_points(code):
             return False
         found = found or (code[k, 0] == ops.DENSITY and code[k, 2] - code[k, 1] >= MANY)
     return found
+
+
+@inlined
+def slopes_alone(code, rest):
+    """Copy a tape to ``rest`` (rows, 4), and make KEEP of the skeletons in it whose values no gradient depends on.
+
+    These are values that are added up, and multiplied by constants, and nothing else.
+    """
+    rows = code.shape[0]
+    for k in range(rows):
+        rest[k, 0] = 0
+    for k in range(rows - 1, -1, -1):
+        op, left, right = code[k, 0], code[k, 1], code[k, 2]
+        if op == ops.ADD or op == ops.SUB or op == ops.NEG or op == ops.COPY:
+            needed = rest[k, 0] != 0
+        elif op == ops.MUL and (code[left, 0] == ops.CONSTANT or code[right, 0] == ops.CONSTANT):
+            needed = rest[k, 0] != 0
+        else:
+            needed = True
+        if op == ops.DENSITY or op == ops.SKELETON:
+            left, right = code[k, 3], code[k, 3] + 1
+            rest[code[k, 3] + 2, 0] = 1
+        if needed and not (op == ops.CONSTANT or op == ops.X or op == ops.Y or op == ops.Z):
+            rest[left, 0] = rest[right, 0] = 1
+    for k in range(rows):
+        idle = code[k, 0] == ops.SKELETON and rest[k, 0] == 0
+        for column in range(4):
+            rest[k, column] = code[k, column]
+        if idle:
+            rest[k, 0] = ops.KEEP
 
 
 @inlined
@@ -63,7 +94,12 @@ def gradients(code, constants, parts, registers, slope, points, codes, near, n):
     """
     rows = code.shape[0]
     if not many_points(code):
-        evaluate(code, constants, parts, registers, points, n)
+        rest = codes[0, :rows]
+        slopes_alone(code, rest)
+        for k in range(rows):
+            for i in range(n if rest[k, 0] == ops.KEEP else 0):
+                registers[k, i] = 1.0
+        evaluate(rest, constants, parts, registers, points, n)
         differentiate(code, constants, parts, registers, slope, n)
         return
     rest, whole = codes[0, :rows], codes[1, :rows]
