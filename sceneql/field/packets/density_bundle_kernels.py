@@ -4,6 +4,8 @@
 import numpy as np
 
 from sceneql.compiled.kernels import inlined, lean
+from sceneql.field.packets.point_blocks_kernels import keep_on_ray
+from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT
 from sceneql.field.roots.beam_kernels import (
     BEAM,
     DX,
@@ -18,14 +20,12 @@ from sceneql.field.roots.beam_kernels import (
     beam_of_ray,
     beam_within,
     gather,
-    keep_on_ray,
     keep_reaching,
     keep_reaching_skeleton,
 )
 from sceneql.field.roots.density_march_kernels import LANES
 from sceneql.field.roots.density_roots_kernels import DENSITY_ROOTS, ROW_OF, THRESHOLD, search_packet
 from sceneql.field.roots.density_slice_kernels import BEAM_ROW, OWN_ROW, SPARE
-from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT
 from sceneql.field.skeleton.density_polish_kernels import polish
 from sceneql.field.tape.tape_ops import DENSITY
 
@@ -39,7 +39,7 @@ MANY = 96
 
 @inlined
 def search_ray(
-    room, i, far, code, parts, k, near, threshold, anywhere, table, state, order, rays, found, queue, met, doubted
+    room, i, far, blocks, parts, near, threshold, anywhere, table, state, order, rays, found, queue, met, doubted
 ):  # fmt: skip
     """``search_packet`` of gathered ray i alone, piece by piece, since most rays among many parts end early."""
     ids = order[4 * LANES :]
@@ -53,12 +53,13 @@ def search_ray(
         room[PX, i], room[PY, i], room[PZ, i] = x + begin * dx, y + begin * dy, z + begin * dz
         room[FAR, i] = end - begin
         kept = keep_on_ray(
-            parts, code[k, 1], code[k, 2], room[PX, i], room[PY, i], room[PZ, i], dx, dy, dz, end - begin, near
+            blocks, parts, room[PX, i], room[PY, i], room[PZ, i], dx, dy, dz, end - begin, near,
+            listed,
         )  # fmt: skip
         if kept > 0:
             beam_of_ray(room, i, own)
             more, met, doubted = search_packet(
-                room, i, i + 1, near, kept, threshold, anywhere, table, state, order, listed, ids, own, 1.0, found,
+                room, i, i + 1, near, kept, threshold, anywhere, table, state, order, listed, ids, own, 0.0, found,
                 queue, met, doubted,
             )  # fmt: skip
             spent += more
@@ -73,15 +74,14 @@ def search_ray(
 
 @inlined
 def roots_apart(
-    code, constants, parts, plan, rays, n, anywhere, found, queue, order, room, table, state, near
+    constants, parts, plan, rays, n, anywhere, found, queue, order, room, table, state, near, blocks
 ):  # fmt: skip
     """``density_roots`` of n gathered rays, each alone: of a hierarchy's parts a ray meets a few, all rays most."""
-    k = plan[ROW_OF]
     threshold = constants[plan[THRESHOLD]]
     spent = met = doubted = 0
     for i in range(n):
         more, met, doubted = search_ray(
-            room, i, room[FAR, i], code, parts, k, near, threshold, anywhere, table, state, order, rays, found, queue,
+            room, i, room[FAR, i], blocks, parts, near, threshold, anywhere, table, state, order, rays, found, queue,
             met, doubted,
         )  # fmt: skip
         spent += more
@@ -89,8 +89,8 @@ def roots_apart(
         j = np.uint64(queue[i])
         t = rays[6, j] + found[FOUND_ROOT, j]
         kept = keep_on_ray(
-            parts, code[k, 1], code[k, 2], rays[0, j] + t * rays[3, j], rays[1, j] + t * rays[4, j],
-            rays[2, j] + t * rays[5, j], rays[3, j], rays[4, j], rays[5, j], 0.0, near,
+            blocks, parts, rays[0, j] + t * rays[3, j], rays[1, j] + t * rays[4, j], rays[2, j] + t * rays[5, j],
+            rays[3, j], rays[4, j], rays[5, j], 0.0, near, order,
         )  # fmt: skip
         polish(near, kept, threshold, rays, queue[i:], 1, room, found)
     return spent, met, doubted
@@ -98,13 +98,14 @@ def roots_apart(
 
 @lean(DENSITY_ROOTS, inner=True)
 def density_roots(
-    code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, state, short, near
+    code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, state, short, near,
+    blocks,
 ):  # fmt: skip
     """First roots of a bundle: (segments examined, rays that may hit, in ``queue``, parts among which they were
     searched); see ``packet_roots_kernels``.
 
     ``short`` becomes the tape with only the parts that reach into the bundle, copied to ``near``, as a DENSITY. Where
-    rays go apart there is no such tape, and their number is -1.
+    rays go apart there is no such tape, and their number is -1; then ``blocks`` are those of the points.
     """
     k = plan[ROW_OF]
     for row in range(code.shape[0]):
@@ -126,7 +127,7 @@ def density_roots(
     if apart:
         kept = -1
         spent, met, doubted = roots_apart(
-            code, constants, parts, plan, rays, n, anywhere, found, queue, order, room, table, state, near
+            constants, parts, plan, rays, n, anywhere, found, queue, order, room, table, state, near, blocks
         )  # fmt: skip
     else:
         short[k, 0], short[k, 1], short[k, 2] = DENSITY, 0, kept

@@ -151,7 +151,7 @@ def first_roots(
     if plan[ROW_OF] >= 0:
         spent, queued, kept = density_roots(
             code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, lanes,
-            short, near_parts,
+            short, near_parts, singles,
         )  # fmt: skip
         if kept >= 0:
             code, parts = short[: code.shape[0]], near_parts

@@ -201,46 +201,6 @@ def beam_of_ray(wide, i, beam):
 
 
 @inlined
-def slab(low, high, from_, inverse):
-    """(enter, leave) of a ray between two planes across an axis, by its place and inverse direction along that."""
-    a, b = (low - from_) * inverse, (high - from_) * inverse
-    return (a, b) if a < b else (b, a)
-
-
-@inlined
-def inverse_of(d):
-    """1/d, of a size with which products are finite where d is 0."""
-    return 1.0 / d if abs(d) > 1e-150 else (1e150 if d >= 0.0 else -1e150)
-
-
-@inlined
-def keep_on_ray(parts, start, stop, x, y, z, dx, dy, dz, far, near):
-    """As ``keep_reaching_skeleton`` for a piece of a single ray: a point, a unit direction and a length."""
-    ix, iy, iz = inverse_of(dx), inverse_of(dy), inverse_of(dz)
-    hair = HAIR * (abs(x) + abs(y) + abs(z) + far)
-    kept = 0
-    i = start
-    while i < stop:
-        if parts[i + 1, part.SHAPE] == part.NODE:
-            x0, x1 = slab(parts[i, 0] - hair, parts[i, 3] + hair, x, ix)
-            y0, y1 = slab(parts[i, 1] - hair, parts[i, 4] + hair, y, iy)
-            z0, z1 = slab(parts[i, 2] - hair, parts[i, 5] + hair, z, iz)
-            enter, leave = max(max(x0, y0), max(z0, -hair)), min(min(x1, y1), min(z1, far + hair))
-            i += part.STRIDE + (int(parts[i, part.RADIUS]) if enter > leave else 0)
-            continue
-        ex, ey, ez = parts[i, 0] - x, parts[i, 1] - y, parts[i, 2] - z
-        along = min(max(ex * dx + ey * dy + ez * dz, 0.0), far)
-        ex, ey, ez = ex - along * dx, ey - along * dy, ez - along * dz
-        reach = parts[i, part.RADIUS] + hair
-        if ex * ex + ey * ey + ez * ez < reach * reach:
-            for j in range(8):
-                near[kept, j] = parts[i, j]
-            kept += 1
-        i += part.STRIDE
-    return kept
-
-
-@inlined
 def reached(beam, x, y, z, radius):
     """(enter, leave, half2): where a ball of a radius about a point overlaps a beam, along its axis (enter > leave:
     nowhere), and radius^2 less the squared distance of the point from the beam."""

@@ -39,7 +39,7 @@ UNIT = 1.2e-7
 _ids, _wide = types.int64[::1], types.float64[:, ::1]
 DENSITY_ROOTS = types.UniTuple(types.int64, 3)(
     types.int32[:, ::1], types.float64[::1], _wide, _ids, _wide, types.int64, types.int64, types.boolean, _wide, _ids,
-    _ids, _wide, types.float32[:, ::1], types.float32[::1], types.int32[:, ::1], _wide
+    _ids, _wide, types.float32[:, ::1], types.float32[::1], types.int32[:, ::1], _wide, types.float32[:, ::1]
 )  # fmt: skip
 density_roots = lazy("sceneql.field.packets.density_bundle_kernels:density_roots", DENSITY_ROOTS)
 
