@@ -54,7 +54,7 @@ class Blobby(Object):
     gives: ClassVar[Mapping[str, Gives]] = MEASURES
 
     skeleton: tuple[Part, ...] = field("Parts of any kind, each with its radius, weight and color.", ())
-    points: Points | None = field("The points of the skeleton, or more of them.", None)
+    points: Points | None = field("The points of the skeleton, or more of them; `{file: cloud.csv}`.", None)
     segments: tuple[tuple[int, int], ...] = field("Pairs of `points`, counted from 0, that are joined.", ())
     radius: LengthOrLengths = field(
         "How far the density of `points` reaches: one for all, or one for each.", "0.3 m", above=0
