@@ -189,7 +189,9 @@ class Blobby(Object):
         solid = reach > 0
         if not solid.any():
             return np.full(3, np.inf), np.full(3, -np.inf)
-        return balls_box(place, skeleton.corners[solid], reach[solid, None])
+        corners = skeleton.corners[solid]
+        points = (corners[:, 1:] == corners[:, :1]).all()
+        return balls_box(place, corners[:, :1] if points else corners, reach[solid, None])
 
     def read(self, output: str, moment: Moment) -> Any:
         """One of its measures."""
