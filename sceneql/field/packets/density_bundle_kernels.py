@@ -31,7 +31,7 @@ from sceneql.field.tape.tape_ops import DENSITY
 
 APART = 0.5
 """Cosine of the angle to the beam's axis below which rays of a bundle count as going apart."""
-FIRST, LONGER = 0.1, 3.0
+FIRST, LONGER = 0.06, 2.0
 """Of the pieces of such a ray: the share of its length that is the first, and how far the others end by the last."""
 MANY = 96
 """Parts that reach into a bundle from which on rays that go apart are each searched among the few in its own reach."""

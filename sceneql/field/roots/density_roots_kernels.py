@@ -131,6 +131,12 @@ def settle_lanes(table, rows, state, room, live, width, looking, left, later, ra
 
 
 @inlined
+def lanes_for(n):
+    """Lanes in which n rays are searched: whole vectors of them, but of a single ray one."""
+    return n if n == 1 else (n + march.VECTOR - 1) // march.VECTOR * march.VECTOR
+
+
+@inlined
 def search_slice(
     table, kept, state, room, live, n, looking, later, threshold, off, drift, off_slope, blur, bend, anywhere,
     rays, found, queue, met, doubted,
@@ -141,7 +147,7 @@ def search_slice(
     left = 0
     width = n
     while width > 0:
-        whole = (width + march.VECTOR - 1) // march.VECTOR * march.VECTOR
+        whole = lanes_for(width)
         # Fewer lanes than a vector holds cost as much as a whole vector.
         enough = width // 4 if width > march.VECTOR else 0
         while looking > enough:
@@ -209,7 +215,7 @@ def search_packet(
                 return spent, met, doubted
             begin = end
             continue
-        whole = (n + march.VECTOR - 1) // march.VECTOR * march.VECTOR
+        whole = lanes_for(n)
         slices.place_lanes(room, live, state, n, whole, fresh, start, end, lowest)
         fresh = False
         rows = 0
