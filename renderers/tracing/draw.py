@@ -22,6 +22,7 @@ from renderers.tracing.solids.packet_choice import lender, packets_for
 from renderers.tracing.sprites import over
 from renderers.tracing.tiles_kernels import choose, reach
 from renderers.tracing.waves import Waves
+from renderers.tracing.waves_kernels import layers_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,12 +33,12 @@ if TYPE_CHECKING:
 class Buffers:
     """Working memory of a picture. Layer 0: what the camera sees; layer 1: what is mirrored or refracted in that."""
 
-    def __init__(self, width: int, height: int, columns: int) -> None:
-        self.shape, count = (width, height, columns), width * height
-        self.records = np.zeros((2, count, COLUMNS), dtype=np.float32)
+    def __init__(self, width: int, height: int, columns: int, layers: int) -> None:
+        self.shape, count = (width, height, columns, layers), width * height
+        self.records = np.zeros((layers, count, COLUMNS), dtype=np.float32)
         self.radiance = np.empty((count, 3), dtype=np.float32)
-        self.visibility = np.zeros((2, count, columns), dtype=np.float32)
-        self.fine = np.zeros((2, count, columns), dtype=np.float32)
+        self.visibility = np.zeros((layers, count, columns), dtype=np.float32)
+        self.fine = np.zeros((layers, count, columns), dtype=np.float32)
         chunks = -(-width // LANES)
         self.planes = np.zeros((height, chunks * (KEYS + columns * WIDE)), dtype=np.float32)
         self.sums = np.zeros((height, chunks * (1 + columns) * LANES), dtype=np.float32)
@@ -72,11 +73,12 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
     scene, rows = pack(frame, tolerance, march)
     width, height = frame.view.size
     columns = FIRST_LIGHT + 2 * int(scene.ints[layout.LIGHT_COUNT])
-    buffers = _buffers(width, height, columns)
+    layers = layers_of(scene)
+    buffers = _buffers(width, height, columns, layers)
     reach(scene, buffers.reached)
     counts: list[tuple[int, int]] = []
     together = None if march else packets_for(frame, tolerance)
-    with_waves = lender(lambda: Waves(scene, together and together(), rows, columns))
+    with_waves = lender(lambda: Waves(scene, together and together(), rows, columns, layers))
 
     def gather(start: int, stop: int) -> None:
         out = buffers.reached, buffers.busy, buffers.records, buffers.radiance, buffers.visibility
@@ -114,7 +116,7 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
 
 def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> None:
     """Filter the visibility of a layer's records into buffers.fine."""
-    width, height, columns = buffers.shape
+    width, height, columns, _ = buffers.shape
     records, visibility, fine = buffers.records[layer], buffers.visibility[layer], buffers.fine[layer]
     marks, planes, sums, means = buffers.chunks, buffers.planes, buffers.sums, buffers.means
 

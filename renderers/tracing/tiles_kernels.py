@@ -105,8 +105,8 @@ def fill_background(scene, start, stop, reached, busy, records, radiance):
         if busy[row, tile] != 0:
             for y in range(start, stop):
                 for k in range(y * width + tile * TILE, y * width + last):
-                    erase(records[0, k])
-                    erase(records[1, k])
+                    for layer in range(len(records)):
+                        erase(records[layer, k])
             busy[row, tile] = 0
         r, g, b = backdrop(u, 0.0)
         for y in range(start, stop):
@@ -130,7 +130,7 @@ def mark_busy(start, stop, width, reached, busy, records, visibility):
         for y in range(start, stop):
             for k in range(y * width + tile * TILE, y * width + min((tile + 1) * TILE, width)):
                 found = found or records[0, k, OWNER] != 0.0 or records[0, k, UNSURE] != 0.0
-                for layer in range(2):
+                for layer in range(len(records)):
                     if records[layer, k, OWNER] != 0.0:
                         for c in range(SKY, SKY + 3):
                             lossy = lossy or not visibility[layer, k, c] == 0.0

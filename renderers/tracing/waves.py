@@ -55,8 +55,9 @@ FEW = 32
 class Waves:
     """A thread's working memory for bands of a picture, at most TILE rows high."""
 
-    def __init__(self, scene: Scene, packets: Packets | None, rows: int, columns: int) -> None:
-        """``packets`` to intersect solids by, or None; ``rows`` of scratch and ``columns`` of visibility."""
+    def __init__(self, scene: Scene, packets: Packets | None, rows: int, columns: int, layers: int) -> None:
+        """``packets`` to intersect solids by, or None; ``rows`` of scratch, ``columns`` of visibility, ``layers`` of
+        records."""
         self.scene, self.packets = scene, packets
         width = -(-int(scene.reals[layout.WIDTH]) // TILE) * TILE
         self.asked = np.zeros((1 + RAYS, layout.ANSWERS)) if packets is None else packets.asked(RAYS)
@@ -74,14 +75,14 @@ class Waves:
         self.ways_met, self.ways_skins = np.zeros((count, 5)), np.zeros((count, 6))
         self.marks, self.same = np.zeros((TILE, width + LANES), np.float32), np.zeros(LANES, np.float32)
         self.edges, self.sums = np.zeros(width * TILE, dtype=np.int64), np.zeros((ROOM, 4))
-        self.own = np.zeros((2, ROOM, COLUMNS), dtype=np.float32)
-        self.found = np.zeros((2, ROOM, columns), dtype=np.float32)
+        self.own = np.zeros((layers, ROOM, COLUMNS), dtype=np.float32)
+        self.found = np.zeros((layers, ROOM, columns), dtype=np.float32)
         self.spares = np.zeros((ROOM, COLUMNS), dtype=np.float32)
 
     def gather(
         self, start: int, stop: int, reached: Array, busy: Array, records: Array, radiance: Array, visibility: Array
     ) -> tuple[int, int]:
-        """Fill rows start..stop: records (2, h w, COLUMNS), radiance (h w, 3), visibility (2, h w, V).
+        """Fill rows start..stop: records (L, h w, COLUMNS), radiance (h w, 3), visibility (L, h w, V) of L layers.
 
         Returns the number of pixels with an undecided root, and with a second record. Radiance is the part that needs
         no visibility. Only in tiles that are ``reached`` rays are followed; those that show something become ``busy``.

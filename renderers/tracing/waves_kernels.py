@@ -14,7 +14,7 @@ from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import describe_by, faded
 from renderers.tracing.record_kernels import OWNER, UNSURE, WEIGHT, erase
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
-from renderers.tracing.solids.intersect_kernels import put_ray, tell, walk
+from renderers.tracing.solids.intersect_kernels import put_ray, tell, told_alone, walk
 from renderers.tracing.solids.surface_kernels import normal_at
 from sceneql.compiled.kernels import kernel
 
@@ -39,6 +39,15 @@ def matte(scene, item):
     s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
     clear = scene.reals[s + layout.TRANSMISSION] > 0.0
     return not clear and sharpness(scene.reals[s + layout.ROUGHNESS]) == 0.0
+
+
+@kernel(_i(SCENE), _nrt=False)
+def layers_of(scene):
+    """How many records pixels need: two, unless no item mirrors or refracts anything."""
+    for item in range(scene.ints[layout.ITEM_COUNT]):
+        if not matte(scene, item):
+            return 2
+    return 1
 
 
 @part
@@ -88,20 +97,26 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
     """
     counter = scratch.shape[0] - 1
     together = asked.shape[1] > layout.ANSWERS
+    alone, last = together and asked[0, layout.ALONE] != 0.0, len(records) - 1
     paths_now = hits_now = dark = 0
     for i in range(count):
         k, ray = at[i], asked[1 + i]
-        first, second = records[0, k], records[1, k]
-        erase(first)
-        erase(second)
-        tell(scratch, asked, 1 + i)
+        first, second = records[0, k], records[last, k]
+        for layer in range(last + 1):
+            erase(records[layer, k])
         item = -1
         plain = scene.ints[layout.HAS_THIN] == 0
         if plain:
             scratch[counter, 0] = 0.0
-            t, item, _ = walk(scene, scratch, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5], 0.0, np.inf, False)
+            told, t, item = False, np.inf, -1
+            if alone:
+                told, t, item = told_alone(scratch, asked, 1 + i)
+            if not told:
+                tell(scratch, asked, 1 + i)
+                t, item, _ = walk(scene, scratch, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5], 0.0, np.inf, False)
             plain = item < 0 or matte(scene, item)
         if not plain:
+            tell(scratch, asked, 1 + i)
             path = paths[paths_now]
             begin(path, ray, cones[i])
             advance(scene, scratch, path, first, second, spares[paths_now])
@@ -161,7 +176,7 @@ def advance_paths(scene, scratch, asked, paths, at, records, spares):
             k = at[i]
             tell(scratch, asked, row)
             row += 1
-            advance(scene, scratch, paths[i], records[0, k], records[1, k], spares[i])
+            advance(scene, scratch, paths[i], records[0, k], records[len(records) - 1, k], spares[i])
             dark += paths[i, DARK] > 0.0
     return dark
 
@@ -205,7 +220,7 @@ def end_pixels(gathered, at, records, radiance):
     doubted = seconds = 0
     for i in range(gathered.shape[0]):
         doubted += gathered[i, 3] > 0.0
-        seconds += records[1, at[i], OWNER] > 0.0
+        seconds += len(records) > 1 and records[len(records) - 1, at[i], OWNER] > 0.0
         records[0, at[i], UNSURE] = gathered[i, 3]
         for c in range(3):
             radiance[at[i], c] = gathered[i, c]
@@ -225,7 +240,7 @@ def look_from(scene, scratch, asked, ways, first, last, at, records, visibility)
             return i
         k = at[i]
         number = sample_of(k % width, k // width)
-        for layer in range(2):
+        for layer in range(len(records)):
             if records[layer, k, OWNER] > 0.0:
                 look_around(scene, scratch, asked, ways, records[layer, k], number, 1, 1, visibility[layer, k])
     return last

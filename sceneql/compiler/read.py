@@ -19,6 +19,7 @@ from sceneql.compiler import limits, paint, values
 from sceneql.compiler.corners import by_corners
 from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.names import Names
+from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.problems import validated
 from sceneql.compiler.texts import read_text
@@ -189,7 +190,10 @@ class Reader:
     # --- one method a shape ---
 
     def _quantity(self, node: Node, base: Any, mark: kinds.Quantity, what: str) -> Any:
-        value = self._some(values.read_value(node, mark, what, self.names, self.found))
+        if names_a_file(node, mark):
+            value = self._some(read_numbers(node, mark, what, self.folder, self.files, self.found))
+        else:
+            value = self._some(values.read_value(node, mark, what, self.names, self.found))
         if base is kinds.Value:
             return value
         if not value.constant:

@@ -103,9 +103,11 @@ def balls_box(place: Floats, centers: Any, radii: Any) -> tuple[Floats, Floats]:
     """Low and high corner (3,) of the world box around mapped balls: centers (..., 3), radii (...)."""
     import numpy as np
 
-    middle = apply(place, centers).reshape(-1, 3)
+    middle = apply(place, np.reshape(centers, (-1, 3)))
     reach = np.broadcast_to(radii, np.shape(centers)[:-1]).reshape(-1, 1) * np.linalg.norm(place[:, :3], axis=1)
-    return (middle - reach).min(axis=0), (middle + reach).max(axis=0)
+    # By columns, in a row of numbers each: a reduction along rows of three takes ten times as long.
+    columns, reaches = np.ascontiguousarray(middle.T), np.ascontiguousarray(reach.T)
+    return (columns - reaches).min(axis=1), (columns + reaches).max(axis=1)
 
 
 def uniform_scale(place: Floats) -> float:

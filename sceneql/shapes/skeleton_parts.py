@@ -192,6 +192,8 @@ def refuse_rounded(shape: Shape, place: Value, radius: Value, moment: Moment) ->
     """
     import numpy as np
 
+    if (shape.corners[:, 1:] == shape.corners[:, :1]).all():
+        return
     longs = np.ptp(shape.corners, axis=1).max(axis=1)
     away, wide, least = np.abs(shape.corners).max(axis=(1, 2)), shape.radii.max(axis=1), shape.radii.min(axis=1)
     if len(longs) and not shape.groups.any():  # pieces of one curve

@@ -177,7 +177,7 @@ def look_from_samples(scene, scratch, asked, ways, first, last, each, edges, rec
         if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         x, y = edges[i // each] % width, edges[i // each] // width
-        for layer in range(2):
+        for layer in range(len(own)):
             if own[layer, i, OWNER] == 0.0:
                 continue
             if not borrow(records[layer], visibility[layer], own[layer, i], x, y, width, height, found[layer, i]):
@@ -199,7 +199,7 @@ def add_samples(scene, each, used, whole, edges, records, radiance, gathered, ow
         plain = sums[p, 3] != 0.0 and records[0, k, UNSURE] == 0.0
         for i in range(p * each, (p + 1) * each):
             r, g, b = 0.0, 0.0, 0.0
-            for layer in range(2):
+            for layer in range(len(own)):
                 if own[layer, i, OWNER] != 0.0:
                     dr, dg, db = shade(scene, own[layer, i], found[layer, i])
                     r, g, b = r + dr, g + dg, b + db

@@ -128,7 +128,7 @@ def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
             if busy[y // TILE, x // TILE] == 0:
                 continue
             k = y * width + x
-            for layer in range(2):
+            for layer in range(len(records)):
                 if records[layer, k, OWNER] == 0.0:
                     continue
                 settle(

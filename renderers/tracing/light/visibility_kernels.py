@@ -14,7 +14,7 @@ from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, SKY_CO
 from renderers.tracing.light.through_kernels import CLEAR, clearness, go_through
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, SURFACE, TINT, start_of
 from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, part
-from renderers.tracing.solids.intersect_kernels import ask
+from renderers.tracing.solids.intersect_kernels import answer, ask
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -63,16 +63,21 @@ def sky_loss(scene, scratch, asked, ways, record, sample):
     Where there is no sky that is what surfaces around reflect, less than zero. In TELLING a way that meets one of
     these is listed in ``ways``, and its loss is still to be added.
     """
-    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
-    ax, ay, az, bx, by, bz = across(nx, ny, nz)
-    u, v = SKY_DISK[sample, 0], SKY_DISK[sample, 1]
-    w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
-    dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
-    x, y, z = start_of(record)
-    t, item, _ = ask(scene, scratch, asked, x, y, z, dx, dy, dz, np.inf, False)
+    mode = asked[0, layout.MODE]
+    if mode == layout.TELLING:
+        ray = asked[int(asked[0, layout.NEXT])]
+        x, y, z, dx, dy, dz = ray[0], ray[1], ray[2], ray[3], ray[4], ray[5]
+        t, item, _ = answer(scene, scratch, asked, False)
+    else:
+        nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+        ax, ay, az, bx, by, bz = across(nx, ny, nz)
+        u, v = SKY_DISK[sample, 0], SKY_DISK[sample, 1]
+        w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
+        dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
+        x, y, z = start_of(record)
+        t, item, _ = ask(scene, scratch, asked, x, y, z, dx, dy, dz, np.inf, False)
     if item < 0:
         return 0.0, 0.0, 0.0
-    mode = asked[0, layout.MODE]
     if mode == layout.ASKING:  # found when rays have answers
         asked[0, layout.OPEN] = 1.0
         return 0.0, 0.0, 0.0
@@ -152,6 +157,10 @@ def shadow_sample(scene, scratch, asked, record, l, sample, jitter):
     """
     if not facing(scene, record, l):
         return 1.0, 0.0
+    if asked[0, layout.MODE] == layout.TELLING:
+        ray = asked[int(asked[0, layout.NEXT])]
+        blocker, _, share = answer(scene, scratch, asked, True)
+        return share, shadow_width(scene, l, ray[0], ray[1], ray[2], blocker) if blocker < np.inf else 0.0
     x, y, z = start_of(record)
     ax, ay, az, bx, by, bz = across(float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2]))
     u, v = 2.0 * jitter * record[RADIUS] * JITTER[sample, 0], 2.0 * jitter * record[RADIUS] * JITTER[sample, 1]

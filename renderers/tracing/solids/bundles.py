@@ -10,6 +10,7 @@ from renderers.tracing import layout
 from renderers.tracing.solids.bundles_kernels import RAYS, meet_asked
 from renderers.tracing.solids.skins_kernels import LANES, skin_hits
 from sceneql.field.packets.packets import Memory, lined
+from sceneql.field.packets.point_blocks_kernels import BLOCKS
 from sceneql.field.roots.clips import clip_rows, clips_of
 from sceneql.field.tape.own_coordinates import in_own_coordinates
 from sceneql.frame import Implicit
@@ -42,7 +43,15 @@ class Packets:
         tapes += [shape.paint for i in solids if isinstance(shape := shapes[i], Implicit) and shape.paint is not None]
         rows, parts = max(len(tape.code) for tape in tapes), max(len(tape.parts) for tape in tapes)
         memory = lined((rows, LANES)), lined((rows, 3, LANES)), lined((3, LANES))
-        self.of_skins = *memory, np.empty((2, rows, 4), dtype=np.int32), np.empty((parts, 8))
+        bases = np.full(len(shapes), -1)
+        blocks = [(i, one.blocks) for i, one in zip(solids, self.memories, strict=True) if one.blocks is not None]
+        at = 0
+        for i, one in blocks:
+            bases[i], at = at, at + one.shape[1]
+        every = np.concatenate([np.zeros((BLOCKS, 1), dtype=np.float32), *(one for _, one in blocks)], axis=1)
+        bases[bases >= 0] += 1
+        listed = np.empty(parts, dtype=np.int64)
+        self.of_skins = *memory, np.empty((2, rows, 4), dtype=np.int32), np.empty((parts, 8)), every, bases, listed
 
     def asked(self, rays: int) -> Floats:
         """An empty list of rays (1 + rays, columns), see scene_kernels.ASKED."""

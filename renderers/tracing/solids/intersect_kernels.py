@@ -119,6 +119,22 @@ def tell(scratch, asked, row):
 
 
 @part
+def told_alone(scratch, asked, row):
+    """(whether a listed ray's first hit is told by its row, its t, its item), where packets know all items.
+
+    It is not where a root is undecided, or where two items are hit at the same t: the walk meets one of them first.
+    """
+    nearest, of, told = NONE, 0, True
+    for column in range(layout.ANSWERS, asked.shape[1]):
+        t = asked[row, column]
+        told = told and t == t and (t != nearest or t == NONE)
+        if 0.0 <= t < nearest:
+            nearest, of = t, int(asked[0, column])
+    found = int(scratch[scratch.shape[0] - 2 - of, layout.ITEM_OF]) if nearest < NONE else -1
+    return told, nearest, found
+
+
+@part
 def join(scene, scratch, asked, row, far, anywhere):
     """(whether a listed ray is told by its row alone, what ``walk`` would return for it).
 
@@ -154,38 +170,47 @@ def join(scene, scratch, asked, row, far, anywhere):
     return True, nearest, found, light
 
 
+@kernel(MET(SCENE, SCRATCH, ASKED, types.boolean), _nrt=False, inner=True)
+def answer(scene, scratch, asked, anywhere):
+    """As ``walk`` for the next ray of the list, by its answers."""
+    row = int(asked[0, layout.NEXT])
+    asked[0, layout.NEXT] = row + 1
+    ray, far, last = asked[row], asked[row, layout.FAR], scratch.shape[0] - 1
+    told, t, item, light = join(scene, scratch, asked, row, far, anywhere)
+    if told:
+        return t, item, light
+    tell(scratch, asked, row)
+    t, item, light = walk(scene, scratch, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5], 0.0, far, anywhere)
+    scratch[last, layout.TOLD] = 0.0
+    return t, item, light
+
+
 @kernel(MET(SCENE, SCRATCH, ASKED, *RAY[1:], types.boolean), _nrt=False, inner=True)
 def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
     """As ``walk`` from the ray's origin on, in the mode of ``asked``: in ASKING an open ray is listed and misses."""
     mode = asked[0, layout.MODE]
     if mode == layout.PLAIN:
         return walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
+    if mode == layout.TELLING:
+        return answer(scene, scratch, asked, anywhere)
     row = int(asked[0, layout.NEXT])
     asked[0, layout.NEXT] = row + 1
     last = scratch.shape[0] - 1
-    if mode == layout.ASKING and asked[0, layout.ALONE] != 0.0:
+    if asked[0, layout.ALONE] != 0.0:
         asked[row, layout.REST_AT], asked[row, layout.REST_ITEM], asked[row, layout.REST_LIGHT] = NONE, -1.0, 1.0
         asked[0, layout.OPEN] = 1.0
         put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
         return NONE, -1, 1.0
-    if mode == layout.ASKING:
-        scratch[last, layout.TOLD] = layout.PROBING
-        t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
-        reached = scratch[last, layout.TOLD]
-        scratch[last, layout.TOLD] = 0.0
-        asked[row, layout.REST_AT], asked[row, layout.REST_ITEM], asked[row, layout.REST_LIGHT] = t, item, light
-        if reached < layout.REACHED:
-            asked[row, layout.WANT] = layout.NOTHING
-            return t, item, light
-        if reached == layout.BEYOND:
-            asked[row, layout.REST_ITEM] = layout.WALKED
-        asked[0, layout.OPEN] = 1.0
-        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
-        return NONE, -1, 1.0
-    told, t, item, light = join(scene, scratch, asked, row, far, anywhere)
-    if told:
-        return t, item, light
-    tell(scratch, asked, row)
+    scratch[last, layout.TOLD] = layout.PROBING
     t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
+    reached = scratch[last, layout.TOLD]
     scratch[last, layout.TOLD] = 0.0
-    return t, item, light
+    asked[row, layout.REST_AT], asked[row, layout.REST_ITEM], asked[row, layout.REST_LIGHT] = t, item, light
+    if reached < layout.REACHED:
+        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.NOTHING)
+        return t, item, light
+    if reached == layout.BEYOND:
+        asked[row, layout.REST_ITEM] = layout.WALKED
+    asked[0, layout.OPEN] = 1.0
+    put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
+    return NONE, -1, 1.0

@@ -21,15 +21,16 @@ LANES = 64
 @lean(
     types.void(
         SCENE, types.int64[::1], _rows, _rows, _rows, types.float64[:, :, ::1], _rows, types.int32[:, :, ::1],
-        _rows,
+        _rows, types.float32[:, ::1], types.int64[::1], types.int64[::1],
     )
 )  # fmt: skip
-def skin_hits(scene, hits, met, skins, registers, slopes, points, codes, near):
+def skin_hits(scene, hits, met, skins, registers, slopes, points, codes, near, blocks, bases, listed):
     """Normals and colors of ``hits`` into ``skins`` (n, 6), as ``skin_kernels.skin`` finds them one by one.
 
     Hit i is of item ``met[i, 1]``, of a solid, at the point ``met[i, 2:5]``. The hits of an item come to stand in a row
     in the list. ``registers`` (rows, LANES), ``slopes`` (rows, 3, LANES), ``points`` (3, LANES),
-    ``codes`` and ``near``, as ``near_gradient_kernels.gradients`` has them, are working memory.
+    ``codes``, ``near`` and ``listed``, as ``near_gradient_kernels.gradients`` has them, are working memory. In
+    ``blocks`` those of the shapes' skeletons stand where ``bases`` tell by shape.
     """
     start = 0
     while start < len(hits):
@@ -44,7 +45,8 @@ def skin_hits(scene, hits, met, skins, registers, slopes, points, codes, near):
                 n += 1
         k = scene.ints[layout.ITEMS + 4 * int(item) + layout.REALS_AT]
         code, constants, parts = tape_of(scene, k)
-        gradients(code, constants, parts, registers, slopes, points, codes, near, n)
+        base = bases[scene.ints[layout.ITEMS + 4 * int(item) + layout.SHAPE]]
+        gradients(code, constants, parts, registers, slopes, points, codes, near, blocks, base, listed, n)
         slope = slopes[code.shape[0] - 1]
         for j in range(n):
             own = skins[hits[start + j]]

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.field.packets import packet_rows as rows
+from sceneql.field.packets import point_blocks_kernels as blocks
+from sceneql.field.packets.packet_kernels import VECTOR
 from sceneql.field.skeleton.skeleton import CURVE, NODE, TRIANGLE
 
 if TYPE_CHECKING:
@@ -73,6 +75,27 @@ def skeleton_columns(parts: Floats) -> NDArray[float32]:
         two[rows.GX : rows.NZ + 1, flat] = np.concatenate([vector.T for vector in flats])[:, flat]
     out[:, np.repeat(shape == NODE, 2)] = 0.0
     one[rows.REACH, shape == NODE] = two[rows.REACH] = -1.0
+    return _single(out)
+
+
+def point_blocks(parts: Floats) -> NDArray[float32]:
+    """The points of a SKELETON of nothing else, rows (r, 8), as point_blocks_kernels has them."""
+    places = np.flatnonzero(parts[1::2, 6] != NODE) * 2
+    points = parts[places]
+    reach = points[:, 6] + blocks.ROUNDED * (np.abs(points[:, :3]).sum(axis=1) + points[:, 6])
+    n = len(points)
+    levels = [(points[:, :3] - reach[:, None], points[:, :3] + reach[:, None])]
+    for _ in range(2):
+        starts = np.arange(0, len(levels[-1][0]), VECTOR)
+        low, high = levels[-1]
+        levels.append((np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)))
+    sizes = [-(-len(low) // VECTOR) * VECTOR for low, _ in levels]
+    out = np.zeros((blocks.BLOCKS, sum(sizes)))
+    out[:3, :n], out[blocks.REACH2, :n], out[blocks.ROW, :n] = points[:, :3].T, reach**2, places
+    out[blocks.COUNT, 0] = n
+    for start, (low, high) in zip((sizes[0], sizes[0] + sizes[1]), levels[1:], strict=True):
+        room = blocks.ROUNDED * (np.abs(low) + np.abs(high))
+        out[:3, start : start + len(low)], out[3:, start : start + len(low)] = (low - room).T, (high + room).T
     return _single(out)
 
 

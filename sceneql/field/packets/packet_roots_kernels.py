@@ -147,12 +147,14 @@ def first_roots(
     certified = left = 0
     near_settled = False
     cut = other.shape[0] > 0
+    kept = 0
     if plan[ROW_OF] >= 0:
-        spent, queued = density_roots(
+        spent, queued, kept = density_roots(
             code, constants, parts, plan, rays, count, groups, anywhere, found, queue, order, room, table, lanes,
-            short, near_parts,
+            short, near_parts, singles,
         )  # fmt: skip
-        code, parts = short[: code.shape[0]], near_parts
+        if kept >= 0:
+            code, parts = short[: code.shape[0]], near_parts
     elif plan[POLYNOMIAL] >= 0:
         spent, queued = polynomial_roots(code, constants, rays, count, anywhere, found, queue, plan, order, room, flat)
     else:
@@ -168,7 +170,7 @@ def first_roots(
             near = short[length : length + rows]
             certified = certify_queued(near, constants, near_parts, scratch, rays, queue, queued, end, anywhere, found)
     row, late = (FOUND_HIGH, 0.0) if anywhere else (FOUND_ROOT, SETTLED)
-    boxed = plan[ROW_OF] >= 0 and not anywhere and queued > 0
+    boxed = plan[ROW_OF] >= 0 and kept >= 0 and not anywhere and queued > 0
     if cut and plan[POLYNOMIAL] >= 0 and queued > MANY:
         enclose_hits(rays, count, found, row, late, room)
         boxed = True

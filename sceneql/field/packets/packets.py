@@ -11,7 +11,7 @@ import numpy as np
 
 from sceneql.field.packets import packet_roots_kernels, ray_rows
 from sceneql.field.packets.packet_kernels import LANES, VECTOR, WIDTH
-from sceneql.field.packets.packet_parts import density_columns, skeleton_columns
+from sceneql.field.packets.packet_parts import density_columns, point_blocks, skeleton_columns
 from sceneql.field.packets.packet_roots_kernels import GROUP
 from sceneql.field.packets.packet_rows import PART
 from sceneql.field.packets.slab_kernels import BEAM, OCTET
@@ -19,7 +19,7 @@ from sceneql.field.roots import density_march_kernels, density_roots_kernels, de
 from sceneql.field.roots.polynomial_kernels import ABREAST, DEGREES, POLYNOMIAL
 from sceneql.field.roots.polynomial_steps_kernels import ROWS, C
 from sceneql.field.tape.plans import degrees_of, density_of, places_of, tape_of_rows, without_factor
-from sceneql.field.tape.tape_ops import DENSITY, MAX, OF_PARTS
+from sceneql.field.tape.tape_ops import DENSITY, MAX, OF_PARTS, SKELETON
 from sceneql.field.tape.tape_solid import scratch
 
 if TYPE_CHECKING:
@@ -141,6 +141,11 @@ class Memory:
         enclosed = plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0
         # A tape of an exact form needs no enclosures.
         self.singles = single_parts(tape) if enclosed else lined((PART, VECTOR), single)
+        self.blocks: NDArray[float32] | None = None
+        """Of a skeleton of points, as point_blocks_kernels has it."""
+        own = plan[density_roots_kernels.ROW_OF]
+        if own >= 0 and tape.code[own, 0] == SKELETON:
+            self.singles = self.blocks = point_blocks(tape.parts)
         beams, doubles = lined((BEAM, -(-count // GROUP) + VECTOR)), lined((rows, LANES))
         near = np.zeros((2 * rows, 4), dtype=np.int32), lined(self.singles.shape, single), lined(tape.parts.shape)
         if enclosed:

@@ -189,6 +189,18 @@ def beam_within(wide, first, stop, beam, spare, own):
 
 
 @inlined
+def beam_of_ray(wide, i, beam):
+    """Make the beam around ray i alone, and set its BEHIND and STRETCH."""
+    size = wide[FAR, i]
+    for axis in range(3):
+        beam[ORIGIN + axis], beam[WAY + axis] = wide[PX + axis, i], wide[DX + axis, i]
+        size += abs(wide[PX + axis, i])
+    wide[BEHIND, i], wide[STRETCH, i] = 0.0, 1.0
+    beam[RADIUS_OF] = beam[SPREAD] = HAIR * size
+    beam[LOW], beam[HIGH] = -HAIR * size, wide[FAR, i] + HAIR * size
+
+
+@inlined
 def reached(beam, x, y, z, radius):
     """(enter, leave, half2): where a ball of a radius about a point overlaps a beam, along its axis (enter > leave:
     nowhere), and radius^2 less the squared distance of the point from the beam."""

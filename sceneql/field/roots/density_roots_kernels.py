@@ -37,9 +37,9 @@ SURELY = 1.0 - 1.0e-9
 UNIT = 1.2e-7
 """Two half units in the last place."""
 _ids, _wide = types.int64[::1], types.float64[:, ::1]
-DENSITY_ROOTS = types.UniTuple(types.int64, 2)(
+DENSITY_ROOTS = types.UniTuple(types.int64, 3)(
     types.int32[:, ::1], types.float64[::1], _wide, _ids, _wide, types.int64, types.int64, types.boolean, _wide, _ids,
-    _ids, _wide, types.float32[:, ::1], types.float32[::1], types.int32[:, ::1], _wide
+    _ids, _wide, types.float32[:, ::1], types.float32[::1], types.int32[:, ::1], _wide, types.float32[:, ::1]
 )  # fmt: skip
 density_roots = lazy("sceneql.field.packets.density_bundle_kernels:density_roots", DENSITY_ROOTS)
 
@@ -131,6 +131,12 @@ def settle_lanes(table, rows, state, room, live, width, looking, left, later, ra
 
 
 @inlined
+def lanes_for(n):
+    """Lanes in which n rays are searched: whole vectors of them, but of a single ray one."""
+    return n if n == 1 else (n + march.VECTOR - 1) // march.VECTOR * march.VECTOR
+
+
+@inlined
 def search_slice(
     table, kept, state, room, live, n, looking, later, threshold, off, drift, off_slope, blur, bend, anywhere,
     rays, found, queue, met, doubted,
@@ -141,7 +147,7 @@ def search_slice(
     left = 0
     width = n
     while width > 0:
-        whole = (width + march.VECTOR - 1) // march.VECTOR * march.VECTOR
+        whole = lanes_for(width)
         # Fewer lanes than a vector holds cost as much as a whole vector.
         enough = width // 4 if width > march.VECTOR else 0
         while looking > enough:
@@ -182,12 +188,13 @@ def densest(spans, m, start, end):
 
 @inlined
 def search_packet(
-    room, first, stop, near, kept, threshold, anywhere, table, state, live, order, rays, beam, lowest, found, queue,
+    room, first, stop, near, kept, threshold, anywhere, table, state, live, order, rays, own, lowest, found, queue,
     met, doubted,
 ):  # fmt: skip
-    """First roots of rays first..stop-1 of a gathered bundle: (segments examined, hits, undecided), see ``note``."""
-    own = room[slices.OWN_ROW, : beams.BEAM]
-    beams.beam_within(room, first, stop, beam, room[slices.SPARE :], own)
+    """First roots of rays first..stop-1 of a gathered bundle: (segments examined, hits, undecided), see ``note``.
+
+    ``own`` is the beam around them, ``lowest`` the least cosine between its axis and a ray.
+    """
     spans = room[slices.SPANS :]
     m = beams.list_parts(near, kept, own, spans, order)
     n = stop - first
@@ -195,7 +202,7 @@ def search_packet(
         live[i] = first + i
     spent = 0
     fresh = True
-    begin = beam[beams.LOW]
+    begin = own[beams.LOW]
     leveled, level = 0.0, INFINITE
     while n > 0:
         start, end = beams.next_slice(spans, m, begin)
@@ -208,7 +215,7 @@ def search_packet(
                 return spent, met, doubted
             begin = end
             continue
-        whole = (n + march.VECTOR - 1) // march.VECTOR * march.VECTOR
+        whole = lanes_for(n)
         slices.place_lanes(room, live, state, n, whole, fresh, start, end, lowest)
         fresh = False
         rows = 0
@@ -231,7 +238,7 @@ def search_packet(
                 stiffer += weight * steep * steep
                 if rows == table.shape[0]:
                     return spent, met, leave_undecided(room, live, n, rays, found, queue, doubted)
-        reach = min(end, beam[beams.HIGH]) - start + 2.0 * own[beams.RADIUS_OF]
+        reach = min(end, own[beams.HIGH]) - start + 2.0 * own[beams.RADIUS_OF]
         off, drift, off_slope, blur = rounding(rows, bulk, bend, stiff, stiffer, negative, reach, threshold)
         if slices.reach_threshold(state, whole, F(threshold), off, drift):
             slices.tighten(table, rows, state, whole, F(threshold), off, drift)

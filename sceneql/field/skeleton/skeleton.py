@@ -133,13 +133,15 @@ class Skeleton:
         rows[places + 1, :3], rows[places + 1, 3] = corners[order, 2], radii[order, 1]
         rows[places + 1, 4], rows[places + 1, 5] = self.kernel, self.groups[order]
         rows[places + 1, 6], rows[places + 1, 7] = shapes[order], condition[order]
-        for size in sizes:
+        # The boxes of a level are those of its children together, the smallest first
+        for size in sizes[::-1]:
             starts = np.arange(0, n, size)
+            within = np.arange(0, len(low), BRANCHES)
+            low, high = np.minimum.reduceat(low, within), np.maximum.reduceat(high, within)
             nodes = 2 * (starts + sum(starts // other + (other > size) for other in sizes))
             ends = np.minimum(starts + size, n)
             behind = 2 * (ends + sum(-(-ends // other) for other in sizes))
-            rows[nodes, :3] = np.minimum.reduceat(low, starts)
-            rows[nodes, 3:6] = np.maximum.reduceat(high, starts)
+            rows[nodes, :3], rows[nodes, 3:6] = low, high
             rows[nodes, 6], rows[nodes + 1, 6] = behind - nodes - 2, NODE
         return rows
 
@@ -153,7 +155,7 @@ def plain_points(rows: Floats) -> Floats | None:
     first, second = rows[::2], rows[1::2]
     part = second[:, 6] != NODE
     first, second = first[part], second[part]
-    alone = len(np.unique(second[:, 5])) == len(second)
+    alone = len(second) == 0 or int(np.bincount(second[:, 5].astype(np.int64)).max()) == 1
     if not alone or (second[:, 4] != 0).any() or (second[:, 6] != SEGMENT).any() or (first[:, 6] != second[:, 3]).any():
         return None
     return first

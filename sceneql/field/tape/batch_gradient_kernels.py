@@ -122,9 +122,14 @@ def wave_slopes(op, a, slope_a, slope, n):
 
 @lean(f"void({BATCH}, float64[:, :, ::1], int64)")
 def differentiate(code, constants, parts, registers, slope, n):
-    """Gradients into ``slope`` (rows, 3, LANES), those of f in its row of the last operation."""
+    """Gradients into ``slope`` (rows, 3, LANES), those of f in its row of the last operation.
+
+    Those of rows that KEEP are there.
+    """
     for k in range(code.shape[0]):
         op = code[k, 0]
+        if op == ops.KEEP:
+            continue
         left = code[k, 1]
         right = code[k, 2]
         out = slope[k]

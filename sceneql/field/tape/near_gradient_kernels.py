@@ -1,7 +1,10 @@
 # mypy: ignore-errors
-"""Gradients of a tape at a few points close together: densities are sums over the parts in their reach alone."""
+"""Gradients of a tape at a few points close together: densities are sums over the parts in their reach alone, and
+skeletons are not asked for values that no slope depends on."""
 
 from sceneql.compiled.kernels import inlined, lean
+from sceneql.field.packets.point_blocks_kernels import list_on_ray
+from sceneql.field.skeleton.skeleton_kernels import part_gradient
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.batch_gradient_kernels import differentiate
 from sceneql.field.tape.batch_kernels import BATCH, evaluate
@@ -21,6 +24,36 @@ def many_points(code):
             return False
         found = found or (code[k, 0] == ops.DENSITY and code[k, 2] - code[k, 1] >= MANY)
     return found
+
+
+@inlined
+def slopes_alone(code, rest):
+    """Copy a tape to ``rest`` (rows, 4), and make KEEP of the skeletons in it whose values no gradient depends on.
+
+    These are values that are added up, and multiplied by constants, and nothing else.
+    """
+    rows = code.shape[0]
+    for k in range(rows):
+        rest[k, 0] = 0
+    for k in range(rows - 1, -1, -1):
+        op, left, right = code[k, 0], code[k, 1], code[k, 2]
+        if op == ops.ADD or op == ops.SUB or op == ops.NEG or op == ops.COPY:
+            needed = rest[k, 0] != 0
+        elif op == ops.MUL and (code[left, 0] == ops.CONSTANT or code[right, 0] == ops.CONSTANT):
+            needed = rest[k, 0] != 0
+        else:
+            needed = True
+        if op == ops.DENSITY or op == ops.SKELETON:
+            left, right = code[k, 3], code[k, 3] + 1
+            rest[code[k, 3] + 2, 0] = 1
+        if needed and not (op == ops.CONSTANT or op == ops.X or op == ops.Y or op == ops.Z):
+            rest[left, 0] = rest[right, 0] = 1
+    for k in range(rows):
+        idle = code[k, 0] == ops.SKELETON and rest[k, 0] == 0
+        for column in range(4):
+            rest[k, column] = code[k, column]
+        if idle:
+            rest[k, 0] = ops.KEEP
 
 
 @inlined
@@ -55,16 +88,56 @@ def keep_near(parts, start, stop, x, y, z, n, near, kept):
     return kept
 
 
-@lean(f"void({BATCH}, float64[:, :, ::1], float64[:, ::1], int32[:, :, ::1], float64[:, ::1], int64)", inner=True)
-def gradients(code, constants, parts, registers, slope, points, codes, near, n):
+@inlined
+def skeleton_slopes(code, constants, parts, registers, slope, rest, blocks, base, listed, n):
+    """``differentiate`` of a tape with one skeleton, of points in ``blocks``: at each point by those in reach alone."""
+    rows = code.shape[0]
+    row = 0
+    for k in range(rows):
+        row = k if code[k, 0] == ops.SKELETON else row
+    differentiate(code[:row], constants, parts, registers, slope, n)
+    p = code[row, 3]
+    for i in range(n):
+        x, y, z = registers[p, i], registers[p + 1, i], registers[p + 2, i]
+        kept = list_on_ray(blocks, base, x, y, z, 1.0, 0.0, 0.0, 0.0, listed)
+        u = v = w = 0.0
+        for j in range(kept):
+            _, gx, gy, gz = part_gradient(parts, code[row, 1] + listed[j], x, y, z)
+            u, v, w = u + gx, v + gy, w + gz
+        for axis in range(3):
+            slope[row, axis, i] = u * slope[p, axis, i] + v * slope[p + 1, axis, i] + w * slope[p + 2, axis, i]
+    for k in range(rows):
+        for column in range(4):
+            rest[k, column] = code[k, column]
+        if k <= row:
+            rest[k, 0] = ops.KEEP
+    differentiate(rest, constants, parts, registers, slope, n)
+
+
+@lean(
+    f"void({BATCH}, float64[:, :, ::1], float64[:, ::1], int32[:, :, ::1], float64[:, ::1], float32[:, ::1], int64, "
+    "int64[::1], int64)",
+    inner=True,
+)
+def gradients(code, constants, parts, registers, slope, points, codes, near, blocks, base, listed, n):
     """Gradients at n ``points`` (3, LANES) into the last of ``slope`` (rows, 3, LANES), bit for bit as of all parts.
 
-    ``registers`` (rows, LANES), ``codes`` (2, rows, 4) and ``near`` (parts, 8) are working memory.
+    Of a tape with one skeleton, of points alone, ``blocks`` from column ``base`` on are as point_blocks_kernels has
+    them; else ``base`` is below 0. ``registers`` (rows, LANES), ``codes`` (2, rows, 4), ``near`` (parts, 8) and
+    ``listed`` (parts,) are working memory.
     """
     rows = code.shape[0]
     if not many_points(code):
-        evaluate(code, constants, parts, registers, points, n)
-        differentiate(code, constants, parts, registers, slope, n)
+        rest = codes[0, :rows]
+        slopes_alone(code, rest)
+        for k in range(rows):
+            for i in range(n if rest[k, 0] == ops.KEEP else 0):
+                registers[k, i] = 1.0
+        evaluate(rest, constants, parts, registers, points, n)
+        if base >= 0:
+            skeleton_slopes(code, constants, parts, registers, slope, rest, blocks, base, listed, n)
+        else:
+            differentiate(code, constants, parts, registers, slope, n)
         return
     rest, whole = codes[0, :rows], codes[1, :rows]
     for k in range(rows):

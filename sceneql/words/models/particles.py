@@ -63,7 +63,7 @@ class Particles(Model):
 
     list: dict[str, Particle] | None = field("Particles by name.", None)
     of: kinds.ObjectRef | None = field("The object that is the particle, and that it drives.", None)
-    positions: kinds.Points | None = field("Where particles start, when they need no names.", None)
+    positions: kinds.Points | None = field("Where particles start, when they need no names; `{file: cloud.csv}`.", None)
     fill: Fill | None = field("An object that they fill at the start.", None)
     emit: Emit | None = field("A source from which they come.", None)
     mass: kinds.FixedMass = field("Mass of each that is not listed.", "1 kg", above=0)

@@ -56,7 +56,7 @@ class Blobby(Object):
     gives: ClassVar[Mapping[str, Gives]] = MEASURES
 
     skeleton: tuple[Part, ...] = field("Parts of any kind, each with its radius, weight and color.", ())
-    points: Points | None = field("The points of the skeleton, or more of them.", None)
+    points: Points | None = field("The points of the skeleton, or more of them; `{file: cloud.csv}`.", None)
     segments: tuple[tuple[int, int], ...] = field("Pairs of `points`, counted from 0, that are joined.", ())
     radius: LengthOrLengths = field(
         "How far the density of `points` reaches: one for all, or one for each.", "0.3 m", above=0
@@ -191,7 +191,9 @@ class Blobby(Object):
         solid = reach > 0
         if not solid.any():
             return np.full(3, np.inf), np.full(3, -np.inf)
-        return balls_box(place, skeleton.corners[solid], reach[solid, None])
+        corners = skeleton.corners[solid]
+        points = (corners[:, 1:] == corners[:, :1]).all()
+        return balls_box(place, corners[:, :1] if points else corners, reach[solid, None])
 
     def read(self, output: str, moment: Moment) -> Any:
         """One of its measures."""

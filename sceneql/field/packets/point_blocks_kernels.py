@@ -1,0 +1,104 @@
+# mypy: ignore-errors
+"""Points of a skeleton in blocks of VECTOR in float32: which of them reach a piece of a single ray.
+
+``blocks`` (6, columns) has a column for each point, in their order: place (3), square of the reach, row in the tape's
+parts; and for each block, and each block of blocks: low (3) and high (3). They are filled up to whole blocks. The
+number of points stands in row COUNT of the first column. Several such may stand side by side.
+"""
+
+from sceneql.compiled.kernels import inlined
+from sceneql.compiled.lanes_kernels import below, bits_below, first_bit, load
+from sceneql.field.packets.packet_kernels import VECTOR
+from sceneql.field.roots.density_march_kernels import F
+
+REACH2, ROW, COUNT = 3, 4, 5
+BLOCKS = 6
+ROUNDED = 1.0e-5
+"""Padding of reaches and boxes, relative to their sizes and to their distances from the origin."""
+STEEPEST = 1.0e30
+ZERO = F(0.0)
+
+
+@inlined
+def whole(n):
+    """n, rounded up to whole blocks."""
+    return (n + VECTOR - 1) // VECTOR * VECTOR
+
+
+@inlined
+def inverse_of(d):
+    """1/d in float32, or a large number of its sign."""
+    return F(1.0 / d) if abs(d) * STEEPEST > 1.0 else (F(STEEPEST) if d >= 0.0 else F(-STEEPEST))
+
+
+@inlined
+def slab(low, high, place, inverse):
+    """(enter, leave) of a ray between planes across an axis, in lanes."""
+    a, b = (low - place) * inverse, (high - place) * inverse
+    return below(a, b, a, b), below(a, b, b, a)
+
+
+@inlined
+def boxes_met(blocks, at, count, x, y, z, ix, iy, iz, far, hair):
+    """Bit mask of those of ``count`` boxes from column ``at`` on, at most VECTOR, that a ray enters before ``far``."""
+    x0, x1 = slab(load(blocks[0], at) - hair, load(blocks[3], at) + hair, x, ix)
+    y0, y1 = slab(load(blocks[1], at) - hair, load(blocks[4], at) + hair, y, iy)
+    z0, z1 = slab(load(blocks[2], at) - hair, load(blocks[5], at) + hair, z, iz)
+    enter, leave = below(x0, y0, y0, x0), below(x1, y1, x1, y1)
+    enter, leave = below(enter, z0, z0, enter), below(leave, z1, leave, z1)
+    enter, leave = below(enter, ZERO, ZERO, enter), below(leave, far, leave, far)
+    return ~bits_below(leave, enter) & ((1 << min(count, VECTOR)) - 1)
+
+
+@inlined
+def points_met(blocks, at, count, x, y, z, dx, dy, dz, far, hair):
+    """The same of points that reach the ray."""
+    ex, ey, ez = load(blocks[0], at) - x, load(blocks[1], at) - y, load(blocks[2], at) - z
+    along = ex * dx + ey * dy + ez * dz
+    along = below(along, ZERO, ZERO, below(along, far, along, far))
+    ex, ey, ez = ex - along * dx, ey - along * dy, ez - along * dz
+    off = ex * ex + ey * ey + ez * ez
+    return ~bits_below(load(blocks[REACH2], at) + hair * hair, off) & ((1 << min(count, VECTOR)) - 1)
+
+
+@inlined
+def list_on_ray(blocks, base, px, py, pz, ux, uy, uz, length, listed):
+    """List the rows of points that reach a piece of a ray, from a place in a unit direction; returns their number.
+
+    They stand in the order of the rows; some are among them that only nearly reach it. The blocks begin at column
+    ``base``.
+    """
+    n = int(blocks[COUNT, base])
+    many = whole(n) // VECTOR
+    most = whole(many) // VECTOR
+    first, second = base + whole(n), base + whole(n) + whole(many)
+    x, y, z, dx, dy, dz, far = F(px), F(py), F(pz), F(ux), F(uy), F(uz), F(length)
+    ix, iy, iz = inverse_of(ux), inverse_of(uy), inverse_of(uz)
+    hair = F(ROUNDED * (abs(px) + abs(py) + abs(pz) + length))
+    far = far + hair
+    kept = 0
+    for group in range(0, most, VECTOR):
+        groups = boxes_met(blocks, second + group, most - group, x, y, z, ix, iy, iz, far, hair)
+        while groups != 0:
+            block = VECTOR * (group + first_bit(groups))
+            groups &= groups - 1
+            some = boxes_met(blocks, first + block, many - block, x, y, z, ix, iy, iz, far, hair)
+            while some != 0:
+                at = VECTOR * (block + first_bit(some))
+                some &= some - 1
+                points = points_met(blocks, base + at, n - at, x, y, z, dx, dy, dz, far, hair)
+                while points != 0:
+                    listed[kept] = int(blocks[ROW, base + at + first_bit(points)])
+                    points &= points - 1
+                    kept += 1
+    return kept
+
+
+@inlined
+def keep_on_ray(blocks, parts, px, py, pz, ux, uy, uz, length, near, listed):
+    """Copy the points that ``list_on_ray`` lists to ``near``; returns their number."""
+    kept = list_on_ray(blocks, 0, px, py, pz, ux, uy, uz, length, listed)
+    for k in range(kept):
+        for j in range(8):
+            near[k, j] = parts[listed[k], j]
+    return kept
