@@ -5,7 +5,7 @@ without overlays and without soft discs and mist, which take no samples. A pixel
 and back, by more than LEVELS of 255 in a channel. Not counted are moving edges: pixels with a neighbor whose surface,
 normal or color changes from frame to frame, seen at once or in a mirror or through glass; where a thin line is; and
 where more than EDGE of a lamp comes or goes, at edges of shadows. Nor is what truly goes back and forth, in pictures of
-FINER times as many pixels along each side too. Prints the share of a film's pixels, and that of its worst instant.
+FINER times as many pixels along each side too: the pixel must go as far beyond these, the same way. Prints the share of a film's pixels, and that of its worst instant.
 """
 
 from __future__ import annotations
@@ -63,12 +63,11 @@ class Drawn:
         return develop(fine.reshape(height, FINER, width, FINER, 3).mean(axis=(1, 3))).astype(np.int64)
 
 
-def back_and_forth(before: NDArray[Any], now: NDArray[Any], after: NDArray[Any]) -> NDArray[np.bool_]:
-    """(h, w): whether pixels go back and forth by more than LEVELS in a channel."""
+def back_and_forth(before: NDArray[Any], now: NDArray[Any], after: NDArray[Any]) -> NDArray[Any]:
+    """(h, w, 3): 1 where a channel goes up and back by more than LEVELS, -1 where down and back, else 0."""
     up, down = now - before, now - after
     back = (np.sign(up) == np.sign(down)) & (np.minimum(np.abs(up), np.abs(down)) > LEVELS)
-    found: NDArray[np.bool_] = back.any(axis=-1)
-    return found
+    return np.where(back, np.sign(up), 0)
 
 
 def moved(before: Drawn, after: Drawn) -> NDArray[np.bool_]:
@@ -87,10 +86,11 @@ def moved(before: Drawn, after: Drawn) -> NDArray[np.bool_]:
 def flickers(before: Drawn, now: Drawn, after: Drawn) -> NDArray[np.bool_]:
     """(h, w): whether pixels flicker in the middle one of three frames."""
     shown = back_and_forth(before.pixels, now.pixels, after.pixels)
-    shown &= ~maximum_filter(moved(before, now) | moved(now, after), 3)
+    shown[maximum_filter(moved(before, now) | moved(now, after), 3)] = 0
     if shown.any():
-        shown &= back_and_forth(*(one.pixels - one.averaged() for one in (before, now, after)))
-    return shown
+        shown *= back_and_forth(*(one.pixels - one.averaged() for one in (before, now, after))) == shown
+    found: NDArray[np.bool_] = shown.any(axis=-1)
+    return found
 
 
 def triples(scene: Path) -> Iterator[list[list[Drawn]]]:
