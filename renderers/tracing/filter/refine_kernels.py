@@ -27,8 +27,9 @@ OWN = 16
 ROUGH = 0.03
 """Difference of a light's share from the mean of those SIDE pixels away on both sides, from which on a wide penumbra
 takes samples of its own: behind rows of thin things the one of each pixel in the filter's window is too few."""
-FEW = 20.0
-"""Pixels joined by the filter below which a pixel takes samples of the sky of its own: on small or thin surfaces."""
+FEW, THIN = 20.0, 32
+"""Pixels joined by the filter below which a pixel takes samples of the sky of its own, on small or thin surfaces, and
+how many it takes below half of FEW; above that half as many."""
 
 
 @part
@@ -86,7 +87,7 @@ def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, 
     """
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     columns = visibility.shape[1]
-    room = asked.shape[0] - OWN * (1 + scene.ints[layout.LIGHT_COUNT])
+    room = asked.shape[0] - THIN - OWN * scene.ints[layout.LIGHT_COUNT]
     following = start
     while following < stop:
         k = following
@@ -101,7 +102,7 @@ def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, 
         if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return k
         if pixels < FEW:
-            samples = OWN if pixels < 0.5 * FEW else OWN // 2
+            samples = THIN if pixels < 0.5 * FEW else THIN // 2
             told = look_around(scene, scratch, asked, ways, records[k], sample_of(x, y), samples, 0, fine[k])
             for c in range(FIRST_LIGHT if told else 0):
                 joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
