@@ -100,7 +100,9 @@ class Reader:
             except Unreadable:
                 ok = False
                 if [(one.code, one.help) for one in self.found.found[before:]] == [("wrong-shape", None)]:
-                    rest = {key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written}
+                    rest = {
+                        key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
+                    }
                     help = self._elsewhere(written[name], info, rest)
                     self.found.found[before] = replace(self.found.found[before], help=help)
         if not ok:
