@@ -164,6 +164,21 @@ def test_a_checkered_floor_fades_into_its_mean_and_the_horizon_has_no_edge():
     assert picture[-20:].min() < 0.25 < 0.9 < picture[-20:].max()
 
 
+@pytest.mark.parametrize("off", [0.0, 0.05, 0.1])
+def test_wide_penumbras_behind_a_row_of_bars_are_nearly_those_of_finer_pictures(off):
+    ends = [((off - 0.5, 1.2, 0.12 * k - 0.5), (off + 0.5, 1.2, 0.12 * k - 0.3)) for k in range(9)]
+    shapes = stage.floor(), *(stage.segment(WHITE, *pair, 0.025) for pair in ends)
+
+    def shadow(times):  # on the floor, from right above
+        seen = view((0.0, 3.0, -0.8), (0.0, 0.0, -0.8001), (80 * times, 60 * times), 1.0)
+        return draw(*shapes, lights=[sun((0.2, 0.9, 0.6), (2.2,) * 3, 0.2)], seen=seen)[..., 0]
+
+    fine = shadow(4).reshape(60, 4, 80, 4).mean(axis=(1, 3))
+    error = shadow(1) - fine
+    assert fine.max() - fine.min() > 0.3
+    assert np.sqrt((error[12:36, 16:52] ** 2).mean()) < 0.028
+
+
 def test_soft_shadow_and_sky_light_have_no_grain():
     lights = [sun((-0.5, 0.9, 0.6), (2.2,) * 3, 0.12), Sky((0.8,) * 3, (0.9,) * 3, (0.3,) * 3)]
     seen = view((2.2, 1.7, 3.2), (0, 0.3, 0), (240, 135), 0.32, orthographic=False)

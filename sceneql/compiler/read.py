@@ -95,11 +95,17 @@ class Reader:
                     )
                 continue
             owner = f"{self.owner}.{name}" if self.owner else ""
-            reader = replace(self, owner=owner, symbols=symbols, solved=solved)
+            reader, before = replace(self, owner=owner, symbols=symbols, solved=solved), len(self.found.found)
             try:
                 got[python_name] = reader.field(written[name], info, name)
             except Unreadable:
                 ok = False
+                if [(one.code, one.help) for one in self.found.found[before:]] == [("wrong-shape", None)]:
+                    rest = {
+                        key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
+                    }
+                    help = self._elsewhere(written[name], info, rest)
+                    self.found.found[before] = replace(self.found.found[before], help=help)
         if not ok:
             raise Unreadable
         return self._some(validated(cls, got, node, span, self.found))
@@ -111,13 +117,25 @@ class Reader:
         name, _, rest = node.text.partition(" ")
         if name in map(kinds.written_name, cls.model_fields):
             return f"write `{name}: {rest.strip().removeprefix('=').strip()}`"
+        found = list(self._fitting(node, cls.model_fields))
+        return f"write `{{{kinds.written_name(found[0])}: {node.span.text}}}`" if len(found) == 1 else None
+
+    def _elsewhere(self, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
+        """The help for a value that is of another shape than its field: the one field that takes it."""
+        found = self._fitting(node, others)
+        if len(found) > 1:
+            own = [mark.dimension for mark in _quantities(info)]
+            found = {name: mark for name, mark in found.items() if mark.dimension in own}
+        if len(found) != 1:
+            return None
+        return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
+
+    def _fitting(self, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
+        """The fields of quantities that take a value."""
         nothing = Diagnostics()
         names = replace(self.names, found=nothing)
-        marked = [
-            (name, m) for name, i in cls.model_fields.items() for m in i.metadata if isinstance(m, kinds.Quantity)
-        ]
-        found = [name for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None]
-        return f"write `{{{kinds.written_name(found[0])}: {node.span.text}}}`" if len(found) == 1 else None
+        marked = [(name, mark) for name, info in fields.items() for mark in _quantities(info)]
+        return {name: mark for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None}
 
     def field(self, node: Node, info: Any, name: str) -> Any:
         """The value of a field, within its range. Raises Unreadable after reporting."""
@@ -347,6 +365,13 @@ def _unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
         inner, more = _unwrap(base)
         return inner, (*marks, *more)
     return annotation, ()
+
+
+def _quantities(info: Any) -> list[kinds.Quantity]:
+    """The quantities that a field's annotation tells of."""
+    arms = [info.annotation, *get_args(info.annotation)]
+    marks = [*info.metadata, *(mark for arm in arms for mark in _unwrap(arm)[1])]
+    return [mark for mark in marks if isinstance(mark, kinds.Quantity)]
 
 
 def _is_fixed(annotation: Any) -> bool:

@@ -3,13 +3,15 @@
 Run as ``python tests/bench/bench_flicker.py [SCENE ...]``. At INSTANTS of each film three frames are drawn, 320 x 180,
 without overlays and without soft discs and mist, which take no samples. A pixel flickers that goes up and back, or down
 and back, by more than LEVELS of 255 in a channel. Not counted are moving edges: pixels with a neighbor whose surface,
-normal or color changes from frame to frame, seen at once or in a mirror or through glass; where a thin line is; and
-where more than EDGE of a lamp comes or goes, at edges of shadows. Nor is what truly goes back and forth, in pictures of
-FINER times as many pixels along each side too. Prints the share of a film's pixels, and that of its worst instant.
+normal or color changes from frame to frame, seen at once or in a mirror or through glass, or where that of a finer
+pixel within it changes; where a thin line is; and where more than EDGE of a lamp comes or goes, at edges of shadows.
+Nor is what truly goes back and forth, in pictures of FINER times as many pixels along each side too: the pixel must go
+as far beyond these, the same way. Prints the share of a film's pixels, and that of its worst instant.
 """
 
 from __future__ import annotations
 
+import itertools
 import sys
 import time
 from dataclasses import replace
@@ -51,24 +53,33 @@ class Drawn:
         self.frame = frame
         width, height = frame.view.size
         (buffers,) = tracer._kept
+        self.linear = picture.linear
         self.pixels = develop(picture.linear).astype(np.int64)
         self.records = buffers.records.reshape(2, height, width, -1).copy()
         self.shares = buffers.visibility.reshape(2, height, width, -1)[..., FIRST_LIGHT::2].copy()
 
-    def averaged(self) -> NDArray[Any]:
-        """(h, w, 3): the pixels as means of finer ones."""
+    def finer(self) -> Drawn:
+        """The same of FINER times as many pixels along each side."""
         width, height = self.frame.view.size
-        view = replace(self.frame.view, size=(FINER * width, FINER * height))
-        fine = tracer.draw(replace(self.frame, view=view)).linear
-        return develop(fine.reshape(height, FINER, width, FINER, 3).mean(axis=(1, 3))).astype(np.int64)
+        frame = replace(self.frame, view=replace(self.frame.view, size=(FINER * width, FINER * height)))
+        return Drawn(frame, tracer.draw(frame))
+
+    def averaged(self) -> NDArray[Any]:
+        """(h / FINER, w / FINER, 3): means of FINER x FINER pixels."""
+        return develop(_blocks(self.linear).mean(axis=(1, 3))).astype(np.int64)
 
 
-def back_and_forth(before: NDArray[Any], now: NDArray[Any], after: NDArray[Any]) -> NDArray[np.bool_]:
-    """(h, w): whether pixels go back and forth by more than LEVELS in a channel."""
+def _blocks(pixels: NDArray[Any]) -> NDArray[Any]:
+    """(h / FINER, FINER, w / FINER, FINER, ...): pixels (h, w, ...) in blocks."""
+    height, width = pixels.shape[:2]
+    return pixels.reshape(height // FINER, FINER, width // FINER, FINER, *pixels.shape[2:])
+
+
+def back_and_forth(before: NDArray[Any], now: NDArray[Any], after: NDArray[Any]) -> NDArray[Any]:
+    """(h, w, 3): 1 where a channel goes up and back by more than LEVELS, -1 where down and back, else 0."""
     up, down = now - before, now - after
     back = (np.sign(up) == np.sign(down)) & (np.minimum(np.abs(up), np.abs(down)) > LEVELS)
-    found: NDArray[np.bool_] = back.any(axis=-1)
-    return found
+    return np.where(back, np.sign(up), 0)
 
 
 def moved(before: Drawn, after: Drawn) -> NDArray[np.bool_]:
@@ -87,10 +98,15 @@ def moved(before: Drawn, after: Drawn) -> NDArray[np.bool_]:
 def flickers(before: Drawn, now: Drawn, after: Drawn) -> NDArray[np.bool_]:
     """(h, w): whether pixels flicker in the middle one of three frames."""
     shown = back_and_forth(before.pixels, now.pixels, after.pixels)
-    shown &= ~maximum_filter(moved(before, now) | moved(now, after), 3)
+    shown[maximum_filter(moved(before, now) | moved(now, after), 3)] = 0
     if shown.any():
-        shown &= back_and_forth(*(one.pixels - one.averaged() for one in (before, now, after)))
-    return shown
+        fine = [one.finer() for one in (before, now, after)]
+        for a, b in itertools.pairwise(fine):
+            shown[_blocks(moved(a, b)).any(axis=(1, 3))] = 0
+        true = [one.averaged() for one in fine]
+        shown *= back_and_forth(before.pixels - true[0], now.pixels - true[1], after.pixels - true[2]) == shown
+    found: NDArray[np.bool_] = shown.any(axis=-1)
+    return found
 
 
 def triples(scene: Path) -> Iterator[list[list[Drawn]]]:

@@ -8,9 +8,9 @@ from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter.filter_kernels import REACH
 from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
 from renderers.tracing.light.bounce_kernels import WAYS
-from renderers.tracing.light.sampling_kernels import COUNT, SIDE, sample_of
+from renderers.tracing.light.sampling_kernels import COUNT, SIDE, SKY_COUNT, sample_of
 from renderers.tracing.light.shade_kernels import shade
-from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, look_around, shadow_sample
+from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, light_sample, look_around, shadow_sample
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
 from renderers.tracing.tiles_kernels import MARKS
@@ -24,8 +24,12 @@ FINE = 3.0
 """Widths [pixels] of penumbras that are searched in 3 x 3 and in 5 x 5 pixels."""
 OWN = 16
 """Samples of a light for each pixel of a fine edge."""
-FEW = 20.0
-"""Pixels joined by the filter below which a pixel takes samples of the sky of its own: on small or thin surfaces."""
+ROUGH = 0.03
+"""Difference of a light's share from the mean of those SIDE pixels away on both sides, from which on a wide penumbra
+takes samples of its own: behind rows of thin things the one of each pixel in the filter's window is too few."""
+FEW, THIN = 20.0, 32
+"""Pixels joined by the filter below which a pixel takes samples of the sky of its own, on small or thin surfaces, and
+how many it takes below half of FEW; above that half as many."""
 
 
 @part
@@ -45,16 +49,45 @@ def mean_of(means, columns, x, y, plane):
     return means[y, (x // LANES * (1 + columns) + plane) * WIDE + HALO + x % LANES]
 
 
+@part
+def roughness(records, means, columns, x, y, column):
+    """Largest difference, along x and y, of a column's mean from that of the means SIDE pixels away on both sides.
+
+    Windows so far apart have no sample in common. Where one of them is off the surface it is 1.
+    """
+    height, width = means.shape[0], len(records) // means.shape[0]
+    k, most = y * width + x, 0.0
+    for axis in range(2):
+        along, down = SIDE * (1 - axis), SIDE * axis
+        total = 0.0
+        for sign in range(-1, 2, 2):
+            i, j = x + sign * along, y + sign * down
+            if i < 0 or j < 0 or i >= width or j >= height or not alike(records[k], records[j * width + i], SLACK):
+                return 1.0
+            total += mean_of(means, columns, i, j, 1 + column)
+        most = max(most, abs(mean_of(means, columns, x, y, 1 + column) - 0.5 * total))
+    return most
+
+
+@part
+def share_of_light(scene, scratch, asked, record, l, number):
+    """Visible share of light l by OWN / 2 samples of the net of the sky, those of pixel ``number``."""
+    total = 0.0
+    for k in range(OWN // 2):
+        total += light_sample(scene, scratch, asked, record, l, (number * (OWN // 2) + k) % SKY_COUNT)
+    return total / (OWN // 2)
+
+
 @kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, MARKS, _rows, _rows, _rows, _rows), _nrt=False)
 def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, means, fine):
-    """Fill rows of ``fine`` (n, V): for each light its share, and whether that needs smoothing (0 or 1).
+    """Fill rows of ``fine`` (n, V): for each light its share, and over how many pixels around that is to be smoothed.
 
     The sky's loss, already there, is resampled where few pixels were joined. For pixels start..stop, or until ``asked``
     has no room for more rays; returns where it ends.
     """
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     columns = visibility.shape[1]
-    room = asked.shape[0] - OWN * (1 + scene.ints[layout.LIGHT_COUNT])
+    room = asked.shape[0] - THIN - OWN * scene.ints[layout.LIGHT_COUNT]
     following = start
     while following < stop:
         k = following
@@ -69,7 +102,7 @@ def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, 
         if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return k
         if pixels < FEW:
-            samples = OWN if pixels < 0.5 * FEW else OWN // 2
+            samples = THIN if pixels < 0.5 * FEW else THIN // 2
             told = look_around(scene, scratch, asked, ways, records[k], sample_of(x, y), samples, 0, fine[k])
             for c in range(FIRST_LIGHT if told else 0):
                 joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
@@ -84,6 +117,9 @@ def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, 
             breadth = mean_of(means, columns, x, y, 2 + column)
             edge = breadth / (1.0 - share) / (2.0 * records[k, RADIUS])
             if edge >= SIDE:
+                if roughness(records, means, columns, x, y, column) > ROUGH:
+                    fine[k, column] = share_of_light(scene, scratch, asked, records[k], l, sample_of(x, y))
+                    fine[k, column + 1] = 2.0
                 continue
             reach = 1 if edge < CRISP else (2 if edge < FINE else REACH)
             if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
@@ -101,17 +137,18 @@ def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, 
 
 @part
 def settle(records, fine, lights, k, x, y, width, height, visibility):
-    """Final visibility of a record: as refined; penumbras of middling width are averaged over 3 x 3 pixels."""
+    """Final visibility of a record: as refined; wider penumbras are averaged over 3 x 3 or 5 x 5 pixels."""
     for c in range(len(visibility)):
         visibility[c] = fine[k, c]
     for l in range(lights):
         column = FIRST_LIGHT + 2 * l
-        if fine[k, column + 1] == 0.0:
+        reach = int(fine[k, column + 1])
+        if reach == 0:
             continue
         total = 0.0
         count = 0
-        for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
-            for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
+        for j in range(max(y - reach, 0), min(y + reach, height - 1) + 1):
+            for i in range(max(x - reach, 0), min(x + reach, width - 1) + 1):
                 m = j * width + i
                 if alike(records[k], records[m], SLACK):
                     total += fine[m, column]

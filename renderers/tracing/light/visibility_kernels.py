@@ -170,6 +170,15 @@ def shadow_sample(scene, scratch, asked, record, l, sample, jitter):
     return share, width
 
 
+@part
+def light_sample(scene, scratch, asked, record, l, sample):
+    """Share of light l for one sample of the sky's net, which has more points than that of lights' disks."""
+    if not facing(scene, record, l):
+        return 1.0
+    x, y, z = start_of(record)
+    return seen(scene, scratch, asked, l, x, y, z, SKY_DISK[sample, 0], SKY_DISK[sample, 1])[0]
+
+
 @kernel(types.boolean(SCENE, SCRATCH, ASKED, WAYS, ROW, _i, _i, _i, ROW), _nrt=False, inner=True)
 def look_around(scene, scratch, asked, ways, record, number, of_sky, of_lights, visibility):
     """Fill a row of visibility with the means of so many samples of nets (powers of two), those of pixel ``number``.
