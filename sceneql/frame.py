@@ -80,6 +80,12 @@ class Mesh:
     """(n, 3) unit."""
     colors: Floats | None = None
     """(n, 3) linear RGB in place of the surface's."""
+    rest: Floats | None = None
+    """(n, 3) [m] where the material of each vertex stood before it was deformed: of one solid held, and the same array
+    over the film, but where it is cut open."""
+    paint: Tape | None = None
+    """The color by ``rest``, evaluated at every point of a triangle, in place of colors: the last three registers are
+    linear RGB; the surface's where they are undefined."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -70,6 +70,10 @@ def triangles(shape: Shape, cells: int, sharp: bool = False, reach: float = 0.0)
 
 
 def _of_mesh(mesh: Mesh) -> Triangles:
+    if mesh.paint is not None and mesh.rest is not None:
+        from sceneql.field.tape.tape_solid import paint_values
+
+        mesh = replace(mesh, colors=paint_values(mesh.paint, mesh.rest), paint=None)
     if mesh.normals is not None:
         return Triangles(mesh.surface, mesh.vertices, mesh.normals, mesh.triangles, mesh.colors)
     points, normals, order = _flat.get((mesh.vertices, mesh.triangles), None, lambda: _parted(mesh))

@@ -10,7 +10,8 @@ ITEMS = 11
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
 TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID, THIN = range(8)
 """Kinds. Their reals:
-TRIANGLE: corner, edge, edge; normals at the corners, colors at the corners (a NaN first: there are none): 27.
+TRIANGLE: corner, edge, edge; normals at the corners, colors at the corners (a NaN first: there are none): 27. Where the
+surface has a TEXTURE, places of the material at the corners stand in place of the colors.
 ROUND (sphere or capsule): end, axis to the other end, radius, color (NaN: the surface's): 10.
 QUADRIC: map to local (3, 4), squares, linear, constant, low, high: 25.
 HALF_SPACE (a quadric that is nothing else): unit normal, height of its face along that: 4.
@@ -51,8 +52,9 @@ at distance 1, radiance."""
 
 COLOR, ROUGHNESS, METALLIC, SPECULAR, TRANSMISSION = 0, 3, 4, 5, 6
 INDEX, EMISSION, CHECKER, CHECKER_COLOR = 7, 8, 11, 12
-SURFACE_SIZE = 15
-"""Offsets in the reals of a surface, and their number."""
+TEXTURE, SURFACE_SIZE = 15, 16
+"""Offsets in the reals of a surface, and their number. TEXTURE: place in the ints of the ranges of a tape by places of
+the material, as those of an implicit object's paint; 0 for none."""
 
 EMPTY, MIXED, FULL, UNKNOWN = range(4)
 """An occupancy cell: proved outside, undecided, proved inside; not looked at, since no ray has come to it yet."""

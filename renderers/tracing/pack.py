@@ -10,11 +10,12 @@ import numpy as np
 from renderers.tracing import layout
 from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.light.embers import embers_of
-from renderers.tracing.scene_kernels import Scene
+from renderers.tracing.scene_kernels import TEXTURE, Scene
 from renderers.tracing.solids.hierarchy import hierarchy
 from renderers.tracing.solids.thin_capsules_kernels import TENT
 from renderers.tracing.solids.triangles import LARGE, Packed, boxes_of, corners_of, rows_of, still_mesh
 from sceneql import frame as seen
+from sceneql.compiled.kernels import address
 from sceneql.field.tape.plans import ray_plan
 from sceneql.field.tape.tape_ops import scratch_rows
 
@@ -66,15 +67,26 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     reals = np.concatenate([head, *parts])
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), tables.thin]
     header += [len(panels), len(reals) - embers.size, (len(embers) + 1) // 2]
-    ints = np.concatenate([header, items.ravel(), links.ravel(), *tables.ranges, *tables.codes], dtype=np.int32)
+    ranges_of = [*tables.ranges, *tables.textures]
+    code_at = ranges_at + sum(map(len, ranges_of))
+    ints = np.concatenate([header, items.ravel(), links.ravel(), *ranges_of, *tables.codes], dtype=np.int32)
     for k in range(len(tables.implicits)):
         place = ranges_at + layout.RANGES * k
         ranges = ints[place : place + layout.RANGES]
         code = [0, layout.CELLS_AT, layout.PAINT, layout.WITHIN, layout.PLAN]
-        ranges[code] += ranges_at + sum(map(len, tables.ranges))
+        ranges[code] += code_at
         ranges[[2, 4, layout.PAINT + 2, layout.PAINT + 4, layout.WITHIN + 2, layout.WITHIN + 4]] += reals_at
         reals[reals_at + tables.implicits[k] + 6] = place
-    scene = Scene(reals, ints, 0, 0, 0, 0, 0)
+    for k, index in enumerate(tables.painted):
+        place = ranges_at + sum(map(len, ranges_of[: len(tables.ranges) + k]))
+        ints[place] += code_at
+        ints[[place + 2, place + 4]] += reals_at
+        reals[surfaces_at + layout.SURFACE_SIZE * index + layout.TEXTURE] = place
+    scene = Scene(reals, ints, 0, 0, 0, 0, 0, 0)
+    if tables.painted:
+        from renderers.tracing.solids.texture_kernels import texture
+
+        scene = scene._replace(texture=address(texture, TEXTURE))
     if any(isinstance(shape, seen.Grid) for shape in frame.shapes):
         from renderers.tracing.solids.grids import found_by_cells
 
@@ -102,6 +114,9 @@ class Rows:
         self.ranges: list[NDArray[np.int64]] = []
         self.codes: list[NDArray[np.int32]] = []
         self.implicits: list[int] = []
+        self.painted: list[int] = []
+        self.textures: list[NDArray[np.int64]] = []
+        """Ranges of the tapes of meshes, the shapes ``painted``; they stand behind those of implicit objects."""
         self.still: list[tuple[Packed, NDArray[np.int64]]] = []
         """Meshes with hierarchies of their own: their packed data, and their items, which are not among the others."""
         self.rows = 0
@@ -166,6 +181,9 @@ class Rows:
         return begin
 
     def _mesh(self, index: int, mesh: seen.Mesh) -> None:
+        if mesh.paint is not None:
+            self.painted.append(index)
+            self.textures.append(np.array(self._tape(mesh.paint)))
         still = len(mesh.triangles) >= LARGE and seen.is_held(mesh.vertices) and seen.is_held(mesh.triangles)
         packed = still_mesh(mesh) if still else None
         if packed is not None and np.isfinite(packed.tree.bounds).all():
@@ -263,7 +281,7 @@ def _quadric(shape: seen.Quadric) -> Floats:
 
 def _surface(s: seen.Surface) -> Floats:
     answer = (s.roughness, s.metallic, s.specular, s.transmission, s.index_of_refraction)
-    return np.array([*s.color, *answer, *s.emission, s.checker_size, *s.checker_color], dtype=np.float64)
+    return np.array([*s.color, *answer, *s.emission, s.checker_size, *s.checker_color, 0.0], dtype=np.float64)
 
 
 def _lights(lights: tuple[LightSource, ...]) -> Floats:

@@ -12,8 +12,13 @@ def tape_of(scene, k, first=0):
 
     Its own tape has the ranges from ``first`` = 0 on, the others from PAINT and from WITHIN on.
     """
+    return tape_at(scene, int(scene.reals[k + 6]) + first)
+
+
+@part
+def tape_at(scene, r):
+    """(code, constants, parts) of the tape whose ranges begin at r in the ints."""
     n = scene.ints
-    r = int(scene.reals[k + 6]) + first
     code, constants, parts = int(n[r]), int(n[r + 2]), int(n[r + 4])
     return (
         n[code : code + 4 * n[r + 1]].reshape(n[r + 1], 4),

@@ -5,7 +5,7 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
-from renderers.tracing.scene_kernels import SCENE, SCRATCH, part, skin_at
+from renderers.tracing.scene_kernels import SCENE, SCRATCH, part, skin_at, texture_at
 from renderers.tracing.solids.solids_kernels import local_point
 from sceneql.compiled.kernels import kernel
 
@@ -112,6 +112,18 @@ def triangle_normal(scene, k, x, y, z):
     return nx, ny, nz, fx, fy, fz, lift, sink
 
 
+@part
+def corner_mean(m, k, c, x, y, z):
+    """At a point of triangle k the three numbers that stand from c on for its first corner, then for the others."""
+    v, w = barycentric(m, k, x, y, z)
+    u = 1.0 - v - w
+    return (
+        u * m[c] + v * m[c + 3] + w * m[c + 6],
+        u * m[c + 1] + v * m[c + 4] + w * m[c + 7],
+        u * m[c + 2] + v * m[c + 5] + w * m[c + 8],
+    )
+
+
 @kernel(types.UniTuple(_f, 11)(SCENE, SCRATCH, types.int64, _f, _f, _f), _nrt=False)
 def normal_at(scene, scratch, item, x, y, z):
     """(normal, facet normal, lift above the facet and below it, paint) of an item at a point of its surface.
@@ -122,7 +134,12 @@ def normal_at(scene, scratch, item, x, y, z):
     k = scene.ints[layout.ITEMS + 4 * item + layout.REALS_AT]
     if kind == layout.TRIANGLE:
         nx, ny, nz, fx, fy, fz, lift, sink = triangle_normal(scene, k, x, y, z)
-        return nx, ny, nz, fx, fy, fz, lift, sink, np.nan, np.nan, np.nan
+        r, g, b = np.nan, np.nan, np.nan
+        ranges = int(scene.reals[scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT] + layout.TEXTURE])
+        if ranges > 0:
+            px, py, pz = corner_mean(scene.reals, k, k + TRIANGLE_COLORS, x, y, z)
+            r, g, b = texture_at(scene.texture)(scene, scratch, ranges, px, py, pz)
+        return nx, ny, nz, fx, fy, fz, lift, sink, r, g, b
     r, g, b = np.nan, np.nan, np.nan
     if kind == layout.ROUND or kind == layout.THIN:
         nx, ny, nz = round_normal(scene.reals, k, x, y, z)
@@ -169,11 +186,8 @@ def color_at(scene, item, paint, x, y, z, nx, ny, nz, dx, dy, dz, radius):
     c = k + (TRIANGLE_COLORS if kind == layout.TRIANGLE else ROUND_COLOR)
     if paint[0] == paint[0] and paint[1] == paint[1] and paint[2] == paint[2]:
         r, g, b = paint
-    elif kind == layout.TRIANGLE and u[c] == u[c]:
-        v, w = barycentric(u, k, x, y, z)
-        r = (1.0 - v - w) * u[c] + v * u[c + 3] + w * u[c + 6]
-        g = (1.0 - v - w) * u[c + 1] + v * u[c + 4] + w * u[c + 7]
-        b = (1.0 - v - w) * u[c + 2] + v * u[c + 5] + w * u[c + 8]
+    elif kind == layout.TRIANGLE and u[c] == u[c] and u[s + layout.TEXTURE] == 0.0:
+        r, g, b = corner_mean(u, k, c, x, y, z)
     elif (kind == layout.ROUND or kind == layout.THIN) and u[c] == u[c]:
         r, g, b = u[c], u[c + 1], u[c + 2]
     size = u[s + layout.CHECKER]

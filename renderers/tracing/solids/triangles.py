@@ -33,7 +33,7 @@ def still_mesh(mesh: Mesh) -> Packed:
     """The hierarchy and the reals of a mesh that is held: those of the last frame, if it is the same."""
     corners = cache(lambda: corners_of(mesh))
     tree = _trees.get((mesh.vertices, mesh.triangles), None, lambda: Tree(boxes_of(corners())))
-    whole = mesh.vertices, mesh.triangles, mesh.normals, mesh.colors
+    whole = mesh.vertices, mesh.triangles, mesh.normals, told_at_corners(mesh)
     return Packed(tree, _rows.get(whole, None, lambda: rows_of(mesh, corners())))
 
 
@@ -49,12 +49,18 @@ def boxes_of(corners: Floats) -> Floats:
 
 
 def rows_of(mesh: Mesh, corners: Floats) -> Floats:
-    """(m, 27) reals of triangles (m, 3, 3): a corner, two edges, normals and colors at the corners (NaN: none)."""
+    """(m, 27) reals of triangles (m, 3, 3): a corner, two edges; normals, and what is told, at the corners (NaN)."""
     rows = np.full((len(corners), 27), np.nan)
     rows[:, :3] = corners[:, 0]
     rows[:, 3:9] = (corners[:, 1:] - corners[:, :1]).reshape(-1, 6)
     if mesh.normals is not None:
         rows[:, 9:18] = np.asarray(mesh.normals)[mesh.triangles].reshape(-1, 9)
-    if mesh.colors is not None:
-        rows[:, 18:] = np.asarray(mesh.colors)[mesh.triangles].reshape(-1, 9)
+    told = told_at_corners(mesh)
+    if told is not None:
+        rows[:, 18:] = np.asarray(told)[mesh.triangles].reshape(-1, 9)
     return rows
+
+
+def told_at_corners(mesh: Mesh) -> Floats | None:
+    """(n, 3) the places of the material of a mesh that is painted, else its colors."""
+    return mesh.colors if mesh.paint is None else mesh.rest

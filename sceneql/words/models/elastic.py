@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, partial
+from functools import cache, partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import PrivateAttr
@@ -53,8 +53,8 @@ class Made:
     """Offset of each hold's force in the floats."""
     angles: tuple[float, float]
     """Least and largest angle [rad] between faces of an element."""
-    polygons: Callable[[], Carried] | None
-    """What it is drawn by in place of its faces; made at the first call."""
+    skin: Callable[[], Skin | Carried]
+    """What it is drawn by; made at the first call."""
     modes: Resting
     """What its modes are of."""
 
@@ -152,12 +152,11 @@ class Elastic(Model):
         assert self._made is not None
         return self._made.strain
 
-    @cached_property
-    def skin(self) -> Skin:
-        """Its outer faces, for pictures."""
-        from sceneql.bodies.elements.skin import Skin
-
-        return Skin.of(self.solid.mesh)
+    @property
+    def skin(self) -> Skin | Carried:
+        """What it is drawn by: the polygons of its object, or its outer faces."""
+        assert self._made is not None
+        return self._made.skin()
 
     def chosen_element(self) -> type[Element]:
         """The element that the script names, or that suits its law."""
@@ -180,8 +179,8 @@ class Elastic(Model):
         import numpy as np
 
         from sceneql.bodies.elements import hold as holding
+        from sceneql.bodies.elements import skin as skins
         from sceneql.bodies.elements.element_mesh import worst_angle
-        from sceneql.bodies.elements.skin import triangles
         from sceneql.bodies.elements.strain import Inertia, add_mass_damping, add_strain, density_of
         from sceneql.bodies.elements.strain_outputs import probe
         from sceneql.bodies.filling.tetrahedra import edges
@@ -223,21 +222,21 @@ class Elastic(Model):
         forces = holding.add_holds(self.hold, parts, assembly, bodies)
         probes = {called: probe(mesh, np.asarray(place)) for called, place in self.probes.items()}
         angles = worst_angle(mesh.points, mesh.cells[:, :4])
-        polygons = None
+        drawn: Any = cache(partial(skins.Skin.of, mesh))
         if self.of is not None and self.look == "object":
             from sceneql.bodies.elements.filled import spacing_of
-            from sceneql.bodies.elements.skin import carried
 
-            polygons = cache(partial(carried, self.of, spacing_of(self.of, self.spacing, assembly), mesh, assembly))
+            spacing = spacing_of(self.of, self.spacing, assembly)
+            drawn = cache(partial(skins.carried, self.of, spacing, mesh, assembly))
         resting = solid_modes.Resting(strain, places, held)
         if self.bent is not None:
             away = resting.modes(assembly.numbers(), self.bent.mode).start(self.bent, line)
             assembly.displaced(bodies.position_at, (places + away).ravel())
-        self._made = Made(strain, probes, forces, angles, polygons, resting)
+        self._made = Made(strain, probes, forces, angles, drawn, resting)
         period = 2.0 * np.pi / strain.squared**0.5
         first, shear = (np.asarray(one) for one in self.law.law.moduli(mesh.points))
         stiffness = float(np.min(shear * (3.0 * first + 2.0 * shear) / (first + shear)))
-        skin = Skin(triangles(mesh), held, stiffness)
+        skin = Skin(skins.triangles(mesh), held, stiffness)
         return replace(bodies, period=period, tied=edges(mesh.cells[:, :4])[0], skin=skin)
 
     def remark(self, state: ModelState) -> str:
@@ -283,9 +282,4 @@ class Elastic(Model):
         """Its outer faces, or the polygons of its object."""
         assert state.bodies is not None
         surface = moment.surface(name, self.material, self.color)
-        places = masses.positions(state.bodies, state)
-        assert self._made is not None
-        if self._made.polygons is None:
-            yield self.skin.drawn(name, surface, places)
-        else:
-            yield self._made.polygons().drawn(name, surface, places)
+        yield self.skin.drawn(name, surface, masses.positions(state.bodies, state))

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 from sceneql import kinds
 from sceneql.grids.maps.map_names import ColorMap
 from sceneql.grids.maps.seen import Bounds, Field, Levels, seen, unfit
-from sceneql.kinds import Moment, Object, Problem, Quantity, Record, Ref, Value, field
-from sceneql.kinds.types import Axis
+from sceneql.kinds import Moment, Object, Problem, Quantity, Ref, Value, field
 from sceneql.quantities.dimension import LENGTH, PLAIN
 from sceneql.quantities.expression import Call, Type
 from sceneql.shapes.color import linear
 from sceneql.shapes.placement import apply, uniform_scale
+from sceneql.shapes.section import Section
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
@@ -27,18 +27,6 @@ ROUNDING = 1e-12
 """Differences below this part of what they are differences of are none."""
 THIN = 1.5e-3
 """Radius of a line of one value, in parts of the grid's longest side, where the script does not say."""
-
-
-class Section(Record):
-    """A plane."""
-
-    through: kinds.FixedPosition = field("A point of the plane.", "0 0 0 m")
-    normal: Axis = field("The direction that it faces, of any length.", "0 0 1")
-
-    def problems(self) -> Iterator[Problem]:
-        """A normal of no direction."""
-        if not any(self.normal):
-            yield Problem("a plane needs a direction that it faces", ("normal",))
 
 
 class FieldMap(Object):

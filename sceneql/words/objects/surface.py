@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from sceneql.formulas.texture import Texture
 from sceneql.grids.maps.map_names import ColorMap
 from sceneql.grids.maps.seen import Bounds, Field, unfit
 from sceneql.kinds import Length, ModelRef, Moment, Object, Problem, Value, field
@@ -14,17 +15,20 @@ from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.expression import Call, Type
 from sceneql.shapes.checked_values import positive
 from sceneql.shapes.placement import apply
+from sceneql.shapes.section import Section
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats, Shape
+    from sceneql.frame import Floats, Mesh, Shape
     from sceneql.grids.maps.key import ColorKey
+    from sceneql.words.models.elastic import Elastic
 
 
 class Surface(Object):
     """The sheet of a cloth as a closed slab, smooth on both sides; cells with a torn side are left open.
 
     Of a solid of tetrahedra the outer faces, smooth; those with a torn edge are left out. With `shows` it has the
-    colors of a number of each mass, or of each node of an `elastic` solid, which a `legend` explains.
+    colors of a number of each mass, or of each node of an `elastic` solid, which a `legend` explains. An `elastic`
+    solid may have colors that stick to its material (`paint`), and be cut open to be seen inside.
     """
 
     of: ModelRef = field("The cloth, or the solid.")
@@ -33,8 +37,17 @@ class Surface(Object):
     colors: ColorMap = field("The map of colors, from the low to the high end.", "viridis")
     range: Bounds | None = field("The values at the ends of the map; by default the extremes of the whole run.", None)
 
+    paint: Texture | None = field("Of an `elastic` solid: colors by the place of its material.", None)
+    cut: tuple[Section, ...] = field(
+        "An `elastic` solid is cut open where it is drawn: what lies before all these planes is away.", ()
+    )
+
     def problems(self) -> Iterator[Problem]:
-        """Bounds of another dimension, or of nothing."""
+        """Bounds of another dimension, or of nothing; colors of two kinds."""
+        if self.paint is not None and self.shows is not None:
+            yield Problem("it has the colors of what it `shows` or those of a `paint`", ("paint",), at_key=True)
+        if self.paint is not None and self.color is not None:
+            yield Problem("a `paint` has colors of its own", ("color",), at_key=True)
         if self.shows is not None:
             for problem in unfit(self.shows, {"range": self.range}):
                 yield replace(problem, path=("shows",)) if problem.path == ("of",) else problem
@@ -82,17 +95,40 @@ class Surface(Object):
         cloth: Any = moment.object(self.of)
         if "triangles" not in cloth.gives:
             raise ValueError(f"'{self.of.name}' has no surface; a cloth and a solid have one")
+        if hasattr(cloth, "solid"):
+            yield from self._elastic(cloth, name, place, moment)
+            return
+        if self.paint is not None or self.cut:
+            what = "painted by places of its material" if self.paint else "cut open"
+            raise ValueError(f"'{self.of.name}' cannot be {what}: `elastic` solids can")
         triangles = moment.read(self.of.name, "triangles").astype("int32")
         if len(triangles):
             points = apply(place, moment.read(self.of.name, "positions"))
             half = 0.5 * positive(moment, self.thickness, "thickness")
-            look, own = moment.surface(name, self.material, self.color), getattr(cloth, "skin", None)
-            drawn = skin(name, look, points, triangles, half) if own is None else own.drawn(name, look, points)
+            drawn = skin(name, moment.surface(name, self.material, self.color), points, triangles, half)
             if self.shows is not None:
-                values = self._values(len(points), moment)
-                values = np.resize(values, len(drawn.vertices)) if own is None else values[own.nodes]
+                values = np.resize(self._values(len(points), moment), len(drawn.vertices))
                 drawn = replace(drawn, colors=colored(values, self.scale(moment), self.colors))
             yield drawn
+
+    def _elastic(self, solid: Elastic, name: str, place: Floats, moment: Moment) -> Iterator[Mesh]:
+        """Its skin, and the faces of what is cut open."""
+        from sceneql.bodies.elements.cut_open import Inside, cut_open, planes_of
+        from sceneql.grids.maps.colors import colored
+
+        points = apply(place, moment.read(self.of.name, "positions"))
+        skin, own = solid.skin, None if self.shows is None else self._values(len(points), moment)
+        drawn = skin.drawn(name, moment.surface(name, self.material, self.color), points)
+        if self.paint is not None:
+            drawn = replace(drawn, paint=self.paint.tape(moment))
+        values = None if own is None else skin.at_vertices(own)
+        pieces: Iterable[tuple[Mesh, Any]] = [(drawn, values)]
+        if self.cut:
+            inside = Inside(solid.solid.mesh, points, own)
+            pieces = cut_open(drawn, values, inside, planes_of(self.cut, place))
+        for mesh, shown in pieces:
+            colors = None if shown is None else colored(shown, self.scale(moment), self.colors)
+            yield replace(mesh, colors=colors)
 
     def _values(self, count: int, moment: Moment) -> Floats:
         """(count,) what it shows of each mass; of a sheet each has two vertices."""

@@ -1,0 +1,215 @@
+"""Solids of elements cut open by planes: what of the skin is left, and the faces of the cut. Imports numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.bodies.elements.skin import in_elements, within_elements
+from sceneql.frame import Mesh
+
+if TYPE_CHECKING:
+    from sceneql.bodies.elements.element_mesh import ElementMesh
+    from sceneql.frame import Floats
+
+ON_PLANE = 1e-9
+"""Part of the solid's size by which what lies on a plane is taken before it."""
+SAME = 1e-6
+"""Part of that below which two points of an outline are one."""
+TIMES = 5
+"""How often the sides of an outline that no triangle has are halved."""
+INNER, APART = 1.5, 0.6
+"""Points inside an outline stand so many lengths of its sides apart, and so many from it."""
+ROUNDING = 1e-12
+
+Corners = Any
+"""(m, 3, c) for the corners of triangles: place (3) in the drawing, and what else is linear in between."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """A plane by a point and its unit normal; what is before it may be taken away."""
+
+    through: Floats
+    normal: Floats
+
+    def heights(self, places: Floats) -> Floats:
+        """(...) of places (..., 3): above 0 before the plane."""
+        found: Floats = (places - self.through) @ self.normal
+        return found
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Inside:
+    """The elements of a solid at an instant, for what is seen of its inside."""
+
+    mesh: ElementMesh
+    """At rest."""
+    places: Floats
+    """(n, 3) its nodes in the drawing."""
+    values: Floats | None
+    """(n,) what is shown of them."""
+
+    def at(self, points: Floats) -> tuple[Floats, Floats]:
+        """Places of the material (k, 3) at points (k, 3) of the drawing, and what is shown there (k, 1), or (k, 0)."""
+        nodes, weights, _ = in_elements(replace(self.mesh, points=self.places), points)
+        rest = np.einsum("vk,vki->vi", weights, self.mesh.points[nodes])
+        if self.values is None:
+            return rest, np.empty((len(points), 0))
+        return rest, within_elements(self.values[nodes], weights)[:, None]
+
+
+def cut_open(skin: Mesh, values: Floats | None, inside: Inside, planes: Sequence[Plane]) -> Iterator[tuple[Mesh, Any]]:
+    """The meshes that are left where what lies before all planes is away, and what is shown of their vertices.
+
+    ``skin``: the whole skin, closed; ``values`` (v,) what is shown of its vertices.
+    """
+    assert skin.normals is not None
+    assert skin.rest is not None
+    told = [skin.vertices, skin.normals, skin.rest, *([] if values is None else [values[:, None]])]
+    whole = np.concatenate(told, axis=1)[skin.triangles]
+    size = float(np.ptp(skin.vertices, axis=0).max())
+    left, kept = whole, []
+    for plane in planes:
+        heights = _off(plane.heights(left[..., :3]), size)
+        kept.append(clipped(left, heights))
+        left = clipped(left, -heights)
+    faces = []
+    for k, plane in enumerate(planes):
+        face = _face(whole[..., :3], plane, inside, size)
+        for other in (*planes[:k], *planes[k + 1 :]):
+            face = clipped(face, -_off(other.heights(face[..., :3]), size))
+        faces.append(face)
+    for corners in (np.concatenate(kept), *faces):
+        if len(corners):
+            flat = corners.reshape(-1, corners.shape[2])
+            normals = flat[:, 3:6] / np.maximum(np.linalg.norm(flat[:, 3:6], axis=1, keepdims=True), 1e-300)
+            order = np.arange(len(flat), dtype=np.int32).reshape(-1, 3)
+            parts = (np.ascontiguousarray(part) for part in (flat[:, :3], normals, flat[:, 6:9]))
+            vertices, normals, rest = parts
+            yield (
+                replace(skin, vertices=vertices, triangles=order, normals=normals, rest=rest),
+                None if values is None else flat[:, 9],
+            )
+
+
+def _off(heights: Floats, size: float) -> Floats:
+    """Heights none of which is 0."""
+    return np.where(np.abs(heights) < ON_PLANE * size, ON_PLANE * size, heights)
+
+
+def clipped(corners: Corners, heights: Floats) -> Corners:
+    """What of triangles (m, 3, c) with heights (m, 3) at their corners lies where these are below 0."""
+    above = heights > 0.0
+    count = above.sum(axis=1)
+    found = [corners[count == 0]]
+    for some, odd in ((count == 1, above), (count == 2, ~above)):
+        turn = (np.argmax(odd[some], axis=1)[:, None] + np.arange(3)) % 3
+        rows = np.flatnonzero(some)[:, None]
+        p, h = corners[rows, turn], heights[rows, turn]
+        one, two = (_crossing(p[:, 0], p[:, k], h[:, 0], h[:, k]) for k in (1, 2))
+        if odd is above:
+            found += [np.stack([one, p[:, 1], p[:, 2]], axis=1), np.stack([one, p[:, 2], two], axis=1)]
+        else:
+            found.append(np.stack([p[:, 0], one, two], axis=1))
+    return np.concatenate(found)
+
+
+def _crossing(p: Floats, q: Floats, at_p: Floats, at_q: Floats) -> Floats:
+    share = (at_p / (at_p - at_q))[:, None]
+    found: Floats = p + share * (q - p)
+    return found
+
+
+def _face(triangles: Floats, plane: Plane, inside: Inside, size: float) -> Corners:
+    """Triangles of what a plane cuts of a solid whose skin is closed: (m, 3, 3) corners of its triangles."""
+    from scipy.spatial import Delaunay, cKDTree
+
+    width = 9 + (inside.values is not None)
+    across = np.linalg.svd(plane.normal[None])[2][1:]
+    if np.cross(across[0], across[1]) @ plane.normal < 0.0:
+        across = across[::-1]
+    sides = _outline(triangles, _off(plane.heights(triangles), size)) - plane.through
+    flat = sides @ across.T
+    long = np.linalg.norm(flat[:, 1] - flat[:, 0], axis=1) > SAME * size
+    flat = flat[long]
+    if len(flat) < 3:
+        return np.empty((0, 3, width))
+    step = float(np.median(np.linalg.norm(flat[:, 1] - flat[:, 0], axis=1)))
+    grid = _grid(flat.reshape(-1, 2), INNER * step)
+    grid = grid[_holds(flat, grid)]
+    away, _ = cKDTree(flat.reshape(-1, 2)).query(grid)
+    grid = grid[away > APART * step]
+    outline = flat
+    for _ in range(TIMES):
+        points, which = _distinct(np.concatenate([outline.reshape(-1, 2), grid]), SAME * size)
+        made = Delaunay(points).simplices.astype(np.int64)
+        ends = np.sort(which[: 2 * len(outline)].reshape(-1, 2), axis=1)
+        there = np.sort(np.concatenate([made[:, [0, 1]], made[:, [1, 2]], made[:, [2, 0]]]), axis=1)
+        lost = ~np.isin(ends @ (len(points), 1), there @ (len(points), 1)) & (ends[:, 0] != ends[:, 1])
+        if not lost.any():
+            break
+        middle = outline[lost].mean(axis=1)
+        halves = [np.stack([outline[lost, 0], middle], axis=1), np.stack([middle, outline[lost, 1]], axis=1)]
+        outline = np.concatenate([outline[~lost], *halves])
+    made = made[_holds(flat, points[made].mean(axis=1))]
+    a, b, c = (points[made[:, k]] for k in range(3))
+    turned = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    made[turned] = made[turned][:, ::-1]
+    places = plane.through + points @ across
+    rest, values = inside.at(places)
+    told = [places, np.broadcast_to(plane.normal, places.shape), rest, values]
+    return np.concatenate(told, axis=1)[made]
+
+
+def _outline(triangles: Floats, heights: Floats) -> Floats:
+    """(s, 2, 3) where a plane cuts triangles (m, 3, 3) with heights (m, 3)."""
+    above = heights > 0.0
+    count = above.sum(axis=1)
+    some = (count == 1) | (count == 2)
+    odd = np.where((count == 1)[:, None], above, ~above)[some]
+    turn = (np.argmax(odd, axis=1)[:, None] + np.arange(3)) % 3
+    rows = np.flatnonzero(some)[:, None]
+    p, h = triangles[rows, turn], heights[rows, turn]
+    return np.stack([_crossing(p[:, 0], p[:, k], h[:, 0], h[:, k]) for k in (1, 2)], axis=1)
+
+
+def _grid(points: Floats, step: float) -> Floats:
+    """(k, 2) places on the plane, of a lattice of triangles so wide."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    x = np.arange(low[0], high[0], step)
+    y = np.arange(low[1], high[1], step * 0.75**0.5)
+    across = x[None, :] + 0.5 * step * (np.arange(len(y)) % 2)[:, None]
+    return np.stack([across.ravel(), np.repeat(y, len(x))], axis=1)
+
+
+def _holds(outline: Floats, points: Floats) -> Any:
+    """(k,) whether points (k, 2) lie in a closed outline of sides (s, 2, 2): an odd number of these is on the right."""
+    found = np.zeros(len(points), dtype=bool)
+    for k in range(0, len(points), 4096):
+        x, y = points[k : k + 4096, 0, None], points[k : k + 4096, 1, None]
+        (ax, ay), (bx, by) = outline[:, 0].T, outline[:, 1].T
+        spans = (ay > y) != (by > y)
+        right = x < ax + (y - ay) * (bx - ax) / np.where(by == ay, ROUNDING, by - ay)
+        found[k : k + 4096] = np.count_nonzero(spans & right, axis=1) % 2 == 1
+    return found
+
+
+def _distinct(points: Floats, apart: float) -> tuple[Floats, Any]:
+    """Points (d, 2) of which none are nearer than about ``apart``, and the number of each point (k, 2) among them."""
+    _, first, which = np.unique(np.round(points / apart), axis=0, return_index=True, return_inverse=True)
+    return points[first], which.ravel()
+
+
+def planes_of(sections: Iterable[Any], place: Floats) -> list[Plane]:
+    """Planes of `Section` records in the world, for what is drawn at ``place`` (3, 4)."""
+    turn = np.linalg.inv(np.asarray(place)[:, :3]).T
+    found = []
+    for one in sections:
+        normal = turn @ np.asarray(one.normal, dtype=float)
+        through = np.asarray(place) @ (*one.through, 1.0)
+        found.append(Plane(through, normal / np.linalg.norm(normal)))
+    return found
