@@ -104,8 +104,8 @@ class Reader:
                     rest = {
                         key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
                     }
-                    help = self._elsewhere(written[name], info, rest)
-                    self.found.found[before] = replace(self.found.found[before], help=help)
+                    better = self._elsewhere(written[name], info, rest)
+                    self.found.found[before] = replace(self.found.found[before], help=better)
         if not ok:
             raise Unreadable
         return self._some(validated(cls, got, node, span, self.found))
