@@ -81,17 +81,18 @@ SOLVED, BALANCED, LOOSE = range(3)
 forces next to nothing leave open which case of the law holds; or neither, as where contacts ask for what cannot be, or
 the method finds no way to a solution that is there: then RESULT tells what is left."""
 
-MOST = 50
+MOST = 60
 """Iterations of the interior-point method."""
-WATCHED, SURE, FALLS = 4, 10, 0.3
-"""Iterations after which what is left must have fallen to this part, or the method has come to a stop; those of the
-convex program, whose solution is sure."""
+PATIENT, SURE, FALLS = 12, 10, 0.3
+"""Iterations within which what is left must have fallen to half of its least: many bodies have a path to the solution
+that stands still for some iterations and goes on; those of the convex program, whose solution is sure, after which it
+must have fallen to this part. Else the method has come to a stop."""
 CLOSE, CLOSED = 1e-6, 1e-12
 """What may be left, of the size of the numbers, when the finish is first tried, and where the method ends."""
 GOOD = 1e-9
 """What may be left with contacts' power in place of their law (cone_finish_kernels.see) in a solution: contacts whose
 slip or force is next to nothing are at the edge of sticking, sliding or leaving, where the law itself is ill-posed."""
-FAIR = 1e-5
+FAIR = 1e-2
 """The same, up to which a solution in which nothing closes is better than that of the program without correction."""
 NEAR, NEARLY = 1e-4, 1e-2
 """What is left from which the method aims at less of the complementarity than CENTERED, and how much."""
@@ -290,7 +291,7 @@ def inside(floats, ints, follow):
     """
     begin(floats, ints, follow)
     sizes(floats, ints)
-    peak, best, tried = 0.0, math.inf, False
+    peak, best, tried, half, since = 0.0, math.inf, False, math.inf, 0
     for number in range(MOST):
         worst = left(floats, ints, follow)
         if not worst < math.inf:
@@ -306,8 +307,12 @@ def inside(floats, ints, follow):
             fetch(floats, ints)
             left(floats, ints, follow)
             tried = True
+        if worst <= 0.5 * half:
+            half, since = worst, number
         peak = max(peak, worst)
-        if number % (WATCHED if follow == 1 else SURE) == 0:
+        if follow == 1 and number - since >= PATIENT:
+            break
+        if follow == 0 and number % SURE == 0:
             if number > SURE and worst > FALLS * peak:
                 break
             peak = worst
