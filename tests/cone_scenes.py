@@ -51,6 +51,24 @@ def turn(rotation, spin, step):
     return (np.eye(3) + 2 * w * half + 2 * half @ half) @ rotation
 
 
+def faces(seed, bodies, count, friction):
+    """Cubes at random that touch by squares of four contacts, as faces do: gaps of micrometers to meters a second."""
+    draw = np.random.default_rng(seed)
+    pairs = [(int(draw.integers(bodies)), int(draw.integers(-1, bodies))) for _ in range(count)]
+    program = cone_program(bodies, [(a, b if b != a else -1) for a, b in pairs], 4 * count)
+    for k in range(bodies):
+        mass = draw.uniform(1, 5)
+        write_body(program, k, mass, mass / 6 * np.eye(3), draw.standard_normal(6))
+    for c in range(count):
+        normal, across, along = np.linalg.qr(draw.standard_normal((3, 3)))[0]
+        middles = draw.uniform(-0.3, 0.3, (2, 2))
+        for j, (x, y) in enumerate(0.6 * CORNERS):
+            arms = [h * normal + (u + x) * across + (w + y) * along for (u, w), h in zip(middles, (-0.5, 0.5), strict=True)]
+            gap = max(0.0, draw.uniform(-1, 1)) * 10.0 ** draw.uniform(-6, 0)
+            write_contact(program, 4 * c + j, c, normal, arms, friction, gap * normal)
+    return program
+
+
 class Stack:
     """Unit cubes on one another on a floor that leans, stepped by an explicit change of places."""
 

@@ -12,15 +12,30 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear import cone_layout_kernels as layout
+from sceneql.linear.cone_layout_kernels import (
+    ROW,
+    ROW_A,
+    ROW_AIM_A,
+    ROW_AIM_C,
+    ROW_C,
+    ROW_DA,
+    ROW_DC,
+    ROW_DS,
+    ROW_DX,
+    ROW_GIVEN,
+    ROW_H,
+    ROW_HEAVY,
+    ROW_HIGH,
+    ROW_J,
+    ROW_LEFT,
+    ROW_LONG,
+    ROW_LOW,
+    ROW_OLD,
+    ROW_S,
+    ROW_SIZE,
+    ROW_X,
+)
 from sceneql.system.signatures_kernels import A, F, I, N
-
-ROW_J, ROW_LOW, ROW_HIGH, ROW_GIVEN, ROW_X, ROW_S = 0, 12, 13, 14, 15, 16
-ROW_HEAVY, ROW_LONG, ROW_SIZE, ROW_H, ROW_DX, ROW_DS, ROW_A, ROW_C, ROW_DA, ROW_DC = range(17, 27)
-ROW_AIM_A, ROW_AIM_C, ROW_LEFT, ROW_OLD, ROW = 27, 28, 29, 30, 33
-"""Floats of a row. Given: J by velocity and angular velocity of the first body of its pair, then of the second; the
-bounds of the impulse, what is added to J v. Found: impulse (given: a guess), s. Scratch: effective mass, length that
-makes a velocity of s, size of s, matrix, changes of impulse and s; a and c, their changes, what these aim at; what is
-left of s; impulse, a and c to come back to."""
 
 STIFF = 1e8
 """Stiffness of proximal steps of ties in the interior-point method, of the effective mass."""

@@ -11,7 +11,6 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.bounded_rows_kernels import move_rows, open_rows, project_rows, see_rows
 from sceneql.linear.cone_layout_kernels import (
     AT_ARM_A,
     AT_ARM_B,
@@ -47,6 +46,11 @@ from sceneql.linear.cone_layout_kernels import (
     PAIR_B,
     RESIDUAL,
     RESULT_AT,
+    ROWS,
+    move_rows,
+    open_rows,
+    project_rows,
+    see_rows,
 )
 from sceneql.linear.cone_points_kernels import determinant, tail
 from sceneql.linear.cone_rows_kernels import (
@@ -172,8 +176,9 @@ def look(floats, ints):
         worst, least = max(worst, case), max(least, power)
         for j in range(3):
             every += floats[c + AT_X + j] + floats[c + AT_S + j]
-    case, power = see_rows(floats, ints)
-    worst, least = max(worst, case), max(least, power)
+    if ints[ROWS] > 0:
+        case, power = see_rows(floats, ints)
+        worst, least = max(worst, case), max(least, power)
     if not abs(every) < math.inf:
         worst = least = math.inf
     floats[ints[RESULT_AT] + RESIDUAL], floats[ints[RESULT_AT] + BALANCE] = worst, least
@@ -198,7 +203,8 @@ def finish(floats, ints, most, near):
             stiff = min(STIFF, max(1e-2 / worst, 1e2))
         for k in range(ints[CONTACTS]):
             project(floats, ints[CONTACTS_AT] + CONTACT * k, stiff)
-        project_rows(floats, ints, stiff)
+        if ints[ROWS] > 0:
+            project_rows(floats, ints, stiff)
         ints[FINISHES] += 1
         if not factor(floats, ints):
             return False
@@ -218,7 +224,8 @@ def finish(floats, ints, most, near):
             floats[c + AT_X] += floats[c + AT_DX] - x
             floats[c + AT_X + 1] += floats[c + AT_DX + 1] - y
             floats[c + AT_X + 2] += floats[c + AT_DX + 2] - z
-        move_rows(floats, ints)
+        if ints[ROWS] > 0:
+            move_rows(floats, ints)
     return False
 
 
@@ -226,7 +233,7 @@ def finish(floats, ints, most, near):
 def tell(floats, ints):
     """Write impulses and velocities of the contacts in the world, and how fast one still closes."""
     look(floats, ints)
-    closing = open_rows(floats, ints)
+    closing = open_rows(floats, ints) if ints[ROWS] > 0 else 0.0
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         x, s = c + AT_X, c + AT_S

@@ -18,17 +18,6 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.linear.bounded_rows_kernels import (
-    advance_rows,
-    aim_rows,
-    begin_rows,
-    center_rows,
-    fastest_row,
-    left_rows,
-    scale_rows,
-    spring_rows,
-    turn_rows,
-)
 from sceneql.linear.cone_finish_kernels import FULL, LESS, finish, look, roughness, tell
 from sceneql.linear.cone_layout_kernels import (
     AT_B,
@@ -61,7 +50,17 @@ from sceneql.linear.cone_layout_kernels import (
     FINISHES,
     ITERATIONS,
     RESULT_AT,
+    ROWS,
     TRIES,
+    advance_rows,
+    aim_rows,
+    begin_rows,
+    center_rows,
+    fastest_row,
+    left_rows,
+    scale_rows,
+    spring_rows,
+    turn_rows,
 )
 from sceneql.linear.cone_points_kernels import aim, inner, prepare, scale, scaled, scaled_step, tail
 from sceneql.linear.cone_rows_kernels import (
@@ -123,14 +122,15 @@ def begin(floats, ints, follow):
         for j in range(6):
             floats[at + AT_V + j] = floats[at + AT_FREE + j]
     to_contacts(floats, ints, AT_V, AT_S)
-    spring_rows(floats, ints)
+    if ints[ROWS] > 0:
+        spring_rows(floats, ints)
     factor(floats, ints)
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         for j in range(3):
             floats[c + AT_DX + j] = -floats[c + AT_HEAVY] * (floats[c + AT_S + j] + floats[c + AT_B + j])
     step(floats, ints, 0)
-    fastest = fastest_row(floats, ints)
+    fastest = fastest_row(floats, ints) if ints[ROWS] > 0 else 0.0
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         size = 0.0
@@ -153,7 +153,8 @@ def begin(floats, ints, follow):
             floats[c + AT_X + j] = -heavy * floats[c + AT_S + j]
         floats[c + AT_S] = max(floats[c + AT_S], slip) + fastest
         floats[c + AT_X] = max(floats[c + AT_X], heavy * slip) + heavy * fastest
-    begin_rows(floats, ints, fastest)
+    if ints[ROWS] > 0:
+        begin_rows(floats, ints, fastest)
 
 
 @lean(types.float64(A, I, N))
@@ -164,9 +165,10 @@ def direct(floats, ints, symmetric):
         q, r = c + AT_Q, c + AT_R
         x, y, z = scaled(floats, c, floats[r], floats[r + 1], floats[r + 2], -1.0)
         put(floats, c + AT_DX, *scaled(floats, c, floats[q] + x, floats[q + 1] + y, floats[q + 2] + z, -1.0))
-    aim_rows(floats, ints)
+    if ints[ROWS] > 0:
+        aim_rows(floats, ints)
     step(floats, ints, AT_LEFT)
-    found = min(1.0, BACK * turn_rows(floats, ints))
+    found = min(1.0, BACK * turn_rows(floats, ints)) if ints[ROWS] > 0 else 1.0
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         q, ds, slide = c + AT_Q, c + AT_DS, c + AT_SLIDE
@@ -218,7 +220,7 @@ def left(floats, ints, follow):
         gap = inner(floats, c + AT_X, c + AT_S) / (full * size)
         worst = max(worst, gap)
         every += gap + floats[c + AT_R] + floats[c + AT_R + 1] + floats[c + AT_R + 2]
-    of_rows = left_rows(floats, ints)
+    of_rows = left_rows(floats, ints) if ints[ROWS] > 0 else 0.0
     every += of_rows
     worst = max(worst, of_rows)
     return worst if abs(every) < math.inf else math.inf
@@ -227,7 +229,9 @@ def left(floats, ints, follow):
 @lean(types.float64(A, I, N, F))
 def iterate(floats, ints, symmetric, least):
     """One iteration of the interior-point method; the part of the step that is taken, 0 where it cannot go on."""
-    total, count = scale_rows(floats, ints)
+    total = count = 0.0
+    if ints[ROWS] > 0:
+        total, count = scale_rows(floats, ints)
     count += ints[CONTACTS]
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
@@ -249,9 +253,11 @@ def iterate(floats, ints, symmetric, least):
     for k in range(ints[CONTACTS]):
         c = ints[CONTACTS_AT] + CONTACT * k
         aim(floats, c, centered)
-    center_rows(floats, ints, centered)
+    if ints[ROWS] > 0:
+        center_rows(floats, ints, centered)
     part = direct(floats, ints, symmetric)
-    advance_rows(floats, ints, part)
+    if ints[ROWS] > 0:
+        advance_rows(floats, ints, part)
     for body in range(ints[BODIES]):
         at = ints[BODIES_AT] + BODY * body
         for j in range(6):

@@ -4,9 +4,10 @@
 from numba import types
 
 from sceneql.compiled.kernels import kernel
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.linear.block_order_kernels import filled
 from sceneql.linear.block_plan_kernels import BLOCK, plan_blocks
-from sceneql.system.signatures_kernels import I, N
+from sceneql.system.signatures_kernels import A, F, I, N
 
 BODIES, CONTACTS, PAIRS_AT, CONTACT_INTS_AT, DIAGONAL_AT, PLAN_AT, PLAN, BODIES_AT, CONTACTS_AT, VALUES_AT = range(10)
 VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, RESULT_AT, TRIES, ITERATIONS, FINISHES = range(10, 20)
@@ -39,6 +40,14 @@ Scratch: frame (3, 3), x, s, their changes, right hand side, scaled point, scali
 in the frame, what is left of s, effective mass, size of the velocities, x and s to come back to, direction of slip (2),
 slip, its change."""
 
+ROW_J, ROW_LOW, ROW_HIGH, ROW_GIVEN, ROW_X, ROW_S = 0, 12, 13, 14, 15, 16
+ROW_HEAVY, ROW_LONG, ROW_SIZE, ROW_H, ROW_DX, ROW_DS, ROW_A, ROW_C, ROW_DA, ROW_DC = range(17, 27)
+ROW_AIM_A, ROW_AIM_C, ROW_LEFT, ROW_OLD, ROW = 27, 28, 29, 30, 33
+"""Floats of a bounded row. Given: J by velocity and angular velocity of the first body of its pair, then of the second;
+the bounds of the impulse, what is added to J v. Found: impulse (given: a guess), s. Scratch: effective mass, length
+that makes a velocity of s, size of s, matrix, changes of impulse and s; a and c, their changes, what these aim at; what
+is left of s; impulse, a and c to come back to."""
+
 RESIDUAL, OVERLAP, BALANCE, RESULT = range(4)
 """Floats that are found: what is left of the equations, of the size of the numbers in them; the largest velocity with
 which a contact still closes [m/s]; what is left with each contact's power in place of its law."""
@@ -48,6 +57,31 @@ USUAL_TRIES = 4
 
 OTHERS = 1e-2
 """Part of the largest velocity below which one counts as 0 when sizes are compared."""
+
+_BOUNDED = "sceneql.linear.bounded_rows_kernels"
+# Compiled for programs that have bounded rows: called for these alone.
+to_rows = lazy(f"{_BOUNDED}:to_rows", types.void(A, I, N, N))
+from_rows = lazy(f"{_BOUNDED}:from_rows", types.void(A, I, N, N))
+momenta_of_rows = lazy(f"{_BOUNDED}:momenta_of_rows", types.void(A, I))
+prepare_rows = lazy(f"{_BOUNDED}:prepare_rows", types.void(A, I))
+sizes_of_rows = lazy(f"{_BOUNDED}:sizes_of_rows", types.float64(A, I))
+floor_sizes = lazy(f"{_BOUNDED}:floor_sizes", types.void(A, I, F))
+add_rows = lazy(f"{_BOUNDED}:add_rows", types.void(A, A, I))
+keep_rows = lazy(f"{_BOUNDED}:keep_rows", types.void(A, I))
+fetch_rows = lazy(f"{_BOUNDED}:fetch_rows", types.void(A, I))
+see_rows = lazy(f"{_BOUNDED}:see_rows", types.UniTuple(F, 2)(A, I))
+project_rows = lazy(f"{_BOUNDED}:project_rows", types.void(A, I, F))
+move_rows = lazy(f"{_BOUNDED}:move_rows", types.void(A, I))
+open_rows = lazy(f"{_BOUNDED}:open_rows", types.float64(A, I))
+spring_rows = lazy(f"{_BOUNDED}:spring_rows", types.void(A, I))
+fastest_row = lazy(f"{_BOUNDED}:fastest_row", types.float64(A, I))
+begin_rows = lazy(f"{_BOUNDED}:begin_rows", types.void(A, I, F))
+left_rows = lazy(f"{_BOUNDED}:left_rows", types.float64(A, I))
+scale_rows = lazy(f"{_BOUNDED}:scale_rows", types.UniTuple(F, 2)(A, I))
+aim_rows = lazy(f"{_BOUNDED}:aim_rows", types.void(A, I))
+turn_rows = lazy(f"{_BOUNDED}:turn_rows", types.float64(A, I))
+center_rows = lazy(f"{_BOUNDED}:center_rows", types.void(A, I, F))
+advance_rows = lazy(f"{_BOUNDED}:advance_rows", types.void(A, I, F))
 
 
 @kernel(types.Tuple((I, N))(N, N, N, I, N, N, N, N))

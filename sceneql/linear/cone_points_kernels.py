@@ -10,7 +10,6 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.bounded_rows_kernels import prepare_rows
 from sceneql.linear.cone_layout_kernels import (
     AT_ARM_A,
     AT_B,
@@ -37,6 +36,8 @@ from sceneql.linear.cone_layout_kernels import (
     CONTACT,
     CONTACTS,
     CONTACTS_AT,
+    ROWS,
+    prepare_rows,
 )
 from sceneql.linear.cone_rows_kernels import cross, pair_of, put, turned
 from sceneql.system.signatures_kernels import A, I, N
@@ -186,4 +187,5 @@ def prepare(floats, ints):
         for given, to in ((c + AT_GIVEN, c + AT_B), (c + AT_IMPULSE, c + AT_X)):
             put(floats, to, *turned(floats, frame, floats[given], floats[given + 1], floats[given + 2]))
         floats[c + AT_X] *= mu * mu
-    prepare_rows(floats, ints)
+    if ints[ROWS] > 0:
+        prepare_rows(floats, ints)

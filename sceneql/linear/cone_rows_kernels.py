@@ -9,18 +9,6 @@ cone and its dual are both x_0 >= |x_T|, and s . x = u . r.
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.bounded_rows_kernels import (
-    ROW_DS,
-    ROW_DX,
-    add_rows,
-    fetch_rows,
-    floor_sizes,
-    from_rows,
-    keep_rows,
-    momenta_of_rows,
-    sizes_of_rows,
-    to_rows,
-)
 from sceneql.linear.cone_layout_kernels import (
     AT_ARM_A,
     AT_ARM_B,
@@ -61,10 +49,21 @@ from sceneql.linear.cone_layout_kernels import (
     PLAN,
     PLAN_AT,
     RIGHT_AT,
+    ROW_DS,
+    ROW_DX,
+    ROWS,
     VALUES,
     VALUES_AT,
     WORK,
     WORK_AT,
+    add_rows,
+    fetch_rows,
+    floor_sizes,
+    from_rows,
+    keep_rows,
+    momenta_of_rows,
+    sizes_of_rows,
+    to_rows,
 )
 from sceneql.linear.multifrontal_general_kernels import factor_general, solve_general
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -185,7 +184,8 @@ def momenta_left(floats, ints):
                 floats[at + AT_FORCE] += size
                 floats[at + AT_TORQUE] += size * (abs(floats[arm]) + abs(floats[arm + 1]) + abs(floats[arm + 2]))
     to_bodies(floats, ints, AT_X, AT_LEFT, 1.0)
-    momenta_of_rows(floats, ints)
+    if ints[ROWS] > 0:
+        momenta_of_rows(floats, ints)
 
 
 @lean(types.void(A, N, N, N, F, A, N))
@@ -254,7 +254,8 @@ def assemble(floats, ints):
         if a >= 0 and b >= 0:
             add_block(values, ints[pair + PAIR_AB], c + AT_ARM_A, c + AT_ARM_B, -1.0, floats, world)
             add_block(values, ints[pair + PAIR_BA], c + AT_ARM_B, c + AT_ARM_A, -1.0, floats, world)
-    add_rows(values, floats, ints)
+    if ints[ROWS] > 0:
+        add_rows(values, floats, ints)
 
 
 @lean(types.boolean(A, I))
@@ -276,7 +277,8 @@ def step(floats, ints, left):
         for c in range(6):
             floats[at + AT_D + c] = floats[at + left + c] if left > 0 else 0.0
     to_bodies(floats, ints, AT_DX, AT_D, 1.0)
-    from_rows(floats, ints, ROW_DX, AT_D)
+    if ints[ROWS] > 0:
+        from_rows(floats, ints, ROW_DX, AT_D)
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + 6 * ints[BODIES]]
     for body in range(ints[BODIES]):
         for c in range(6):
@@ -289,7 +291,8 @@ def step(floats, ints, left):
         for c in range(6):
             floats[ints[BODIES_AT] + BODY * body + AT_D + c] = right[6 * body + c]
     to_contacts(floats, ints, AT_D, AT_DS)
-    to_rows(floats, ints, AT_D, ROW_DS)
+    if ints[ROWS] > 0:
+        to_rows(floats, ints, AT_D, ROW_DS)
 
 
 @lean(types.void(A, I))
@@ -303,7 +306,8 @@ def keep(floats, ints):
         c = ints[CONTACTS_AT] + CONTACT * k
         for j in range(6):
             floats[c + AT_OLD_X + j] = floats[c + AT_X + j]
-    keep_rows(floats, ints)
+    if ints[ROWS] > 0:
+        keep_rows(floats, ints)
 
 
 @lean(types.void(A, I))
@@ -317,7 +321,8 @@ def fetch(floats, ints):
         c = ints[CONTACTS_AT] + CONTACT * k
         for j in range(6):
             floats[c + AT_X + j] = floats[c + AT_OLD_X + j]
-    fetch_rows(floats, ints)
+    if ints[ROWS] > 0:
+        fetch_rows(floats, ints)
 
 
 @lean_inlined
@@ -334,7 +339,7 @@ def fastness(floats, ints, body, at, arm):
 @lean(types.void(A, I))
 def sizes(floats, ints):
     """Write the size of each contact's velocities: what they are sums of, and OTHERS of the largest one."""
-    fastest = max(1e-300, sizes_of_rows(floats, ints))
+    fastest = max(1e-300, sizes_of_rows(floats, ints)) if ints[ROWS] > 0 else 1e-300
     for k in range(ints[CONTACTS]):
         c, pair = ints[CONTACTS_AT] + CONTACT * k, pair_of(ints, k)
         size = abs(floats[c + AT_GIVEN]) + abs(floats[c + AT_GIVEN + 1]) + abs(floats[c + AT_GIVEN + 2])
@@ -345,4 +350,5 @@ def sizes(floats, ints):
         fastest = max(fastest, size)
     for k in range(ints[CONTACTS]):
         floats[ints[CONTACTS_AT] + CONTACT * k + AT_SIZE] += OTHERS * fastest
-    floor_sizes(floats, ints, OTHERS * fastest)
+    if ints[ROWS] > 0:
+        floor_sizes(floats, ints, OTHERS * fastest)

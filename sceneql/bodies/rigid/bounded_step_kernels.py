@@ -5,20 +5,18 @@ import numpy as np
 
 import sceneql.system.channels as channels
 from sceneql.bodies.rigid.groups_kernels import MASS, solve_groups
-from sceneql.bodies.rigid.tied_rows_kernels import (
+from sceneql.bodies.rigid.moved_bodies_kernels import (
     DRIVES,
-    EFFORT_AT,
     ROW_BODIES_AT,
     ROWS,
-    begin_ties,
-    drive_of,
-    first_stop,
-    write_ties,
+    move_all,
+    place_all,
 )
-from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tell_work, tied_to
+from sceneql.bodies.rigid.tied_rows_kernels import EFFORT_AT, begin_ties, drive_of, first_stop, write_ties
+from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, strike, tell_work, tied_to
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel
-from sceneql.linear.bounded_rows_kernels import ROW
+from sceneql.linear.cone_layout_kernels import ROW
 from sceneql.system.signatures_kernels import BACK_OFF
 
 BODIES, BODIES_AT, OWN_AT, OWN, HEAD = range(5)

@@ -12,9 +12,8 @@ import sceneql.linear.cone_layout_kernels as rows
 from sceneql.bodies.rigid.point_list import BODY_A, BODY_B, WHERE, WHO
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.linear.block_order_kernels import filled
-from sceneql.linear.bounded_rows_kernels import ROW, ROW_HIGH, ROW_LOW
 from sceneql.linear.cone_kernels import LOOSE, solve
-from sceneql.linear.cone_layout_kernels import lay_out
+from sceneql.linear.cone_layout_kernels import ROW, ROW_HIGH, ROW_LOW, lay_out
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MASS = 10

@@ -15,6 +15,21 @@ import math
 from numba import types
 
 from sceneql.bodies.rigid.drive_kernels import LAST_AT, ROW_AT, motion
+from sceneql.bodies.rigid.moved_bodies_kernels import (
+    ACTIVE_AT,
+    AWAY,
+    BODY_GROUPS_AT,
+    DRIVES,
+    DRIVES_AT,
+    GROUPS,
+    GROUPS_AT,
+    PRESSED,
+    SIDES_AT,
+    STEADY,
+    STRUCK,
+    TIES,
+    TIES_AT,
+)
 from sceneql.bodies.rigid.tie_kernels import MOVED_AT, MOVERS_AT, ROWS_AT, survey
 from sceneql.bodies.rigid.tie_kernels import ROWS as TIE_ROWS
 from sceneql.bodies.rigid.tie_rows_kernels import (
@@ -32,16 +47,8 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     SCRATCH,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.bounded_rows_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_X
+from sceneql.linear.cone_layout_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_X
 from sceneql.system.signatures_kernels import A, F, I, N
-
-TIES_AT, TIES, SIDES_AT, BODY_GROUPS_AT, BODY_MOVERS_AT, GROUPS, GROUPS_AT, DRIVES, DRIVES_AT = range(9)
-ACTIVE_AT, ROW_BODIES_AT, ROWS, FIRST_STEP, HEAD = range(9, 14)
-"""Integers of the ties of a step: where those of tie_kernels begin, and their number; where the tables of the rows'
-sides, the bodies' groups (-1: tied to nothing) and movers begin; the number of groups and whether each always takes
-part; the number of drives, and where they begin; the offset of which groups take part; where the bodies of the bounded
-rows begin, two each, and the number of rows: first those of the ties, then four of each drive, its stops, its motor,
-its friction; whether no other contact has told of these ties before it."""
 
 GROUP, FLIPPED, SIDE_INTS = range(3)
 """Integers of a row: its group, and whether the first of its two bodies is the tie's second."""
@@ -54,8 +61,6 @@ DRIVE_GROUP, DRIVE_FLIPPED, DRIVE = range(LAST_AT + 10, LAST_AT + 13)
 none); what its motor follows, offsets of that, of the largest force, of the time in which a motor takes errors of an
 angle away, and of the angle that it followed last; of the friction (-1: none); of what all of these do along the
 motion; then as of a row."""
-AWAY, STEADY, PRESSED, STRUCK = 0.0, 1.0, 2.0, 3.0
-"""Ways to step of a group, at ACTIVE_AT."""
 NO_MOTOR, SPEED, ANGLE = range(3)
 """What a motor follows."""
 
@@ -131,14 +136,6 @@ def rouse(floats, own, body):
     """Let the group of a body take part, which may touch something."""
     if own.size > 0 and own[own[BODY_GROUPS_AT] + body] >= 0:
         floats[own[ACTIVE_AT] + own[own[BODY_GROUPS_AT] + body]] = PRESSED
-
-
-@lean_inlined
-def mode_of(floats, own, body):
-    """How a body steps."""
-    if own.size == 0 or own[own[BODY_GROUPS_AT] + body] < 0:
-        return PRESSED
-    return floats[own[ACTIVE_AT] + own[own[BODY_GROUPS_AT] + body]]
 
 
 @lean_inlined

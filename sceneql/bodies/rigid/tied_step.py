@@ -40,7 +40,7 @@ class TiedStep:
         """The integers of tied_rows_kernels."""
         import numpy as np
 
-        from sceneql.bodies.rigid.tied_rows_kernels import HEAD
+        from sceneql.bodies.rigid.moved_bodies_kernels import HEAD
 
         bodies = [body for pair in self.pairs for body in pair]
         drives = [k for drive in self._drives for k in drive]

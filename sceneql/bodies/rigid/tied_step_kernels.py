@@ -12,6 +12,24 @@ from numba import types
 
 from sceneql.bodies.rigid.drive_kernels import ROW_AT, motion
 from sceneql.bodies.rigid.groups_kernels import MASS
+from sceneql.bodies.rigid.moved_bodies_kernels import (
+    ACTIVE_AT,
+    AWAY,
+    BODY_GROUPS_AT,
+    BODY_MOVERS_AT,
+    DRIVES,
+    FIRST_STEP,
+    GROUPS,
+    GROUPS_AT,
+    PRESSED,
+    ROW_BODIES_AT,
+    SIDES_AT,
+    STEADY,
+    STRUCK,
+    TIES,
+    TIES_AT,
+    mode_of,
+)
 from sceneql.bodies.rigid.point_list import AT_ARM_A, BODY_A, WHERE, WHO
 from sceneql.bodies.rigid.point_list import AT_PUSH as POINT_PUSH
 from sceneql.bodies.rigid.tie_kernels import MOVED_AT, ROWS_AT, balance, clear, survey
@@ -34,38 +52,22 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     turned,
 )
 from sceneql.bodies.rigid.tied_rows_kernels import (
-    ACTIVE_AT,
     ANGLE,
-    AWAY,
-    BODY_GROUPS_AT,
-    BODY_MOVERS_AT,
     DRIVE,
     DRIVE_GROUP,
-    DRIVES,
     EFFORT_AT,
-    FIRST_STEP,
     GROUP,
-    GROUPS,
-    GROUPS_AT,
     LIMITS_AT,
     MOTOR,
-    PRESSED,
     REACHED_AT,
-    ROW_BODIES_AT,
     SIDE_INTS,
-    SIDES_AT,
-    STEADY,
-    STRUCK,
     TARGET_AT,
-    TIES,
-    TIES_AT,
     drive_of,
-    mode_of,
     write_ties,
 )
-from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, Q_AT, X_AT, gather, move, place
+from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel, lean
-from sceneql.linear.bounded_rows_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_X
+from sceneql.linear.cone_layout_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_X
 from sceneql.system.signatures_kernels import A, F, I, N
 
 CLOSED = 1e-13
@@ -149,32 +151,6 @@ def tied_to(touched, floats, own, rows):
             touched[body] = 1
             some = True
     return some
-
-
-@lean(types.void(F, A, A, A, A, I, N, N, I, I, A, A))
-def place_all(h, y0, y1, free, floats, ints, bodies_at, every, own, touched, found, motions):
-    """Write the places of all bodies at the end of the step: those that are not touched are as in ``free``."""
-    for k in range(every):
-        at, mode = bodies_at + BODY_INTS * k, mode_of(floats, own, k)
-        if touched[k] > 0 and mode != STRUCK:
-            place(h, free if mode == STEADY else y0, y1, ints, at, found, motions, 6 * k, 1 if mode == STEADY else 0)
-            continue
-        x, q = ints[at + X_AT], ints[at + Q_AT]
-        for c in range(3):
-            y1[x + c] = free[x + c]
-        if q >= 0:
-            for c in range(4):
-                y1[q + c] = free[q + c]
-
-
-@lean(types.void(A, A, A, A, I, N, N, I, I, A, A, A))
-def move_all(y0, y1, free, floats, ints, bodies_at, every, own, touched, masses, found, before):
-    """Write the motions of the bodies that are touched, and what the impulses took."""
-    for k in range(every):
-        if touched[k] > 0:
-            at, mode = bodies_at + BODY_INTS * k, mode_of(floats, own, k)
-            part = 0.5 if mode == STEADY else 1.0
-            move(free if mode == STRUCK else y0, y1, ints, at, masses, MASS * k, found, before, 6 * k, part)
 
 
 @kernel(types.void(F, A, A, I, A, I, A, N, N), inner=True)

@@ -14,9 +14,22 @@ from numba import types
 
 import sceneql.system.channels as channels
 from sceneql.bodies.rigid.groups_kernels import MASS
+from sceneql.bodies.rigid.moved_bodies_kernels import (
+    ROW_BODIES_AT,
+    ROWS,
+    again,
+    begin_ties,
+    end_ties,
+    first_stop,
+    move_all,
+    place_all,
+    rouse,
+    strike,
+    tell_work,
+    tied_to,
+    write_ties,
+)
 from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_POINT, AT_PUSH, BODY_A, BODY_B, WHERE, WHO
-from sceneql.bodies.rigid.tied_rows_kernels import ROW_BODIES_AT, ROWS, begin_ties, first_stop, rouse, write_ties
-from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, move_all, place_all, strike, tell_work, tied_to
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
@@ -59,7 +72,7 @@ from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_poin
 from sceneql.contacts.distance.rolling_kernels import solve_rolling
 from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept_box
 from sceneql.linear.block_order_kernels import filled
-from sceneql.linear.bounded_rows_kernels import ROW
+from sceneql.linear.cone_layout_kernels import ROW
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
 lead = lazy("sceneql.contacts.distance.led_kernels:lead", types.void(F, F, A, I, N, A, N, A, N))
@@ -384,7 +397,8 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
                 touched[who[w + BODY_A]] = 1
                 if who[w + BODY_B] < n:
                     touched[who[w + BODY_B]] = 1
-        some = tied_to(touched, floats, ties, rows)
+        if tied:
+            some = tied_to(touched, floats, ties, rows)
         for k in range(every):
             if touched[k] == 0:
                 for c in range(MOTION):
