@@ -63,7 +63,9 @@ def faces(seed, bodies, count, friction):
         normal, across, along = np.linalg.qr(draw.standard_normal((3, 3)))[0]
         middles = draw.uniform(-0.3, 0.3, (2, 2))
         for j, (x, y) in enumerate(0.6 * CORNERS):
-            arms = [h * normal + (u + x) * across + (w + y) * along for (u, w), h in zip(middles, (-0.5, 0.5), strict=True)]
+            arms = [
+                h * normal + (u + x) * across + (w + y) * along for (u, w), h in zip(middles, (-0.5, 0.5), strict=True)
+            ]
             gap = max(0.0, draw.uniform(-1, 1)) * 10.0 ** draw.uniform(-6, 0)
             write_contact(program, 4 * c + j, c, normal, arms, friction, gap * normal)
     return program

@@ -106,6 +106,24 @@ def test_only_the_words_that_are_needed_are_loaded(tmp_path):
     assert not {n for n in names if n.startswith("sceneql.words.contacts.")}
 
 
+def test_contacts_of_bodies_that_nothing_ties_compile_nothing_of_ties(tmp_path):
+    script = """
+clock: {end: 0.1 s}
+objects: {crate: {box: {position: 0 0.6 0 m}}, floor: plane}
+models: {load: {rigid: {of: crate}}}
+TIES
+forces: [gravity]
+contacts: {touch: {collision: {mode: local}}}
+solvers: {main: {semi_implicit_euler: {step: 5 ms}}}
+outputs: {data: {record: {of: [load.energy]}}}
+"""
+    ties = {f"sceneql.bodies.rigid.{name}_kernels" for name in ("tied_step", "tied_rows", "tie")}
+    ties.add("sceneql.linear.bounded_rows_kernels")
+    assert not modules_after(tmp_path, script.replace("TIES", ""), "render") & ties
+    hung = "ties: {arm: {hinge: {between: [load, world], at: 1 0.6 0 m, axis: 0 0 1, friction: 1 N*m}}}"
+    assert modules_after(tmp_path, script.replace("TIES", hung), "render") >= ties
+
+
 def test_explain_imports_neither_renderer_nor_encoder(tmp_path):
     names = modules_after(tmp_path, FALL.replace("outputs: {", "outputs: {film: {video: {size: 32 18}}, "), "explain")
     assert not names & {"PIL", "av", "imageio", "matplotlib", "trimesh"}

@@ -138,7 +138,9 @@ class Assembled:
         ]
         for name, model, _ in self.island.contacts:
             if name in before and model in models:
-                message = f"'{model}' has its contacts in '{name}', and all contacts of a rigid body are solved together"
+                message = (
+                    f"'{model}' has its contacts in '{name}', and all contacts of a rigid body are solved together"
+                )
                 help = f"name all that '{model}' touches in '{name}'"
                 raise ScriptError([Diagnostic("invalid", message, self.assembly.line(), help)])
 
