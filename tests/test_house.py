@@ -6,6 +6,10 @@ from house import BARS, lazy_links
 from modules import House
 
 LAZY = {
+    "bodies.rigid.moved_bodies_kernels": {
+        "bodies.rigid.tied_rows_kernels": "for bodies that are tied",
+        "bodies.rigid.tied_step_kernels": "for bodies that are tied",
+    },
     "compiled.threads_kernels": {"compiled.start_threads_kernels": "where a first term is large enough for threads"},
     "contacts.back_off_kernels": {"contacts.back_off_in_stages_kernels": "for methods whose stages Newton solves"},
     "contacts.body_path_kernels": {"contacts.search_kernels": "when the first body comes near"},
@@ -27,6 +31,7 @@ LAZY = {
         "grids.embedded_kernels": "for steps that a tolerance chooses",
         "grids.iterate_kernels": "for stages that are not solved to rounding at once",
     },
+    "linear.cone_layout_kernels": {"linear.bounded_rows_kernels": "for programs with ties, stops, motors or friction"},
     "linear.newton_kernels": {"linear.newton_search_kernels": "where plain iterations fail"},
     "march.events_kernels": {"march.locate_kernels": "when the first event is met"},
     "stepping.radau_kernels": {"stepping.radau_tallies_kernels": "when the first tally changes"},
