@@ -16,7 +16,7 @@ from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_PUSH, BODY_A, BODY_B, 
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, Q_AT
 from sceneql.compiled.kernels import kernel, lean
 from sceneql.linear.block_order_kernels import filled
-from sceneql.linear.bounded_rows_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_X
+from sceneql.linear.cone_layout_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_X
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MOTION = 6
