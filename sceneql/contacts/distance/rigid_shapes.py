@@ -87,7 +87,7 @@ class Shapes:
     ) -> Iterator[tuple[tuple[int, int], float]]:
         """Pairs whose boxes meet at places (7,), of which one moves, and gaps [m]; infinity of skins apart."""
         from sceneql.contacts.distance.gap_kernels import gap
-        from sceneql.contacts.distance.rigid_local_kernels import standing_pairs
+        from sceneql.contacts.distance.near_shapes_kernels import standing_pairs
 
         floats, ints = convex.joined(shapes)
         room, where = np.zeros(convex.room_length(shapes)), np.concatenate(places)
