@@ -287,10 +287,7 @@ def study(
 @options
 @click.option("--object", "name", required=True, metavar="NAME", help="The object.")
 @click.option("-o", "--output", callback=as_path, required=True, help="File to make: .ply, .stl, .obj or .glb.")
-@click.option(
-    "--cell", callback=as_length, metavar="LENGTH",
-    help="Side of a cell, as 2mm; else 1/128 of its size. Where the surface bends, cells are a quarter as long.",
-)  # fmt: skip
+@click.option("--cell", callback=as_length, metavar="LENGTH", help="Largest cell, as 2mm; else 1/128 of its size.")
 @click.option(
     "--tolerance", callback=as_length, metavar="LENGTH", help="Distance from the surface, in place of --cell."
 )
