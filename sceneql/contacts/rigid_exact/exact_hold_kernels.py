@@ -79,10 +79,9 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     pull_at,
     sizes_at,
     solution_at,
-    solve_rows,
-    within_reason,
     write_rows,
 )
+from sceneql.contacts.rigid_exact.exact_solve_kernels import solve_rows, within_reason
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, I, N
 
 STILL = 1e-10
@@ -139,12 +138,9 @@ def decide(floats, ints, n):
     memory = ints[MEMORY_AT]
     kept, row = 0, ints[TIE_ROWS]
     found, left = solution_at(ints), left_at(ints)
-    largest = 0.0
-    for i in range(n):
-        largest = max(largest, floats[sizes_at(ints) + i])
     for k in range(int(floats[memory + KEPT])):
         rec, to = ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * kept
-        rows = 0
+        rows, largest = 0, floats[sizes_at(ints) + row]
         while row + rows < n and floats[ints[UNITS_AT] + UNIT * (row + rows) + AT_CONTACT] == k:
             floats[rec + FORCE + rows] = floats[found + row + rows]
             rows += 1

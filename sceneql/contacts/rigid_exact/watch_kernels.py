@@ -13,10 +13,8 @@ from sceneql.contacts.distance.gap_kernels import gap as distance
 from sceneql.contacts.rigid_exact.contact_kernels import ALONG, EXTENT, GAP, PAIR, RECORD, SLIDE, SLIP, dot, three
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
-    AGAIN,
     BEGUN,
     BEGUN_AT,
-    ENDURANCE,
     KEPT,
     KEPT_AT,
     MEMORY_AT,
@@ -148,8 +146,6 @@ def gap(t, y, gaps, floats, ints):
             now += TOUCHES * smaller(floats, ints, a, b) - least
         elif h > 0.0 and now > 0.0:
             now = passed(floats, ints, a, b, h, now, motions, room)
-        if floats[memory + AGAIN] >= ENDURANCE and abs(now) <= 10.0 * TOUCHES * smaller(floats, ints, a, b):
-            now = NEVER
         gaps[pair] = now
     for k in range(most):
         gaps[pairs + 2 * k] = gaps[pairs + 2 * k + 1] = NEVER

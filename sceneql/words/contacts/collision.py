@@ -112,14 +112,11 @@ class Collision(Contact):
     def trouble(self, state: ModelState) -> str:
         """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
         at = [k for k, each in enumerate(state.ints) if each == -1]
-        endless = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
         longer, longest = self._too_long(state)
         if longer:
             told = f"in {longer:.0f} steps longer than {longest:.2g} s masses on springs touched something: "
             return told + "where rigid bodies collide, too, such steps can make energy: shorter ones, or `auto`, do not"
-        if endless:
-            return f"at {endless:.0f} instants impacts had no end: rigid bodies were let be there for a step"
-        jammed = sum(state.floats[state.ints[k + 2]] for k, each in enumerate(state.ints) if each == -2)
+        jammed = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
         if jammed:
             return f"at {jammed:.0f} instants no force fitted the slip of rigid bodies: friction stopped it at once"
         loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
