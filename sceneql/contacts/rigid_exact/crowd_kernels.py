@@ -47,7 +47,7 @@ def quickness(floats, ints, pair):
     for side in range(2):
         k = ints[ints[PAIRS_AT] + 2 * pair + side]
         shape, mover = ints[SHAPES_AT] + SHAPE * k, mover_at(ints, k)
-        reach = floats[ints[shape + FLOATS] + REACH] if ints[shape + KIND] == CORE else math.inf
+        reach = floats[ints[shape + FLOATS] + REACH] if k < ints[BODIES] or ints[shape + KIND] == CORE else math.inf
         size = reach if side == 0 else min(size, reach)
         if k < ints[BODIES]:
             x, y, z = three(floats, pull_at(ints, k))

@@ -229,11 +229,11 @@ def hold(t, y, rate, floats, ints):
     follow_all(floats, ints)
     aim(floats, ints)
     n = write_rows(floats, ints, FORCES, friction)
-    solved = solve_rows(floats, ints, n, friction)
+    solved = solve_rows(floats, ints, n, friction, True)
     if not (solved and within_reason(floats, ints, n)) and unaim(floats, ints):
         # No force fits the slip: friction against the pull does, and what sticks by it is stopped at once.
         n = write_rows(floats, ints, FORCES, friction)
-        solved = solve_rows(floats, ints, n, friction)
+        solved = solve_rows(floats, ints, n, friction, True)
         floats[memory + JAMMED] += floats[memory + UNDECIDED]
     if not solved:
         floats[memory + LOOSE] += floats[memory + UNDECIDED]
@@ -293,7 +293,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         if not open:
             break
         n = write_rows(floats, ints, GAPS, friction)
-        solve_rows(floats, ints, n, 0.0)
+        solve_rows(floats, ints, n, 0.0, False)
         for m in range(ints[MOVERS]):
             for c in range(3):
                 floats[mover_at(ints, m) + AT_A + c] = floats[mover_at(ints, m) + AT_TWIST + c] = 0.0
@@ -320,7 +320,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
     if open:
         n = write_rows(floats, ints, SPEEDS, friction)
         # Tangents stand as ties here: what sticks has no speed.
-        solve_rows(floats, ints, n, 0.0)
+        solve_rows(floats, ints, n, 0.0, False)
         jammed = floats[memory + JAMMED] > floats[memory + COUNTED]
         if jammed:  # an impulse without an impact, of which the energy is no error
             floats[memory + COUNTED] = floats[memory + JAMMED]

@@ -244,9 +244,11 @@ def search(n, w, b, kinds, mu, x, s, work, pivots):
     return attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST)
 
 
-@lean(types.boolean(N, A, A, I, F, A, A, A, I))
-def solve_law(n, w, b, kinds, mu, x, s, work, pivots):
+@lean(types.boolean(N, A, A, I, F, A, A, A, I, types.boolean))
+def solve_law(n, w, b, kinds, mu, x, s, work, pivots, thorough):
     """Solve for x and s (n,) from the guess x; whether the law holds to rounding.
+
+    Not ``thorough``: what is nearly a solution will do, as where rows contradict each other by rounding.
 
     ``w`` (n, n) row by row; ``work``: VECTORS n + n n + 1 numbers; ``pivots`` (n,).
     """
@@ -262,6 +264,8 @@ def solve_law(n, w, b, kinds, mu, x, s, work, pivots):
             return True
         if attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST):
             return True
+        if not thorough:
+            return False
         sweeps *= 4
     for i in range(n):
         w[i * n + i] *= 1.0 + EASE

@@ -81,8 +81,8 @@ def group_of(floats, ints, i):
     return -1
 
 
-@lean(types.boolean(A, I, N, F))
-def solve_some(floats, ints, n, friction):
+@lean(types.boolean(A, I, N, F, types.boolean))
+def solve_some(floats, ints, n, friction, thorough):
     """Solve for the rows that the integers after the pivots name; whether to rounding."""
     room, dense, kinds = rooms(ints), ints[DENSE_AT], ints[KINDS_AT]
     rows, own = kinds + 2 * room, kinds + 3 * room
@@ -111,7 +111,9 @@ def solve_some(floats, ints, n, friction):
     work = floats[at : at + VECTORS * n + n * n + 1]
     for i in range(n):
         work[6 * n + i] = floats[sizes_at(ints) + ints[rows + i]]
-    solved = solve_law(n, w, b, ints[own : own + n], friction, x, s, work, ints[kinds + room : kinds + room + n])
+    solved = solve_law(
+        n, w, b, ints[own : own + n], friction, x, s, work, ints[kinds + room : kinds + room + n], thorough
+    )
     largest = 0.0
     for i in range(n):
         largest = max(largest, work[i])
@@ -122,8 +124,8 @@ def solve_some(floats, ints, n, friction):
     return solved
 
 
-@lean(types.boolean(A, I, N, F))
-def solve_rows(floats, ints, n, friction):
+@lean(types.boolean(A, I, N, F, types.boolean))
+def solve_rows(floats, ints, n, friction, thorough):
     """Solve for what the rows give: x, s and the size of the numbers stand in the dense system; whether to rounding."""
     group(floats, ints, n)
     rows, solved = ints[KINDS_AT] + 2 * rooms(ints), True
@@ -133,7 +135,7 @@ def solve_rows(floats, ints, n, friction):
             if group_of(floats, ints, i) == first:
                 ints[rows + count] = i
                 count += 1
-        if count > 0 and not solve_some(floats, ints, count, friction):
+        if count > 0 and not solve_some(floats, ints, count, friction, thorough):
             solved = False
     return solved
 

@@ -101,7 +101,7 @@ def reflect(t, y, floats, ints, restitution, friction):
             floats[right + i] *= 1.0 + max(0.0, restitution)
         elif kind == UNILATERAL and restitution < 0.0:
             ints[ints[KINDS_AT] + i] = BILATERAL
-    solved = solve_rows(floats, ints, n, friction)
+    solved = solve_rows(floats, ints, n, friction, restitution >= 0.0)
     kick(y, floats, ints, n)
     look(t, y, floats, ints)
     follow_all(floats, ints)
