@@ -34,6 +34,8 @@ class Block:
     energy: str | None = None
     """The kernel of its potential energy, as of Assembly.term."""
     damped: bool = False
+    help: str = ""
+    """What is said where its events have no end."""
 
 
 def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...], int]]:

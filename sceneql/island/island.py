@@ -139,10 +139,13 @@ class IslandAssembly(Reserved):
         if matrix is not None:
             self._matrices[velocity_at] = matrix
 
-    def contact(self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False) -> None:
+    def contact(
+        self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False, help: str = ""
+    ) -> None:
         """Add contacts."""
         self._apart = self._apart and apart and mode == "local"
-        (self._exact if mode == "exact" else self._local).append(Block(tuple(kernels), tuple(ints), pairs))
+        block = Block(tuple(kernels), tuple(ints), pairs, None, *self._word, help=help)
+        (self._exact if mode == "exact" else self._local).append(block)
 
     def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False, samples: bool = False) -> None:
         """Add what happens at the end of each step (system.Assembly)."""
@@ -288,7 +291,8 @@ class IslandAssembly(Reserved):
             groups += grouped(self._terms[stage], blocks)
         first_exact = len(blocks)
         exact = grouped(self._exact, blocks)
-        pairs = [block.pairs for block in blocks[first_exact:]]
+        events = blocks[first_exact:]
+        pairs = [block.pairs for block in events]
         local = grouped(self._local, blocks)
         between = (self._after, self._settling, self._free, self._tied, self._limits)
         after, settling, free, tied, limits = (grouped(some, blocks) for some in between)
@@ -349,6 +353,7 @@ class IslandAssembly(Reserved):
             alike=tuple(self._alike),
             rests=tuple(self._rests),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
+            events=tuple((block.pairs, Origin(block.part, block.span), block.help) for block in events),
             damped=any(block.damped for block in blocks[1:first_exact]),
         )
 

@@ -99,6 +99,8 @@ class System:
     """Offset and values at rest of entries of y that start elsewhere."""
     terms: tuple[Origin, ...] = ()
     """The origins of the terms of the rate, in the order in which they act."""
+    events: tuple[tuple[int, Origin, str], ...] = ()
+    """Of each exact contact the number of its pairs, its origin, and what is said where they have no end."""
     damped: bool = False
     """Whether forces depend on velocities besides: then the energies are those of forces at rest."""
 

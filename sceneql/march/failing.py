@@ -64,7 +64,7 @@ def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure
     """The failure of a march that has stopped with a status; ``ahead``: the step that comes next [s]."""
     control = march.control
     if status == kernels.STUCK:
-        return blamed(march, 0, MESSAGES[status])
+        return _endless(march, entry)
     if status == kernels.CROSSING:
         return blamed(march, entry, MESSAGES[status])
     if status == kernels.PAUSED:
@@ -77,6 +77,16 @@ def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure
         return blamed(march, entry, MESSAGES[status], dict.fromkeys((0.0, 0.5 * ahead, ahead)))
     why = "the equations run away" if control.adaptive else "the step is unstable"
     return blamed(march, entry, MESSAGES[status].format(why))
+
+
+def _endless(march: Stopped, pair: int) -> RunFailure:
+    """Events of a pair have no end: told at the line of its contact where that has an advice."""
+    message, first = MESSAGES[kernels.STUCK], 0
+    for pairs, origin, help in march.system.events:
+        if help and first <= pair < first + pairs:
+            return RunFailure(message, part=origin.part, time=march.time, span=origin.span, help=help)
+        first += pairs
+    return blamed(march, 0, message)
 
 
 def blamed(march: Stopped, entry: int, message: str, aheads: Iterable[float] = ()) -> RunFailure:

@@ -48,7 +48,13 @@ def locate(
         f2 = f1
         x1 *= 1e-6
         if x1 < 1e-18 * high or t0 + x1 <= t0:
-            return 0.0
+            # A pair that is apart at the start meets in between; one that touches never leaves.
+            gap(t0, y0, now, floats, ints)
+            f1 = now[pair] - contact
+            if deflate or f1 <= 0.0:
+                return 0.0
+            x1 = 0.0
+            break
     tolerance = ULP * (abs(t0) + high)
     fraction = 0.5
     while True:

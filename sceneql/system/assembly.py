@@ -112,10 +112,13 @@ class Assembly(Protocol):
         that are held have a row and a column of zeros.
         """
 
-    def contact(self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False) -> None:
+    def contact(
+        self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False, help: str = ""
+    ) -> None:
         """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (back_off,) for `local`.
 
-        ``apart``: as for a term; for local contacts only.
+        ``apart``: as for a term; for local contacts only. ``help``: the advice of a run that ends because events of
+        the pairs have no end, which is then told at the contact's line.
         """
 
     def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False, samples: bool = False) -> None:

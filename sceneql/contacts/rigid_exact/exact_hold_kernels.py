@@ -79,10 +79,9 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     pull_at,
     sizes_at,
     solution_at,
-    solve_rows,
-    within_reason,
     write_rows,
 )
+from sceneql.contacts.rigid_exact.exact_solve_kernels import solve_rows, within_reason
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, I, N
 
 STILL = 1e-10
@@ -139,12 +138,9 @@ def decide(floats, ints, n):
     memory = ints[MEMORY_AT]
     kept, row = 0, ints[TIE_ROWS]
     found, left = solution_at(ints), left_at(ints)
-    largest = 0.0
-    for i in range(n):
-        largest = max(largest, floats[sizes_at(ints) + i])
     for k in range(int(floats[memory + KEPT])):
         rec, to = ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * kept
-        rows = 0
+        rows, largest = 0, floats[sizes_at(ints) + row]
         while row + rows < n and floats[ints[UNITS_AT] + UNIT * (row + rows) + AT_CONTACT] == k:
             floats[rec + FORCE + rows] = floats[found + row + rows]
             rows += 1
@@ -233,11 +229,11 @@ def hold(t, y, rate, floats, ints):
     follow_all(floats, ints)
     aim(floats, ints)
     n = write_rows(floats, ints, FORCES, friction)
-    solved = solve_rows(floats, ints, n, friction)
+    solved = solve_rows(floats, ints, n, friction, True)
     if not (solved and within_reason(floats, ints, n)) and unaim(floats, ints):
         # No force fits the slip: friction against the pull does, and what sticks by it is stopped at once.
         n = write_rows(floats, ints, FORCES, friction)
-        solved = solve_rows(floats, ints, n, friction)
+        solved = solve_rows(floats, ints, n, friction, True)
         floats[memory + JAMMED] += floats[memory + UNDECIDED]
     if not solved:
         floats[memory + LOOSE] += floats[memory + UNDECIDED]
@@ -297,7 +293,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         if not open:
             break
         n = write_rows(floats, ints, GAPS, friction)
-        solve_rows(floats, ints, n, 0.0)
+        solve_rows(floats, ints, n, 0.0, False)
         for m in range(ints[MOVERS]):
             for c in range(3):
                 floats[mover_at(ints, m) + AT_A + c] = floats[mover_at(ints, m) + AT_TWIST + c] = 0.0
@@ -324,7 +320,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
     if open:
         n = write_rows(floats, ints, SPEEDS, friction)
         # Tangents stand as ties here: what sticks has no speed.
-        solve_rows(floats, ints, n, 0.0)
+        solve_rows(floats, ints, n, 0.0, False)
         jammed = floats[memory + JAMMED] > floats[memory + COUNTED]
         if jammed:  # an impulse without an impact, of which the energy is no error
             floats[memory + COUNTED] = floats[memory + JAMMED]

@@ -33,12 +33,13 @@ POOR = 10
 """Steps in one try that do not lessen what is left."""
 HALVINGS = 7
 """Most lengths of a step that are tried."""
-SWEEPS = 400
-"""Sweeps of block relaxation before the last try."""
+FEWEST, SWEEPS, LAST = 25, 400, 1_000_000
+"""Sweeps of block relaxation before the second try, and the third; those before the last, of a system of one row."""
 
-VECTORS = 6
-"""Vectors of length n of scratch, before the matrix: sizes, projections, the step, points, the best x, the last x.
-Behind the matrix stands what is left, as a sum of squares (in energies)."""
+VECTORS = 7
+"""Vectors of length n of scratch, before the matrix: sizes, projections, the step, points, the best x, the last x, and,
+given by the caller, sizes of the numbers that b is a sum of. Behind the matrix stands what is left, as a sum of squares
+(in energies)."""
 
 WORST = F(N, A, A, I, F, A, A, A)
 TRY = types.boolean(N, A, A, I, F, A, A, A, I, F, N)
@@ -72,10 +73,10 @@ def softness(n, w, kinds, i):
 @lean(WORST)
 def left(n, w, b, kinds, mu, x, s, work):
     """Write s; what is left of the law, the largest against the size of the numbers in its row."""
-    sizes, to, z = work[:n], work[n : 2 * n], work[3 * n : 4 * n]
+    sizes, to, z, given = work[:n], work[n : 2 * n], work[3 * n : 4 * n], work[6 * n : 7 * n]
     largest = 0.0
     for i in range(n):
-        total, size = b[i], abs(b[i])
+        total, size = b[i], max(abs(b[i]), given[i])
         for j in range(n):
             part = w[i * n + j] * x[j]
             total += part
@@ -243,15 +244,29 @@ def search(n, w, b, kinds, mu, x, s, work, pivots):
     return attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST)
 
 
-@lean(types.boolean(N, A, A, I, F, A, A, A, I))
-def solve_law(n, w, b, kinds, mu, x, s, work, pivots):
+@lean(types.boolean(N, A, A, I, F, A, A, A, I, types.boolean))
+def solve_law(n, w, b, kinds, mu, x, s, work, pivots, thorough):
     """Solve for x and s (n,) from the guess x; whether the law holds to rounding.
+
+    Not ``thorough``: what is nearly a solution will do, as where rows contradict each other by rounding.
 
     ``w`` (n, n) row by row; ``work``: VECTORS n + n n + 1 numbers; ``pivots`` (n,).
     """
     # Where forces are not unique, those near the guess; else nearly those of rows that yield a little.
     if attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST):
         return True
+    for i in range(n):
+        x[i] = 0.0
+    sweeps = FEWEST
+    while sweeps <= SWEEPS:
+        relax(n, w, b, kinds, mu, x, s, work, sweeps)
+        if left(n, w, b, kinds, mu, x, s, work) <= EXACT:
+            return True
+        if attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST):
+            return True
+        if not thorough:
+            return False
+        sweeps *= 4
     for i in range(n):
         w[i * n + i] *= 1.0 + EASE
     search(n, w, b, kinds, mu, x, s, work, pivots)
@@ -266,5 +281,5 @@ def solve_law(n, w, b, kinds, mu, x, s, work, pivots):
     # What cannot be solved so stays near what relaxation finds: it never pulls, and has friction's bound.
     for i in range(n):
         x[i] = 0.0
-    relax(n, w, b, kinds, mu, x, s, work, SWEEPS)
-    return left(n, w, b, kinds, mu, x, s, work) <= GOOD
+    relax(n, w, b, kinds, mu, x, s, work, max(SWEEPS, LAST // (n * n)))
+    return left(n, w, b, kinds, mu, x, s, work) <= GOOD or attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST)

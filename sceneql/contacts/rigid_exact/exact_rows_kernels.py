@@ -33,6 +33,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     BIAS,
     FORCE,
     GAP,
+    POINT,
     PUSHES,
     RECORD,
     ROWS,
@@ -42,10 +43,11 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SLIDES,
     SPEED,
     dot,
+    pace,
     three,
 )
 from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
-from sceneql.contacts.rigid_exact.exact_law_kernels import ACROSS, ALONG, BILATERAL, UNILATERAL, VECTORS, solve_law
+from sceneql.contacts.rigid_exact.exact_law_kernels import ACROSS, ALONG, BILATERAL, UNILATERAL
 from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -59,8 +61,9 @@ the ties have; floats of working memory of distances. Where in the integers stan
 (tie_rows_kernels), two shapes a pair, the ties' own integers, of each of their rows both movers and its floats, room
 for kinds of rows, pivots and which contacts are struck, where the energy taken from each mover counts. Offsets in the
 floats: movers, places of shapes, those at the start of the step, working memory, contacts (twice), rows, the dense
-system, how many contacts each pair keeps, memory, coefficients, what outputs read. Where in the integers is room for a
-question about curved shapes (curved_find_kernels)."""
+system, how many contacts each pair keeps (then of each pair how crowded its events are, and when it had its latest),
+memory, coefficients, what outputs read. Where in the integers is room for a question about curved shapes
+(curved_find_kernels)."""
 
 (
     KEPT,
@@ -70,25 +73,18 @@ question about curved shapes (curved_find_kernels)."""
     BEGUN,
     LOOSE,
     CROWDED,
-    ENDLESS,
     LATEST,
     AGAIN,
     JAMMED,
     COUNTED,
-    SOME,
-    SINCE_SOME,
-    LIFT,
     MEMORY,
-) = range(16)
+) = range(12)
 """Memory: how many contacts are kept; whether it is open which of them slide or leave; since when they are these [s];
-whether it has begun; when the step began [s]; solutions that were not found to rounding, contacts without room,
-instants with impacts without end; when the latest event was [s], and how many there were at that instant before;
-instants at which slip jammed, and those whose energy is counted; impacts since a time [s], by which it is told how
-close they are; the factor of the height below which none bounces."""
-BEYOND = 1e8
-"""What a force does, in parts of what it answers, beyond which slip has no force (Painleve 1895)."""
-PATIENCE, ENDURANCE = 20, 100
-"""Events at one instant after which no contact is let go any more; after which the pairs that touch have none."""
+whether it has begun; when the step began [s]; solutions that were not found to rounding, contacts without room;
+when the latest event was [s], and how many there were at that instant before;
+instants at which slip jammed, and those whose energy is counted."""
+PATIENCE, ENDURANCE = 20, 200
+"""Events at one instant after which no contact is let go any more; after which there is no way on."""
 
 PLACE = 7
 AT_ROW, AT_PUSH, AT_WEIGHED, AT_FIRST, AT_SECOND, AT_CONTACT, UNIT = 0, 12, 24, 36, 37, 38, 39
@@ -156,13 +152,53 @@ def pressed(floats, ints, row):
     return total
 
 
+@lean_inlined
+def rooms(ints):
+    """Room for rows."""
+    return ints[TIE_ROWS] + 3 * ints[MOST]
+
+
+@lean_inlined
+def right_at(ints):
+    """Where b begins, behind the matrix."""
+    return ints[DENSE_AT] + rooms(ints) * rooms(ints)
+
+
+@lean_inlined
+def solution_at(ints):
+    """Where x begins."""
+    return right_at(ints) + rooms(ints)
+
+
+@lean_inlined
+def left_at(ints):
+    """Where s begins."""
+    return right_at(ints) + 2 * rooms(ints)
+
+
+@lean_inlined
+def diagonal_at(ints):
+    """Where the diagonal of the matrix begins: what each row's own force does."""
+    return right_at(ints) + 3 * rooms(ints)
+
+
+@lean_inlined
+def sizes_at(ints):
+    """Where for each row stands the size of the numbers of its group."""
+    return right_at(ints) + 4 * rooms(ints)
+
+
+@lean_inlined
+def marked_at(ints):
+    """Where the integers begin that say which contacts are struck."""
+    return ints[KINDS_AT] + 4 * rooms(ints) + ints[MOVERS]
+
+
 @lean(N(A, I, N, F))
 def write_rows(floats, ints, what, friction):
     """Write the rows for FORCES, SPEEDS, GAPS or IMPACTS, with the right hand side and a guess; how many they are."""
-    room = ints[TIE_ROWS] + 3 * ints[MOST]
-    dense, kinds, n = ints[DENSE_AT], ints[KINDS_AT], 0
-    marked = kinds + 2 * room
-    right, guess = dense + room * room, dense + room * room + room
+    kinds, n = ints[KINDS_AT], 0
+    marked, right, guess, sizes = marked_at(ints), right_at(ints), solution_at(ints), sizes_at(ints)
     for r in range(ints[TIE_ROWS]):
         tied = ints[TIED_AT] + 3 * r
         at, to = ints[UNITS_AT] + UNIT * n, ints[tied + 2]
@@ -176,7 +212,7 @@ def write_rows(floats, ints, what, friction):
             floats[right + n] = floats[to + AT_C]
         else:
             floats[right + n] = floats[to + AT_SPEED]
-        floats[guess + n] = 0.0
+        floats[guess + n] = floats[sizes + n] = 0.0
         n += 1
     for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
         rec = ints[RECORDS_AT] + RECORD * k
@@ -192,6 +228,11 @@ def write_rows(floats, ints, what, friction):
         if what == SPEEDS and not pushes:
             rough = False
         rows = 3 if rough else 1
+        speeds, extent = pace(floats, rec, mover_at(ints, a), mover_at(ints, b)), 0.0
+        for c in range(3):
+            for side in range(2):
+                x = floats[mover_at(ints, b if side == 1 else a) + AT_X + c]
+                extent += abs(x) + abs(floats[rec + POINT + c] - x)
         for j in range(rows):
             at = ints[UNITS_AT] + UNIT * n
             for c in range(12):
@@ -205,6 +246,7 @@ def write_rows(floats, ints, what, friction):
                     for c in range(12):
                         floats[at + AT_PUSH + c] -= part * floats[row + c]
             weigh(floats, ints, n, a, b, AT_PUSH, k)
+            floats[sizes + n] = 0.0
             if what == FORCES:
                 floats[right + n] = pressed(floats, ints, n) + floats[rec + BIAS + j]
                 floats[guess + n] = floats[rec + FORCE + j]
@@ -214,77 +256,13 @@ def write_rows(floats, ints, what, friction):
                 speed = floats[rec + SPEED] if j == 0 else dot(sx, sy, sz, *three(floats, row))
                 floats[right + n] = floats[rec + GAP] if what == GAPS else speed
                 floats[guess + n] = 0.0
+                floats[sizes + n] = extent if what == GAPS else speeds
             kind = UNILATERAL if rows == 1 else (CONE if j == 0 else (ACROSS if j == 1 else ALONG))
             if pushes and (what == GAPS or what == SPEEDS):
                 kind = BILATERAL
             ints[kinds + n] = kind
             n += 1
     return n
-
-
-@lean(types.boolean(A, I, N, F))
-def solve_rows(floats, ints, n, friction):
-    """Solve for what the rows give: x and s stand in the dense system; whether to rounding."""
-    room = ints[TIE_ROWS] + 3 * ints[MOST]
-    dense, kinds = ints[DENSE_AT], ints[KINDS_AT]
-    w = floats[dense : dense + n * n]
-    for i in range(n):
-        p = ints[UNITS_AT] + UNIT * i
-        for j in range(n):
-            q = ints[UNITS_AT] + UNIT * j
-            total = 0.0
-            for one in range(2):
-                for other in range(2):
-                    if floats[p + AT_FIRST + one] == floats[q + AT_FIRST + other]:
-                        f, g = p + AT_ROW + 6 * one, q + AT_WEIGHED + 6 * other
-                        for c in range(6):
-                            total += floats[f + c] * floats[g + c]
-            w[i * n + j] = total
-    at = dense + room * room
-    b, x, s = floats[at : at + n], floats[at + room : at + room + n], floats[at + 2 * room : at + 2 * room + n]
-    work = floats[at + 3 * room : at + 3 * room + VECTORS * n + n * n + 1]
-    return solve_law(n, w, b, ints[kinds : kinds + n], friction, x, s, work, ints[kinds + room : kinds + room + n])
-
-
-@lean(types.boolean(A, I, N))
-def within_reason(floats, ints, n):
-    """Whether no force of a solution is far beyond those that it answers."""
-    room = ints[TIE_ROWS] + 3 * ints[MOST]
-    at, answered = ints[DENSE_AT] + room * room, 0.0
-    for i in range(n):
-        answered = max(answered, abs(floats[at + i]))
-    for i in range(ints[TIE_ROWS], n):
-        if not abs(floats[at + room + i]) * abs(floats[ints[DENSE_AT] + i * n + i]) <= BEYOND * answered:
-            return False
-    return True
-
-
-@lean_inlined
-def solution_at(ints):
-    """Where x begins."""
-    room = ints[TIE_ROWS] + 3 * ints[MOST]
-    return ints[DENSE_AT] + room * room + room
-
-
-@lean_inlined
-def right_at(ints):
-    """Where b begins."""
-    room = ints[TIE_ROWS] + 3 * ints[MOST]
-    return ints[DENSE_AT] + room * room
-
-
-@lean_inlined
-def left_at(ints):
-    """Where s begins."""
-    room = ints[TIE_ROWS] + 3 * ints[MOST]
-    return ints[DENSE_AT] + room * room + 2 * room
-
-
-@lean_inlined
-def sizes_at(ints):
-    """Where the sizes of the numbers in each row begin."""
-    room = ints[TIE_ROWS] + 3 * ints[MOST]
-    return ints[DENSE_AT] + room * room + 3 * room
 
 
 @lean(types.void(A, A, I, N))

@@ -23,6 +23,8 @@ HOLD, SETTLE = f"{ROOM}.exact_hold_kernels:hold", f"{ROOM}.exact_hold_kernels:se
 CONTACTS = f"{ROOM}.watch_kernels:gap", f"{ROOM}.strike_kernels:impact"
 MOST = 24
 """Bodies of one contact: all their conditions are one dense system."""
+ADVICE = "`mode: local` takes what jams or tumbles without end"
+"""What is said where impacts have no end."""
 FEW = 8
 """Contacts by the body that there is room for, and besides."""
 
@@ -89,8 +91,8 @@ def assemble(
     working = assembly.floats(np.zeros(length + 12))
     records = assembly.floats(np.zeros(2 * contact_kernels.RECORD * most))
     units = assembly.floats(np.zeros(rows.UNIT * room))
-    dense = assembly.floats(np.zeros(2 * room * room + (3 + exact_law_kernels.VECTORS) * room + 1))
-    kept = assembly.floats(np.zeros(len(pairs)))
+    dense = assembly.floats(np.zeros(2 * room * room + (8 + exact_law_kernels.VECTORS) * room + 1))
+    kept = assembly.floats(np.zeros(3 * len(pairs)))
     memory = assembly.floats(np.zeros(rows.MEMORY))
     outputs = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
     nan = float("nan")
@@ -104,7 +106,7 @@ def assemble(
         list(chain(*pairs)),
         list(ties),
         list(chain(*tied)),
-        [0] * (2 * room + most),
+        [0] * (4 * room + len(movers) + most),
         works,
         [0] * curved_find_kernels.WHO,
     ]
@@ -113,7 +115,7 @@ def assemble(
     head += [moved, places, begun, working, records, units, dense, kept, memory]
     head += [assembly.value(restitution), assembly.value(friction), *outputs, tally, who_at]
     ints = [int(number) for number in chain(head, *lists)]
-    assembly.contact("exact", CONTACTS, ints, len(pairs) + 2 * most)
+    assembly.contact("exact", CONTACTS, ints, len(pairs) + 2 * most, help=ADVICE)
     assembly.term("tie", HOLD, ints)
     assembly.after_step(SETTLE, ints, samples=True)
     return (
@@ -123,7 +125,6 @@ def assemble(
         memory + rows.LOOSE,
         memory + rows.CROWDED,
         -2,
-        memory + rows.ENDLESS,
         memory + rows.JAMMED,
     )
 

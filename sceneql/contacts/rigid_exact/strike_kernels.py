@@ -3,7 +3,7 @@
 
 All contacts that approach are reflected together, until none approaches (Smith, Kaufman, Vouga, Tamstorf & Grinspun
 2012): with the impulses of Coulomb's law and Newton's restitution on these alone. What is left of infinitely many
-bounces that are lower than LOWEST ends at once.
+bounces ends at once where they are low (crowd_kernels).
 """
 
 import math
@@ -12,7 +12,7 @@ import numpy as np
 from numba import types
 
 import sceneql.system.channels as channels
-from sceneql.compiled.kernels import kernel, lean, lean_inlined
+from sceneql.compiled.kernels import kernel, lean
 from sceneql.contacts import layout
 from sceneql.contacts.distance.manifold_kernels import MOST as MOST_CORNERS
 from sceneql.contacts.distance.manifold_kernels import NAME
@@ -28,13 +28,13 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SHAPE_B,
     SPEED,
     pace,
+    three,
 )
+from sceneql.contacts.rigid_exact.crowd_kernels import ENDLESS, TIRED, count_event, level, lowest
 from sceneql.contacts.rigid_exact.exact_law_kernels import BILATERAL, UNILATERAL
 from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     AGAIN,
-    BODIES,
-    ENDLESS,
     ENDURANCE,
     FRICTION_AT,
     IMPACTS,
@@ -42,15 +42,12 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     KEPT_AT,
     KINDS_AT,
     LATEST,
-    LIFT,
     LOOSE,
     MEMORY_AT,
-    MOST,
     MOVERS,
+    PAIRS,
     RECORDS_AT,
     RESTITUTION_AT,
-    SINCE_SOME,
-    SOME,
     STARTED,
     TALLY_AT,
     TIE_ROWS,
@@ -59,13 +56,14 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     follow_all,
     kick,
     look,
+    marked_at,
     mover_at,
     pull_at,
     right_at,
     solution_at,
-    solve_rows,
     write_rows,
 )
+from sceneql.contacts.rigid_exact.exact_solve_kernels import solve_rows
 from sceneql.contacts.rigid_exact.find_kernels import begin, find, smaller, start_step
 from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
 
@@ -75,20 +73,8 @@ PARTS, STILL = 1e-9, 1e-12
 """Speed away from each other, in the same parts and [m/s], from which a contact is not kept."""
 DRIFT = 1e-3
 """The same of a contact that pushed in the step before: what the step's error leaves is closed after it."""
-MOST_ROUNDS = 500
+MOST_ROUNDS = 200
 """Reflections at one instant, after which all contacts end their approach together, without restitution."""
-LOWEST = 1e-12
-"""Height of the next bounce, in parts of the size of the smaller body, from which the bodies stay together."""
-CROWD, CLOSE, HIGHEST = 100, 1e-4, 1e6
-"""Impacts by which it is told whether they are too close, for bodies that tip from corner to corner without end: so
-much of the time in which the smallest body falls by its size is between them. Then LOWEST is tenfold, HIGHEST times at
-most."""
-
-
-@lean_inlined
-def marked_at(ints):
-    """Where the integers begin that say which contacts are struck."""
-    return ints[KINDS_AT] + 2 * (ints[TIE_ROWS] + 3 * ints[MOST])
 
 
 @lean(F(A, A, I))
@@ -100,9 +86,10 @@ def energies(y, floats, ints):
     return total
 
 
-@lean(N(F, A, A, I, F, F))
+@lean(types.Tuple((N, types.boolean))(F, A, A, I, F, F))
 def reflect(t, y, floats, ints, restitution, friction):
-    """Impulses on the contacts that are marked, so that none of them approaches; rows that were solved for.
+    """Impulses on the contacts that are marked, so that none of them approaches; rows that were solved for, and
+    whether to rounding.
 
     With a restitution below 0, and no friction, none of them goes apart, either.
     """
@@ -114,12 +101,11 @@ def reflect(t, y, floats, ints, restitution, friction):
             floats[right + i] *= 1.0 + max(0.0, restitution)
         elif kind == UNILATERAL and restitution < 0.0:
             ints[ints[KINDS_AT] + i] = BILATERAL
-    if not solve_rows(floats, ints, n, friction):
-        floats[ints[MEMORY_AT] + LOOSE] += 1.0
+    solved = solve_rows(floats, ints, n, friction, restitution >= 0.0)
     kick(y, floats, ints, n)
     look(t, y, floats, ints)
     follow_all(floats, ints)
-    return n
+    return n, solved
 
 
 @lean(N(A, I))
@@ -135,11 +121,31 @@ def mark_approaching(floats, ints):
     return count
 
 
+@lean(F(A, I, N))
+def weight(floats, ints, m):
+    """Size of the acceleration of a mover by all forces but those of contacts."""
+    x, y, z = three(floats, pull_at(ints, m))
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@lean(types.boolean(A, I))
+def tired(floats, ints):
+    """Whether what approaches has had so many impacts that there is no restitution left."""
+    for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
+        rec = ints[RECORDS_AT] + RECORD * k
+        if floats[rec + SPEED] < 0.0 and level(floats, ints, int(floats[rec + PAIR])) > TIRED:
+            return True
+    return False
+
+
 @lean(types.boolean(F, A, A, I))
 def strike(t, y, floats, ints):
     """End the approach of all kept contacts; whether there was one. They, the ties and the movers are of this state."""
     memory, marked = ints[MEMORY_AT], marked_at(ints)
     restitution, friction = floats[ints[RESTITUTION_AT]], floats[ints[FRICTION_AT]]
+    # (Without friction nothing ends what bounces with a restitution of 1.)
+    if (restitution < 1.0 or friction > 0.0) and tired(floats, ints):
+        restitution = 0.0
     count = int(floats[memory + KEPT])
     fastest = 0.0
     for k in range(count):
@@ -149,10 +155,10 @@ def strike(t, y, floats, ints):
     if mark_approaching(floats, ints) > 0:
         count_hit(floats, ints[TALLY_AT], t, fastest)
     count_energy(y, floats, ints, 1.0)
-    rounds = 0
-    while restitution > 0.0 and rounds < MOST_ROUNDS and mark_approaching(floats, ints) > 0:
+    rounds, solved = 0, True
+    while restitution > 0.0 and solved and rounds < MOST_ROUNDS and mark_approaching(floats, ints) > 0:
         before, part = energies(y, floats, ints), restitution
-        n = reflect(t, y, floats, ints, part, friction)
+        n, solved = reflect(t, y, floats, ints, part, friction)
         # Restitution and friction of several contacts may make energy: then less of the restitution.
         while friction > 0.0 and part > 0.0 and energies(y, floats, ints) > before * (1.0 + 1e-12):
             for i in range(n):
@@ -162,12 +168,10 @@ def strike(t, y, floats, ints):
             follow_all(floats, ints)
             mark_approaching(floats, ints)
             part = 0.5 * part if part > 0.05 else 0.0
-            n = reflect(t, y, floats, ints, part, friction)
+            n, solved = reflect(t, y, floats, ints, part, friction)
         rounds += 1
-    if rounds == MOST_ROUNDS and mark_approaching(floats, ints) > 0:
-        floats[memory + ENDLESS] += 1.0
-    # What approaches still, or would bounce lower than LOWEST, stays together.
-    caught, lowest = 0, LOWEST * floats[memory + LIFT]
+    # What approaches still, or would bounce lower than it is seen, stays together.
+    caught, later = 0, 0.0
     for k in range(count):
         rec = ints[RECORDS_AT] + RECORD * k
         a, b = int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B])
@@ -176,38 +180,27 @@ def strike(t, y, floats, ints):
         for side in range(2):
             for c in range(6):
                 pull += floats[rec + ROWS + 6 * side + c] * floats[pull_at(ints, b if side == 1 else a) + c]
-        low = pull < 0.0 and speed * speed < -2.0 * pull * lowest * smaller(floats, ints, a, b)
+        # What holds the lower body is not known here: it may fall as fast as the upper one, and not draw away.
+        pull = max(-pull, weight(floats, ints, a), weight(floats, ints, b))
+        low = speed * speed < 2.0 * pull * lowest(floats, ints, int(floats[rec + PAIR])) * smaller(floats, ints, a, b)
         near = speed <= STILL + PARTS * pace(floats, rec, ma, mb)
         stays = near or (low and restitution < 1.0)
         ints[marked + k] = 1 if stays else 0
         if stays and ((low and not near) or speed < 0.0 or restitution == 0.0):
             caught += 1
+        if low and speed > 0.0 and restitution < 1.0:
+            later = max(later, 2.0 * speed / (pull * (1.0 - restitution)))
     if caught > 0:
-        reflect(t, y, floats, ints, 0.0, friction)
+        _, solved = reflect(t, y, floats, ints, 0.0, friction)
+        if not solved:
+            # Friction as it was found nearly; what approaches still is stopped without.
+            floats[memory + LOOSE] += 1.0
+            reflect(t, y, floats, ints, 0.0, 0.0)
         reflect(t, y, floats, ints, -1.0, 0.0)
         if math.isnan(floats[ints[TALLY_AT] + layout.REST_TIME]):
-            floats[ints[TALLY_AT] + layout.REST_TIME] = t
+            floats[ints[TALLY_AT] + layout.REST_TIME] = t + later
     count_energy(y, floats, ints, -1.0)
     return True
-
-
-@lean(types.void(F, A, I))
-def watch_crowd(t, floats, ints):
-    """Raise the lowest bounce while impacts are too close."""
-    memory = ints[MEMORY_AT]
-    floats[memory + SOME] += 1.0
-    if floats[memory + SOME] < CROWD and floats[memory + LIFT] > 0.0:
-        return
-    size = strongest = 0.0
-    for m in range(ints[BODIES]):
-        reach = smaller(floats, ints, m, m)
-        size = reach if m == 0 else min(size, reach)
-        for c in range(3):
-            strongest = max(strongest, abs(floats[pull_at(ints, m) + c]))
-    close = (t - floats[memory + SINCE_SOME]) ** 2 * strongest < (CROWD * CLOSE) ** 2 * size
-    lift = floats[memory + LIFT] * (10.0 if close else 0.1)
-    floats[memory + LIFT] = min(HIGHEST, max(1.0, lift))
-    floats[memory + SOME], floats[memory + SINCE_SOME] = 0.0, t
 
 
 @lean(types.void(A, I, types.boolean))
@@ -236,8 +229,13 @@ def impact(t, y, pair, floats, ints):
     if pair >= 0:
         again = floats[memory + AGAIN] + 1.0 if t == floats[memory + LATEST] else 0.0
         floats[memory + LATEST], floats[memory + AGAIN] = t, again
-        floats[memory + ENDLESS] += again == ENDURANCE
-        watch_crowd(t, floats, ints)
+        of = pair
+        if pair >= ints[PAIRS]:
+            of = int(floats[ints[RECORDS_AT] + RECORD * ((pair - ints[PAIRS]) // 2) + PAIR])
+        look(t, y, floats, ints)
+        count_event(t, floats, ints, of)
+        if again > ENDURANCE or level(floats, ints, of) > ENDLESS:
+            floats[channels.CHANGED] = channels.NO_WAY_ON
         find(t, y, floats, ints, points, names)
         strike(t, y, floats, ints)
         keep(floats, ints, False)

@@ -6,17 +6,15 @@ import math
 from sceneql.bodies.rigid.rigid_kernels import to_world
 from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_R, AT_X, MOVED
 from sceneql.compiled.kernels import lean
-from sceneql.contacts.distance.convex import CORE, SHAPE
-from sceneql.contacts.distance.core_kernels import FLOATS, KIND, REACH
+from sceneql.contacts.distance.convex import CORE, HALF_SPACE, SHAPE
+from sceneql.contacts.distance.core_kernels import FACES, FLOATS, INTS, KIND, POINTS, RADIUS, REACH
 from sceneql.contacts.distance.first_touch_kernels import MOTION, first_touch, move
 from sceneql.contacts.distance.gap_kernels import gap as distance
 from sceneql.contacts.rigid_exact.contact_kernels import ALONG, EXTENT, GAP, PAIR, RECORD, SLIDE, SLIP, dot, three
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
-    AGAIN,
     BEGUN,
     BEGUN_AT,
-    ENDURANCE,
     KEPT,
     KEPT_AT,
     MEMORY_AT,
@@ -34,7 +32,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     mover_at,
     put_places,
 )
-from sceneql.contacts.rigid_exact.find_kernels import TOUCHES, extent, smaller
+from sceneql.contacts.rigid_exact.find_kernels import TOUCHES, extent, face_of, own, smaller
 from sceneql.system.signatures_kernels import GAP as SIGNATURE
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -42,6 +40,8 @@ NEVER = 1e300
 MOST_ADVANCES = 200
 LITTLE = 1e-5
 """Way, in parts of the size of the smaller body, on which none goes through another (nor any through a half space)."""
+PLAIN = 0.01
+"""Distance, in the same parts, from which no gap is computed but a bound of it."""
 INSIDE = 1e-7
 """How far inside its face a corner is at the start, in parts of the body's size, for its leaving to be watched."""
 SURE = 1e-9
@@ -119,6 +119,51 @@ def passed(floats, ints, a, b, h, gap, motions, room):
     return -(h - touch) * far / h
 
 
+@lean(F(A, I, N, N))
+def beside(floats, ints, a, b):
+    """How far the ball about a body's center that holds it is outside a face of another core, or its half space [m].
+
+    The gap is no less.
+    """
+    sa, sb = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b
+    reach = floats[ints[sa + FLOATS] + REACH] + floats[ints[sa + FLOATS] + RADIUS]
+    ma, mb = mover_at(ints, a), mover_at(ints, b)
+    xa, ya, za = three(floats, ma + AT_X)
+    xb, yb, zb = three(floats, mb + AT_X)
+    x, y, z = own(floats, mb, xa - xb, ya - yb, za - zb)
+    if ints[sb + KIND] == HALF_SPACE:
+        p, q, r = three(floats, ints[sb + FLOATS] + POINTS)
+        return dot(p, q, r, x, y, z) - floats[ints[sb + FLOATS] + POINTS + 3] - reach
+    far = -math.inf
+    # (Faces that turn sweep more than their body's way.)
+    turns = False
+    for c in range(3, PLACE):
+        turns = turns or floats[ints[BEGUN_AT] + PLACE * b + c] != floats[ints[PLACES_AT] + PLACE * b + c]
+    for k in range(0 if turns else ints[ints[sb + INTS] + FACES]):
+        (p, q, r), (u, v, w) = face_of(floats, ints, sb, k)
+        far = max(far, dot(p, q, r, x - u, y - v, z - w))
+    far = max(far, math.sqrt(x * x + y * y + z * z) - floats[ints[sb + FLOATS] + REACH])
+    return far - floats[ints[sb + FLOATS] + RADIUS] - reach
+
+
+@lean(F(A, I, N, N, F))
+def clear(floats, ints, a, b, h):
+    """A bound from below of the gap of a pair that did not meet on its way of length h [s]; else 0."""
+    of, other = ints[ints[SHAPES_AT] + SHAPE * a + KIND], ints[ints[SHAPES_AT] + SHAPE * b + KIND]
+    if of != CORE or (other != CORE and other != HALF_SPACE):
+        return 0.0
+    far = 0.0
+    for side in range(2):
+        m = mover_at(ints, b if side == 1 else a)
+        x, y, z = three(floats, m + AT_X)
+        begun = ints[BEGUN_AT] + PLACE * (b if side == 1 else a)
+        p, q, r = three(floats, begun)
+        far += math.sqrt((x - p) ** 2 + (y - q) ** 2 + (z - r) ** 2) if h > 0.0 else 0.0
+    known = beside(floats, ints, a, b)
+    # (The balls turn within themselves, and are nowhere on their way farther from here than they have come.)
+    return known if known > far + PLAIN * smaller(floats, ints, a, b) else 0.0
+
+
 @lean(SIGNATURE, inner=True)
 def gap(t, y, gaps, floats, ints):
     """Write the gap of each pair [m], and of each kept contact its slip [m/s] and how far it is inside its face [m]."""
@@ -131,6 +176,9 @@ def gap(t, y, gaps, floats, ints):
     count, h = int(floats[memory + KEPT]), t - floats[memory + BEGUN]
     for pair in range(pairs):
         a, b = ints[ints[PAIRS_AT] + 2 * pair], ints[ints[PAIRS_AT] + 2 * pair + 1]
+        gaps[pair] = clear(floats, ints, a, b, h)
+        if gaps[pair] > 0.0:
+            continue
         if is_curved(ints, ints[SHAPES_AT] + SHAPE * a):
             now = meet(floats, ints, ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b)), -NEVER, 0, 0)[1]
         else:
@@ -148,8 +196,6 @@ def gap(t, y, gaps, floats, ints):
             now += TOUCHES * smaller(floats, ints, a, b) - least
         elif h > 0.0 and now > 0.0:
             now = passed(floats, ints, a, b, h, now, motions, room)
-        if floats[memory + AGAIN] >= ENDURANCE and abs(now) <= 10.0 * TOUCHES * smaller(floats, ints, a, b):
-            now = NEVER
         gaps[pair] = now
     for k in range(most):
         gaps[pairs + 2 * k] = gaps[pairs + 2 * k + 1] = NEVER

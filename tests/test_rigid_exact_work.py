@@ -1,0 +1,124 @@
+"""Rigid bodies in mode `exact` that bounce, tip, slide and jam: runs come to an end, with energy and depth right.
+
+SCENEQL_FUZZ says how many random throws.
+"""
+
+import os
+
+import numpy as np
+import pytest
+
+import runs
+
+COUNT = min(int(os.environ.get("SCENEQL_FUZZ", "1")), 1000)
+WALLS = [(-1.2, 0), (1.2, 0), (0, -1.2), (0, 1.2)]
+
+
+def watch(folder, objects, bodies, times, *outputs, law, solver="auto"):
+    """Outputs of the model `it` of these bodies among these objects."""
+    lines = "\n".join(f"  {name}: {what}" for name, what in objects.items())
+    each = "\n".join(f"        {name}: {what}" for name, what in bodies.items())
+    script = f"""
+clock: {{end: {max(times)} s}}
+objects:
+{lines}
+models:
+  it:
+    rigid:
+      bodies:
+{each}
+forces: [gravity]
+contacts: {{touch: {{collision: {{mode: exact, {law}}}}}}}
+solvers: {{main: {{{solver}}}}}
+"""
+    return runs.watch(folder, script, times, *outputs, pruned=False)
+
+
+def pit():
+    """A floor and four walls."""
+    objects = {"floor": "{box: {size: 4 0.2 4 m, position: 0 -0.1 0 m}}"}
+    for k, (x, z) in enumerate(WALLS):
+        objects[f"wall{k}"] = f"{{box: {{size: {'0.1 6 2.6' if x else '2.6 6 0.1'} m, position: {x} 3 {z} m}}}}"
+    return objects
+
+
+def test_two_boxes_that_grip_tumble_to_rest_on_the_floor(tmp_path):
+    objects = pit()
+    objects["o0"] = "{box: {size: 0.3 0.21 0.15 m, position: 0.2 1.1 0.1 m, rotation: {about: 1 0 2, angle: 40 deg}}}"
+    objects["o1"] = "{box: {size: 0.2 0.14 0.1 m, position: -0.5 0.8 0.3 m, rotation: {about: 1 1 2, angle: 65 deg}}}"
+    bodies = {
+        "o0": "{of: o0, mass: 1 kg, velocity: 1.5 0.2 -0.7 m/s, spin: 3 2 0 rad/s}",
+        "o1": "{of: o1, mass: 20 kg, velocity: 0.6 1.4 0.3 m/s, spin: 2 2 1 rad/s}",
+    }
+    outputs = ("it.energy", "it.positions", "it.kinetic")
+    rows = watch(tmp_path, objects, bodies, [0, 2, 5], *outputs, law="restitution: 0.5, friction: 1")
+    assert [energy for energy, *_ in rows[1:]] == pytest.approx([rows[0][0]] * 2, rel=1e-6)
+    assert rows[-1][1][:, 1].min() > 0.05 - 1e-9
+    assert rows[-1][2] < 1e-12
+
+
+@pytest.mark.parametrize("turn", [0, 20])
+def test_faces_that_slide_and_turn_on_each_other_stop_with_their_energy_told(tmp_path, turn):
+    objects = {
+        "floor": "plane",
+        "a": "{box: {size: 1 0.2 1 m, position: 0 0.1 0 m}}",
+        "b": f"{{box: {{size: 0.4 0.2 0.3 m, position: 0 0.3 0 m, rotation: {{about: y, angle: {turn} deg}}}}}}",
+    }
+    bodies = {"a": "{of: a, mass: 4 kg}", "b": "{of: b, mass: 1 kg, velocity: 0.8 0 0.3 m/s, spin: 0 2 0 rad/s}"}
+    outputs = ("it.energy", "it.positions", "it.kinetic")
+    law, solver = "restitution: 0, friction: 0.3", "dop853: {tolerance: 1e-9}"
+    rows = watch(tmp_path, objects, bodies, [0, 0.2, 1], *outputs, law=law, solver=solver)
+    assert [energy for energy, *_ in rows[1:]] == pytest.approx([rows[0][0]] * 2, rel=1e-9)
+    assert rows[-1][2] < 1e-12
+    np.testing.assert_allclose(rows[-1][1][:, 1], [0.1, 0.3], atol=1e-12)
+    np.testing.assert_allclose(rows[-1][1][0], [0, 0.1, 0], atol=1e-12)
+
+
+def test_a_ball_that_bounces_on_another_comes_to_rest_in_few_impacts(tmp_path):
+    # The lower ball is held up by the floor: of gravity alone, none of the two would draw near the other.
+    objects = {
+        "floor": "plane",
+        "a": "{sphere: {radius: 0.1 m, position: 0 0.1 0 m}}",
+        "b": "{sphere: {radius: 0.1 m, position: 0 0.4 0 m}}",
+    }
+    bodies = {"a": "{of: a, mass: 1 kg}", "b": "{of: b, mass: 1 kg}"}
+    law = "restitution: 0.8"
+    rows = watch(tmp_path, objects, bodies, [4, 5], "it.kinetic", "touch.hits.count", law=law)
+    assert rows[0][0] < 1e-18
+    assert rows[0][1] == rows[1][1] < 400
+
+
+def throw(seed):
+    """Objects, bodies and a law by chance."""
+    g = np.random.default_rng(seed)
+    objects, bodies, places = pit(), {}, []
+    count = int(g.integers(1, 9))
+    while len(places) < count:
+        r, p = g.uniform(0.1, 0.25), np.array([g.uniform(-0.9, 0.9), g.uniform(0.4, 2.5), g.uniform(-0.9, 0.9)])
+        if any(np.linalg.norm(p - q) < 1.8 * (r + s) for q, s in places):
+            continue
+        name, spot = f"o{len(places)}", f"{p[0]:.4f} {p[1]:.4f} {p[2]:.4f} m"
+        if g.random() < 0.5:
+            sides, axis = g.uniform(0.5, 1.1, 3) * r, g.normal(size=3)
+            size, about = (f"{x[0]:.4f} {x[1]:.4f} {x[2]:.4f}" for x in (sides, axis))
+            turn = f"rotation: {{about: {about}, angle: {g.uniform(0, 180):.2f} deg}}"
+            objects[name] = f"{{box: {{size: {size} m, position: {spot}, {turn}}}}}"
+        else:
+            objects[name] = f"{{sphere: {{radius: {r:.4f} m, position: {spot}}}}}"
+        v, w = 2 * g.normal(size=3), 5 * g.normal(size=3)
+        motion = f"velocity: {v[0]:.3f} {v[1]:.3f} {v[2]:.3f} m/s, spin: {w[0]:.3f} {w[1]:.3f} {w[2]:.3f} rad/s"
+        bodies[name] = f"{{of: {name}, mass: {10 ** g.uniform(-2, 2):.4g} kg, {motion}}}"
+        places.append((p, r))
+    law = f"restitution: {g.choice([0, 0.3, 0.5, 0.8, 1])}, friction: {g.choice([0, 0.1, 0.3, 0.6, 1])}"
+    return objects, bodies, law
+
+
+@pytest.mark.parametrize("seed", range(1, 1 + COUNT))
+def test_thrown_boxes_and_balls_keep_their_energy_and_make_none(tmp_path, seed):
+    objects, bodies, law = throw(seed)
+    times = np.linspace(0, 3, 13)
+    rows = watch(tmp_path, objects, bodies, times, "it.energy", "it.dissipated", "it.positions", law=law)
+    energies, taken = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+    assert np.ptp(energies) < 1e-5 * np.abs(energies).max()
+    assert np.diff(taken).min() > -1e-6 * np.abs(energies).max()
+    assert min(row[2][:, 1].min() for row in rows) > 0.02
