@@ -12,7 +12,9 @@ STIFFNESS, GAP, SLIP = range(3)
 """NUMBERS: stiffness [Pa], gap [m], speed of slip [m/s]."""
 
 LOAD, NORMAL, LAG = 0, 1, 4
-"""LAGGED: the number of the stage for which it holds, then for each point and object its load [N] and normal (3)."""
+LOADS = 2
+"""LAGGED: channels.LAGS and channels.STAGES for which it holds; from LOADS on for each point and object its load [N]
+and normal (3)."""
 
 PLACE, DISTANCE, KNOW = 0, 3, 4
 """KNOWN: for each point and object a place, and a bound of the distance there [m]."""

@@ -7,6 +7,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import barrier, mobilized, push
+from sceneql.contacts.barrier.objects_kernels import stale
 from sceneql.contacts.barrier.pair_weights_kernels import listed, node, product, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
 from sceneql.system.signatures_kernels import TERM
@@ -37,14 +38,20 @@ def keep(floats, ints, m, edges, found):
         floats[at + layout.WEIGHTS + k] = found[4 + k]
     for k in range(3):
         floats[at + layout.NORMAL + k] = found[1 + k]
-    floats[at + layout.LOAD] = found[9] * found[10] * push(found[0] / found[8])
+    pressed = floats[at + layout.LOAD] = found[9] * found[10] * push(found[0] / found[8])
+    for k in range(4):
+        floats[ints[layout.LOADS] + int(floats[at + k])] += abs(found[4 + k]) * pressed
     floats[memory + layout.LAGGED] = count + 1.0
 
 
 @lean_inlined
 def keep_all(y, floats, ints):
-    """Note all pairs that press at a state."""
-    floats[ints[layout.MEMORY] + layout.LAGGED] = 0.0
+    """Note all pairs that press at a state, and by how much the loads on vertices have changed."""
+    memory, loads, count = ints[layout.MEMORY], ints[layout.LOADS], ints[layout.VERTICES]
+    floats[memory + layout.LAGGED] = 0.0
+    for k in range(count):
+        floats[loads + count + k] = floats[loads + k]
+        floats[loads + k] = 0.0
     if not known(y, floats, ints):
         return
     for edges in (False, True):
@@ -52,6 +59,10 @@ def keep_all(y, floats, ints):
             found = stencil(y, floats, ints, m, edges)
             if 0.0 < found[0] < math.inf:
                 keep(floats, ints, m, edges, found)
+    total = changed = 0.0
+    for k in range(loads, loads + count):
+        total, changed = total + floats[k], changed + abs(floats[k] - floats[count + k])
+    stale(floats, memory + layout.LAGS, changed, total)
 
 
 @lean_inlined
@@ -73,10 +84,10 @@ def force(t, y, rate, floats, ints):
     friction = floats[ints[layout.FRICTION]]
     if friction > 0.0:
         if floats[channels.STAGE] <= 0.0:
-            floats[memory + layout.STAGE] = -1.0
+            floats[memory + layout.LAGS] = -1.0
             keep_all(y, floats, ints)
-        elif floats[memory + layout.STAGE] != floats[channels.STAGES]:
-            floats[memory + layout.STAGE] = floats[channels.STAGES]
+        elif floats[memory + layout.LAGS] != floats[channels.LAGS]:
+            floats[memory + layout.LAGS] = floats[channels.LAGS]
             before = floats.size - channels.BEFORE * y.size
             keep_all(floats[before : before + y.size], floats, ints)
     if not known(y, floats, ints):

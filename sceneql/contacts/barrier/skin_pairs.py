@@ -93,6 +93,7 @@ def add_pairs(
         *(assembly.floats(np.zeros(2 * edges_most)), edges_most),
         *(assembly.floats(np.zeros(cells + 1 + len(edges))), cells),
         *(assembly.floats(np.zeros(layout.LAG * lagged_most)), lagged_most),
+        assembly.floats(np.zeros(2 * len(rest))),
         layout.HEAD + len(lists),
     ]
     ints = np.concatenate([np.array(head, dtype=np.int64), lists])

@@ -52,7 +52,7 @@ def add_objects(
         assembly.floats(numbers),
         friction_at,
         assembly.floats(np.concatenate([own, middle])),
-        assembly.floats(np.zeros(1 + layout.LAG * points * len(refs))),
+        assembly.floats(np.zeros(layout.LOADS + layout.LAG * points * len(refs))),
         assembly.floats(np.full(layout.KNOW * points * len(refs), -1.0)),
         len(refs),
     )
