@@ -126,6 +126,7 @@ def force(t, y, rate, floats, ints):
     lagged = friction > 0.0 and floats[channels.STAGE] > 0.0
     if lagged:
         lag(y.size, floats, ints)
+    holds = floats[channels.STAGE] == channels.NO_SLOPES
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
         px, py, pz = place(y, ints, ints[layout.POSITION], p)
         for j in range(objects):
@@ -135,6 +136,11 @@ def force(t, y, rate, floats, ints):
                 pressed = load(floats, ints, p, d)
                 add(rate, y, ints, p, pressed * a, pressed * b, pressed * c)
             if friction == 0.0:
+                continue
+            if holds:
+                at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j) + layout.HELD
+                if floats[at] != 0.0 or floats[at + 1] != 0.0 or floats[at + 2] != 0.0:
+                    add(rate, y, ints, p, floats[at], floats[at + 1], floats[at + 2])
                 continue
             if lagged:
                 at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j)

@@ -38,6 +38,10 @@ def keep(floats, ints, m, edges, found):
         floats[at + layout.WEIGHTS + k] = found[4 + k]
     for k in range(3):
         floats[at + layout.NORMAL + k] = found[1 + k]
+        floats[at + layout.FRICTION_OF + k] = 0.0
+    listed_at = (ints[layout.EDGES_AT] if edges else ints[layout.POINTS_AT]) + 2 * m
+    first = (ints[layout.TRIANGLES] if edges else 0) + floats[listed_at]
+    floats[at + layout.KEY] = first * (ints[layout.VERTICES] + ints[layout.EDGES]) + floats[listed_at + 1]
     pressed = floats[at + layout.LOAD] = found[9] * found[10] * push(found[0] / found[8])
     for k in range(4):
         floats[ints[layout.LOADS] + int(floats[at + k])] += abs(found[4 + k]) * pressed
@@ -77,13 +81,26 @@ def sliding(y, floats, ints, at):
     return u - along * a, v - along * b, w - along * c
 
 
+@lean_inlined
+def hold_on(y, rate, floats, ints):
+    """Add the friction that is held through a step."""
+    for m in range(int(floats[ints[layout.MEMORY] + layout.LAGGED])):
+        at = ints[layout.LAG_AT] + layout.LAG * m
+        f = at + layout.FRICTION_OF
+        for k in range(4):
+            weight = floats[at + layout.WEIGHTS + k]
+            add(rate, y, ints, int(floats[at + k]), weight * floats[f], weight * floats[f + 1], weight * floats[f + 2])
+
+
 @lean(TERM, inner=True)
 def force(t, y, rate, floats, ints):
     """Adds the push of the barrier, and friction across it."""
     memory, slip = ints[layout.MEMORY], floats[ints[layout.NUMBERS] + layout.SLIP]
     friction = floats[ints[layout.FRICTION]]
     if friction > 0.0:
-        if floats[channels.STAGE] <= 0.0:
+        if floats[channels.STAGE] == channels.NO_SLOPES:
+            hold_on(y, rate, floats, ints)
+        elif floats[channels.STAGE] <= 0.0:
             floats[memory + layout.LAGS] = -1.0
             keep_all(y, floats, ints)
         elif floats[memory + layout.LAGS] != floats[channels.LAGS]:
@@ -118,7 +135,7 @@ def force(t, y, rate, floats, ints):
                 x, y_, z = less * (b * w - c * v), less * (c * u - a * w), less * (a * v - b * u)
                 add(rate, y, ints, k, x, y_, z)
                 add(rate, y, ints, n, -x, -y_, -z)
-    if friction == 0.0:
+    if friction == 0.0 or floats[channels.STAGE] == channels.NO_SLOPES:
         return
     for m in range(int(floats[memory + layout.LAGGED])):
         at = ints[layout.LAG_AT] + layout.LAG * m

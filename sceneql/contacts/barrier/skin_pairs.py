@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 KERNELS = "sceneql.contacts.barrier.skin_forces_kernels:force"
 ENERGY = "sceneql.contacts.barrier.skins_energy_kernels:energy"
 LIMIT = "sceneql.contacts.barrier.skins_limit_kernels:limit"
+AFTER = "sceneql.contacts.barrier.held_friction_kernels:rub_skins"
 SLOPES = "sceneql.contacts.barrier.skins_slopes_kernels:slopes"
 
 ROOM = 48
@@ -54,8 +55,10 @@ def add_pairs(
     gap: float,
     slip: float,
     side: float,
+    rubs: bool,
 ) -> None:
-    """Add the barrier between the skins of ``everyone``; ``side``: the mean side of their triangles [m].
+    """Add the barrier between the skins of ``everyone``; ``side``: the mean side of their triangles [m]; ``rubs``:
+    whether there may be friction.
 
     Raises ScriptError where skins cross or touch at the start.
     """
@@ -68,7 +71,11 @@ def add_pairs(
         triangles.append(first + which.reshape(-1, 3))
         first += len(nodes)
         own = [bodies.position_at + 3 * nodes, bodies.velocity_at + 3 * nodes]
-        vertices.append(np.column_stack([*own, np.full_like(nodes, bodies.work_at), np.full_like(nodes, number)]))
+        vertices.append(
+            np.column_stack(
+                [*own, np.full_like(nodes, bodies.work_at), bodies.inverse_at + nodes, np.full_like(nodes, number)]
+            )
+        )
         held.append(skin.held[nodes])
         stiffness.append(np.full(len(nodes), skin.stiffness))
         places.append(assembly.start()[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)[nodes])
@@ -93,6 +100,7 @@ def add_pairs(
         *(assembly.floats(np.zeros(2 * edges_most)), edges_most),
         *(assembly.floats(np.zeros(cells + 1 + len(edges))), cells),
         *(assembly.floats(np.zeros(layout.LAG * lagged_most)), lagged_most),
+        assembly.floats(np.zeros(layout.BEFORE * lagged_most)),
         assembly.floats(np.zeros(2 * len(rest))),
         layout.HEAD + len(lists),
     ]
@@ -118,6 +126,8 @@ def add_pairs(
     _must_be_apart(start, ints, rows, rest, everyone, assembly)
     assembly.term("force", KERNELS, ints.tolist(), slopes, energy=ENERGY)
     assembly.limit(LIMIT, ints.tolist())
+    if rubs:
+        assembly.after_step(AFTER, ints.tolist())
     assembly.grows(grow)
 
 
