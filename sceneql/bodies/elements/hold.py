@@ -65,6 +65,15 @@ class Hold(Part):
 
     components: Literal["xyz", "x", "y", "z", "xy", "xz", "yz"] = field("In which directions it holds.", "xyz")
     shift: Position = field("How far what is held has been moved from where it starts.", "0 0 0 m")
+    follows: kinds.ObjectRef | None = field(
+        "An object that moves by keys or formulas: what is held moves and turns with it, about its position.", None
+    )
+
+    def problems(self) -> Iterator[Problem]:
+        """Those of a part; two motions at once."""
+        yield from super().problems()
+        if self.follows is not None and self.shift.span is not None:
+            yield Problem("what is held either has a shift or follows an object", ("shift",))
 
     def axes(self) -> list[int]:
         """The numbers of its components."""
@@ -72,6 +81,8 @@ class Hold(Part):
 
     def still(self, assembly: Assembly) -> bool:
         """Whether it never moves what it holds."""
+        if self.follows is not None:
+            return False
         return self.shift.constant and not any(assembly.initial(self.shift))
 
 
@@ -100,6 +111,8 @@ class Held:
     """(n,) by how much [kg]."""
     free: Any
     """(n, 3) bool: components of these that nothing holds."""
+    rows: Any
+    """(k, all nodes) sparse, the rows of the inertia of what it holds [kg]."""
 
 
 def add_holds(
@@ -118,6 +131,11 @@ def add_holds(
     alone, each, found = Slopes("", (), ()), [], {}
     for name, hold in holds.items():
         part = held[name]
+        if hold.follows is not None:
+            from sceneql.bodies.elements.turned_hold import add_turned
+
+            found[name] = add_turned(hold, part, assembly, bodies)
+            continue
         shifts = [assembly.value(_moved(hold.shift, by, assembly)) for by in (-APART, 0.0, APART)]
         found[name] = assembly.floats(np.zeros(9))
         axes = [int(axis in hold.components) for axis in AXES]
@@ -125,22 +143,33 @@ def add_holds(
         numbers = (*shifts, assembly.floats([APART]), assembly.floats(part.starts), found[name], *axes, int(all(axes)))
         counts = (len(part.nodes), len(part.near), assembly.floats(part.weights))
         lists = (np.ravel(one).astype(int).tolist() for one in (part.nodes, part.near, part.free))
-        each.append((hold.still(assembly), (*places, *numbers, *counts, *(k for one in lists for k in one))))
-    for still, ints in each:
+        each.append(
+            (
+                hold.still(assembly),
+                not part.free[:, hold.axes()].any(),
+                (*places, *numbers, *counts, *(k for one in lists for k in one)),
+            )
+        )
+    for still, alone_moved, ints in each:
         if not still:
             assembly.term("internal", f"{folder}:feel_strain", ints, alone, energy="")
             assembly.after_step(f"{folder}:put", ints)
         # The inertia of what is led pulls on its neighbors by a matrix of masses.
-        assembly.term("tie", f"{folder}:feel", ints, alone, energy="" if still else None)
+        assembly.term("tie", f"{folder}:feel", ints, alone, energy="" if still or alone_moved else None)
         assembly.term("constrain", f"{folder}:lead", ints, alone, energy="")
-    for _, ints in each:
+    for _, _, ints in each:
         assembly.term("constrain", f"{folder}:tell", ints, alone, energy="")
     return found
 
 
-def start_velocity(hold: Hold, assembly: Assembly) -> Floats:
-    """(3,) [m/s] of what it holds at the start."""
+def start_velocity(hold: Hold, places: Floats, assembly: Assembly) -> Floats:
+    """(3,) or (k, 3) [m/s] of what it holds at places (k, 3) at the start."""
     import numpy as np
+
+    if hold.follows is not None:
+        from sceneql.bodies.elements.turned_hold import start_velocity as turned
+
+        return turned(hold, places, assembly)
 
     ends = [np.asarray(assembly.initial(_moved(hold.shift, by, assembly))) for by in (-APART, APART)]
     velocity: Floats = (ends[1] - ends[0]) / (2 * APART)

@@ -2,8 +2,9 @@
 """Friction of a skin on objects in explicit methods: a force held through a step, which its end corrects.
 
 Smooth friction is so stiff near rest that explicit methods would need steps of microseconds. So velocities at the end
-of a step obey its law by impulses, with the mean loads of the step, point by point in turns until all fit (Gauss and Seidel;
-Moreau 1988). Through the next step acts the force that would have given these impulses: what sticks feels no change.
+of a step obey its law by impulses, with the mean loads of the step, point by point in turns until all fit (Gauss and
+Seidel; Moreau 1988). Through the next step acts the force that would have given these impulses: what sticks feels no
+change.
 """
 
 import math

@@ -3,10 +3,11 @@
 POSITION, VELOCITY, WORK, INVERSE, NODES, EDGES, LIST, NUMBERS, FRICTION, AREAS, LAGGED, KNOWN, OBJECTS, HEAD = range(
     14
 )
-"""Offsets of the bodies in y, and of their inverse masses in the floats; numbers of the skin's NODES and EDGES; at LIST, in these integers: the nodes, then two
-places in that list for each edge, then whether each component of each node is held; offsets in the floats of NUMBERS,
-of the coefficient of friction, of the AREAS of the points [m^2], of what friction has LAGGED, and of what is KNOWN of
-distances; number of objects, which follow from HEAD on (contacts/layout.py).
+"""Offsets of the bodies in y, and of their inverse masses in the floats; numbers of the skin's NODES and EDGES; at
+LIST, in these integers: the nodes, then two places in that list for each edge, then whether each component of each node
+is held; offsets in the floats of NUMBERS, of the coefficient of friction, of the AREAS of the points [m^2], of what
+friction has LAGGED, and of what is KNOWN of distances; number of objects, which follow from HEAD on
+(contacts/layout.py).
 
 The points of a skin are its nodes and the middles of its edges."""
 
