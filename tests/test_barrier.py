@@ -260,3 +260,15 @@ def test_a_soft_block_that_slides_is_braked_by_the_force_that_presses_it(tmp_pat
 def test_a_block_that_slides_is_braked_as_much_by_explicit_methods(tmp_path, solver):
     exact = 0.3 + 9.81 * 0.09 * 0.2 / math.sqrt(5)
     assert on_incline(tmp_path, 0.3, 1e6, 0.3, 1.0, solver) == pytest.approx(exact, abs=5e-4)
+
+
+def test_a_damped_solid_that_falls_freely_ends_each_step_at_rounding(tmp_path):
+    island = run_of(
+        tmp_path,
+        "clock: {end: 0.1 s}\nsolvers: {main: {bdf2: {step: 10 ms, newton: 1e-4}}}\nobjects: {floor: plane}\n"
+        f"models: {{body: {{elastic: {{{CUBE}, {LAW}, retardation: 4 ms, position: 0 1 0 m, "
+        "rotation: {about: [1, 0, 1], angle: -50 deg}}}}\nforces: [gravity]\n"
+        "contacts: {touch: {collision: {between: [body, floor], friction: 0.3}}}\n",
+    )
+    island.advance(0.1)
+    assert island.march.statistics.evaluations < 100

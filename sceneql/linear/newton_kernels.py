@@ -50,6 +50,8 @@ ENOUGH = 1e-3
 """Part by which loads of friction may differ from those that the stage was solved with."""
 MOST_TURNS = 8
 """Largest number of solutions of a stage, each with the loads of the one before (Li et al. 2020, 5.5)."""
+NOISE = 1e-4
+"""Two updates in a row below this, in units of the tolerance, end the iteration: the rest is rounding."""
 NEWTON = types.boolean(I, F, F, A, A, A, A, A, A, A, A, I, A, I)
 
 search = lazy("sceneql.linear.newton_search_kernels:search", NEWTON)
@@ -206,6 +208,7 @@ def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, mem
         done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
         # Steps of a given length have no other error estimate: there, the contraction must come from two updates.
         done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
+        done = done or (since > 0 and max(size, before) <= NOISE)
         # Where a few masses still buckle, by less than the tolerance, the largest update does not predict the next.
         if careful and since > 0 and size <= memory[SHARE]:
             done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
