@@ -46,6 +46,12 @@ UNSEEN = 0.05
 """Least contraction that is assumed before two updates measure it."""
 TINY = 0.01
 """Update, in units of the tolerance, below which a single one may end the iteration."""
+ENOUGH = 1e-3
+"""Part by which loads of friction may differ from those that the stage was solved with."""
+MOST_TURNS = 8
+"""Largest number of solutions of a stage, each with the loads of the one before (Li et al. 2020, 5.5)."""
+NOISE = 1e-4
+"""Two updates in a row below this, in units of the tolerance, end the iteration: the rest is rounding."""
 NEWTON = types.boolean(I, F, F, A, A, A, A, A, A, A, A, I, A, I)
 
 search = lazy("sceneql.linear.newton_search_kernels:search", NEWTON)
@@ -106,6 +112,8 @@ def tell_stage(a, base, floats):
     if floats[channels.STAGE] != channels.NO_SLOPES:
         floats[channels.STAGE] = a
         floats[channels.STAGES] += 1.0
+        floats[channels.LAGS] += 1.0
+        floats[channels.STALE] = 0.0
         at = floats.size - channels.BASE * base.size
         for k in range(base.size):
             floats[at + k] = base[k]
@@ -143,11 +151,8 @@ def leave(rate, t, a, base, y, residual, plan, floats, ints):
 
 
 @lean(NEWTON, inner=True)
-def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints):
-    """Solve for y, which comes as a guess; True if the iteration converged. ``scratch``: (4 n,).
-
-    ``jacobian`` (room of the pattern) and ``store`` (of the plan) keep values and factors between calls.
-    """
+def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints):
+    """Solve for y with the loads of friction that are known."""
     rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
     n = y.size
     change, residual, guess = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n]
@@ -155,8 +160,6 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         approach(functions, t, a, base, y0, y, plan, floats, ints)
     for k in range(n):
         guess[k] = y[k]
-    foresee(y0, y0, floats)
-    tell_stage(a, base, floats)
     careful = definite = memory[CAREFUL] > 0.0
     stale = memory[FACTORED] == 0.0 or definite or memory[POSITIVE] > 0.0
     searches = functions[AT_ENERGY] != 0 or functions[AT_LIMIT] != 0
@@ -174,8 +177,6 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             slopes(functions, t, y, jacobian, floats, ints)
             floats[channels.NEWTON] = floats[channels.POSITIVE] = 0.0
             if floats[channels.GROWS] != 0.0:
-                end_stage(floats)
-                fail(change, y)
                 return False
         size = math.inf
         regular = True
@@ -207,13 +208,13 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
         # Steps of a given length have no other error estimate: there, the contraction must come from two updates.
         done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
+        done = done or (since > 0 and max(size, before) <= NOISE)
         # Where a few masses still buckle, by less than the tolerance, the largest update does not predict the next.
         if careful and since > 0 and size <= memory[SHARE]:
             done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
         if done:
             if not definite:
                 memory[CAREFUL] = 0.0
-            end_stage(floats)
             return True
         iteration += 1
         since += 1
@@ -243,8 +244,29 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         before, before_mean = size, mean
     for k in range(n):
         y[k] = guess[k]
-    found = search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints)
+    return search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints)
+
+
+@lean(NEWTON, inner=True)
+def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints):
+    """Solve for y, which comes as a guess; True if the iteration converged. ``scratch``: (4 n,).
+
+    ``jacobian`` (room of the pattern) and ``store`` (of the plan) keep values and factors between calls.
+    """
+    tell_stage(a, base, floats)
+    foresee(y0, y0, floats)
+    found = False
+    for _ in range(MOST_TURNS):
+        found = converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints)
+        if not found or floats[channels.STALE] == 0.0:
+            break
+        foresee(y, y, floats)
+        floats[channels.LAGS] += 1.0
+        floats[channels.STALE] = 0.0
+        rate_at(functions[AT_RATE])(t, y, scratch[: y.size], floats, ints)
+        if floats[channels.STALE] <= ENOUGH:
+            break
     end_stage(floats)
     if not found:
-        fail(change, y)
+        fail(scratch[: y.size], y)
     return found

@@ -33,6 +33,7 @@ from sceneql.linear.newton_kernels import (
     FACTORIZATIONS,
     ITERATIONS,
     NEWTON,
+    NOISE,
     POSITIVE,
     SHARE,
     SLOW,
@@ -213,6 +214,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if part == 1.0 and size < math.inf:
             done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
             done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
+            done = done or (since > 0 and max(size, before) <= NOISE)
             if since > 0 and size <= memory[SHARE]:
                 done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
             if done:

@@ -111,7 +111,7 @@ class March:
             self.system = self._with_jacobian()
             self.floats = np.concatenate([self.floats, self.system.floats[len(self.floats) :]])
             self._with_jacobian = None
-        if self.system.structure.local:
+        if self.system.structure.local or self.system.structure.limits:
             slopes = stepper.needs.jacobian
             self.floats[channels.STAGE] = self.system.floats[channels.STAGE] if slopes else channels.NO_SLOPES
         self._engaged = engaged = engage(self.system, stepper, self.driver, self._counts)

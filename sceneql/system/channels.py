@@ -5,7 +5,7 @@ memories of words follow. Where a solver needs slopes, three arrays of the state
 where they are.
 """
 
-RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, GROWS, HEAD = range(11)
+RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, GROWS, LAGS, STALE, HEAD = range(13)
 """
 RATES: how many times the rate was evaluated.
 
@@ -33,6 +33,10 @@ STAGES: how many implicit stages there were.
 
 GROWS: not 0 where slopes have no place in the Jacobian yet (Assembly.grows): Newton's method gives up, and the march
 takes the step again when the island has been laid out anew.
+
+LAGS: how many times numbers that a stage holds while its equations are solved were taken anew, as the loads of friction
+with a potential: from the state in BEFORE, when this changes. STALE: the largest part by which such numbers changed
+then; 1 where a stage has begun.
 """
 
 NO_SLOPES, OUTSIDE, BETWEEN = 0.0, -1.0, -2.0

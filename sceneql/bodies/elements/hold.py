@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
 
 AXES = ("x", "y", "z")
+TURNED = "sceneql.bodies.elements.turned_hold_kernels"
 
 
 class Part(Record):
@@ -65,6 +66,15 @@ class Hold(Part):
 
     components: Literal["xyz", "x", "y", "z", "xy", "xz", "yz"] = field("In which directions it holds.", "xyz")
     shift: Position = field("How far what is held has been moved from where it starts.", "0 0 0 m")
+    follows: kinds.ObjectRef | None = field(
+        "An object that moves by keys or formulas: what is held moves and turns with it, about its position.", None
+    )
+
+    def problems(self) -> Iterator[Problem]:
+        """Those of a part; two motions at once."""
+        yield from super().problems()
+        if self.follows is not None and self.shift.span is not None:
+            yield Problem("what is held either has a shift or follows an object", ("shift",))
 
     def axes(self) -> list[int]:
         """The numbers of its components."""
@@ -72,6 +82,8 @@ class Hold(Part):
 
     def still(self, assembly: Assembly) -> bool:
         """Whether it never moves what it holds."""
+        if self.follows is not None:
+            return False
         return self.shift.constant and not any(assembly.initial(self.shift))
 
 
@@ -100,6 +112,8 @@ class Held:
     """(n,) by how much [kg]."""
     free: Any
     """(n, 3) bool: components of these that nothing holds."""
+    rows: Any
+    """(k, all nodes) sparse, the rows of the inertia of what it holds [kg]."""
 
 
 def add_holds(
@@ -118,6 +132,9 @@ def add_holds(
     alone, each, found = Slopes("", (), ()), [], {}
     for name, hold in holds.items():
         part = held[name]
+        if hold.follows is not None:
+            found[name] = _add_turned(hold, part, assembly, bodies)
+            continue
         shifts = [assembly.value(_moved(hold.shift, by, assembly)) for by in (-APART, 0.0, APART)]
         found[name] = assembly.floats(np.zeros(9))
         axes = [int(axis in hold.components) for axis in AXES]
@@ -125,22 +142,31 @@ def add_holds(
         numbers = (*shifts, assembly.floats([APART]), assembly.floats(part.starts), found[name], *axes, int(all(axes)))
         counts = (len(part.nodes), len(part.near), assembly.floats(part.weights))
         lists = (np.ravel(one).astype(int).tolist() for one in (part.nodes, part.near, part.free))
-        each.append((hold.still(assembly), (*places, *numbers, *counts, *(k for one in lists for k in one))))
-    for still, ints in each:
+        each.append(
+            (
+                hold.still(assembly),
+                not part.free[:, hold.axes()].any(),
+                (*places, *numbers, *counts, *(k for one in lists for k in one)),
+            )
+        )
+    for still, alone_moved, ints in each:
         if not still:
             assembly.term("internal", f"{folder}:feel_strain", ints, alone, energy="")
             assembly.after_step(f"{folder}:put", ints)
         # The inertia of what is led pulls on its neighbors by a matrix of masses.
-        assembly.term("tie", f"{folder}:feel", ints, alone, energy="" if still else None)
+        assembly.term("tie", f"{folder}:feel", ints, alone, energy="" if still or alone_moved else None)
         assembly.term("constrain", f"{folder}:lead", ints, alone, energy="")
-    for _, ints in each:
+    for _, _, ints in each:
         assembly.term("constrain", f"{folder}:tell", ints, alone, energy="")
     return found
 
 
-def start_velocity(hold: Hold, assembly: Assembly) -> Floats:
-    """(3,) [m/s] of what it holds at the start."""
+def start_velocity(hold: Hold, places: Floats, assembly: Assembly) -> Floats:
+    """(3,) or (k, 3) [m/s] of what it holds at places (k, 3) at the start."""
     import numpy as np
+
+    if hold.follows is not None:
+        return _turned_velocity(hold, places, assembly)
 
     ends = [np.asarray(assembly.initial(_moved(hold.shift, by, assembly))) for by in (-APART, APART)]
     velocity: Floats = (ends[1] - ends[0]) / (2 * APART)
@@ -154,3 +180,68 @@ def _moved(shift: Value, by: float, assembly: Assembly) -> Value:
     except ValueError as error:
         message = f"a hold is moved by a function of time: {error}"
         raise ScriptError([Diagnostic("unsupported-link", message, shift.span)]) from None
+
+
+def _add_turned(hold: Hold, part: Held, assembly: Assembly, bodies: Bodies) -> int:
+    """Add the terms of a hold that follows an object; the offset of its force [N] in the floats.
+
+    Raises ScriptError for an object that follows what is solved.
+    """
+    import numpy as np
+    from scipy.sparse import csr_array
+
+    from sceneql.shapes.placement import rotation_matrix
+    from sceneql.system import Slopes
+
+    before, here, after = (_pose(hold, by, assembly) for by in (-APART, 0.0, APART))
+    numbers = assembly.numbers()
+    arms = (part.starts - numbers[here[0] :][:3]) @ rotation_matrix(numbers[here[1] :][:4])
+    rows = csr_array(part.rows)
+    near = np.unique(rows.indices)
+    moved = np.isin(part.near, near)
+    free = np.zeros((len(near), 3), dtype=bool)
+    free[np.searchsorted(near, part.near[moved])] = part.free[moved]
+    axes = [int(axis in hold.axes()) for axis in range(3)]
+    force = assembly.floats(np.zeros(3 + 6 * len(part.nodes)))
+    offsets = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, *before, *here)
+    head = (*offsets, assembly.floats([APART]), *after, assembly.floats(arms), force, *axes, int(all(axes)))
+    lists = (part.nodes, near, np.ravel(free), rows.indptr, np.searchsorted(near, rows.indices))
+    counts = (len(part.nodes), len(near), assembly.floats(rows.data))
+    ints = (*head, *counts, *(int(k) for one in lists for k in one))
+    alone = Slopes("", (), ())
+    assembly.term("internal", f"{TURNED}:feel_strain", ints, alone, energy="")
+    assembly.after_step(f"{TURNED}:put", ints)
+    pulls = bool(free[:, hold.axes()].any())
+    assembly.term("tie", f"{TURNED}:feel", ints, alone, energy=None if pulls else "")
+    assembly.term("constrain", f"{TURNED}:lead", ints, alone, energy="")
+    assembly.term("constrain", f"{TURNED}:tell", ints, alone, energy="")
+    return force
+
+
+def _turned_velocity(hold: Hold, places: Floats, assembly: Assembly) -> Floats:
+    """(k, 3) [m/s] of what it holds at places (k, 3) at the start."""
+    from sceneql.shapes.placement import rotation_matrix
+
+    (x0, q0), (x, q), (x1, q1) = (_pose(hold, by, assembly) for by in (-APART, 0.0, APART))
+    numbers = assembly.numbers()
+    arms = (places - numbers[x : x + 3]) @ rotation_matrix(numbers[q : q + 4])
+    ends = [numbers[a : a + 3] + arms @ rotation_matrix(numbers[b : b + 4]).T for a, b in ((x0, q0), (x1, q1))]
+    velocity: Floats = (ends[1] - ends[0]) / (2 * APART)
+    return velocity
+
+
+def _pose(hold: Hold, by: float, assembly: Assembly) -> tuple[int, int]:
+    """Offsets of the object's position and rotation a little later."""
+    assert hold.follows is not None
+    kind, found = assembly.object(hold.follows), []
+    try:
+        for name, rest in (("position", (0.0, 0.0, 0.0)), ("rotation", (1.0, 0.0, 0.0, 0.0))):
+            value = getattr(kind, name, None)
+            if isinstance(value, Value):
+                found.append(assembly.value(Value(later(value.expr, by, assembly.formula), value.span)))
+            else:
+                found.append(assembly.floats(rest))
+    except ValueError as error:
+        message = f"a hold follows an object that moves by functions of time: {error}"
+        raise ScriptError([Diagnostic("unsupported-link", message, hold.follows.span)]) from None
+    return found[0], found[1]

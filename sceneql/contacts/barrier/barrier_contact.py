@@ -43,10 +43,11 @@ def assemble(
     side = float(np.concatenate(sides).mean())
     gap = GAP * side if gap is None else gap
     slip = SLIP * float(np.linalg.norm(np.ptp(np.concatenate(places), axis=0)))
+    rubs = not friction.constant or assembly.initial(friction) > 0.0
     told, friction_at = assembly.floats([gap, slip]), assembly.value(friction)
     for bodies in everyone:
         assert bodies.skin is not None
         if refs:
-            add_objects(assembly, bodies, refs, friction_at, (bodies.skin.stiffness, gap, slip))
-    add_pairs(assembly, everyone, friction_at, gap, slip, side)
+            add_objects(assembly, bodies, refs, friction_at, (bodies.skin.stiffness, gap, slip), rubs)
+    add_pairs(assembly, everyone, friction_at, gap, slip, side, rubs)
     return -3, told

@@ -42,6 +42,18 @@ def mobilized(speed, slip):
 
 
 @lean_inlined
+def slowed(speed, most, slip):
+    """The speed that friction leaves at the end of a step, which may take away ``most`` [m/s] of it."""
+    if speed - most >= slip:
+        return speed - most
+    part = most / slip
+    if part < 1e-12:
+        return speed
+    linear = 1.0 + 2.0 * part
+    return 2.0 * speed / (linear + math.sqrt(linear * linear - 4.0 * part * speed / slip))
+
+
+@lean_inlined
 def mobilized_rate(speed, slip):
     """The derivative of that part by the speed [s/m]."""
     return 0.0 if speed >= slip else 2.0 * (1.0 - speed / slip) / slip

@@ -25,7 +25,7 @@ def energy(t, y, floats, ints):
             if d < gap:
                 total += floats[ints[layout.AREAS] + p] * stiffness * gap * barrier(d / gap)
             if friction > 0.0 and a > 0.0:
-                at = ints[layout.LAGGED] + 1 + layout.LAG * (objects * p + j)
+                at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j)
                 if floats[at] > 0.0:
                     u, v, w = sliding(y, floats, ints, p, j, floats[at + 1], floats[at + 2], floats[at + 3])
                     speed = math.sqrt(u * u + v * v + w * w)

@@ -75,20 +75,34 @@ def load(floats, ints, p, d):
 
 
 @lean_inlined
+def stale(floats, stage, changed, total):
+    """Tell by what part loads have changed, or that a stage has begun: another one than the number at ``stage``."""
+    if floats[stage + 1] != floats[channels.STAGES]:
+        floats[stage + 1] = floats[channels.STAGES]
+        floats[channels.STALE] = 1.0
+    elif changed > 0.0:
+        floats[channels.STALE] = max(floats[channels.STALE], changed / max(total, changed))
+
+
+@lean_inlined
 def lag(n, floats, ints):
-    """Within implicit stages friction has the loads and normals of the step's start, once for each stage."""
+    """Within implicit stages friction has the loads and normals of the state that newton_kernels.newton left."""
     first, gap = ints[layout.LAGGED], floats[ints[layout.NUMBERS] + layout.GAP]
-    if floats[first] == floats[channels.STAGES]:
+    if floats[first] == floats[channels.LAGS]:
         return
-    floats[first] = floats[channels.STAGES]
+    floats[first] = floats[channels.LAGS]
     start = floats[floats.size - channels.BEFORE * n : floats.size - channels.BEFORE * n + n]
+    total = changed = 0.0
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
         x, y, z = place(start, ints, ints[layout.POSITION], p)
         for j in range(ints[layout.OBJECTS]):
-            at = first + 1 + layout.LAG * (ints[layout.OBJECTS] * p + j)
+            at = first + layout.LOADS + layout.LAG * (ints[layout.OBJECTS] * p + j)
             d, a, b, c = distance(floats, ints, p, j, x, y, z, gap)
-            floats[at] = load(floats, ints, p, d) if 0.0 < d < gap else 0.0
+            pressed = load(floats, ints, p, d) if 0.0 < d < gap else 0.0
+            total, changed = total + pressed, changed + abs(pressed - floats[at])
+            floats[at] = pressed
             floats[at + 1], floats[at + 2], floats[at + 3] = a, b, c
+    stale(floats, first, changed, total)
 
 
 @lean_inlined
@@ -112,6 +126,7 @@ def force(t, y, rate, floats, ints):
     lagged = friction > 0.0 and floats[channels.STAGE] > 0.0
     if lagged:
         lag(y.size, floats, ints)
+    holds = floats[channels.STAGE] == channels.NO_SLOPES
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
         px, py, pz = place(y, ints, ints[layout.POSITION], p)
         for j in range(objects):
@@ -122,8 +137,13 @@ def force(t, y, rate, floats, ints):
                 add(rate, y, ints, p, pressed * a, pressed * b, pressed * c)
             if friction == 0.0:
                 continue
+            if holds:
+                at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j) + layout.HELD
+                if floats[at] != 0.0 or floats[at + 1] != 0.0 or floats[at + 2] != 0.0:
+                    add(rate, y, ints, p, floats[at], floats[at + 1], floats[at + 2])
+                continue
             if lagged:
-                at = ints[layout.LAGGED] + 1 + layout.LAG * (objects * p + j)
+                at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j)
                 pressed, a, b, c = floats[at], floats[at + 1], floats[at + 2], floats[at + 3]
             if pressed > 0.0:
                 u, v, w = sliding(y, floats, ints, p, j, a, b, c)

@@ -1,18 +1,24 @@
 """The integers of a barrier between a skin and what stands: indices by name."""
 
-POSITION, VELOCITY, WORK, NODES, EDGES, LIST, NUMBERS, FRICTION, AREAS, LAGGED, KNOWN, OBJECTS, HEAD = range(13)
-"""Offsets of the bodies in y; numbers of the skin's NODES and EDGES; at LIST, in these integers: the nodes, then two
-places in that list for each edge, then whether each component of each node is held; offsets in the floats of NUMBERS,
-of the coefficient of friction, of the AREAS of the points [m^2], of what friction has LAGGED, and of what is KNOWN of
-distances; number of objects, which follow from HEAD on (contacts/layout.py).
+POSITION, VELOCITY, WORK, INVERSE, NODES, EDGES, LIST, NUMBERS, FRICTION, AREAS, LAGGED, KNOWN, OBJECTS, HEAD = range(
+    14
+)
+"""Offsets of the bodies in y, and of their inverse masses in the floats; numbers of the skin's NODES and EDGES; at
+LIST, in these integers: the nodes, then two places in that list for each edge, then whether each component of each node
+is held; offsets in the floats of NUMBERS, of the coefficient of friction, of the AREAS of the points [m^2], of what
+friction has LAGGED, and of what is KNOWN of distances; number of objects, which follow from HEAD on
+(contacts/layout.py).
 
 The points of a skin are its nodes and the middles of its edges."""
 
 STIFFNESS, GAP, SLIP = range(3)
 """NUMBERS: stiffness [Pa], gap [m], speed of slip [m/s]."""
 
-LOAD, NORMAL, LAG = 0, 1, 4
-"""LAGGED: the number of the stage for which it holds, then for each point and object its load [N] and normal (3)."""
+LOAD, NORMAL, HELD, MEAN, LAG = 0, 1, 4, 7, 8
+LOADS = 2
+"""LAGGED: channels.LAGS and channels.STAGES for which it holds; from LOADS on for each point and object its load [N]
+and normal (3), and the friction [N] (3) that explicit methods hold through a step, with the mean load of the
+latest (objects_friction_kernels.py)."""
 
 PLACE, DISTANCE, KNOW = 0, 3, 4
 """KNOWN: for each point and object a place, and a bound of the distance there [m]."""

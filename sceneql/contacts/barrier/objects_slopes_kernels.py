@@ -62,7 +62,7 @@ def slopes(t, y, entries, floats, ints):
             if friction == 0.0:
                 continue
             if lagged:
-                at = ints[layout.LAGGED] + 1 + layout.LAG * (objects * p + j)
+                at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j)
                 pressed, a, b, c = floats[at], floats[at + 1], floats[at + 2], floats[at + 3]
             if not pressed > 0.0:
                 continue

@@ -119,6 +119,19 @@ def fill(floats, ints, size, edges):
     return numbers
 
 
+@lean_inlined
+def meets(floats, ints, at, edges, f, m, a, b, c, box):
+    """Whether a vertex or edge m is none of triangle or edge f (a, b, c), comes behind it, and meets its box."""
+    d, e = end(ints, m, 0) if edges else m, end(ints, m, 1) if edges else m
+    if (edges and m <= f) or d == a or d == b or d == c or e == a or e == b or e == c:
+        return False
+    u, v = at + 3 * d, at + 3 * e
+    for k in range(3):
+        if max(floats[u + k], floats[v + k]) < box[2 * k] or min(floats[u + k], floats[v + k]) > box[2 * k + 1]:
+            return False
+    return True
+
+
 @lean(N(A, I, F, types.boolean))
 def gather(floats, ints, reach, edges):
     """List pairs whose boxes are within reach, of edges or of vertices and triangles; -1 where there is no room."""
@@ -133,7 +146,7 @@ def gather(floats, ints, reach, edges):
     numbers = fill(floats, ints, size, edges)
     first = ints[layout.EDGES_AT] if edges else ints[layout.POINTS_AT]
     most = ints[layout.MOST_EDGES] if edges else ints[layout.MOST_POINTS]
-    found = 0
+    found, count = 0, ints[layout.EDGES] if edges else ints[layout.VERTICES]
     for f in range(ints[layout.EDGES] if edges else ints[layout.TRIANGLES]):
         a = end(ints, f, 0) if edges else corner(ints, f, 0)
         b = end(ints, f, 1) if edges else corner(ints, f, 1)
@@ -145,6 +158,18 @@ def gather(floats, ints, reach, edges):
         i, j, k = i + 1, j + 1, k + 1
         z0, z1 = min(floats[i], min(floats[j], floats[k])) - reach, max(floats[i], max(floats[j], floats[k])) + reach
         mine = found
+        box = (x0, x1, y0, y1, z0, z1)
+        wide = (1.0 + (x1 - x0 + 2.0 * longest) / size) * (1.0 + (y1 - y0 + 2.0 * longest) / size)
+        if not wide * (1.0 + (z1 - z0 + 2.0 * longest) / size) < count:
+            # A triangle that a stage's state has torn wide open spans more cells than there are vertices.
+            for m in range(count):
+                if meets(floats, ints, at, edges, f, m, a, b, c, box):
+                    if found == most:
+                        return -1
+                    floats[first + 2 * found] = f
+                    floats[first + 2 * found + 1] = m
+                    found += 1
+            continue
         p0, p1 = math.floor((x0 - longest) / size), math.floor((x1 + longest) / size)
         q0, q1 = math.floor((y0 - longest) / size), math.floor((y1 + longest) / size)
         r0, r1 = math.floor((z0 - longest) / size), math.floor((z1 + longest) / size)
@@ -154,11 +179,7 @@ def gather(floats, ints, reach, edges):
                     h = (p * 73856093 ^ q * 19349663 ^ r * 83492791) % ints[layout.CELLS]
                     for n in range(int(floats[grid + h]), int(floats[grid + h + 1])):
                         m = int(floats[numbers + n])
-                        d = end(ints, m, 0) if edges else m
-                        e = end(ints, m, 1) if edges else m
-                        if (edges and m <= f) or d == a or d == b or d == c or e == a or e == b or e == c:
-                            continue
-                        u, v = at + 3 * d, at + 3 * e
+                        u, v = at + 3 * (end(ints, m, 0) if edges else m), at + 3 * (end(ints, m, 1) if edges else m)
                         mx, my, mz = (
                             0.5 * (floats[u] + floats[v]),
                             0.5 * (floats[u + 1] + floats[v + 1]),
@@ -167,11 +188,7 @@ def gather(floats, ints, reach, edges):
                         # A place in another cell of the same hash is found there.
                         if math.floor(mx / size) != p or math.floor(my / size) != q or math.floor(mz / size) != r:
                             continue
-                        if max(floats[u], floats[v]) < x0 or min(floats[u], floats[v]) > x1:
-                            continue
-                        if max(floats[u + 1], floats[v + 1]) < y0 or min(floats[u + 1], floats[v + 1]) > y1:
-                            continue
-                        if max(floats[u + 2], floats[v + 2]) < z0 or min(floats[u + 2], floats[v + 2]) > z1:
+                        if not meets(floats, ints, at, edges, f, m, a, b, c, box):
                             continue
                         if found == most:
                             return -1

@@ -1,28 +1,47 @@
 """The integers and the memory of the barrier between skins: indices by name."""
 
 VERTICES, TRIANGLES, EDGES, LIST, NUMBERS, FRICTION, AREAS, STIFFNESS, REST = range(9)
-MEMORY, POINTS_AT, MOST_POINTS, EDGES_AT, MOST_EDGES, GRID_AT, CELLS, LAG_AT, MOST_LAGGED, PLACES, HEAD = range(9, 20)
+(
+    MEMORY,
+    POINTS_AT,
+    MOST_POINTS,
+    EDGES_AT,
+    MOST_EDGES,
+    GRID_AT,
+    CELLS,
+    LAG_AT,
+    MOST_LAGGED,
+    LAGGED_BEFORE,
+    LOADS,
+    PLACES,
+    HEAD,
+) = range(9, 22)
 """Numbers of VERTICES, TRIANGLES, EDGES of all skins; at LIST, in these integers: VERTEX integers for a vertex, three
 vertices for each triangle, two for each edge.
 
 Offsets in the floats: of NUMBERS, of the coefficient of friction, of the AREAS [m^2] of vertices, then edges, of the
 STIFFNESS [Pa] of vertices, of the places of vertices at the start (3), of the MEMORY; of pairs of a vertex and a
 triangle, and how many there is room for; likewise of two edges; of the scratch of the grid, and its number of CELLS; of
-what friction has lagged, and for how many pairs there is room.
+what friction has lagged, for how many pairs there is room, of those of the step before, and of the loads on the
+vertices (behind those before).
 
 At PLACES, in these integers: the first place of each vertex's row and the end, then the column of each place."""
 
-POSITION, VELOCITY, WORK, BODY, HELD, VERTEX = 0, 1, 2, 3, 4, 7
-"""A vertex: offsets of position, velocity and work in y, its solid, whether each component is held."""
+POSITION, VELOCITY, WORK, INVERSE, BODY, HELD, VERTEX = 0, 1, 2, 3, 4, 5, 8
+"""A vertex: offsets of position, velocity and work in y, of its inverse mass in the floats, its solid, whether each
+component is held."""
 
 GAP, SLIP, SIDE = range(3)
 """NUMBERS: the gap, speed of slip, mean side of the triangles."""
 
-BUILT, MARGIN, POINT_PAIRS, EDGE_PAIRS, STAGE, LAGGED, CROWDED, SCRATCH = range(8)
+BUILT, MARGIN, POINT_PAIRS, EDGE_PAIRS, LAGS, STAGES, LAGGED, CROWDED, SCRATCH = range(9)
 AT = SCRATCH + 12
 """MEMORY: 1 where pairs were looked for, the way [m] that vertices may go until they are looked for anew, numbers of
-pairs, the stage for which LAGGED pairs hold, how many times there was no room; scratch (12), then the places (3) of the
-vertices when pairs were looked for."""
+pairs, channels.LAGS and channels.STAGES for which LAGGED pairs hold, how many times there was no room; scratch (12),
+then the places (3) of the vertices when pairs were looked for."""
 
-NODES, WEIGHTS, NORMAL, LOAD, LAG = 0, 4, 8, 11, 12
-"""A lagged pair: four vertices, their weights, the normal, the load [N]."""
+NODES, WEIGHTS, NORMAL, LOAD, FRICTION_OF, KEY, MEAN, LAG = 0, 4, 8, 11, 12, 15, 16, 17
+BEFORE = 5
+"""A lagged pair: four vertices, their weights, the normal, the load [N], the friction [N] (3) that explicit methods
+hold through a step (held_friction_kernels.py), a number that grows along the list, the mean load of the latest step.
+BEFORE: that number, the friction and the load of the pairs of the step before."""

@@ -7,6 +7,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import barrier, mobilized, push
+from sceneql.contacts.barrier.objects_kernels import stale
 from sceneql.contacts.barrier.pair_weights_kernels import listed, node, product, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
 from sceneql.system.signatures_kernels import TERM
@@ -37,14 +38,24 @@ def keep(floats, ints, m, edges, found):
         floats[at + layout.WEIGHTS + k] = found[4 + k]
     for k in range(3):
         floats[at + layout.NORMAL + k] = found[1 + k]
-    floats[at + layout.LOAD] = found[9] * found[10] * push(found[0] / found[8])
+        floats[at + layout.FRICTION_OF + k] = 0.0
+    listed_at = (ints[layout.EDGES_AT] if edges else ints[layout.POINTS_AT]) + 2 * m
+    first = (ints[layout.TRIANGLES] if edges else 0) + floats[listed_at]
+    floats[at + layout.KEY] = first * (ints[layout.VERTICES] + ints[layout.EDGES]) + floats[listed_at + 1]
+    pressed = floats[at + layout.LOAD] = found[9] * found[10] * push(found[0] / found[8])
+    for k in range(4):
+        floats[ints[layout.LOADS] + int(floats[at + k])] += abs(found[4 + k]) * pressed
     floats[memory + layout.LAGGED] = count + 1.0
 
 
 @lean_inlined
 def keep_all(y, floats, ints):
-    """Note all pairs that press at a state."""
-    floats[ints[layout.MEMORY] + layout.LAGGED] = 0.0
+    """Note all pairs that press at a state, and by how much the loads on vertices have changed."""
+    memory, loads, count = ints[layout.MEMORY], ints[layout.LOADS], ints[layout.VERTICES]
+    floats[memory + layout.LAGGED] = 0.0
+    for k in range(count):
+        floats[loads + count + k] = floats[loads + k]
+        floats[loads + k] = 0.0
     if not known(y, floats, ints):
         return
     for edges in (False, True):
@@ -52,6 +63,10 @@ def keep_all(y, floats, ints):
             found = stencil(y, floats, ints, m, edges)
             if 0.0 < found[0] < math.inf:
                 keep(floats, ints, m, edges, found)
+    total = changed = 0.0
+    for k in range(loads, loads + count):
+        total, changed = total + floats[k], changed + abs(floats[k] - floats[count + k])
+    stale(floats, memory + layout.LAGS, changed, total)
 
 
 @lean_inlined
@@ -66,17 +81,30 @@ def sliding(y, floats, ints, at):
     return u - along * a, v - along * b, w - along * c
 
 
+@lean_inlined
+def hold_on(y, rate, floats, ints):
+    """Add the friction that is held through a step."""
+    for m in range(int(floats[ints[layout.MEMORY] + layout.LAGGED])):
+        at = ints[layout.LAG_AT] + layout.LAG * m
+        f = at + layout.FRICTION_OF
+        for k in range(4):
+            weight = floats[at + layout.WEIGHTS + k]
+            add(rate, y, ints, int(floats[at + k]), weight * floats[f], weight * floats[f + 1], weight * floats[f + 2])
+
+
 @lean(TERM, inner=True)
 def force(t, y, rate, floats, ints):
     """Adds the push of the barrier, and friction across it."""
     memory, slip = ints[layout.MEMORY], floats[ints[layout.NUMBERS] + layout.SLIP]
     friction = floats[ints[layout.FRICTION]]
     if friction > 0.0:
-        if floats[channels.STAGE] <= 0.0:
-            floats[memory + layout.STAGE] = -1.0
+        if floats[channels.STAGE] == channels.NO_SLOPES:
+            hold_on(y, rate, floats, ints)
+        elif floats[channels.STAGE] <= 0.0:
+            floats[memory + layout.LAGS] = -1.0
             keep_all(y, floats, ints)
-        elif floats[memory + layout.STAGE] != floats[channels.STAGES]:
-            floats[memory + layout.STAGE] = floats[channels.STAGES]
+        elif floats[memory + layout.LAGS] != floats[channels.LAGS]:
+            floats[memory + layout.LAGS] = floats[channels.LAGS]
             before = floats.size - channels.BEFORE * y.size
             keep_all(floats[before : before + y.size], floats, ints)
     if not known(y, floats, ints):
@@ -107,7 +135,7 @@ def force(t, y, rate, floats, ints):
                 x, y_, z = less * (b * w - c * v), less * (c * u - a * w), less * (a * v - b * u)
                 add(rate, y, ints, k, x, y_, z)
                 add(rate, y, ints, n, -x, -y_, -z)
-    if friction == 0.0:
+    if friction == 0.0 or floats[channels.STAGE] == channels.NO_SLOPES:
         return
     for m in range(int(floats[memory + layout.LAGGED])):
         at = ints[layout.LAG_AT] + layout.LAG * m

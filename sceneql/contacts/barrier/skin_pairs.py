@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 KERNELS = "sceneql.contacts.barrier.skin_forces_kernels:force"
 ENERGY = "sceneql.contacts.barrier.skins_energy_kernels:energy"
 LIMIT = "sceneql.contacts.barrier.skins_limit_kernels:limit"
+AFTER = "sceneql.contacts.barrier.held_friction_kernels:rub_skins"
 SLOPES = "sceneql.contacts.barrier.skins_slopes_kernels:slopes"
 
 ROOM = 48
@@ -54,8 +55,10 @@ def add_pairs(
     gap: float,
     slip: float,
     side: float,
+    rubs: bool,
 ) -> None:
-    """Add the barrier between the skins of ``everyone``; ``side``: the mean side of their triangles [m].
+    """Add the barrier between the skins of ``everyone``; ``side``: the mean side of their triangles [m]; ``rubs``:
+    whether there may be friction.
 
     Raises ScriptError where skins cross or touch at the start.
     """
@@ -68,7 +71,11 @@ def add_pairs(
         triangles.append(first + which.reshape(-1, 3))
         first += len(nodes)
         own = [bodies.position_at + 3 * nodes, bodies.velocity_at + 3 * nodes]
-        vertices.append(np.column_stack([*own, np.full_like(nodes, bodies.work_at), np.full_like(nodes, number)]))
+        vertices.append(
+            np.column_stack(
+                [*own, np.full_like(nodes, bodies.work_at), bodies.inverse_at + nodes, np.full_like(nodes, number)]
+            )
+        )
         held.append(skin.held[nodes])
         stiffness.append(np.full(len(nodes), skin.stiffness))
         places.append(assembly.start()[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)[nodes])
@@ -93,6 +100,8 @@ def add_pairs(
         *(assembly.floats(np.zeros(2 * edges_most)), edges_most),
         *(assembly.floats(np.zeros(cells + 1 + len(edges))), cells),
         *(assembly.floats(np.zeros(layout.LAG * lagged_most)), lagged_most),
+        assembly.floats(np.zeros(layout.BEFORE * lagged_most)),
+        assembly.floats(np.zeros(2 * len(rest))),
         layout.HEAD + len(lists),
     ]
     ints = np.concatenate([np.array(head, dtype=np.int64), lists])
@@ -115,8 +124,11 @@ def add_pairs(
 
     start = assembly.start(), assembly.numbers()
     _must_be_apart(start, ints, rows, rest, everyone, assembly)
+    _must_not_cross(rest, corners, edges, rows, everyone, assembly)
     assembly.term("force", KERNELS, ints.tolist(), slopes, energy=ENERGY)
     assembly.limit(LIMIT, ints.tolist())
+    if rubs:
+        assembly.after_step(AFTER, ints.tolist())
     assembly.grows(grow)
 
 
@@ -142,11 +154,44 @@ def _must_be_apart(
     near = listed(floats, ints)
     body = rows[:, layout.BODY]
     touching = near[near[:, 0] <= 1e-9 * float(np.abs(rest).max())]
-    if not len(touching):
-        return
-    one, other = int(touching[0, 1]), int(touching[0, 3])
-    x, z, w = rest[one]
+    if len(touching):
+        _refuse("touches", int(touching[0, 1]), int(touching[0, 3]), rest, body, everyone, assembly)
+
+
+def _must_not_cross(
+    rest: Floats, corners: Any, edges: Any, rows: Any, everyone: Sequence[Bodies], assembly: Assembly
+) -> None:
+    """Raise ScriptError where an edge of the skins passes through a triangle at the start: each pair that is near."""
+    from scipy.spatial import cKDTree
+
+    a, b, c = (rest[corners[:, k]] for k in range(3))
+    p, q = rest[edges[:, 0]], rest[edges[:, 1]]
+    across, middle = np.cross(b - a, c - a), (a + b + c) / 3.0
+    reach = max(float(np.linalg.norm(end - middle, axis=1).max()) for end in (a, b, c))
+    reach += 0.5 * float(np.linalg.norm(q - p, axis=1).max())
+    near = cKDTree(middle).query_ball_point(0.5 * (p + q), reach)
+    edge = np.repeat(np.arange(len(edges)), [len(some) for some in near])
+    face = np.concatenate([np.asarray(some, dtype=np.int64) for some in near])
+    first, last = (np.einsum("ij,ij->i", end[edge] - a[face], across[face]) for end in (p, q))
+    shared = (corners[face][:, :, None] == edges[edge][:, None, :]).any(axis=(1, 2))
+    some = np.flatnonzero((first * last < 0.0) & ~shared)
+    edge, face, part = edge[some], face[some], first[some] / (first[some] - last[some])
+    hit = p[edge] + part[:, None] * (q[edge] - p[edge])
+    inside = np.ones(len(some), dtype=bool)
+    for u, v in ((a, b), (b, c), (c, a)):
+        inside &= np.einsum("ij,ij->i", np.cross(v[face] - u[face], hit - u[face]), across[face]) > 0.0
+    if inside.any():
+        k = np.flatnonzero(inside)[0]
+        one, other = int(edges[edge[k], 0]), int(corners[face[k], 0])
+        _refuse("crosses", one, other, rest, rows[:, layout.BODY], everyone, assembly)
+
+
+def _refuse(
+    what: str, one: int, other: int, rest: Floats, body: Any, everyone: Sequence[Bodies], assembly: Assembly
+) -> None:
+    """Raise the ScriptError that skins touch or cross at a vertex."""
+    x, y, z = rest[one]
     names = [everyone[int(body[k])].model for k in (one, other)]
-    what = f"'{names[0]}' touches itself" if names[0] == names[1] else f"'{names[0]}' touches '{names[1]}'"
-    text = f"{what} at the start, at ({x:.4g}, {z:.4g}, {w:.4g}) m"
+    told = f"'{names[0]}' {what} itself" if names[0] == names[1] else f"'{names[0]}' {what} '{names[1]}'"
+    text = f"{told} at the start, at ({x:.4g}, {y:.4g}, {z:.4g}) m"
     raise ScriptError([Diagnostic("starts-inside", text, assembly.line(), "leave a distance between them")])

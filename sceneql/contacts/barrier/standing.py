@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 KERNELS = "sceneql.contacts.barrier.objects_kernels:force"
 ENERGY = "sceneql.contacts.barrier.objects_energy_kernels:energy"
 LIMIT = "sceneql.contacts.barrier.objects_limit_kernels:limit"
+AFTER = "sceneql.contacts.barrier.held_friction_kernels:rub_objects"
 SLOPES = "sceneql.contacts.barrier.objects_slopes_kernels:slopes"
 
 
@@ -28,8 +29,10 @@ def add_objects(
     refs: Sequence[Ref],
     friction_at: int,
     numbers: tuple[float, float, float],
+    rubs: bool,
 ) -> None:
-    """Add the barrier between the skin of ``bodies`` and objects; ``numbers``: of objects_layout.NUMBERS.
+    """Add the barrier between the skin of ``bodies`` and objects; ``numbers``: of objects_layout.NUMBERS;
+    ``rubs``: whether there may be friction.
 
     Raises ScriptError for an object that cannot be collided with, or that the skin touches at the start.
     """
@@ -47,12 +50,12 @@ def add_objects(
     objects = surfaces(refs, assembly, layout.HEAD)
     points = len(nodes) + len(edges)
     head = (
-        *(bodies.position_at, bodies.velocity_at, bodies.work_at),
+        *(bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.inverse_at),
         *(len(nodes), len(edges), layout.HEAD + len(objects)),
         assembly.floats(numbers),
         friction_at,
         assembly.floats(np.concatenate([own, middle])),
-        assembly.floats(np.zeros(1 + layout.LAG * points * len(refs))),
+        assembly.floats(np.zeros(layout.LOADS + layout.LAG * points * len(refs))),
         assembly.floats(np.full(layout.KNOW * points * len(refs), -1.0)),
         len(refs),
     )
@@ -69,6 +72,8 @@ def add_objects(
 
     assembly.term("force", KERNELS, ints, slopes, energy=ENERGY)
     assembly.limit(LIMIT, ints)
+    if rubs:
+        assembly.after_step(AFTER, ints)
 
 
 def areas_of(corners: Floats) -> Floats:

@@ -69,9 +69,8 @@ class Collision(Contact):
 
     Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
     no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There
-    is no restitution; friction is Coulomb's but below a slip of 0.01 % of the solids' size a second, and within
-    implicit steps by the normal forces of the step's start. An edge of an object that is sharper than the elements may
-    enter between these places.
+    is no restitution; friction is Coulomb's but below a slip of 0.01 % of the solids' size a second. An edge of an
+    object that is sharper than the elements may enter between these places.
 
     Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
     at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below

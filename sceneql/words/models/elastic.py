@@ -204,7 +204,8 @@ class Elastic(Model):
             some = nodes[called] = some[~held[some][:, hold.axes()].any(axis=1)]
             held[np.ix_(some, hold.axes())] = True
             whole[some] |= len(hold.axes()) == len(AXES)
-            velocities[np.ix_(some, hold.axes())] = holding.start_velocity(hold, assembly)[hold.axes()]
+            led = holding.start_velocity(hold, places[some], assembly)
+            velocities[np.ix_(some, hold.axes())] = led[..., hold.axes()]
         matrix = inertia.freed(held) if inertia.consistent else None
         radii = np.full(count, self.radius)
         bodies = masses.reserve(name, assembly, places, velocities, inertia.lumped, radii, whole, inertia=matrix)
@@ -216,9 +217,10 @@ class Elastic(Model):
             add_mass_damping(assembly, bodies, self.mass_damping, inertia.matrix)
         parts = {}
         for called, some in nodes.items():
-            weights = np.asarray(inertia.matrix[some].sum(axis=0)).ravel()
+            rows = inertia.matrix[some]
+            weights = np.asarray(rows.sum(axis=0)).ravel()
             near = np.flatnonzero(weights)
-            parts[called] = holding.Held(some, places[some], near, weights[near], ~held[near])
+            parts[called] = holding.Held(some, places[some], near, weights[near], ~held[near], rows)
         forces = holding.add_holds(self.hold, parts, assembly, bodies)
         probes = {called: probe(mesh, np.asarray(place)) for called, place in self.probes.items()}
         angles = worst_angle(mesh.points, mesh.cells[:, :4])
