@@ -121,8 +121,8 @@ class Reader:
         return f"write `{{{kinds.written_name(found[0])}: {node.span.text}}}`" if len(found) == 1 else None
 
     def _elsewhere(self, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
-        """The help for a value that is of another shape than its field: the one field that takes it."""
-        found = self._fitting(node, others)
+        """The help for several numbers where another count is wanted: the one other field that takes them."""
+        found = {name: mark for name, mark in self._fitting(node, others).items() if mark.shape}
         if len(found) > 1:
             own = [mark.dimension for mark in _quantities(info)]
             found = {name: mark for name, mark in found.items() if mark.dimension in own}
