@@ -64,8 +64,9 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """The arrays of a step. Raises ScriptError where the island has no flow."""
     import numpy as np
 
-    from sceneql.flows.additive_kernels import HEAD, OPERATOR
+    from sceneql.flows.additive_kernels import HEAD
     from sceneql.flows.multistep import operators_of
+    from sceneql.flows.multistep_kernels import OPERATOR
 
     flow, operators, velocities, tables, text = operators_of(system)
     tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}

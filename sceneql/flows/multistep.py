@@ -89,7 +89,13 @@ def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, st
     found = [operator(grid, system.floats, tables) for grid in fields]
     left = len(grids) - len(fixed)
     text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
-    return flow, found, len(velocities), tables, text + (f"; {left} fields with varying coefficients explicit" if left else "")
+    return (
+        flow,
+        found,
+        len(velocities),
+        tables,
+        text + (f"; {left} fields with varying coefficients explicit" if left else ""),
+    )
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:

@@ -9,11 +9,9 @@ its divergence; the pressure grows by what that takes away, less viscosity times
 ``settings``: start and end of the latest step, length of the one before it. ``numbers``: [scheme, 1 if there is a step
 before, number of operators, where the flow's integers begin], then of each operator OPERATOR integers (a field's offset
 in y, cells along x, y, z, volumes, 0 where nothing is solved, sinks, conductances along x, y, z; offsets into the
-tables, which follow the settings, of decay rates by mode along x, y, z and of the length of all transforms; the plans of
-these, flows/layout).
+tables, which follow the settings, of decay rates by mode along x, y, z and of the length of all transforms; the plans
+of these, flows/layout).
 """
-
-import math
 
 from numba import types
 

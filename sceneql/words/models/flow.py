@@ -9,7 +9,7 @@ from sceneql import kinds
 from sceneql.flows.parts import FORCE, Buoyancy, Side, Start, fastest_turn
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
 from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of
-from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Value, field, quantity_type
+from sceneql.kinds import Gives, Model, Problem, Quantity, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Link, Type
@@ -126,7 +126,7 @@ class Flow(Model):
     def connect(self, name: str, assembly: Assembly) -> None:
         """Add what buoyancy does. Raises ScriptError where it reads the field of another domain."""
         if self.buoyancy is not None:
-            from sceneql.flows.carrying import add_buoyancy
+            from sceneql.flows.carried import add_buoyancy
 
             add_buoyancy(self.buoyancy, name, assembly)
 
@@ -140,7 +140,7 @@ class Flow(Model):
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells,), (cells, 3), (3,) or float."""
-        from sceneql.flows.measures import measure
+        from sceneql.flows.readings import measure
 
         name, _, what = output.rpartition(".")
         if name:
