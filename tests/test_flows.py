@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from flows import VORTEX, Air, waves
+from sceneql.flows.lines import lines
+from sceneql.grids.medium import FieldLayout
 
 LONG = bool(os.environ.get("SCENEQL_LONG"))
 EDDY = {"initial": '{stream_function: "sin(pi*x)^2*sin(pi*y)^2"}', "viscosity": "0.02 Pa*s", "advection": "central"}
@@ -300,3 +302,14 @@ def test_a_steady_flow_in_a_box_with_a_way_through_is_told_by_its_vortex(tmp_pat
 def test_a_lid_drives_a_finer_cavity_nearer(tmp_path, cells, step, within):
     found = extremes(cavity(tmp_path, cells, 20.0, step), cells)
     assert found == pytest.approx([-0.2140424, 0.1795728, -0.2538030], rel=within)
+
+
+def test_streamlines_follow_the_circles_of_a_vortex():
+    """Of a solid rotation: every piece keeps its distance from the axis, and lines fill the box evenly."""
+    layout = FieldLayout((32, 32, 1), 0, 0, (-1.0, -1.0, -0.5), (1 / 16, 1 / 16, 1.0))
+    x, y, z = layout.centers().T
+    ends = lines(np.column_stack([-y, x, 0 * z]), layout, 0.2, np.inf)
+    first, last = np.linalg.norm(ends, axis=2).T
+    inner = first < 0.9
+    assert np.abs(first - last)[inner].max() < 2e-3
+    assert np.unique(np.round(first[inner], 1)).size > 5

@@ -17,6 +17,8 @@ PART = 0.8
 """Length of a step, in parts of a cell."""
 REST = 1e-6
 """Speed that counts as rest, in parts of the largest."""
+LEAST = 4
+"""Pieces of a line, shorter ones are left out."""
 MOST = 150
 """Steps of a line either way."""
 
@@ -57,13 +59,16 @@ def lines(velocity: Floats, layout: FieldLayout, apart: float, longest: float) -
         own: set[tuple[int, ...]] = set()
         if _bucket(starts[k], low, apart, axes) in taken:
             continue
+        line = []
         for way in ways:
             path = way[: _last(way[:, k], step), k]
             boxes = [_bucket(point, low, apart, axes) for point in path[1:]]
             free = next((n for n, box in enumerate(boxes) if box in taken), len(boxes))
-            pieces += [path[n : n + 2] for n in range(free)]
+            line += [path[n : n + 2] for n in range(free)]
             own |= set(boxes[:free])
-        taken |= own
+        if len(line) >= LEAST:
+            pieces += line
+            taken |= own
     return np.array(pieces).reshape(-1, 2, 3)
 
 

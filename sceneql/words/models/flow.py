@@ -28,6 +28,11 @@ class Flow(Model):
     to. Advection by `koren` is limited and of order 3 where the flow is smooth, `central` keeps the energy, `upwind` is
     of order 1. In formulas x, y, z and t are plain numbers in SI. A flat flow has x and y and a `depth`. Sources:
     Harlow & Welch (1965), Phys. Fluids 8, 2182-2189; Chorin (1968), Math. Comp. 22, 745-762; Koren (1993).
+
+    A lid that moves along a square: `air: {flow: {size: 1 1 m, cell: 2 cm, density: 1 kg/m^3, viscosity: 0.01 Pa*s,
+    boundary: {top: {wall: {velocity: "[1, 0]"}}}}}`, seen by `{field_map: {of: air.speed}}` and `{streamlines: {of:
+    air.velocity}}`; a `diffusion` in the same box with `drift: {by: air}` is carried by it. Solvers for flows are `ark3`
+    (that of `auto`), `sbdf2`, `cnab2` and `chorin`; explicit ones bear viscosity up to the step that `check` tells.
     """
 
     has_bodies = False
