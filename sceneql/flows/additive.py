@@ -80,3 +80,14 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         work=(13 + 2 * stages) * len(system.y),
         text=text,
     )
+
+
+def growth(decay: float, turn: float, step: float) -> float:
+    """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
+    import numpy as np
+
+    implicit, explicit = -step * decay, 1j * step * turn
+    stages = np.linalg.solve(
+        np.eye(len(NODES)) - implicit * np.array(IMPLICIT) - explicit * np.array(EXPLICIT), np.ones(len(NODES))
+    )
+    return float(abs(1.0 + (implicit + explicit) * (np.array(WEIGHTS) @ stages)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from sceneql.flows.layout import PLAN
@@ -136,3 +137,10 @@ def growth(scheme: int, decay: float, turn: float, step: float) -> float:
         a, b, c = 1.5 + implicit, 2.0 + 2.0 * explicit, 0.5 + explicit
     root = (b * b - 4.0 * a * c) ** 0.5
     return max(abs(b + root), abs(b - root)) / (2.0 * abs(a))
+
+
+def largest_growth(jacobian: Floats, of_mode: Callable[[float, float], float]) -> float:
+    """The largest growth factor of the modes of a Jacobian, by their decay and their turning [1/s]."""
+    import numpy as np
+
+    return max((of_mode(-float(mode.real), float(mode.imag)) for mode in np.linalg.eigvals(jacobian)), default=0.0)

@@ -31,8 +31,9 @@ class Flow(Model):
 
     A lid that moves along a square: `air: {flow: {size: 1 1 m, cell: 2 cm, density: 1 kg/m^3, viscosity: 0.01 Pa*s,
     boundary: {top: {wall: {velocity: "[1, 0]"}}}}}`, seen by `{field_map: {of: air.speed}}` and `{streamlines: {of:
-    air.velocity}}`; a `diffusion` in the same box with `drift: {by: air}` is carried by it. Solvers for flows are `ark3`
-    (that of `auto`), `sbdf2`, `cnab2` and `chorin`; explicit ones bear viscosity up to the step that `check` tells.
+    air.velocity}}`; a `diffusion` in the same box with `drift: {by: air}` is carried by it. Solvers for flows are
+    `ark3` (that of `auto`), `sbdf2`, `cnab2` and `chorin`; explicit ones bear viscosity up to the step that `check`
+    tells.
     """
 
     has_bodies = False

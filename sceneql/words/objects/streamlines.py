@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from sceneql.grids.maps.seen import unfit
 from sceneql.kinds import FixedLength, Moment, Object, Problem, Quantity, Value, field
@@ -43,7 +43,7 @@ class Streamlines(Object):
         from sceneql.kinds import Ref
 
         task = self.of.links[0].task
-        model = moment.object(Ref(task, self.of.span))
+        model: Any = moment.object(Ref(task, self.of.span))
         if not getattr(model, "flows", False):
             raise ValueError(f"'{task}' is no flow")
         layout = model.layout(moment.state(task), "velocity")
