@@ -313,3 +313,17 @@ def test_streamlines_follow_the_circles_of_a_vortex():
     inner = first < 0.9
     assert np.abs(first - last)[inner].max() < 2e-3
     assert np.unique(np.round(first[inner], 1)).size > 5
+
+
+@pytest.mark.parametrize("solver", ["{chorin: {step: 5 ms}}", "{sbdf2: {step: 5 ms}}", "{ark3: {step: 20 ms}}"])
+def test_what_has_come_in_is_what_is_there_also_around_solids(tmp_path, solver):
+    """Where diffusion is implicit, too; and no dye enters the stone."""
+    dye = """  dye:
+    diffusion: {of: number, size: 1 1 m, cell: 1/16 m, coefficient: 0.02, boundary: {left: {value: 2}}, drift: {by: air}}
+"""
+    stone = "objects: {stone: {sphere: {position: 0.5 0.45 0 m, radius: 0.2 m}}}\n"
+    air = Air(tmp_path, solver, 0.5, dye, before=stone, around="[stone]", boundary=BESIDE).at(0.5)
+    assert air.read("mass", "dye") > 0.3
+    assert air.read("mass", "dye") == pytest.approx(air.read("inflow", "dye"), rel=1e-10)
+    assert air.read("max", "dye") <= 2.0 + 1e-6
+    assert len(air.read("concentration", "dye")) < 256

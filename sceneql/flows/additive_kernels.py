@@ -18,7 +18,7 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.flows.layout import AT, FACES, SKIP, WORK
-from sceneql.flows.multistep_kernels import OPERATOR, same, solve, spread
+from sceneql.flows.multistep_kernels import OPERATOR, same, solve, spread, tally
 from sceneql.flows.projection_kernels import project
 from sceneql.system.signatures_kernels import STEP, A, F, I, N
 
@@ -153,6 +153,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         wanted[k] = h * error
     project(y1, floats, one)
     project(wanted, floats, one)
+    for number in range(numbers[OPERATORS]):
+        tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     rate(t + h, y1, end_rate, floats, ints)
     floats[one[SKIP]] = 0.0
     for k in range(n):

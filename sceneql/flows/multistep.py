@@ -36,8 +36,11 @@ class Tables:
         return len(self.numbers) - len(values)
 
 
-def operator(grid: Grid, floats: Floats, tables: Tables) -> list[int]:
-    """The integers of a field's operator (multistep_kernels): what solves it on a box of one coefficient is at hand."""
+def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[int]:
+    """The integers of a field's operator (multistep_kernels): what solves it on a box of one coefficient is at hand.
+
+    ``tallied``: whether what has come in follows its entries in y.
+    """
     import numpy as np
 
     from sceneql.flows.transforms import modes, plan_of
@@ -67,7 +70,7 @@ def operator(grid: Grid, floats: Floats, tables: Tables) -> list[int]:
         plans += plan_of(kind, length, tables.store)
         lengths *= length
     offsets = (grid.at, *shape, grid.cells.insides_at, grid.sink_at, *grid.faces_at)
-    return [*offsets, *decays, tables.store([lengths]), *plans]
+    return [*offsets, *decays, tables.store([lengths]), grid.at + n if tallied else -1, *plans]
 
 
 def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, str]:
@@ -87,7 +90,7 @@ def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, st
     fixed = [grid for grid in grids if not grid.varying]
     fields = [*velocities, *(grid for grid in fixed if _spreads(grid, system.floats))]
     tables = Tables()
-    found = [operator(grid, system.floats, tables) for grid in fields]
+    found = [operator(grid, system.floats, tables, grid not in velocities) for grid in fields]
     left = len(grids) - len(fixed)
     text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
     return (
