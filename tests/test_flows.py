@@ -75,7 +75,7 @@ KINDS = {"wall": "", "open": "outflow: {}", "periodic": "periodic: yes"}
 def test_projection_leaves_rounding_whatever_the_sides(tmp_path, size):
     pairs = (("left", "right"), ("bottom", "top"), ("back", "front"))[: len(size.split()) - 1]
     swirl = "[sin(3*x + y), cos(x*y)" + (", x + z*y]" if len(pairs) == 3 else "]")
-    for chosen in itertools.product(KINDS, repeat=len(pairs)):
+    for chosen in [*itertools.product(KINDS, repeat=len(pairs))][:: 4 if len(pairs) == 3 else 1]:
         said = ((pair[len(kind) % 2], KINDS[kind]) for pair, kind in zip(pairs, chosen, strict=True))
         sides = [f"{side}: {{{kind}}}" for side, kind in said if kind]
         air = Air(
@@ -318,9 +318,8 @@ def test_streamlines_follow_the_circles_of_a_vortex():
 @pytest.mark.parametrize("solver", ["{chorin: {step: 5 ms}}", "{sbdf2: {step: 5 ms}}", "{ark3: {step: 20 ms}}"])
 def test_what_has_come_in_is_what_is_there_also_around_solids(tmp_path, solver):
     """Where diffusion is implicit, too; and no dye enters the stone."""
-    dye = """  dye:
-    diffusion: {of: number, size: 1 1 m, cell: 1/16 m, coefficient: 0.02, boundary: {left: {value: 2}}, drift: {by: air}}
-"""
+    of = "of: number, size: 1 1 m, cell: 1/16 m, coefficient: 0.02, boundary: {left: {value: 2}}"
+    dye = f"  dye: {{diffusion: {{{of}, drift: {{by: air}}}}}}\n"
     stone = "objects: {stone: {sphere: {position: 0.5 0.45 0 m, radius: 0.2 m}}}\n"
     air = Air(tmp_path, solver, 0.5, dye, before=stone, around="[stone]", boundary=BESIDE).at(0.5)
     assert air.read("mass", "dye") > 0.3
