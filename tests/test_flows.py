@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from flows import VORTEX, Air, waves
-from sceneql.flows.lines import lines
+from sceneql.flows.drawn_lines import lines
 from sceneql.grids.medium import FieldLayout
 
 LONG = bool(os.environ.get("SCENEQL_LONG"))

@@ -38,7 +38,7 @@ class Streamlines(Object):
         """The lines as segments. Raises ValueError where the value is no flow's."""
         import numpy as np
 
-        from sceneql.flows.lines import lines
+        from sceneql.flows.drawn_lines import lines
         from sceneql.frame import Segments
         from sceneql.kinds import Ref
 
