@@ -11,7 +11,7 @@ from typing import NamedTuple
 from modules import ROOT, House
 
 PHYSICS = ("models", "forces", "contacts", "solvers")
-TERMS = {"auto", "emission", "equations", "exact", "force"}
+TERMS = {"auto", "emission", "equations", "exact", "flow", "force"}
 """Words of physics that are terms of the field, too."""
 IGNORED = re.compile(r"^# mypy: ignore-errors", re.MULTILINE)
 FACES = {"sceneql", "sceneql.kinds", "sceneql.system"}

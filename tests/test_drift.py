@@ -237,7 +237,7 @@ def test_species_that_stay_in_place_are_not_carried(tmp_path):
 @pytest.mark.parametrize(
     ("drift", "said"),
     [
-        ("{}", "one of `velocity` and `stream_function`"),
+        ("{}", "one of `velocity`, `stream_function` and `by`"),
         ("{velocity: x}", "a vector of two or three"),
         ("{velocity: '[x, y, z]'}", "needs 2 components"),
         ("{stream_function: '[x, y]'}", "one number at every place"),

@@ -1,1 +1,1 @@
-"""Incompressible flow on staggered grids: advection, viscosity, projection."""
+"""Incompressible flow: staggered grids, projection."""

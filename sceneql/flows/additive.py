@@ -64,8 +64,9 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """The arrays of a step. Raises ScriptError where the island has no flow."""
     import numpy as np
 
-    from sceneql.flows.additive_kernels import HEAD, OPERATOR
+    from sceneql.flows.additive_kernels import HEAD
     from sceneql.flows.multistep import operators_of
+    from sceneql.flows.multistep_kernels import OPERATOR
 
     flow, operators, velocities, tables, text = operators_of(system)
     tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}
@@ -79,3 +80,14 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         work=(13 + 2 * stages) * len(system.y),
         text=text,
     )
+
+
+def growth(decay: float, turn: float, step: float) -> float:
+    """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
+    import numpy as np
+
+    implicit, explicit = -step * decay, 1j * step * turn
+    stages = np.linalg.solve(
+        np.eye(len(NODES)) - implicit * np.array(IMPLICIT) - explicit * np.array(EXPLICIT), np.ones(len(NODES))
+    )
+    return float(abs(1.0 + (implicit + explicit) * (np.array(WEIGHTS) @ stages)))

@@ -5,9 +5,10 @@ Stage i solves Y_i - a P L Y_i = P (y0 + h sum over j < i of (e_ij N_j + d_ij L 
 multistep_kernels and P the projection. So the pressure keeps to each stage, and beside walls the order stays. The
 velocities are found by conjugate gradients among those free of divergence, with P (1 - a L)^-1 as preconditioner.
 
-``settings``: the tableau (e, d, b, b - b of the embedded method, nodes), the tolerance, then the size that each block of
-the state has had, and the end of the latest step. ``numbers``: [stages, where the flow's integers begin, number of blocks, operators of velocities, operators,
-where in the settings the tables begin], the operators, [offset in y, count] of each block, whose errors are measured together, the flow's integers.
+``settings``: the tableau (e, d, b, b - b of the embedded method, nodes), the tolerance, then the size that each block
+of the state has had, the end of the latest step, and the tables. ``numbers``: [stages, where the flow's integers begin,
+number of blocks, operators of velocities, operators, where in the settings the tables begin], the operators, [offset in
+y, count] of each block, whose errors are measured together, the flow's integers.
 """
 
 import math
@@ -17,7 +18,7 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.flows.layout import AT, FACES, SKIP, WORK
-from sceneql.flows.multistep_kernels import OPERATOR, same, solve, spread
+from sceneql.flows.multistep_kernels import OPERATOR, same, solve, spread, tally
 from sceneql.flows.projection_kernels import project
 from sceneql.system.signatures_kernels import STEP, A, F, I, N
 
@@ -45,7 +46,10 @@ def product(axes, x, y, floats, numbers):
 
 @lean(types.void(F, F, A, A, A, A, A, A, A, I), inner=True)
 def implicit(a, exact, wanted, y, spreading, room, more, floats, tables, numbers):
-    """Solve Y - a P L Y = wanted in y; wanted is free of divergence; ``exact``: the residual. ``room``: 4, ``more``: 4 arrays of y's size."""
+    """Solve Y - a P L Y = wanted in y; wanted is free of divergence; ``exact``: the residual.
+
+    ``room``, ``more``: 4 arrays of y's size each.
+    """
     n = y.size
     one = numbers[numbers[FLOW_AT] :]
     first, last = one[AT], one[AT] + one[FACES]
@@ -119,7 +123,18 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             project(wanted, floats, one)
             for k in range(n):
                 y1[k] = wanted[k]
-            implicit(h * d[i * s + i], max(EXACT, SHARE * tolerance), wanted, y1, spreading, room, more, floats, settings[numbers[TABLES_AT] :], numbers)
+            implicit(
+                h * d[i * s + i],
+                max(EXACT, SHARE * tolerance),
+                wanted,
+                y1,
+                spreading,
+                room,
+                more,
+                floats,
+                settings[numbers[TABLES_AT] :],
+                numbers,
+            )
         if i == 0 and same(y0, end) and settings[latest] == t:
             for k in range(n):
                 own[k] = end_rate[k]
@@ -138,6 +153,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         wanted[k] = h * error
     project(y1, floats, one)
     project(wanted, floats, one)
+    for number in range(numbers[OPERATORS]):
+        tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     rate(t + h, y1, end_rate, floats, ints)
     floats[one[SKIP]] = 0.0
     for k in range(n):

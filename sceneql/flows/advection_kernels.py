@@ -1,9 +1,9 @@
 # mypy: ignore-errors
 """Advection and viscosity of face velocities, as terms: what crosses the faces of each velocity's own cell.
 
-Momentum is conserved; values at faces of these cells are central (energy is conserved too: Harlow & Welch 1965; Morinishi
-et al. 1998), upwind, or upwind with half a limited slope (Koren 1993). Where fluid comes in through an open side, it
-brings no momentum: so what comes back in there cannot grow (Bruneau & Fabrie 1994).
+Momentum is conserved; values at faces of these cells are central (energy is conserved too: Harlow & Welch 1965;
+Morinishi et al. 1998), upwind, or upwind with half a limited slope (Koren 1993). Where fluid comes in through an open
+side, it brings no momentum: so what comes back in there cannot grow (Bruneau & Fabrie 1994).
 """
 
 from sceneql.compiled.kernels import lean, lean_inlined
@@ -65,7 +65,11 @@ def through(i, j, k, component, axis, y, floats, ints):
     if before < 0 and ints[PERIODIC + component] == 1:
         before = count - 1
     if before >= 0:
-        i, j, k = (before if component == 0 else i), (before if component == 1 else j), (before if component == 2 else k)
+        i, j, k = (
+            (before if component == 0 else i),
+            (before if component == 1 else j),
+            (before if component == 2 else k),
+        )
         one = number(i, j, k, axis, ints)
         total += floats[areas + one] * y[at + one]
     return 0.5 * total

@@ -2,30 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from sceneql.flows import layout
-from sceneql.flows.faces import Faces
-from sceneql.flows.solids import LEAST, Solids
-from sceneql.flows.transforms import plans
+from sceneql.flows.edges import BEGIN, component_at, edges_of, timed
+from sceneql.flows.obstacles import LEAST, Solids
+from sceneql.flows.pressure import write_pressure
+from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces
 from sceneql.grids.domain.boundary import shares
-from sceneql.kinds import Formula
+from sceneql.kinds import Formula, Ref
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Number, Symbol, walk
+from sceneql.quantities.expression import TIME_SYMBOL, Number, Symbol
 from sceneql.system import Cells, Flow, Grid
 
 if TYPE_CHECKING:
-    from sceneql.flows.parts import Side
+    from sceneql.flows.parts import Side, Start
     from sceneql.frame import Floats
     from sceneql.grids.domain.cells import Cells as Ground
     from sceneql.system import Assembly
-    from sceneql.words.models.flow import Flow as Model
 
 SCHEMES = {"upwind": layout.UPWIND, "central": layout.CENTRAL, "koren": layout.KOREN}
 UNBALANCED = 1e-6
@@ -34,18 +34,47 @@ ACROSS = 1e-9
 """Velocity of a wall across it, in parts of its largest, that counts as rounding."""
 TIMES = (0.0, 0.37, 1.0, 7.3)
 """Instants [s] at which inflows of a closed box are looked at."""
-BEGIN = "sceneql.grids.diffusion_kernels:begin"
+
+
+class Model(Protocol):
+    """The fields of the word `flow` that its terms are made by."""
+
+    @property
+    def boundary(self) -> Mapping[str, Side]:
+        """What holds on its sides."""
+
+    @property
+    def density(self) -> float:
+        """[kg/m^3]"""
+
+    @property
+    def viscosity(self) -> float:
+        """[Pa s]"""
+
+    @property
+    def initial(self) -> Start | None:
+        """The flow at the start."""
+
+    @property
+    def advection(self) -> str:
+        """A name of SCHEMES."""
+
+    @property
+    def around(self) -> tuple[Ref, ...]:
+        """Solids in it."""
+
+    @property
+    def edges(self) -> str:
+        """How cells meet these."""
+
+    @property
+    def force(self) -> Formula | None:
+        """On each cubic meter [N/m^3]."""
 
 
 def add_flow(model: Model, cells: Ground, assembly: Assembly) -> Flow:
-    """Reserve an entry of y a face, and add the terms of the rate. Raises ScriptError for boundaries that do not fit."""
+    """Reserve an entry of y a face, and add the terms of the rate. Raises ScriptError where sides do not fit."""
     return _Builder(model, cells, assembly).build()
-
-
-def timed(expr: Expr) -> bool:
-    """Whether a formula varies in time, or with what is solved."""
-    names = ("t", TIME_SYMBOL)
-    return any(isinstance(node, Link) or (isinstance(node, Symbol) and node.name in names) for node in walk(expr))
 
 
 class _Builder:
@@ -79,7 +108,7 @@ class _Builder:
         x = self._start(given)
         self._must_balance(areas)
         at = len(assembly.start())
-        edges, edge_faces = self._edges(at)
+        edges, edge_faces = edges_of(self, at)
         ints = np.zeros(layout.EDGE_FACES + len(edge_faces), dtype=np.int64)
         ints[layout.CELLS : layout.CELLS + 3] = cells.shape
         ints[layout.PERIODIC : layout.PERIODIC + 3] = self.periodic
@@ -101,10 +130,10 @@ class _Builder:
         ints[layout.EDGE_FIRST : layout.EDGE_FACES] = edges[2:]
         ints[layout.EDGE_FACES :] = edge_faces
         ints[layout.SCHEME], ints[layout.SKIP] = SCHEMES[self.model.advection], assembly.floats([0.0])
-        self._pressure_tables(areas, areas * inverses, ints)
+        write_pressure(faces, self.opened, self.solids is not None, areas, areas * inverses, assembly, ints)
         numbers = tuple(ints.tolist())
-        for kernel in ("advect", "rub"):
-            assembly.term("close", f"sceneql.flows.advection_kernels:{kernel}", numbers)
+        assembly.term("close", "sceneql.flows.advection_kernels:advect", numbers)
+        assembly.term("close", "sceneql.flows.advection_kernels:rub", numbers)
         assembly.term("constrain", "sceneql.flows.projection_kernels:constrain", numbers)
         assembly.state(self._projected(x, ints))
         flow = Flow(
@@ -134,7 +163,7 @@ class _Builder:
                 if part.wall is None or part.velocity is None:
                     continue
                 points = self.faces.points(axis)[mine - self.faces.starts[axis]]
-                parts = [np.abs(_component(part.velocity, k, points, 0.0)) for k in range(self.faces.axes)]
+                parts = [np.abs(component_at(part.velocity, k, points, 0.0)) for k in range(self.faces.axes)]
                 if parts[axis].max() > ACROSS * max(one.max() for one in parts):
                     text = "a wall moves along itself: this velocity leads through it"
                     help = "let its component across the wall be 0, or give an `inflow`"
@@ -172,7 +201,7 @@ class _Builder:
                 if part.inflow is None or part.velocity is None:
                     continue
                 points = faces.points(axis)[mine - faces.starts[axis]]
-                found[mine] = _component(part.velocity, axis, points, time)
+                found[mine] = component_at(part.velocity, axis, points, time)
         return found
 
     def _normal(self) -> list[tuple[Side, dict[int, Any]]]:
@@ -220,7 +249,7 @@ class _Builder:
             mine = faces.index(axis).ravel()
             if said.velocity is not None:
                 self._must_fit(said.velocity)
-                x[mine] = _component(said.velocity, axis, faces.points(axis), 0.0)
+                x[mine] = component_at(said.velocity, axis, faces.points(axis), 0.0)
                 continue
             assert said.stream_function is not None
             if faces.axes == 3:
@@ -311,7 +340,7 @@ class _Builder:
             own = []
             for component in range(faces.axes):
                 shape = faces.shapes[component]
-                area = self._own_widths(component) * (faces.volume / spacing[axis])
+                area = faces.own_widths(component) * (faces.volume / spacing[axis])
                 tie = np.broadcast_to(area * (self.viscosity / spacing[axis]), shape).copy()
                 if not self.periodic[axis]:
                     tie[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = 0.0
@@ -327,110 +356,14 @@ class _Builder:
             found.append(self.assembly.floats(np.concatenate(own)))
         return (found[0], found[1], found[2] if len(found) == 3 else found[0])
 
-    def _own_widths(self, component: int) -> Floats:
-        """How wide the own cells of a component's faces are along its axis, in cells: half on the boundary."""
-        widths = np.ones(self.faces.shapes[component])
-        if not self.periodic[component]:
-            for end in (0, -1):
-                widths[tuple(end if k == 2 - component else slice(None) for k in range(3))] = 0.5
-        return widths
-
-    def _edges(self, at: int) -> tuple[tuple[int, ...], list[int]]:
-        """Offsets of values and weights, the first edge of each side (EDGE_FIRST), and the faces beside the edges."""
-        faces, assembly, spacing = self.faces, self.assembly, self.cells.spacing
-        firsts, sides = [-1] * 18, []
-        count = 0
-        for component in range(faces.axes):
-            for axis in range(faces.axes):
-                for high in range(0 if self.periodic[axis] or axis == component else 2):
-                    edges = faces.edges(component, axis, high)
-                    firsts[6 * component + 2 * axis + high] = count
-                    sides.append((component, axis, high, edges, count))
-                    count += len(edges.faces)
-        values, weights = np.zeros(count), np.zeros(count)
-        later: list[tuple[Expr, Any, Floats, Floats]] = []
-        for component, axis, high, edges, first in sides:
-            mine = slice(first, first + len(edges.faces))
-            width = self._own_widths(component).take(-1 if high else 0, axis=2 - axis).ravel()
-            area = self.viscosity * width * faces.volume / spacing[axis]
-            each = [area / (self.slip[one] + 0.5 * spacing[axis]) for one in edges.both]
-            weights[mine] = 0.5 * (each[0] + each[1])
-            for number, (part, _) in enumerate(self.parts):
-                if part.velocity is None:
-                    continue
-                share = sum(
-                    np.where(self.part_of[one] == number, 0.5 * w, 0.0) for one, w in zip(edges.both, each, strict=True)
-                )
-                share = np.where(weights[mine] > 0.0, share / np.where(weights[mine] > 0.0, weights[mine], 1.0), 0.0)
-                chosen = np.flatnonzero(share > 0.0)
-                if not len(chosen):
-                    continue
-                points, expr = edges.points[chosen], components(part.velocity.expr)[component]
-                if timed(expr):
-                    later.append((expr, first + chosen, share[chosen], points))
-                else:
-                    values[first + chosen] += share[chosen] * _component(part.velocity, component, points, 0.0)
-        values_at, weights_at = assembly.floats(values), assembly.floats(weights)
-        if later:
-            assembly.term("internal", BEGIN, (count, assembly.floats(values), values_at))
-        for expr, chosen, share, points in later:
-            known = assembly.floats(share), assembly.floats(points)
-            kernel, ints = over_faces(assembly, expr, at, values_at, *known, chosen.tolist())
-            assembly.term("internal", kernel, ints)
-        beside = [face for *_, edges, _ in sides for face in edges.faces.tolist()]
-        return (values_at, weights_at, *firsts), beside
-
-    def _pressure_tables(self, areas: Floats, scales: Floats, ints: Any) -> None:
-        """Write the integers of the pressure's equation."""
-        faces, cells, assembly = self.faces, self.cells, self.assembly
-        n = len(cells.volumes)
-        sink = np.zeros(n)
-        opened = []
-        uniform = True
-        for axis in range(faces.axes):
-            ends = []
-            for high in range(2):
-                side = self.opened[faces.side(axis, high).ravel()]
-                uniform &= bool(side.all() or not side.any())
-                ends.append(bool(side.all()))
-                if not self.periodic[axis]:
-                    index = np.arange(n).reshape(cells.shape[::-1]).take(-1 if high else 0, axis=2 - axis).ravel()
-                    mine = faces.on_side(axis, high).ravel()
-                    sink[index] += areas[mine] * scales[mine]
-            opened.append((ends[0], ends[1]))
-            ties = (areas * scales)[faces.index(axis)]
-            ties = ties[tuple(slice(0, m) for m in cells.shape[::-1])].copy()
-            if not self.periodic[axis]:
-                ties[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = 0.0
-            ints[layout.CONDUCTANCES + axis] = assembly.floats(ties.ravel())
-        ints[layout.SINK] = assembly.floats(sink)
-        if self.solids is not None:
-            uniform = False
-            whole = sum(
-                np.bincount(np.arange(n), weights=self._around_cell(areas, axis)) for axis in range(faces.axes)
-            )
-            sink[whole == 0.0] = -1.0
-        ints[layout.ITERATES] = not uniform
-        ints[layout.SINGULAR] = not self.opened.any()
-        inner = [faces.areas[axis] / float(cells.spacing[axis]) for axis in range(faces.axes)]
-        tables, spectrum, room = plans(cells.shape, self.periodic, opened, inner, assembly)
-        ints[layout.PLANS : layout.EDGE_FIRST] = tables
-        ints[layout.SPECTRUM] = assembly.floats(spectrum)
-        ints[layout.PRESSURE] = assembly.floats(np.zeros(n))
-        ints[layout.WORK] = assembly.floats(np.zeros(room + (0 if uniform else 5 * n))) + (0 if uniform else 5 * n)
-
-    def _around_cell(self, areas: Floats, axis: int) -> Floats:
-        """By cell: the open areas of its two faces across an axis."""
-        shape = self.cells.shape[::-1]
-        own = areas[self.faces.index(axis)]
-        count = shape[2 - axis]
-        low = own.take(range(count), axis=2 - axis)
-        high = np.roll(own, -1, axis=2 - axis).take(range(count), axis=2 - axis)
-        total: Floats = (low + high).ravel()
-        return total
-
     def _grids(
-        self, at: int, given: Any, volumes: Floats, friction: Floats, viscous: Sequence[int], weights_at: int,
+        self,
+        at: int,
+        given: Any,
+        volumes: Floats,
+        friction: Floats,
+        viscous: Sequence[int],
+        weights_at: int,
         edge_faces: Sequence[int],
     ) -> tuple[Grid, ...]:
         """Each component as a field whose conductances are those of viscosity."""
@@ -448,9 +381,3 @@ class _Builder:
             ties = (viscous[0] + start, viscous[1] + start, viscous[2] + start)
             found.append(Grid(cells, at + start, solved + start, sinks + start, ties, False, -1, True))
         return tuple(found)
-
-
-def _component(formula: Formula, axis: int, points: Floats, time: float) -> Floats:
-    """A component of a velocity at points (k, 3) [m] and an instant [s]: (k,)."""
-    one = Formula(components(formula.expr)[axis], formula.span)
-    return at_points(one, points, t=time, **{TIME_SYMBOL: time})

@@ -6,9 +6,10 @@ from sceneql.flows.layout import AT, AXES, CELLS, FILLS, INVERSES, PERIODIC, STA
 from sceneql.system.signatures_kernels import TERM
 
 FLOWS, AREAS, BROUGHT, LEAVING, BOUNDARY_AREAS, VALUES, FACES, HEAD = 0, 3, 6, 7, 8, 9, 10, 11
-"""Of `through`: flows along x, y, z that are written and areas of the faces of each; what comes in and out a second by cell, the
-areas of faces on the boundary, what comes in there has, and their number; then of each its cell, its entry in y and 1
-where it is on the high side, -1 on the low one; then cells along x, y, z, 1 where periodic, first entries in y, axes."""
+"""Of `through`: flows along x, y, z that are written and areas of the faces of each; what comes in and out a second by
+cell, the areas of faces on the boundary, what comes in there has, and their number; then of each its cell, its entry in
+y and 1 where it is on the high side, -1 on the low one; then cells along x, y, z, 1 where periodic, first entries in y,
+axes."""
 FIELD, INSIDES, EXPANSION, REFERENCE, GRAVITY, FLOW = range(6)
 """Of `lift`: the field's first entry in y, ..., and where the flow's integers begin."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from sceneql.flows.layout import PLAN
@@ -35,8 +36,11 @@ class Tables:
         return len(self.numbers) - len(values)
 
 
-def operator(grid: Grid, floats: Floats, tables: Tables) -> list[int]:
-    """The integers of a field's operator (multistep_kernels): what solves it on a box of one coefficient is at hand."""
+def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[int]:
+    """The integers of a field's operator (multistep_kernels): what solves it on a box of one coefficient is at hand.
+
+    ``tallied``: whether what has come in follows its entries in y.
+    """
     import numpy as np
 
     from sceneql.flows.transforms import modes, plan_of
@@ -66,7 +70,7 @@ def operator(grid: Grid, floats: Floats, tables: Tables) -> list[int]:
         plans += plan_of(kind, length, tables.store)
         lengths *= length
     offsets = (grid.at, *shape, grid.cells.insides_at, grid.sink_at, *grid.faces_at)
-    return [*offsets, *decays, tables.store([lengths]), *plans]
+    return [*offsets, *decays, tables.store([lengths]), grid.at + n if tallied else -1, *plans]
 
 
 def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, str]:
@@ -86,10 +90,16 @@ def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, st
     fixed = [grid for grid in grids if not grid.varying]
     fields = [*velocities, *(grid for grid in fixed if _spreads(grid, system.floats))]
     tables = Tables()
-    found = [operator(grid, system.floats, tables) for grid in fields]
+    found = [operator(grid, system.floats, tables, grid not in velocities) for grid in fields]
     left = len(grids) - len(fixed)
     text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
-    return flow, found, len(velocities), tables, text + (f"; {left} fields with varying coefficients explicit" if left else "")
+    return (
+        flow,
+        found,
+        len(velocities),
+        tables,
+        text + (f"; {left} fields with varying coefficients explicit" if left else ""),
+    )
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
@@ -130,3 +140,10 @@ def growth(scheme: int, decay: float, turn: float, step: float) -> float:
         a, b, c = 1.5 + implicit, 2.0 + 2.0 * explicit, 0.5 + explicit
     root = (b * b - 4.0 * a * c) ** 0.5
     return max(abs(b + root), abs(b - root)) / (2.0 * abs(a))
+
+
+def largest_growth(jacobian: Floats, of_mode: Callable[[float, float], float]) -> float:
+    """The largest growth factor of the modes of a Jacobian, by their decay and their turning [1/s]."""
+    import numpy as np
+
+    return max((of_mode(-float(mode.real), float(mode.imag)) for mode in np.linalg.eigvals(jacobian)), default=0.0)

@@ -9,11 +9,9 @@ its divergence; the pressure grows by what that takes away, less viscosity times
 ``settings``: start and end of the latest step, length of the one before it. ``numbers``: [scheme, 1 if there is a step
 before, number of operators, where the flow's integers begin], then of each operator OPERATOR integers (a field's offset
 in y, cells along x, y, z, volumes, 0 where nothing is solved, sinks, conductances along x, y, z; offsets into the
-tables, which follow the settings, of decay rates by mode along x, y, z and of the length of all transforms; the plans of
-these, flows/layout).
+tables, which follow the settings, of decay rates by mode along x, y, z and of the length of all transforms; the entry
+of y that tells what has come in, or -1; the plans of the transforms, flows/layout).
 """
-
-import math
 
 from numba import types
 
@@ -28,7 +26,7 @@ from sceneql.system.signatures_kernels import STEP, A, F, I
 CHORIN, CNAB2, SBDF2 = range(3)
 SCHEME, HAS_BEFORE, OPERATORS, FLOW_AT, HEAD = range(5)
 START, END, LENGTH, VISCOSITY, TABLES = range(5)
-DECAYS, SIZES_AT, PLANS_AT = 9, 12, 13
+DECAYS, SIZES_AT, TALLY, PLANS_AT = 9, 12, 13, 14
 OPERATOR = PLANS_AT + 3 * PLAN
 ARRAYS = 12
 SMALL = 1e-12
@@ -126,6 +124,16 @@ def solve(op, a, wanted, y, small, floats, tables, scratch, room):
         before = now
 
 
+@lean(types.void(I, A, A, A), inner=True)
+def tally(op, y0, y1, floats):
+    """What has come into a field in a step: what there is more of it, for fluxes between cells cancel."""
+    if op[TALLY] >= 0:
+        total = 0.0
+        for c in range(op[1] * op[2] * op[3]):
+            total += floats[op[4] + c] * (y1[op[0] + c] - y0[op[0] + c])
+        y1[op[TALLY]] = y0[op[TALLY]] + total
+
+
 @lean_inlined
 def remember(t, y0, latest, n_before, start, before, end, settings, numbers):
     """Whether this step goes on from the latest, whose start and rates are then those before, or repeats it."""
@@ -199,6 +207,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     if scheme != CHORIN:
         for c in range(cells):
             pressure[c] += q[c] * lead / h - implicit * settings[VISCOSITY] * gathered[c]
+    for number in range(numbers[OPERATORS]):
+        tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     for k in range(n):
         slope = (y1[k] - y0[k]) / h
         if has_before:

@@ -11,8 +11,8 @@ from sceneql.grids.domain.cells import SIDES
 from sceneql.grids.medium import PLACE, SIZES
 from sceneql.kinds import Formula, Problem, Quantity, Record, Symbols, Value, field
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.dimension import PLAIN, comparable
 from sceneql.quantities.derivative import components
+from sceneql.quantities.dimension import PLAIN, comparable
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import TIME_SYMBOL, Link, Symbol, walk
 from sceneql.quantities.span import Span

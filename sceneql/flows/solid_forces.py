@@ -34,7 +34,10 @@ def on_solid(
         if ints[layout.PERIODIC + axis]:
             low, high = areas, np.roll(areas, -1, axis=2 - axis)
         else:
-            low, high = areas.take(range(shape[axis] - 1), axis=2 - axis), areas.take(range(1, shape[axis]), axis=2 - axis)
+            low, high = (
+                areas.take(range(shape[axis] - 1), axis=2 - axis),
+                areas.take(range(1, shape[axis]), axis=2 - axis),
+            )
         pushed = (pressure * (low - high)).ravel()
         dragged, points = _dragged(axis, number, cells, ints, density, state, owners[first : first + n])
         for strength, places in ((pushed, centers), (dragged, points)):

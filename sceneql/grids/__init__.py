@@ -1,1 +1,1 @@
-"""Fields on grids: diffusion, drift, reactions, implicit stages."""
+"""Fields on grids: diffusion, drift, reactions."""

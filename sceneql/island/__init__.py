@@ -1,1 +1,1 @@
-"""An island's state, numbers, terms, breakpoints, Jacobian."""
+"""An island's state, numbers, terms, Jacobian."""

@@ -1,1 +1,1 @@
-"""Units, operations and expressions, diagnostics."""
+"""Units, operations, expressions, diagnostics."""

@@ -101,7 +101,7 @@ def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[lis
 def shares(
     boundary: Mapping[str, Said], cells: Cells, line: Span | None
 ) -> tuple[list[tuple[Said, Any]], tuple[bool, bool, bool]]:
-    """The parts with the indices (m,) of their boundary faces, and which directions are periodic. Raises ScriptError."""
+    """The parts with the indices (m,) of their boundary faces, and the periodic directions. Raises ScriptError."""
     faces = cells.boundary
     taken = np.zeros(len(faces.cells), dtype=bool)
     owner = np.full(len(faces.cells), -1)

@@ -116,7 +116,7 @@ class Diffusion(Medium):
     def connect(self, name: str, assembly: Assembly) -> None:
         """Add the drift by a flow that is solved. Raises ScriptError."""
         if self.drift is not None and self.drift.by is not None:
-            from sceneql.flows.carrying import carry
+            from sceneql.flows.carried import carry
 
             grid = assembly.field_of(Link(name, _names(self.of)[0], Type((None,))))
             if grid is not None:

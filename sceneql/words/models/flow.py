@@ -9,7 +9,7 @@ from sceneql import kinds
 from sceneql.flows.parts import FORCE, Buoyancy, Side, Start, fastest_turn
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
 from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of
-from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Value, field, quantity_type
+from sceneql.kinds import Gives, Model, Problem, Quantity, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Link, Type
@@ -28,6 +28,12 @@ class Flow(Model):
     to. Advection by `koren` is limited and of order 3 where the flow is smooth, `central` keeps the energy, `upwind` is
     of order 1. In formulas x, y, z and t are plain numbers in SI. A flat flow has x and y and a `depth`. Sources:
     Harlow & Welch (1965), Phys. Fluids 8, 2182-2189; Chorin (1968), Math. Comp. 22, 745-762; Koren (1993).
+
+    A lid that moves along a square: `air: {flow: {size: 1 1 m, cell: 2 cm, density: 1 kg/m^3, viscosity: 0.01 Pa*s,
+    boundary: {top: {wall: {velocity: "[1, 0]"}}}}}`, seen by `{field_map: {of: air.speed}}` and `{streamlines: {of:
+    air.velocity}}`; a `diffusion` in the same box with `drift: {by: air}` is carried by it. Solvers for flows are
+    `ark3` (that of `auto`), `sbdf2`, `cnab2` and `chorin`; explicit ones bear viscosity up to the step that `check`
+    tells.
     """
 
     has_bodies = False
@@ -126,7 +132,7 @@ class Flow(Model):
     def connect(self, name: str, assembly: Assembly) -> None:
         """Add what buoyancy does. Raises ScriptError where it reads the field of another domain."""
         if self.buoyancy is not None:
-            from sceneql.flows.carrying import add_buoyancy
+            from sceneql.flows.carried import add_buoyancy
 
             add_buoyancy(self.buoyancy, name, assembly)
 
@@ -140,7 +146,7 @@ class Flow(Model):
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells,), (cells, 3), (3,) or float."""
-        from sceneql.flows.measures import measure
+        from sceneql.flows.readings import measure
 
         name, _, what = output.rpartition(".")
         if name:

@@ -206,7 +206,7 @@ class ReactionDiffusion(Medium):
         """Add the drift by a flow that is solved. Raises ScriptError."""
         if self.drift is None or self.drift.by is None:
             return
-        from sceneql.flows.carrying import carry
+        from sceneql.flows.carried import carry
 
         for species, one in self.species.items():
             grid = assembly.field_of(Link(name, species, Type((None,))))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import FixedScalar, FixedTime, Solver, field
 
 if TYPE_CHECKING:
+    from sceneql.frame import Floats
     from sceneql.system import Stepper
 
 
@@ -30,6 +31,12 @@ class Ark3(Solver):
         from sceneql.flows import additive
 
         return additive.stepper(self.tolerance, self.step, self.largest_step)
+
+    def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
+        """Largest of the modes', whose decay is implicit and whose turning explicit."""
+        from sceneql.flows import additive, multistep
+
+        return multistep.largest_growth(jacobian, lambda decay, turn: additive.growth(decay, turn, step))
 
     def measure(self) -> str:
         """In parts of the largest."""

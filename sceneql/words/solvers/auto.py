@@ -37,11 +37,12 @@ class Auto(Solver):
     the steps of the explicit method. That choice is made at the start, by the fastest mode of the island, the step that
     the tolerance allows, the length of the run and what a step of radau costs with so many unknowns, and looked at
     again as long as enough of the run is left; `explain` says the first and why. Few masses that nothing but forces at
-    a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less. (On large
-    nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty
-    masses keep it with dopri5. A field on a grid is marched by tr_bdf2, and on a box whose coefficient and boundary
-    do not vary by exact; a flow, with all that is solved with it, by ark3. Errors are measured as those of `radau` are. Sources: see these words; the sign of
-    stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
+    a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less. (On large nets
+    tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty masses keep
+    it with dopri5. A field on a grid is marched by tr_bdf2, and on a box whose coefficient and boundary do not vary by
+    exact; a flow, with all that is solved with it, by ark3. Errors are measured as those of `radau` are. Sources: see
+    these words; the sign of stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996),
+    IV.2.
     """
 
     tolerance: FixedScalar = field(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sceneql.flows import multistep
 from sceneql.kinds import FixedTime, Solver, field
 
 if TYPE_CHECKING:
+    from sceneql.frame import Floats
     from sceneql.system import Stepper
 
 
@@ -25,6 +26,12 @@ class Chorin(Solver):
     def stepper(self) -> Stepper:
         """Fixed steps."""
         return multistep.stepper(multistep.CHORIN, 1, self.step)
+
+    def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
+        """Largest of the modes', whose decay is implicit and whose turning explicit."""
+        return multistep.largest_growth(
+            jacobian, lambda decay, turn: multistep.growth(multistep.CHORIN, decay, turn, step)
+        )
 
     def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
         """What decays is implicit, what turns explicit; none is told of swings."""

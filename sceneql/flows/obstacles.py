@@ -18,7 +18,7 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from sceneql.flows.faces import Faces
+    from sceneql.flows.staggered import Faces
     from sceneql.frame import Floats
     from sceneql.kinds import Moment, Ref
     from sceneql.system import Assembly
@@ -28,7 +28,7 @@ SLIVER = 1e-3
 NEAREST = 0.05
 """Least distance from a wall, in parts of a cell's side."""
 LEAST = 0.3
-"""Least volume of a velocity's own cell, of a whole one: smaller ones have this inertia, which bounds explicit steps."""
+"""Least volume of a velocity's own cell, of a whole one: smaller ones have this inertia, for the sake of the step."""
 
 
 class Solids:
@@ -58,7 +58,8 @@ class Solids:
 
     def _values(self, points: Floats) -> Floats:
         """The level of the union (k,): above 0 in the fluid."""
-        return np.min([level.values(points) for level in self.levels], axis=0)
+        found: Floats = np.min([level.values(points) for level in self.levels], axis=0)
+        return found
 
     def fractions(self, areas: Floats) -> Floats:
         """The open part of each cell, at least LEAST of those with an open face, by the open ``areas`` of faces."""
@@ -67,8 +68,11 @@ class Solids:
         for axis in range(self.faces.axes):
             own = areas[self.faces.index(axis)] > 0.0
             count, line = self.faces.cells.shape[axis], 2 - axis
-            alive |= (own.take(range(count), axis=line) | np.roll(own, -1, axis=line).take(range(count), axis=line)).ravel()
-        return np.where(alive, np.maximum(found, LEAST), 0.0)
+            alive |= (
+                own.take(range(count), axis=line) | np.roll(own, -1, axis=line).take(range(count), axis=line)
+            ).ravel()
+        parts: Floats = np.where(alive, np.maximum(found, LEAST), 0.0)
+        return parts
 
     def owners(self) -> Any:
         """By face, then by cell: the number of the nearest solid."""
@@ -112,10 +116,12 @@ class Solids:
         cells = self.cells.reshape(self.faces.cells.shape[::-1])
         line = 2 - component
         if self.faces.periodic[component]:
-            return (cells & np.roll(cells, 1, axis=line)).ravel().astype(float)
+            both: Floats = (cells & np.roll(cells, 1, axis=line)).ravel().astype(float)
+            return both
         first, last = cells.take([0], axis=line), cells.take([-1], axis=line)
         low, high = np.concatenate([first, cells], axis=line), np.concatenate([cells, last], axis=line)
-        return (low & high).ravel().astype(float)
+        found: Floats = (low & high).ravel().astype(float)
+        return found
 
     def ties(self, component: int, axis: int, closed: Any, shifts: Floats) -> Floats:
         """Of a component's faces: the open part of what is between them and the one before along an axis, over their
@@ -127,12 +133,15 @@ class Solids:
             own = self.faces.points(component, (axis, -0.5))
             shift = np.where(closed, 0.0, shifts[:, axis]).reshape(self.faces.shapes[component])
             apart = 1.0 + (shift - np.roll(shift, 1, axis=2 - axis)).ravel() / self.spacing[axis]
-            return self.open(own, [k for k in range(self.faces.axes) if k != axis]) / np.clip(apart, 0.25, 2.0)
+            whole = self.open(own, [k for k in range(self.faces.axes) if k != axis])
+            found: Floats = whole / np.clip(apart, 0.25, 2.0)
+            return found
         shape = self.faces.shapes[component]
         shut = closed.reshape(shape)
         before = np.roll(shut, 1, axis=2 - axis)
         factor = np.where(shut != before, 1.0 if axis == component else 2.0, np.where(shut, 0.0, 1.0))
-        return factor.ravel()
+        steps: Floats = factor.ravel()
+        return steps
 
     def walls(self, component: int) -> tuple[Floats, Floats, Floats]:
         """Of a component's faces: the volume of the own cell in parts, (wall's area)/(distance) in it [m], and how far

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.flows.assembly import BEGIN, timed
-from sceneql.flows.faces import Faces
+from sceneql.flows.edges import BEGIN, timed
 from sceneql.flows.layout import AREAS
+from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.carrying import KERNELS as CARRY
 from sceneql.grids.carrying import LIMITERS
@@ -95,9 +95,7 @@ def _cut(grid: Grid, fractions: Floats, faces: Faces, opened: Floats, drift: Dri
         assembly.write(grid.faces_at[axis], numbers[ties] * part)
 
 
-def _must_agree(
-    shape: Any, low: Any, spacing: Any, periodic: Any, flow: Flow, name: str, span: Any
-) -> None:
+def _must_agree(shape: Any, low: Any, spacing: Any, periodic: Any, flow: Flow, name: str, span: Any) -> None:
     """Raises ScriptError where a field's cells are not those of a flow."""
     same = tuple(shape) == flow.cells.shape
     axes = len(flow.areas)

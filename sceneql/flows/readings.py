@@ -119,7 +119,9 @@ def _slope(
             step = np.where(weight > 0.0, 2.0 * (given - own), 0.0)
             ends.append(step if high else -step)
         slopes = np.concatenate([ends[0], np.diff(u, axis=line), ends[1]], axis=line) / spacing[axis]
-    slopes = 0.5 * (slopes.take(range(slopes.shape[line] - 1), axis=line) + slopes.take(range(1, slopes.shape[line]), axis=line))
+    slopes = 0.5 * (
+        slopes.take(range(slopes.shape[line] - 1), axis=line) + slopes.take(range(1, slopes.shape[line]), axis=line)
+    )
     other = 2 - component
     if ints[layout.PERIODIC + component]:
         return 0.5 * (slopes + np.roll(slopes, -1, axis=other))

@@ -50,7 +50,9 @@ class Faces:
     def index(self, component: int) -> NDArray[int64]:
         """The numbers of a component's faces."""
         shape = self.shapes[component]
-        return self.starts[component] + np.arange(np.prod(shape), dtype=np.int64).reshape(shape)
+        count = np.arange(np.prod(shape), dtype=np.int64)
+        found: NDArray[int64] = self.starts[component] + count.reshape(shape)
+        return found
 
     def points(self, component: int, shift: tuple[int, float] | None = None) -> Floats:
         """(m, 3) the middles of a component's faces [m]; ``shift``: an axis, and how far along it in cells."""
@@ -59,7 +61,7 @@ class Faces:
         offset[component] = 0.0
         if shift is not None:
             offset[shift[0]] += shift[1]
-        found = self.low + (index.reshape(-1, 3) + offset) * self.cells.spacing
+        found: Floats = self.low + (index.reshape(-1, 3) + offset) * self.cells.spacing
         if self.cells.flat:
             found[:, 2] = 0.0
         return found
@@ -72,6 +74,14 @@ class Faces:
             low[2] = -0.5 * self.cells.spacing[2]
         return [*low.tolist(), *self.cells.spacing.tolist()]
 
+    def own_widths(self, component: int) -> Floats:
+        """How wide the own cells of a component's faces are along its axis, in cells: half on the boundary."""
+        widths = np.ones(self.shapes[component])
+        if not self.periodic[component]:
+            for end in (0, -1):
+                widths[tuple(end if k == 2 - component else slice(None) for k in range(3))] = 0.5
+        return widths
+
     def side(self, axis: int, high: int) -> NDArray[int64]:
         """The boundary faces (cells.boundary) of a side, as an array (z, y, x) without its axis."""
         shape = [n for k, n in enumerate(self.cells.shape[::-1]) if k != 2 - axis]
@@ -81,7 +91,8 @@ class Faces:
 
     def on_side(self, axis: int, high: int) -> NDArray[int64]:
         """The faces that lie on a side, in the order of `side`."""
-        return self.index(axis).take(-1 if high else 0, axis=2 - axis)
+        found: NDArray[int64] = self.index(axis).take([-1 if high else 0], axis=2 - axis).squeeze(2 - axis)
+        return found
 
     def edges(self, component: int, axis: int, high: int) -> Edges:
         """The edges of a component along a side across it."""
