@@ -10,6 +10,7 @@ import numpy as np
 
 from sceneql.bodies.elements.element_mesh import ElementMesh, meshed
 from sceneql.bodies.filling.fill import Inside
+from sceneql.bodies.filling.kept_creases import creases_kept
 from sceneql.bodies.filling.stuffing import lattice_counts, stuffed
 from sceneql.bodies.filling.tetrahedra import volumes
 from sceneql.doing import doing
@@ -95,6 +96,7 @@ def _filled(inside: Inside, spacing: float, element: type[Element]) -> ElementMe
         raise inside.refusal("no tetrahedron lies in it; make the spacing smaller")
     if not (volumes(points, tetrahedra) > 0.0).all():
         raise inside.refusal("so far from the origin its tetrahedra have no volume in double precision")
+    points = creases_kept(points, tetrahedra, spacing, inside.holds, inside.crossing)
     _whole(inside, spacing, points)
 
     def onto(places: Floats, normals: Floats) -> Floats:

@@ -95,7 +95,7 @@ class Surface(Object):
         cloth: Any = moment.object(self.of)
         if "triangles" not in cloth.gives:
             raise ValueError(f"'{self.of.name}' has no surface; a cloth and a solid have one")
-        if hasattr(cloth, "solid"):
+        if getattr(cloth, "has_skin", False):
             yield from self._elastic(cloth, name, place, moment)
             return
         if self.paint is not None or self.cut:

@@ -1,0 +1,78 @@
+"""Edges and corners of objects in the elements that fill them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sceneql.bodies.filling.kept_creases import creases_kept
+from sceneql.bodies.filling.stuffing import stuffed
+from sceneql.bodies.filling.tetrahedra import boundary, volumes
+from solids import Solid
+
+OBJECTS = {
+    "box": ("box: {size: 1 0.7 0.53 m}", 0.371, 1e-9),
+    "joined": ("union: {of: [{box: {size: 1 0.5 0.5 m}}, {box: {size: 0.5 1 0.5 m, position: 0.25 0.5 0 m}}]}", 0.4375, 0.01),
+    "bitten": ("difference: {of: [{box: {size: 1 1 1 m}}, {sphere: {radius: 0.5 m, position: 0.5 0.5 0.5 m}}]}",
+               1 - np.pi / 48, 2e-3),
+    "turned": ("box: {size: 1 0.7 0.53 m, rotation: {xyz: 20 30 40 deg}}", 0.371, 0.015),
+}  # fmt: skip
+
+
+def made(folder, text, spacing, element="p1"):
+    shape = text[: text.rindex("}")] + ", hidden: yes}"
+    more = f"objects: {{shape: {{{shape}}}}}\n"
+    fields = f"{{of: shape, spacing: {spacing} m, element: {element}, law: {{linear: {{modulus: 1 MPa}}}}}}"
+    return Solid(folder, fields, more).mesh
+
+
+@pytest.mark.parametrize("name", OBJECTS)
+@pytest.mark.parametrize("spacing", [0.2, 0.13])
+def test_edges_and_corners_of_objects_are_kept(tmp_path, name, spacing):
+    text, volume, tolerance = OBJECTS[name]
+    mesh = made(tmp_path, text, spacing)
+    held = volumes(mesh.points, mesh.cells)
+    assert held.min() > 0.0
+    assert held.sum() == pytest.approx(volume, rel=tolerance)
+
+
+def test_all_corners_of_a_box_are_nodes(tmp_path):
+    mesh = made(tmp_path, OBJECTS["box"][0], 0.11)
+    for corner in np.array(np.meshgrid([-0.5, 0.5], [-0.35, 0.35], [-0.265, 0.265])).reshape(3, -1).T:
+        assert np.linalg.norm(mesh.points - corner, axis=1).min() < 1e-9
+
+
+@pytest.mark.parametrize("spacing", [0.25, 0.4, 0.6, 0.9])
+def test_what_has_no_crease_stays_as_it_is(spacing):
+    def holds(places):
+        return np.linalg.norm(places, axis=1) < 1.0
+
+    def crossing(inner, outer):
+        way = outer - inner
+        a, b, c = (way**2).sum(1), 2 * (way * inner).sum(1), (inner**2).sum(1) - 1.0
+        return (-b + np.sqrt(b * b - 4 * a * c)) / (2 * a)
+
+    low = np.full(3, -1.0)
+    ball = stuffed(low, -low, spacing, holds, crossing)
+    moved = creases_kept(ball.points, ball.tetrahedra, spacing, holds, crossing)
+    np.testing.assert_array_equal(moved, ball.points)
+
+
+def test_corners_inside_never_move():
+    def holds(places):
+        return (np.abs(places) < 0.5).all(axis=1)
+
+    def crossing(inner, outer):
+        low, high = np.zeros(len(inner)), np.ones(len(inner))
+        for _ in range(40):
+            middle = 0.5 * (low + high)
+            held = holds(inner + middle[:, None] * (outer - inner))
+            low, high = np.where(held, middle, low), np.where(held, high, middle)
+        return low
+
+    cube = stuffed(np.full(3, -0.5), np.full(3, 0.5), 0.19, holds, crossing)
+    moved = creases_kept(cube.points, cube.tetrahedra, 0.19, holds, crossing)
+    inner = np.setdiff1d(np.arange(len(moved)), boundary(cube.tetrahedra))
+    np.testing.assert_array_equal(moved[inner], cube.points[inner])
+    assert volumes(cube.points, cube.tetrahedra).sum() < 0.99
+    assert volumes(moved, cube.tetrahedra).sum() == pytest.approx(1.0, abs=5e-3)
