@@ -12,7 +12,8 @@ from solids import Solid
 
 OBJECTS = {
     "box": ("box: {size: 1 0.7 0.53 m}", 0.371, 1e-9),
-    "joined": ("union: {of: [{box: {size: 1 0.5 0.5 m}}, {box: {size: 0.5 1 0.5 m, position: 0.25 0.5 0 m}}]}", 0.4375, 0.01),
+    "joined": ("union: {of: [{box: {size: 1 0.5 0.5 m}}, {box: {size: 0.5 1 0.5 m, position: 0.25 0.5 0 m}}]}",
+               0.4375, 0.01),
     "bitten": ("difference: {of: [{box: {size: 1 1 1 m}}, {sphere: {radius: 0.5 m, position: 0.5 0.5 0.5 m}}]}",
                1 - np.pi / 48, 2e-3),
     "turned": ("box: {size: 1 0.7 0.53 m, rotation: {xyz: 20 30 40 deg}}", 0.371, 0.015),

@@ -13,16 +13,16 @@ from renderers.tracing.pack import pack
 from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.surface_kernels import normal_at
 from sceneql.bodies.elements.block import Block
-from sceneql.bodies.elements.cut_open import Inside, Plane, clipped, cut_open
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.element_mesh import meshed
-from sceneql.bodies.elements.skin import Skin
+from sceneql.bodies.elements.skin import Inside, Skin
 from sceneql.failure import RunFailure
 from sceneql.field.tape.builder import TapeBuilder
 from sceneql.frame import Mesh, is_held
 from sceneql.pipeline import load
 from sceneql.run.run import Run
 from sceneql.shapes.color import linear
+from sceneql.shapes.cut_open import Plane, clipped, cut_open
 from stage import WHITE, frame
 from test_waves import SKY, pictures
 

@@ -10,6 +10,7 @@ from sceneql.compiler.check import KEYS, check, values_of
 from sceneql.compiler.names import Parsed
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
+from sceneql.compiler.passes.doubts import warn_of_doubts
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.fillings import check_fillings
 from sceneql.compiler.passes.insides import report_hollow
@@ -57,6 +58,7 @@ def compile_script(
     check_fillings(tasks, found)
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
+    warn_of_doubts(tasks, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
     found.raise_errors()

@@ -13,6 +13,7 @@ from sceneql.kinds.values import Quantity, Ref, Value
 from sceneql.kinds.word import Kind, Problem, field
 from sceneql.quantities.dimension import FORCE
 from sceneql.quantities.expression import Expr
+from sceneql.quantities.span import Span
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -22,6 +23,16 @@ if TYPE_CHECKING:
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.moment import Moment
     from sceneql.system import Assembly, Bodies, IslandFacts, ModelState, Stepper
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
+class Doubt:
+    """What a run will do, and yet may not be meant."""
+
+    code: str
+    text: str
+    place: Span | None
+    help: str
 
 
 class Model(Kind):
@@ -129,6 +140,10 @@ class Model(Kind):
 
     def fastest(self, name: str) -> Iterable[Oscillation]:
         """Bounds on its fastest oscillations by its own fields, for `check`: without numpy, and quickly."""
+        return ()
+
+    def doubts(self) -> Iterable[Doubt]:
+        """What its own fields make doubtful, for warnings of `check`."""
         return ()
 
     def static_masses(self) -> Mapping[str, StaticMass]:

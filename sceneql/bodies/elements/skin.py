@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -125,6 +125,26 @@ def within_elements(values: Floats, weights: Floats) -> Floats:
     found = np.einsum("vk,vk...->v...", weights, values)
     clipped: Floats = np.clip(found, values.min(axis=1), values.max(axis=1))
     return clipped
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Inside:
+    """The elements of a solid at an instant, for what is seen of its inside."""
+
+    mesh: ElementMesh
+    """At rest."""
+    places: Floats
+    """(n, 3) its nodes in the drawing."""
+    values: Floats | None
+    """(n,) what is shown of them."""
+
+    def __call__(self, points: Floats) -> tuple[Floats, Floats]:
+        """Places of the material (k, 3) at points (k, 3) of the drawing, and what is shown there (k, 1), or (k, 0)."""
+        nodes, weights, _ = in_elements(replace(self.mesh, points=self.places), points)
+        rest = np.einsum("vk,vki->vi", weights, self.mesh.points[nodes])
+        if self.values is None:
+            return rest, np.empty((len(points), 0))
+        return rest, within_elements(self.values[nodes], weights)[:, None]
 
 
 def carried(ref: Ref, spacing: float, mesh: ElementMesh, assembly: Assembly) -> Carried:

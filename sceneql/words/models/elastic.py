@@ -20,7 +20,7 @@ from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
 from sceneql.bodies.elements.load import Load
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.solid_modes import Bent
-from sceneql.kinds import Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
+from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import suggestion
 
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 
 LOCKS = 0.4
 """Poisson's ratio above which elements have one mean dilatation, where the script does not say."""
+STIFF = 0.45
+"""Poisson's ratio above which others lock so much that `check` warns."""
 WATER = 1000.0
 """Density where the script tells none [kg/m^3]."""
 
@@ -125,6 +127,16 @@ class Elastic(Model):
                 yield Problem(
                     f"'{name}' is the name of a hold, too: outputs could not tell them apart", ("probes", name)
                 )
+
+    def doubts(self) -> Iterator[Doubt]:
+        """Elements that lock."""
+        poisson = self.law.law.poisson
+        if poisson is None or self.law.law.varies("poisson") or self.chosen_element().mean:
+            return
+        number = self.law.law.most_poisson()
+        if number > STIFF:
+            text = f"{self.element} is far too stiff at a Poisson ratio of {number:g}: it locks"
+            yield Doubt("locking", text, poisson.span, "write `element: p2_mean`, which does not")
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:

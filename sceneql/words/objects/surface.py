@@ -113,8 +113,9 @@ class Surface(Object):
 
     def _elastic(self, solid: Elastic, name: str, place: Floats, moment: Moment) -> Iterator[Mesh]:
         """Its skin, and the faces of what is cut open."""
-        from sceneql.bodies.elements.cut_open import Inside, cut_open, planes_of
+        from sceneql.bodies.elements.skin import Inside
         from sceneql.grids.maps.colors import colored
+        from sceneql.shapes.cut_open import cut_open, planes_of
 
         points = apply(place, moment.read(self.of.name, "positions"))
         skin, own = solid.skin, None if self.shows is None else self._values(len(points), moment)

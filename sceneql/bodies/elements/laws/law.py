@@ -83,6 +83,11 @@ class Law(Record):
             return POISSON
         return 0.5 if _varies(self.poisson) else float(evaluate(self.poisson.expr, {}))
 
+    def varies(self, name: str) -> bool:
+        """Whether a field is not the same everywhere."""
+        formula = getattr(self, name)
+        return formula is not None and _varies(formula)
+
     def warning(self) -> str:
         """What it cannot do, for `explain`."""
         lost = [] if self.turns else ["rotation makes a false stress"]

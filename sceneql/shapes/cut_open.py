@@ -1,18 +1,16 @@
-"""Solids of elements cut open by planes: what of the skin is left, and the faces of the cut. Imports numpy."""
+"""Deformed solids cut open by planes: what of the skin is left, and the faces of the cut. Imports numpy."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.bodies.elements.skin import in_elements, within_elements
 from sceneql.frame import Mesh
 
 if TYPE_CHECKING:
-    from sceneql.bodies.elements.element_mesh import ElementMesh
     from sceneql.frame import Floats
 
 ON_PLANE = 1e-9
@@ -25,6 +23,8 @@ INNER, APART = 1.5, 0.6
 """Points inside an outline stand so many lengths of its sides apart, and so many from it."""
 ROUNDING = 1e-12
 
+Inside = Callable[["Floats"], tuple["Floats", "Floats"]]
+"""Places of the material (k, 3) [m] at points (k, 3) of the drawing, and what is shown there (k, 1), or (k, 0)."""
 Corners = Any
 """(m, 3, c) for the corners of triangles: place (3) in the drawing, and what else is linear in between."""
 
@@ -40,26 +40,6 @@ class Plane:
         """(...) of places (..., 3): above 0 before the plane."""
         found: Floats = (places - self.through) @ self.normal
         return found
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Inside:
-    """The elements of a solid at an instant, for what is seen of its inside."""
-
-    mesh: ElementMesh
-    """At rest."""
-    places: Floats
-    """(n, 3) its nodes in the drawing."""
-    values: Floats | None
-    """(n,) what is shown of them."""
-
-    def at(self, points: Floats) -> tuple[Floats, Floats]:
-        """Places of the material (k, 3) at points (k, 3) of the drawing, and what is shown there (k, 1), or (k, 0)."""
-        nodes, weights, _ = in_elements(replace(self.mesh, points=self.places), points)
-        rest = np.einsum("vk,vki->vi", weights, self.mesh.points[nodes])
-        if self.values is None:
-            return rest, np.empty((len(points), 0))
-        return rest, within_elements(self.values[nodes], weights)[:, None]
 
 
 def cut_open(skin: Mesh, values: Floats | None, inside: Inside, planes: Sequence[Plane]) -> Iterator[tuple[Mesh, Any]]:
@@ -128,7 +108,7 @@ def _face(triangles: Floats, plane: Plane, inside: Inside, size: float) -> Corne
     """Triangles of what a plane cuts of a solid whose skin is closed: (m, 3, 3) corners of its triangles."""
     from scipy.spatial import Delaunay, cKDTree
 
-    width = 9 + (inside.values is not None)
+    width = 9 + inside(plane.through[None])[1].shape[1]
     across = np.linalg.svd(plane.normal[None])[2][1:]
     if np.cross(across[0], across[1]) @ plane.normal < 0.0:
         across = across[::-1]
@@ -160,7 +140,7 @@ def _face(triangles: Floats, plane: Plane, inside: Inside, size: float) -> Corne
     turned = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     made[turned] = made[turned][:, ::-1]
     places = plane.through + points @ across
-    rest, values = inside.at(places)
+    rest, values = inside(places)
     told = [places, np.broadcast_to(plane.normal, places.shape), rest, values]
     return np.concatenate(told, axis=1)[made]
 
