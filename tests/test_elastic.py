@@ -293,3 +293,12 @@ def test_rest_is_that_of_the_instant_that_is_asked_for(tmp_path):
     rows = watch(tmp_path, STRIP.format(law="saint_venant", cells=10, load=4), [0, 0.9, 1.1, 2], "body.wall.force")
     for time, (force,) in zip((0, 0.9, 1.1, 2), rows, strict=True):
         assert force == pytest.approx([0, 0, -4 * max(0, time - 0.3) / 1.7], abs=1e-7)
+
+
+def test_what_bounds_steps_is_told_with_its_place(tmp_path):
+    soft = BAR.replace("modulus: 20 kPa", "modulus: 20 kPa + 30 kPa*(x + 0.5)^2").replace("cells: [4", "cells: [9")
+    for element, matrix in (("p1", False), ("p2", True)):
+        solid = Solid(tmp_path, f"{{{soft}, element: {element}}}")
+        told = solid.kind.remark(solid.model_state(solid.places))
+        assert ("explicit methods solve" in told) == matrix
+        assert float(told.partition("an element at (")[2].partition(",")[0]) > 0.4

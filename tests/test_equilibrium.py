@@ -158,3 +158,19 @@ def test_a_field_has_no_rest_of_masses(tmp_path):
     script = "models: {heat: {diffusion: {size: 1 1 m, cell: 0.1 m, coefficient: 0.1 m^2/s, initial: x}}}"
     with pytest.raises(LimitRefused, match="'heat' has none"):
         run_of(tmp_path, script).march.advance(0.5)
+
+
+@pytest.mark.parametrize("element", ["p1", "p2"])
+def test_a_solid_held_across_its_planes_of_symmetry_alone_rests_and_one_that_slides_is_refused(tmp_path, element):
+    holds = {
+        axis: f"{axis}: {{where: {axis} < {end}, components: {axis}}}"
+        for axis, end in {"x": -0.49, "y": -0.09, "z": -0.09}.items()
+    }
+    script = (
+        "models: {m: {elastic: {block: {size: 1 0.2 0.2 m, cells: [3, 1, 1]}, law: {linear: {modulus: 20 kPa}}, "
+        f"element: {element}, hold: {{HOLDS}}, loads: {{pull: {{where: x > 0.49, traction: 2 0 0 kPa}}}}}}}}}}"
+    )
+    run = run_of(tmp_path, script.replace("HOLDS", ", ".join(holds.values())))
+    assert np.ptp(places(run, 1.0), axis=0) == pytest.approx([1.1, 0.2 * 0.97, 0.2 * 0.97])
+    with pytest.raises(LimitRefused, match=r"it is free to move along x\n"):
+        run_of(tmp_path, script.replace("HOLDS", f"{holds['y']}, {holds['z']}")).march.advance(1.0)

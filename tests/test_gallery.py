@@ -130,3 +130,14 @@ def test_an_update_of_one_scene_leaves_the_others_on_the_page(tmp_path):
     assert update((scenes[0],), folder)[0].endswith("b.png")
     assert (folder / "README.md").read_text() == page
     assert check(tuple(scenes), folder)[1]
+
+
+def test_what_is_one_number_of_the_whole_run_is_that_at_every_instant():
+    from sceneql.quantities.expression import Call, Link, Number, Type
+    from sceneql.run.series import course
+
+    height = Link("ball", "height", Type(()))
+    least = Call("min", (height,), Type(()))
+    series = {height: np.array([3.0, 1.0, 2.0])}
+    assert course(Call("at", (least, Number(2.0)), Type(())), series, [0.0, 1.0, 2.0]) == 1.0
+    assert np.isnan(course(Call("at", (least, Number(2.5)), Type(())), series, [0.0, 1.0, 2.0]))

@@ -129,13 +129,17 @@ class EquilibriumMarch(March):
             size = max(float(np.ptp(at, axis=0).max()), 1.0)
             random = some.standard_normal(at.shape)
             shaken = at + 0.01 * size * some.standard_normal(at.shape)
-            scale = np.abs(self._resisted(places, at, random, size)).max()
+            response = self._resisted(places, at, random, size)
+            scale = np.abs(response).max()
+            led = self._led(places, at, response[velocity_at : velocity_at + 3 * count] == 0.0, size)
             free: list[str] = []
             for k, name in enumerate(MOTIONS):
                 axis = np.eye(3)[k % 3]
                 motion = np.tile(axis, (count, 1)) if k < 3 else np.cross(axis, at - at.mean(axis=0))
                 if k >= 3 and (len(free) < 3 or not motion.any()):
                     continue
+                if np.abs(motion.ravel()[led]).max(initial=0.0) > FREE * size:
+                    continue  # it would move what is held
                 resisted = np.abs(self._resisted(places, shaken if k < 3 else at, motion, size)).max()
                 if resisted <= FREE * scale:
                     free.append(name)
@@ -146,6 +150,12 @@ class EquilibriumMarch(March):
                     origin.span,
                     "fix some of its masses, or let `auto` march it in time",
                 )
+
+    def _led(self, places: Any, at: Floats, numb: Any, size: float) -> Any:
+        """(3 n,) the components of places that are held: others feel them, and they, which are ``numb``, feel none."""
+        motion = np.where(numb, 1.0, 0.0).reshape(at.shape)
+        felt = numb.any() and np.abs(self._resisted(places, at, motion, size)).max() > 0.0
+        return numb if felt else np.zeros_like(numb)
 
     def _resisted(self, places: Any, at: Floats, motion: Floats, size: float) -> Floats:
         """Change of all forces by a motion, from central differences."""

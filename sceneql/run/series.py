@@ -87,6 +87,8 @@ def instant_of(node: Call) -> float:
 def _at(value: Any, times: list[float], node: Call) -> Any:
     """The value at an instant, interpolated between times; NaN after the last."""
     instant = instant_of(node)
+    if isinstance(value, float):  # one number of the whole run, as a `min` is
+        return value if instant <= times[-1] else math.nan
     if instant > times[-1]:
         return value[-1] * math.nan
     after = bisect_left(times, instant)

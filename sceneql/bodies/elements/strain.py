@@ -85,6 +85,8 @@ class Strain:
     """Kernels that are called by their addresses."""
     squared: float
     """Bound of the squared angular frequencies [1/s^2] of small motions: that of an element alone (Irons 1970)."""
+    stiffest: int
+    """The element that sets it."""
     inertia: Inertia
     slopes: Callable[[], Slopes]
     """Those of its forces."""
@@ -190,8 +192,9 @@ def add_strain(
     )
     stiffest = numbers[:, -2] + 2.0 * numbers[:, -1]
     steep = np.einsum("eqni,eqni->eq", gradients, gradients).ravel() * stiffest * volumes.ravel()
-    bound = float(np.max(steep.reshape(elements, points).sum(axis=1) / inertia.least))
-    return Strain(mesh, ints, volumes, kernels, bound, inertia, slopes)
+    bounds = steep.reshape(elements, points).sum(axis=1) / inertia.least
+    stiffest = int(np.argmax(bounds))
+    return Strain(mesh, ints, volumes, kernels, float(bounds[stiffest]), stiffest, inertia, slopes)
 
 
 def density_of(formula: Formula | None, default: float) -> Callable[[Floats], Floats]:

@@ -254,8 +254,10 @@ class Elastic(Model):
         return replace(bodies, period=period, tied=edges(mesh.cells[:, :4])[0], skin=skin)
 
     def remark(self, state: ModelState) -> str:
-        """Its elements, their worst angle, and what its law cannot do."""
+        """Its elements, their worst angle, the one that bounds steps, and what its law cannot do."""
         import numpy as np
+
+        from sceneql.bodies.elements.element_mesh import worst_angle
 
         assert self._made is not None
         mesh, (least, largest) = self.solid.mesh, self._made.angles
@@ -263,6 +265,12 @@ class Elastic(Model):
         told = f"{len(mesh.cells)} elements {called} of {len(mesh.points)} nodes"
         told += f", angles between faces {np.degrees(least):.0f} to {np.degrees(largest):.0f} degrees"
         told += f"; no oscillation is faster than {self.solid.squared**0.5 / (2 * np.pi):.4g} Hz in the small"
+        corners = mesh.points[mesh.cells[[self.solid.stiffest], :4]]
+        sharpest, _ = worst_angle(corners[0], np.arange(4)[None])
+        where = ", ".join(f"{c:.3g}" for c in corners[0].mean(axis=0))
+        told += f", which an element at ({where}) m sets, with an angle of {np.degrees(sharpest):.0f} degrees"
+        if self.solid.inertia.consistent:
+            told += "; its mass is a matrix, with which explicit methods solve at each rate"
         return f"{told}{self.law.law.warning()}"
 
     def read(self, output: str, state: ModelState) -> Any:
