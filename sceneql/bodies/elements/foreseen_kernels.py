@@ -7,7 +7,7 @@ that the update predicted from the state before it, S + dS/dE : sym(F^T dF): poi
 stresses are unknowns of their own (Magisano, Leonetti & Garcea 2017, Int. J. Numer. Meth. Engng. 109, 1237-1262).
 """
 
-from sceneql.bodies.elements.law_kernels import SCRATCH, stiffness_at
+from sceneql.bodies.elements.laws.law_kernels import SCRATCH, stiffness_at
 from sceneql.bodies.elements.strain_kernels import (
     LAW,
     MEAN,

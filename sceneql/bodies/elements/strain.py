@@ -126,7 +126,8 @@ def add_strain(
     ``held`` (n, 3) bool: components of nodes that do not move freely.
     ``retardation`` [s], 0: none. Raises ScriptError for numbers out of their range.
     """
-    from sceneql.bodies.elements import law_kernels, strain_kernels, strain_slopes_kernels
+    from sceneql.bodies.elements import strain_kernels, strain_slopes_kernels
+    from sceneql.bodies.elements.laws import law_kernels
     from sceneql.compiled.kernels import address, compiles
     from sceneql.compiled.threads_kernels import threads, tile_address, uncompiled
     from sceneql.system import Slopes
@@ -193,8 +194,8 @@ def add_strain(
     stiffest = numbers[:, -2] + 2.0 * numbers[:, -1]
     steep = np.einsum("eqni,eqni->eq", gradients, gradients).ravel() * stiffest * volumes.ravel()
     bounds = steep.reshape(elements, points).sum(axis=1) / inertia.least
-    stiffest = int(np.argmax(bounds))
-    return Strain(mesh, ints, volumes, kernels, float(bounds[stiffest]), stiffest, inertia, slopes)
+    worst = int(np.argmax(bounds))
+    return Strain(mesh, ints, volumes, kernels, float(bounds[worst]), worst, inertia, slopes)
 
 
 def density_of(formula: Formula | None, default: float) -> Callable[[Floats], Floats]:

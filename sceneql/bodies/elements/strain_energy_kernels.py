@@ -3,7 +3,7 @@
 
 from numba import types
 
-from sceneql.bodies.elements.law_kernels import SCRATCH, energy_at
+from sceneql.bodies.elements.laws.law_kernels import SCRATCH, energy_at
 from sceneql.bodies.elements.strain_kernels import (
     ELEMENTS,
     ENERGY,

@@ -6,7 +6,7 @@ same for any number of threads. The law is called by its address (law_kernels.py
 Kelvin and Voigt's solid, F S with S = tau (2 mu E' + lambda tr E'), E' = sym(F^T F'): a rotation has no such rate.
 """
 
-from sceneql.bodies.elements.law_kernels import SCRATCH, stress_at
+from sceneql.bodies.elements.laws.law_kernels import SCRATCH, stress_at
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.threads_kernels import TILE, over_threads
 from sceneql.system.signatures_kernels import TERM

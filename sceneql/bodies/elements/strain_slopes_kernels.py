@@ -6,7 +6,7 @@ Newton's method gets them with the stress that its latest update predicted (fore
 
 import sceneql.system.channels as channels
 from sceneql.bodies.elements.foreseen_kernels import SEEN, TURN, foreseen, put_foreseen
-from sceneql.bodies.elements.law_kernels import SCRATCH, stiffness_at
+from sceneql.bodies.elements.laws.law_kernels import SCRATCH, stiffness_at
 from sceneql.bodies.elements.strain_kernels import (
     ELEMENTS,
     ENTRY,

@@ -266,7 +266,7 @@ class Elastic(Model):
         told += f", angles between faces {np.degrees(least):.0f} to {np.degrees(largest):.0f} degrees"
         told += f"; no oscillation is faster than {self.solid.squared**0.5 / (2 * np.pi):.4g} Hz in the small"
         corners = mesh.points[mesh.cells[[self.solid.stiffest], :4]]
-        sharpest, _ = worst_angle(corners[0], np.arange(4)[None])
+        sharpest, _ = worst_angle(corners[0], np.arange(4, dtype=np.int32)[None])
         where = ", ".join(f"{c:.3g}" for c in corners[0].mean(axis=0))
         told += f", which an element at ({where}) m sets, with an angle of {np.degrees(sharpest):.0f} degrees"
         if self.solid.inertia.consistent:

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """The corotated law at a point (law_kernels.py): numbers Lame's lambda, mu; d = tr S - 3 of F = R S."""
 
-from sceneql.bodies.elements.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
+from sceneql.bodies.elements.laws.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
 from sceneql.bodies.elements.laws.principal_kernels import MODES, U, V, from_modes, principal
 from sceneql.compiled.kernels import lean
 

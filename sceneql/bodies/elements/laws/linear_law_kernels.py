@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """The linear law at a point (law_kernels.py): numbers Lame's lambda, mu; d = tr F - 3."""
 
-from sceneql.bodies.elements.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
+from sceneql.bodies.elements.laws.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
 from sceneql.compiled.kernels import lean
 
 

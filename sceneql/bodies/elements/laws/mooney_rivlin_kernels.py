@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """The law of mooney_rivlin at a point (law_kernels.py): numbers Lame's lambda, a, b; d = J - 1, as in neo_hookean."""
 
-from sceneql.bodies.elements.law_kernels import ENERGY, MODULUS, SECOND, STIFFNESS, STRESS
+from sceneql.bodies.elements.laws.law_kernels import ENERGY, MODULUS, SECOND, STIFFNESS, STRESS
 from sceneql.bodies.elements.laws.principal_kernels import MODES, from_modes, principal
 from sceneql.bodies.elements.volume_kernels import cofactor, squares
 from sceneql.compiled.kernels import lean, lean_inlined

@@ -5,7 +5,7 @@ Of the energy's (lambda + mu)/2 d^2 lambda's part may act on the mean of d; mu's
 resist less than nothing where d differs within an element.
 """
 
-from sceneql.bodies.elements.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
+from sceneql.bodies.elements.laws.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
 from sceneql.bodies.elements.laws.principal_kernels import MODES, from_modes, principal
 from sceneql.bodies.elements.volume_kernels import cofactor, squares
 from sceneql.compiled.kernels import lean

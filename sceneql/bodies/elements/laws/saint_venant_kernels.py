@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Saint Venant's law at a point (law_kernels.py): numbers Lame's lambda, mu; d = tr E, E = (F^T F - 1)/2."""
 
-from sceneql.bodies.elements.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
+from sceneql.bodies.elements.laws.law_kernels import ENERGY, MODULUS, STIFFNESS, STRESS
 from sceneql.bodies.elements.laws.principal_kernels import MODES, from_modes, principal
 from sceneql.compiled.kernels import lean, lean_inlined
 
