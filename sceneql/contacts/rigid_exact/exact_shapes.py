@@ -96,7 +96,8 @@ def joined_fields(shapes: Sequence[Convex], floats_at: int, ints_at: int) -> tup
 
 def is_field(shape: Convex) -> bool:
     """Whether a shape is where a field is below zero, which balls alone meet."""
-    return bool(shape.kind == CURVED and shape.floats[FORM] == FIELD)
+    numbers = shape.floats
+    return bool(shape.kind == CURVED and numbers[FORM] == FIELD)
 
 
 def is_ball(shape: Convex) -> bool:
