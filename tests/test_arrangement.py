@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from sceneql.frame import View
 from sceneql.kinds.texts import Text
 from sceneql.pictures.anchors import outline
 from sceneql.pictures.callouts import UP, lead, meet, stand
-from sceneql.pictures.framing import axes_towards, corners
+from sceneql.pictures.framing import axes_towards, corners, inner
 from sceneql.pictures.layout import Panel
 from sceneql.pictures.lettering import Letterer
 from sceneql.pictures.plot import Axis, Curve, _head, draw_plot
@@ -98,6 +99,29 @@ def test_overlays_lie_neither_on_the_subject_of_the_film_nor_on_one_another(tmp_
 def test_without_overlays_on_it_the_subject_is_framed_as_ever(tmp_path):
     for overlays in ("{}", "{said: {caption: {text: Hi, place: top left}}}", "{said: {caption: {text: Hi}}}"):
         assert arranged(tmp_path, FALL.format(overlays=overlays, size="480 270"))[2].room == (0, 0, 0, 0)
+
+
+@pytest.mark.parametrize("size", ["480 270", "640 360"])
+def test_a_subject_between_overlays_fills_what_they_leave(tmp_path, size):
+    pixels, moment, found, view = arranged(tmp_path, FALL.format(overlays=TITLES, size=size))
+    top = found.overlays["title"].box("top", pixels, moment, 1.0)[3]
+    bottom = found.overlays["value"].box("bottom", pixels, moment, 1.0)[1]
+    low, high = moment.run.boxes()["ball"]
+    _, above, _, below = outline(corners(low, high), view)
+    assert top < above < below < bottom
+    assert below - above > 0.85 * (bottom - top)
+
+
+def test_room_for_overlays_makes_nothing_smaller_than_margins_inside_of_it_would():
+    for margin, size in product((0.0, 0.12, 0.5, 0.95), ((640, 360), (100, 900))):
+        for room in product((0.0, 0.05, 0.37), repeat=4):
+            slopes, middle = inner(0.5, size, margin, room)
+            halves = 0.5 * size[0] / size[1], 0.5
+            for k, half in enumerate(halves):
+                assert 0 < (1 - margin) * (1 - room[k] - room[k + 2]) <= slopes[k] / half + 1e-12
+                off = middle[k] / half * (1, -1)[k]
+                assert off - slopes[k] / half >= 2 * room[k] - 1 - 1e-12
+                assert off + slopes[k] / half <= 1 - 2 * room[k + 2] + 1e-12
 
 
 def test_an_overlay_takes_the_side_that_a_written_camera_leaves_free(tmp_path):

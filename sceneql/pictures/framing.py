@@ -19,6 +19,10 @@ NEAREST = 1e-3
 """Least distance [m] of a camera from what it is fitted to."""
 
 
+GAP = 0.035
+"""Free space between overlays and what is fitted, in parts of the picture's height."""
+
+
 def axes_towards(back: Any, up: Any = (0.0, 1.0, 0.0)) -> Floats:
     """(3, 3) rows right, up, back of a camera that looks along -back, with ``up`` upwards in the picture.
 
@@ -140,15 +144,30 @@ def seen_slopes(half_height: float, size: tuple[int, int], margin: float) -> tup
 
 
 def inner(
-    half_height: float, size: tuple[int, int], margin: float, room: tuple[float, float, float, float]
+    half_height: float,
+    size: tuple[int, int],
+    margin: float,
+    room: tuple[float, float, float, float],
+    headroom: float = 1.0,
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Half width and height of what overlays leave of the picture, less the margin, and its middle, at the distance 1.
+    """Half width and height of the part of the picture that is filled, and its middle, at the distance 1.
 
-    ``room``: what they take at the left, top, right and bottom, in parts of the picture's width and height.
+    ``room``: what overlays take at the left, top, right and bottom, in parts of the picture's width and height. The
+    margin is at the picture's edges; between an overlay and the subject there is GAP of the height, and at the other
+    edges as much as ever: a subject between overlays is not made smaller twice. ``headroom``: the part of the height
+    between the margins that is filled at most.
     """
-    (wide, high), (left, top, right, bottom) = seen_slopes(half_height, size, margin), room
-    full = half_height * size[0] / size[1]
-    return (wide * (1 - left - right), high * (1 - top - bottom)), (full * (left - right), half_height * (bottom - top))
+    full, gap = half_height * size[0] / size[1], min(GAP * size[1] / size[0], GAP)
+    wide, across = _free(margin, gap, room[0], room[2])
+    high, below = _free(margin, GAP, room[1], room[3])
+    return (full * wide, half_height * min(high, headroom * (1 - margin))), (full * across, -half_height * below)
+
+
+def _free(margin: float, gap: float, before: float, after: float) -> tuple[float, float]:
+    """The part of a side of the picture that is filled beside overlays, and how far its middle lies off, in halves."""
+    first, last = (max(0.5 * margin, side + gap) if side else 0.5 * margin for side in (before, after))
+    least = (1 - margin) * (1 - before - after)
+    return (1 - first - last, first - last) if 1 - first - last >= least else (least, before - after)
 
 
 def view(origin: Any, axes: Floats, size: tuple[int, int], half_height: float, *, orthographic: bool = False) -> View:

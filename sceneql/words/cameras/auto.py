@@ -37,8 +37,8 @@ class Auto(Camera):
         half = math.tan(0.5 * float(moment.at(self.field_of_view)))
         points = moment.outline()
         axes = framing.axes_towards(_towards(points))
-        (wide, high), middle = framing.inner(half, size, self.margin, moment.room)
-        origin, _ = framing.fitted(points, axes, (wide, HEADROOM * high), middle=middle)
+        slopes, middle = framing.inner(half, size, self.margin, moment.room, HEADROOM)
+        origin, _ = framing.fitted(points, axes, slopes, middle=middle)
         return framing.view(origin, axes, size, half)
 
 
