@@ -110,6 +110,7 @@ def render(
             with failing_itself(name, now, graph.tasks[name].span):
                 sinks[name] = kind.open(tools[name])
         wanted = {name: set(at) for name, at in times.items()}
+        from sceneql.run.blind import warnings as blind
         from sceneql.run.never_drawn import decided_by_rounding, missing
         from sceneql.run.run import Run
         from sceneql.run.watch import Watch
@@ -149,7 +150,7 @@ def render(
     finally:
         gc.unfreeze()
     report.warnings = (*missing(report.present, graph.tasks), *decided_by_rounding(report.rounded, graph.tasks))
-    report.warnings += (*watch.warnings(), *run.warnings())
+    report.warnings += (*watch.warnings(), *run.warnings(), *blind(report.within, graph.tasks))
     report.conserved = watch.account()
     seconds, count = _compiled()
     report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]

@@ -41,6 +41,8 @@ class Report:
     """Implicit objects that were drawn, and what none of their values was in any frame; nothing where some may be."""
     rounded: dict[str, float] = field(default_factory=dict)
     """Implicit objects in pictures with undecided pixels: in which share of their bounds rounding decides."""
+    within: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
+    """By camera and part the first and the last instant [s] at which the one stood inside the other (run.blind)."""
     warnings: tuple[Diagnostic, ...] = ()
     conserved: list[str] = field(default_factory=list)
     """For each island that tells an energy, how far it drifted; momentum where it is conserved."""
@@ -121,6 +123,7 @@ class Tools:
         """The scene from a camera, by default the output's own; None before the last part of an exposure."""
         from renderers.develop import develop
         from renderers.drafts import coarser, enlarged
+        from sceneql.run import blind
         from sceneql.run.never_drawn import look, look_at_rounding, solids
 
         renderer = self._renderer(output)
@@ -134,6 +137,7 @@ class Tools:
             picture = renderer.draw(replace(frame, view=coarser(frame.view)) if self.draft else frame)
         asked = solids(self.graph.drawn[self.name], self.graph.tasks)
         look(frame.shapes, asked, self.graph.tasks, self.report.present)
+        blind.look(frame, eye, self.report.within)
         if picture.undecided:
             look_at_rounding(frame.shapes, self.report.rounded)
             counts = self.report.undecided.setdefault(self.name, {})

@@ -240,6 +240,22 @@ def test_a_curve_that_is_never_shown_has_no_name():
     assert not (pixels[..., 1].astype(int) - pixels[..., 0] > 50).any()
 
 
+def test_a_title_that_is_too_long_for_its_panel_takes_two_lines_before_it_is_cut():
+    letters = Letterer(np.zeros((300, 220, 3), dtype=np.uint8), 0.05)
+    words = "spread of the upper angles, rad"
+    assert letters.extent(words)[0] > 220
+    _, found = _head(letters, 200, words, [])
+    assert " ".join(text for *_, text in found) == words
+    assert len({row for _, row, *_ in found}) == 2
+    assert max(letters.extent(text)[0] for *_, text in found) <= 220
+    _, found = _head(letters, 200, 3 * words, [])
+    assert len(found) == 2
+    assert found[-1][3].endswith("…")
+    assert letters.extent(found[-1][3])[0] <= 220
+    assert letters.wrapped(words, 1e4, 2) == [words]
+    assert letters.wrapped("", 200, 2) == []
+
+
 def test_names_of_curves_are_spread_evenly_over_lines():
     letters = Letterer(np.zeros((270, 480, 3), dtype=np.uint8), 0.05)
     names = ("Euler", "the notes' loop", "midpoint", "RK4")

@@ -76,6 +76,19 @@ class Letterer:
             short = short[:-2].rstrip() + "…"
         return short
 
+    def wrapped(self, text: str, room: float, most: int) -> list[str]:
+        """A text in lines that fit into ``room`` [pixels], broken between words, the last of ``most`` lines cut."""
+        lines: list[str] = []
+        words = text.split()
+        while words:
+            fit = 1
+            while fit < len(words) and self.extent(" ".join(words[: fit + 1]))[0] <= room:
+                fit += 1
+            fit = len(words) if len(lines) == most - 1 else fit
+            lines.append(self.fitted(" ".join(words[:fit]), room))
+            words = words[fit:]
+        return lines
+
     def panel(self, box: tuple[int, int, int, int], opacity: float) -> None:
         """A panel with round corners: left, top, right, bottom."""
         self.draw.rounded_rectangle(box, self.em // 3, (*self.look.paper, round(255 * opacity)))

@@ -26,6 +26,8 @@ MOST_TICKS = 5
 """About how many numbers an axis has at most."""
 SHARE = 0.3
 """A title below that is longer than this share of the panel has a line of its own."""
+TITLE_LINES = 2
+"""Lines that a title above may take; what is longer is cut."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +104,9 @@ def draw_plot(
     y_scale, x_scale = up.scale([c.values for c in curves]), across.scale([c.across for c in curves])
     y_power, x_power = thousands(y_scale), thousands(x_scale)
     shown = [curve for curve in curves if _within(up, y_scale, curve)] if named else []
-    head, words = _head(letters, wide - 2 * pad, up.words(y_power), shown)
+    head, words = _head(letters, wide - 2 * pad, up.words(y_power), shown, TITLE_LINES)
+    if high - 2 * pad - round(head) < round(4.35 * em):  # a title of one line leaves more room for the curves
+        head, words = _head(letters, wide - 2 * pad, up.words(y_power), shown, 1)
     title = across.words(x_power)
     length = letters.draw.textlength(title, font=small)
     x1, low = wide - 1 - round(1.2 * em), high - pad
@@ -227,34 +231,34 @@ def _within(up: Axis, scale: Scale, curve: Curve) -> bool:
 
 
 def _head(
-    letters: Letterer, wide: int, title: str, curves: Sequence[Curve]
+    letters: Letterer, wide: int, title: str, curves: Sequence[Curve], rows: int = TITLE_LINES
 ) -> tuple[float, list[tuple[float, float, Curve | None, str]]]:
     """Height of title and names, and for each the column and row of its left end, its curve, its text.
 
-    Names that need several lines are spread over them evenly: none stands alone that need not.
+    Names that need several lines are spread over them evenly: none stands alone that need not. ``rows``: the most lines
+    of the title.
     """
-    lines = len(_lines(letters, wide, title, curves))
-    while wide > 0 and len(_lines(letters, wide - letters.em, title, curves)) == lines:
+    told = letters.wrapped(title, letters.width - 1.4 * letters.em, rows)
+    lines = len(_lines(letters, wide, told, curves))
+    while wide > 0 and len(_lines(letters, wide - letters.em, told, curves)) == lines:
         wide -= letters.em
     em = letters.em
     found = [
         (at, (0.5 + 1.3 * k) * em, curve, text)
-        for k, line in enumerate(_lines(letters, wide, title, curves))
+        for k, line in enumerate(_lines(letters, wide, told, curves))
         for at, curve, text in line
     ]
     return (found[-1][1] + 1.15 * em if found else 0.7 * em), found
 
 
 def _lines(
-    letters: Letterer, wide: int, title: str, curves: Sequence[Curve]
+    letters: Letterer, wide: int, title: Sequence[str], curves: Sequence[Curve]
 ) -> list[list[tuple[float, Curve | None, str]]]:
     """Title and names in lines of a width [pixels]: the column of each text's left end, its curve, the text."""
     em, at = letters.em, 0.0
-    lines: list[list[tuple[float, Curve | None, str]]] = [[]]
-    title = letters.fitted(title, letters.width - 1.4 * em)
+    lines: list[list[tuple[float, Curve | None, str]]] = [[(0.0, None, line)] for line in title] or [[]]
     if title:
-        lines[0].append((at, None, title))
-        at += letters.extent(title)[0] + 1.4 * em
+        at = letters.extent(title[-1])[0] + 1.4 * em
     for curve in curves:
         length = 1.4 * em + letters.extent(curve.name)[0]
         if at + length > wide and at > 0:
