@@ -167,7 +167,7 @@ def _free(margin: float, gap: float, before: float, after: float) -> tuple[float
     """The part of a side of the picture that is filled beside overlays, and how far its middle lies off, in halves."""
     first, last = (max(0.5 * margin, side + gap) if side else 0.5 * margin for side in (before, after))
     least = (1 - margin) * (1 - before - after)
-    return (1 - first - last, first - last) if 1 - first - last >= least else (least, before - after)
+    return (1 - first - last, first - last) if 1 - first - last > least else (least, before - after)
 
 
 def view(origin: Any, axes: Floats, size: tuple[int, int], half_height: float, *, orthographic: bool = False) -> View:
