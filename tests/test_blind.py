@@ -40,7 +40,11 @@ def told(folder, thing, eye, camera="perspective: {position: AT m, look_at: 0 20
             "0.95 0.95 0.9",
             "0.1 0.2 0.3",
         ),
-        ("implicit: {field: x^2 + y^2 + z^2 - 1, bounds: {box: [-1.1 -1.1 -1.1, 1.1 1.1 1.1]}}", "0.5 0.5 0.5", "0.7 0.7 0.7"),
+        (
+            "implicit: {field: x^2 + y^2 + z^2 - 1, bounds: {box: [-1.1 -1.1 -1.1, 1.1 1.1 1.1]}}",
+            "0.5 0.5 0.5",
+            "0.7 0.7 0.7",
+        ),
     ],
 )
 def test_a_camera_inside_a_solid_is_told_of_and_one_beside_it_is_not(tmp_path, thing, inside, outside):
