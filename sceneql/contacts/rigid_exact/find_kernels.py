@@ -7,7 +7,7 @@ from numba import types
 
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
 from sceneql.bodies.rigid.tie_rows_kernels import AT_X, cross, put
-from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import CORE, SHAPE
 from sceneql.contacts.distance.core_kernels import (
     EDGES as EDGE_COUNT,
@@ -22,7 +22,6 @@ from sceneql.contacts.distance.core_kernels import (
     REACH,
     VERTICES,
     edges_at,
-    loop_at,
 )
 from sceneql.contacts.distance.manifold_kernels import POINT as CORNER
 from sceneql.contacts.distance.manifold_kernels import manifold
@@ -41,6 +40,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     LINE_A,
     LINE_B,
     NORMAL,
+    OF,
     OWN_A,
     OWN_B,
     PAIR,
@@ -60,8 +60,9 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
-from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_FACE, follow, own
-from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
+from sceneql.contacts.rigid_exact.curved import ELLIPSOID, FORM
+from sceneql.contacts.rigid_exact.curved_contact_kernels import follow, own
+from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet_ahead
 from sceneql.contacts.rigid_exact.exact_hold_kernels import CREEP, still
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
@@ -86,6 +87,15 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     mover_at,
     put_places,
 )
+from sceneql.contacts.rigid_exact.features_kernels import (
+    FEATURE,
+    extent,
+    face_of,
+    line_of,
+    meet_ball,
+    smaller,
+    solid_side,
+)
 from sceneql.system.signatures_kernels import A, F, I, N
 
 TOUCHES = 1e-10
@@ -94,8 +104,6 @@ DEEP = 1e-3
 """Overlap, in the same parts, up to which a point is a contact: a step's error leaves far less."""
 SLACK = 1e-4
 """Gap, in the same parts, up to which a contact that pushed still is one: what a step's error leaves is closed."""
-FEATURE = 1e-7
-"""Distance from a feature, in parts of the body's size, up to which a point is on it."""
 PARALLEL = 1e-6
 """Sine of the angle of two edges up to which they have no normal."""
 
@@ -109,14 +117,6 @@ def corner_at(floats, ints, shape, x, y, z):
         if abs(p - x) + abs(q - y) + abs(r - z) <= FEATURE * floats[f + REACH]:
             return k
     return -1
-
-
-@lean_inlined
-def face_of(floats, ints, shape, k):
-    """The normal of a face of a core, and a corner of it."""
-    f, i = ints[shape + FLOATS], ints[shape + INTS]
-    first, _ = loop_at(ints, i, k)
-    return three(floats, f + POINTS + 3 * (ints[i + VERTICES] + k)), three(floats, f + POINTS + 3 * ints[first])
 
 
 @lean(N(A, I, N, F, F, F, F, F, F))
@@ -151,18 +151,6 @@ def edge_at(floats, ints, shape, x, y, z):
     return -1
 
 
-@lean_inlined
-def line_of(floats, ints, shape, k):
-    """The unit direction of an edge of a core, and one of its ends."""
-    f, i = ints[shape + FLOATS], ints[shape + INTS]
-    e = edges_at(ints, i) + 4 * k
-    p, q, r = three(floats, f + POINTS + 3 * ints[e])
-    u, v, w = three(floats, f + POINTS + 3 * ints[e + 1])
-    u, v, w = u - p, v - q, w - r
-    length = math.sqrt(dot(u, v, w, u, v, w))
-    return (u / length, v / length, w / length), (p, q, r)
-
-
 @lean(types.void(A, I, N, N, N, N, F, F, F, F, F, F, F, F, F))
 def name(floats, ints, rec, pair, a, b, ax, ay, az, bx, by, bz, nx, ny, nz):
     """Write what a contact is, by the points of two shapes and the normal, in the world."""
@@ -173,7 +161,7 @@ def name(floats, ints, rec, pair, a, b, ax, ay, az, bx, by, bz, nx, ny, nz):
     flat = ints[sb + KIND] != CORE
     ra = floats[ints[sa + FLOATS] + RADIUS]
     rb = 0.0 if flat else floats[ints[sb + FLOATS] + RADIUS]
-    floats[rec + RADIUS_A], floats[rec + RADIUS_B], floats[rec + SIGN] = ra, rb, 1.0
+    floats[rec + RADIUS_A], floats[rec + RADIUS_B], floats[rec + SIGN], floats[rec + OF] = ra, rb, 1.0, -1.0
     floats[rec + SHAPE_A], floats[rec + SHAPE_B], floats[rec + PAIR] = a, b, pair
     put(floats, rec + NORMAL, nx, ny, nz)
     xa, ya, za = three(floats, ma + AT_X)
@@ -249,49 +237,36 @@ def name(floats, ints, rec, pair, a, b, ax, ay, az, bx, by, bz, nx, ny, nz):
             put(floats, rec + OWN_B, *end_b)
 
 
-@lean(F(A, I, N))
-def extent(floats, ints, rec):
-    """How far a corner, or a curved body, is inside the face that it stands on [m]; infinity for other contacts."""
-    kind = int(floats[rec + WHICH])
-    if kind != CORNER_FACE and kind != FACE_CORNER and kind != ON_FACE:
-        return math.inf
-    side = 0 if kind == FACE_CORNER else 1
-    m = int(floats[rec + SHAPE_A + side])
-    shape, mover = ints[SHAPES_AT] + SHAPE * m, mover_at(ints, m)
-    if ints[shape + KIND] != CORE:
-        return math.inf
-    line = rec + (LINE_B if side == 1 else LINE_A)
-    x, y, z = three(floats, rec + POINT)
-    cx, cy, cz = three(floats, mover + AT_X)
-    x, y, z = own(floats, mover, x - cx, y - cy, z - cz)
-    least, on = math.inf, False
-    for k in range(ints[ints[shape + INTS] + FACES]):
-        (p, q, r), (u, v, w) = face_of(floats, ints, shape, k)
-        if dot(p, q, r, *three(floats, line)) > 1.0 - FEATURE:
-            on = True
-        else:
-            least = min(least, dot(p, q, r, u - x, v - y, w - z))
-    return least if on else math.inf
+@lean(N(A, I, N, N, N, N, F))
+def carried(floats, ints, a, b, pair, before, margin):
+    """The contact of a ball or an ellipsoid on a polyhedron, of which each change is an event; -1 for others."""
+    sa, sb = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b
+    curved = is_curved(ints, sa) and floats[ints[sa + FLOATS] + FORM] == ELLIPSOID and ints[sb + KIND] == CORE
+    found = -1
+    if not curved and solid_side(ints, a, b) < 0:
+        return found
+    for j in range(before):
+        old = ints[RECORDS_AT] + RECORD * j
+        if floats[old + PAIR] == pair:
+            if found >= 0 or floats[old + OF] < 0.0:
+                return -1
+            found = old
+    if found >= 0 and not -DEEP * smaller(floats, ints, a, b) - margin <= floats[found + GAP] <= margin:
+        found = -1
+    return found
 
 
-@lean_inlined
-def smaller(floats, ints, a, b):
-    """The reach of the smaller of two shapes."""
-    fa, fb = ints[ints[SHAPES_AT] + SHAPE * a + FLOATS], ints[ints[SHAPES_AT] + SHAPE * b + FLOATS]
-    return min(floats[fa + REACH], floats[fb + REACH])
+@lean(types.boolean(F, A, A, I, A, I, types.boolean))
+def find(t, y, floats, ints, points, names, goes_on):
+    """Write the contacts of all pairs that touch, as kept; whether they are those of before.
 
-
-@lean(types.void(F, A, A, I, A, I))
-def find(t, y, floats, ints, points, names):
-    """Write the contacts of all pairs that touch, as kept.
-
-    Which of them slide is by their speeds. ``points``, ``names``: room of a manifold.
+    Which of them slide is by their speeds. ``points``, ``names``: room of a manifold; ``goes_on``: no event is here.
     """
     memory = ints[MEMORY_AT]
     look(t, y, floats, ints)
     put_places(y, floats, ints, ints[PLACES_AT])
     follow_all(floats, ints)
-    before, most = int(floats[memory + KEPT]), ints[MOST]
+    before, most, same = int(floats[memory + KEPT]), ints[MOST], 0
     count, next = 0, ints[RECORDS_AT] + RECORD * most
     room = floats[ints[ROOM_AT] : ints[ROOM_AT] + ints[ROOM]]
     for pair in range(ints[PAIRS]):
@@ -306,25 +281,32 @@ def find(t, y, floats, ints, points, names):
                 open = max(open, floats[old + GAP])
         margin += min(open, SLACK * smaller(floats, ints, a, b))
         sa, sb, at = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b, ints[PLACES_AT]
+        old = carried(floats, ints, a, b, pair, before, margin) if goes_on else -1
+        if old >= 0 and count < most:
+            for c in range(RECORD):
+                floats[next + RECORD * count + c] = floats[old + c]
+            count, same = count + 1, same + 1
+            continue
         if is_curved(ints, sa):
             who = ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b))
-            more = meet(floats, ints, who, margin, next + RECORD * count, most - count)[0]
-            for k in range(count, count + more):
-                follow(floats, ints, next + RECORD * k, mover_at(ints, a), mover_at(ints, b))
-            count += more
+            count += meet_ahead(floats, ints, who, margin, next + RECORD * count, most - count)
             continue
         found, _, nx, ny, nz = manifold(
             floats, ints, sa, sb, floats, at + PLACE * a, at + PLACE * b, margin, points, names, room
         )
-        for k in range(found):
+        side = solid_side(ints, a, b)
+        for k in range(found if side < 0 else min(found, 1)):
             p, rec = CORNER * k, next + RECORD * count
             if points[p + 6] > margin or points[p + 6] < -DEEP * smaller(floats, ints, a, b) - margin:
                 continue
             if count == most:
                 floats[memory + CROWDED] += 1.0
                 continue
-            name(floats, ints, rec, pair, a, b, *three(points, p), *three(points, p + 3), nx, ny, nz)
-            follow(floats, ints, rec, mover_at(ints, a), mover_at(ints, b))
+            if side >= 0:
+                meet_ball(floats, ints, rec, pair, a, b, side)
+            else:
+                name(floats, ints, rec, pair, a, b, *three(points, p), *three(points, p + 3), nx, ny, nz)
+                follow(floats, ints, rec, mover_at(ints, a), mover_at(ints, b))
             count += 1
     for k in range(count):
         rec = next + RECORD * k
@@ -336,8 +318,8 @@ def find(t, y, floats, ints, points, names):
             for c in range(3):
                 away = max(away, abs(floats[old + POINT + c] - floats[rec + POINT + c]))
             reach = smaller(floats, ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
-            # A curved body may roll far in a step.
-            rolled = floats[rec + WHICH] == ON_FACE and floats[old + WHICH] == ON_FACE
+            # What is round may roll far in a step.
+            rolled = floats[rec + OF] >= 0.0 and floats[old + OF] >= 0.0
             if away <= 1e-3 * reach or (rolled and floats[old + SIGN] == floats[rec + SIGN]):
                 for c in range(3):
                     floats[rec + FORCE + c] = floats[old + FORCE + c]
@@ -346,11 +328,12 @@ def find(t, y, floats, ints, points, names):
     for c in range(RECORD * count):
         floats[ints[RECORDS_AT] + c] = floats[next + c]
     floats[memory + KEPT] = count
+    return same == before and count == before
 
 
-@lean(types.void(F, A, A, I))
-def begin(t, y, floats, ints):
-    """Mark the contacts that are kept from a time on, open as to which slide or leave."""
+@lean(types.void(F, A, A, I, types.boolean))
+def begin(t, y, floats, ints, same):
+    """Mark the contacts that are kept from a time on, open as to which slide or leave; ``same``: as before."""
     memory = ints[MEMORY_AT]
     for pair in range(ints[PAIRS]):
         floats[ints[KEPT_AT] + pair] = 0.0
@@ -360,13 +343,17 @@ def begin(t, y, floats, ints):
         sx, sy, sz = three(floats, rec + SLIDE)
         slip = math.sqrt(sx * sx + sy * sy + sz * sz)
         slides = slip > still(floats, ints, rec)
+        same = same and slides == (floats[rec + SLIDES] > 0.0)
         floats[rec + SLIDES] = (FAST if slip > CREEP else SLOW) if slides else 0.0
         floats[rec + SLIP] = slip if slides else 0.0
         if slides:
             put(floats, rec + ALONG, sx / slip, sy / slip, sz / slip)
-        floats[rec + EXTENT] = extent(floats, ints, rec)
+        inside = extent(floats, ints, rec)
+        # (From where it began, so that what creeps over a border is told.)
+        floats[rec + EXTENT] = max(inside, floats[rec + EXTENT]) if floats[rec + OF] >= 0.0 else inside
     floats[memory + UNDECIDED] = 1.0
-    floats[memory + SINCE] = t
+    if not same:
+        floats[memory + SINCE] = t
 
 
 @lean(types.void(F, A, A, I))

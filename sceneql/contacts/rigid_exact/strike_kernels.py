@@ -64,7 +64,8 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     write_rows,
 )
 from sceneql.contacts.rigid_exact.exact_solve_kernels import solve_rows
-from sceneql.contacts.rigid_exact.find_kernels import begin, find, smaller, start_step
+from sceneql.contacts.rigid_exact.features_kernels import smaller
+from sceneql.contacts.rigid_exact.find_kernels import begin, find, start_step
 from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
 
 APPROACHES = 1e-13
@@ -236,20 +237,21 @@ def impact(t, y, pair, floats, ints):
         count_event(t, floats, ints, of)
         if again > ENDURANCE or level(floats, ints, of) > ENDLESS:
             floats[channels.CHANGED] = channels.NO_WAY_ON
-        find(t, y, floats, ints, points, names)
+        find(t, y, floats, ints, points, names, False)
         strike(t, y, floats, ints)
         keep(floats, ints, False)
-        begin(t, y, floats, ints)
+        begin(t, y, floats, ints, False)
     elif floats[memory + STARTED] == 0.0:
         floats[memory + STARTED] = 1.0
-        find(t, y, floats, ints, points, names)
+        find(t, y, floats, ints, points, names, False)
         keep(floats, ints, False)
-        begin(t, y, floats, ints)
+        begin(t, y, floats, ints, False)
         floats[channels.CHANGED] = 1.0
     elif floats[memory + KEPT] > 0.0:
         floats[memory + AGAIN] = 0.0
-        find(t, y, floats, ints, points, names)
+        before = floats[memory + KEPT]
+        same = find(t, y, floats, ints, points, names, True)
         keep(floats, ints, True)
-        begin(t, y, floats, ints)
+        begin(t, y, floats, ints, same and floats[memory + KEPT] == before)
         floats[channels.CHANGED] = 1.0
     start_step(t, y, floats, ints)

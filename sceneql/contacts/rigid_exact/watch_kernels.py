@@ -10,7 +10,7 @@ from sceneql.contacts.distance.convex import CORE, HALF_SPACE, SHAPE
 from sceneql.contacts.distance.core_kernels import FACES, FLOATS, INTS, KIND, POINTS, RADIUS, REACH
 from sceneql.contacts.distance.first_touch_kernels import MOTION, first_touch, move
 from sceneql.contacts.distance.gap_kernels import gap as distance
-from sceneql.contacts.rigid_exact.contact_kernels import ALONG, EXTENT, GAP, PAIR, RECORD, SLIDE, SLIP, dot, three
+from sceneql.contacts.rigid_exact.contact_kernels import ALONG, EXTENT, GAP, OF, PAIR, RECORD, SLIDE, SLIP, dot, three
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
@@ -32,7 +32,8 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     mover_at,
     put_places,
 )
-from sceneql.contacts.rigid_exact.find_kernels import TOUCHES, extent, face_of, own, smaller
+from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, own, smaller
+from sceneql.contacts.rigid_exact.find_kernels import TOUCHES
 from sceneql.system.signatures_kernels import GAP as SIGNATURE
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -209,5 +210,8 @@ def gap(t, y, gaps, floats, ints):
             ints[ints[PAIRS_AT] + 2 * int(floats[rec + PAIR])],
             ints[ints[PAIRS_AT] + 2 * int(floats[rec + PAIR]) + 1],
         )
-        if floats[rec + EXTENT] > INSIDE * size and floats[rec + EXTENT] < math.inf:
-            gaps[at + 1] = extent(floats, ints, rec)
+        if floats[rec + EXTENT] < math.inf:
+            if floats[rec + EXTENT] > INSIDE * size:
+                gaps[at + 1] = extent(floats, ints, rec)
+            elif floats[rec + OF] >= 0.0:  # at a border, from where it may turn back
+                gaps[at + 1] = INSIDE * size + extent(floats, ints, rec) - floats[rec + EXTENT]
