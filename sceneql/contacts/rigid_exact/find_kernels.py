@@ -343,7 +343,7 @@ def begin(t, y, floats, ints, same):
         sx, sy, sz = three(floats, rec + SLIDE)
         slip = math.sqrt(sx * sx + sy * sy + sz * sz)
         slides = slip > still(floats, ints, rec)
-        same = same and slides == (floats[rec + SLIDES] > 0.0)
+        same = same and (slip > CREEP) == (floats[rec + SLIDES] == FAST)
         floats[rec + SLIDES] = (FAST if slip > CREEP else SLOW) if slides else 0.0
         floats[rec + SLIP] = slip if slides else 0.0
         if slides:
