@@ -77,7 +77,7 @@ def test_a_ball_slides_over_an_edge_turns_about_it_and_leaves_it_where_nothing_p
     rows = watch(tmp_path, ball(0.46), f"velocity: {speed} 0 0 m/s", times, "body.it.position", law=law, solver=solver)
     expected, leaves = over_the_edge(speed, 1.0, -0.04, times)
     assert times[-1] > leaves
-    np.testing.assert_allclose(np.array([x for x, in rows])[:, :2] - (0.5, 0), expected, atol=1e-10)
+    np.testing.assert_allclose(np.array([x for (x,) in rows])[:, :2] - (0.5, 0), expected, atol=1e-10)
 
 
 def test_a_ball_that_rolls_over_an_edge_turns_about_it_with_the_moment_of_rolling(tmp_path):
@@ -88,7 +88,7 @@ def test_a_ball_that_rolls_over_an_edge_turns_about_it_with_the_moment_of_rollin
     motion = "velocity: 0.3 0 0 m/s, spin: 0 0 -3 rad/s"
     rows = watch(tmp_path, ball(0.46), motion, times, "body.it.position", law=law, solver=solver)
     expected, _ = over_the_edge(0.3, 1.4, -0.04, times)
-    np.testing.assert_allclose(np.array([x for x, in rows])[:, :2] - (0.5, 0), expected, atol=1e-10)
+    np.testing.assert_allclose(np.array([x for (x,) in rows])[:, :2] - (0.5, 0), expected, atol=1e-10)
 
 
 @pytest.mark.parametrize("solver", ["auto", "dopri5: {tolerance: 1e-9}", "rk4: {step: 2 ms}"])
@@ -123,7 +123,7 @@ def test_a_ball_rolls_into_the_gap_of_two_boxes_and_rests_on_both_edges(tmp_path
     times, law = np.linspace(0, 1.2, 61), "restitution: 0, friction: 0.5"
     motion, solver = "velocity: 0.6 0 0 m/s, spin: 0 0 -6 rad/s", "dopri5: {tolerance: 1e-9}"
     rows = watch(tmp_path, objects, motion, times, "body.it.position", law=law, solver=solver)
-    centers = np.array([x for x, in rows])
+    centers = np.array([x for (x,) in rows])
     for middle in (-0.55, 0.55):
         assert gap(centers, (middle, -0.1, 0)).min() > -1e-9
     np.testing.assert_allclose(centers[-1], (0, np.sqrt(0.1**2 - 0.05**2), 0), atol=1e-9)
@@ -140,4 +140,4 @@ def test_an_ellipsoid_rolls_off_an_edge_as_a_ball_that_is_as_round_across_it(tmp
     law, solver = f"restitution: 0, friction: {friction}", "dop853: {tolerance: 1e-12}"
     rows = watch(tmp_path, {"table": TABLE, "it": egg}, motion, times, "body.it.position", law=law, solver=solver)
     expected, _ = over_the_edge(0.3, moment, -0.04, times)
-    np.testing.assert_allclose(np.array([x for x, in rows])[:, :2] - (0.5, 0), expected, atol=1e-9)
+    np.testing.assert_allclose(np.array([x for (x,) in rows])[:, :2] - (0.5, 0), expected, atol=1e-9)

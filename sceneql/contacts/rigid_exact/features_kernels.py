@@ -8,12 +8,13 @@ import math
 
 from numba import types
 
+from sceneql.bodies.rigid.rigid_kernels import to_world
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
-from sceneql.bodies.rigid.tie_rows_kernels import AT_X, put, turned
+from sceneql.bodies.rigid.tie_rows_kernels import AT_V, AT_W, AT_X, put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.distance.convex import CORE, SHAPE
+from sceneql.contacts.distance.core_kernels import EDGES as EDGE_COUNT
 from sceneql.contacts.distance.core_kernels import (
-    EDGES,
     FACES,
     FLOATS,
     INTS,
@@ -25,11 +26,13 @@ from sceneql.contacts.distance.core_kernels import (
     edges_at,
     loop_at,
 )
+from sceneql.contacts.distance.first_touch_kernels import move
 from sceneql.contacts.rigid_exact.contact_kernels import (
     CORNER_EDGE,
     CORNER_FACE,
     CORNERS,
     EDGE_CORNER,
+    EDGES,
     EXTENT,
     FACE_CORNER,
     LINE_A,
@@ -52,13 +55,17 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, follow, own, speed_at
-from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, mover_at
+from sceneql.contacts.rigid_exact.exact_rows_kernels import PLACE, PLACES_AT, SHAPES_AT, mover_at
 from sceneql.system.signatures_kernels import A, F, I, N
 
 FEATURE = 1e-7
 """Distance from a feature, in parts of the body's size, up to which a point is on it."""
 AHEAD = 1e-6
 """How far on its way a body is, in parts of the size of the smaller one, where it is asked which feature it touches."""
+FAR = 10.0
+"""Of polyhedra at least so many times FEATURE."""
+LIMIT = 1e-7
+"""How far inside its feature a contact is, in parts of the smaller body, up to which it is at the end of it."""
 FACE, EDGE, VERTEX = range(3)
 
 
@@ -128,7 +135,7 @@ def nearest_feature(floats, ints, shape, x, y, z):
         square = (x - u) ** 2 + (y - v) ** 2 + (z - w) ** 2
         if square < best:
             best, found = square, k
-    for k in range(ints[i + EDGES]):
+    for k in range(ints[i + EDGE_COUNT]):
         e = edges_at(ints, i) + 4 * k
         p, q, r = three(floats, f + POINTS + 3 * ints[e])
         u, v, w = three(floats, f + POINTS + 3 * ints[e + 1])
@@ -250,7 +257,7 @@ def inside_edge(floats, ints, shape, k, size, nx, ny, nz, x, y, z):
 def inside_corner(floats, ints, shape, k, size, nx, ny, nz):
     """How far the normal n is from being across an edge of a corner, times ``size``."""
     least, i = math.inf, ints[shape + INTS]
-    for j in range(ints[i + EDGES]):
+    for j in range(ints[i + EDGE_COUNT]):
         e = edges_at(ints, i) + 4 * j
         if ints[e] == ints[e + 1] or (ints[e] != k and ints[e + 1] != k):
             continue
@@ -260,11 +267,38 @@ def inside_corner(floats, ints, shape, k, size, nx, ny, nz):
     return least
 
 
+@lean(F(A, I, N, N))
+def inside_line(floats, ints, rec, side):
+    """How far a contact of two edges is from the ends of that of a (side 0) or b."""
+    m = int(floats[rec + SHAPE_A + side])
+    shape, mover = ints[SHAPES_AT] + SHAPE * m, mover_at(ints, m)
+    f, i = ints[shape + FLOATS], ints[shape + INTS]
+    end, line = rec + (OWN_A if side == 0 else OWN_B), rec + (LINE_A if side == 0 else LINE_B)
+    x, y, z = three(floats, rec + POINT)
+    cx, cy, cz = three(floats, mover + AT_X)
+    x, y, z = own(floats, mover, x - cx, y - cy, z - cz)
+    ex, ey, ez = three(floats, line)
+    for k in range(ints[i + EDGE_COUNT]):
+        e = edges_at(ints, i) + 4 * k
+        p, q, r = three(floats, f + POINTS + 3 * ints[e])
+        u, v, w = three(floats, f + POINTS + 3 * ints[e + 1])
+        length = dot(ex, ey, ez, u - p, v - q, w - r)
+        if p != floats[end] or q != floats[end + 1] or r != floats[end + 2]:
+            continue
+        if not length > (1.0 - FEATURE) * math.sqrt((u - p) ** 2 + (v - q) ** 2 + (w - r) ** 2):
+            continue
+        s = dot(ex, ey, ez, x - p, y - q, z - r)
+        return min(s, length - s)
+    return math.inf
+
+
 @lean(F(A, I, N))
 def extent(floats, ints, rec):
     """How far a contact is inside the feature that it is on: as far as it can go until it leaves it [m]; infinity
     where that is not known."""
     kind, of = int(floats[rec + WHICH]), int(floats[rec + OF])
+    if kind == EDGES:
+        return min(inside_line(floats, ints, rec, 0), inside_line(floats, ints, rec, 1))
     on_face = kind == CORNER_FACE or kind == FACE_CORNER or kind == ON_FACE
     if not on_face and of < 0:
         return math.inf
@@ -289,3 +323,42 @@ def extent(floats, ints, rec):
     if kind == CORNER_EDGE or kind == EDGE_CORNER or kind == ON_EDGE:
         return inside_edge(floats, ints, shape, of, size, nx, ny, nz, x, y, z)
     return math.inf
+
+
+@lean(F(A, I, N, N, F))
+def until_it_leaves(floats, ints, first, count, size):
+    """How long ahead [s] it is to be asked which features touch, of contacts of two polyhedra of which one is at the
+    end of its own; 0 where none is."""
+    worst, found = LIMIT * size, -1
+    for k in range(count):
+        inside = extent(floats, ints, first + RECORD * k)
+        if inside < worst:
+            worst, found = inside, first + RECORD * k
+    if found < 0:
+        return 0.0
+    a, b = int(floats[found + SHAPE_A]), int(floats[found + SHAPE_B])
+    x, y, z = three(floats, found + POINT)
+    ux, uy, uz = speed_at(floats, mover_at(ints, a), x, y, z)
+    vx, vy, vz = speed_at(floats, mover_at(ints, b), x, y, z)
+    ux, uy, uz = ux - vx, uy - vy, uz - vz
+    speed = math.sqrt(ux * ux + uy * uy + uz * uz)
+    if not speed > 1e-12 * pace(floats, found, mover_at(ints, a), mover_at(ints, b)):
+        return 0.0
+    reach = max(
+        floats[ints[ints[SHAPES_AT] + SHAPE * a + FLOATS] + REACH],
+        floats[ints[ints[SHAPES_AT] + SHAPE * b + FLOATS] + REACH],
+    )
+    return max(AHEAD * size, FAR * FEATURE * reach) / speed
+
+
+@lean(types.void(A, I, N, A, F))
+def go_ahead(floats, ints, k, motions, h):
+    """Move a shape by a time h [s]: its place, and its mover."""
+    at, mover = ints[PLACES_AT] + PLACE * k, mover_at(ints, k)
+    for c in range(3):
+        motions[c], motions[3 + c] = floats[mover + AT_V + c], floats[mover + AT_W + c]
+    move(floats, at, motions, 0, h, floats, at)
+    for c in range(3):
+        floats[mover + AT_X + c] = floats[at + c]
+        column = to_world(floats, at + 3, 1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2))
+        floats[mover + AT_TURN + c], floats[mover + AT_TURN + 3 + c], floats[mover + AT_TURN + 6 + c] = column
