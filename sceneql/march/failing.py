@@ -31,6 +31,7 @@ MESSAGES = {
     kernels.STEP_TOO_SMALL: "the step that the tolerance asks for is below the resolution of time: {}",
     kernels.CROSSING: "surfaces would pass through one another within this step: take shorter ones",
     kernels.STUCK: "contacts push against each other at one instant without end",
+    kernels.UNSEEN: "bodies are in each other, or held apart, by a contact that mode `exact` has not seen",
 }
 AHEAD = 1e-9
 """Part of the time reached in which a rate without a value is looked for."""
@@ -63,8 +64,8 @@ class Stopped:
 def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure:
     """The failure of a march that has stopped with a status; ``ahead``: the step that comes next [s]."""
     control = march.control
-    if status == kernels.STUCK:
-        return _endless(march, entry)
+    if status == kernels.STUCK or status == kernels.UNSEEN:
+        return _at_contact(march, status, entry)
     if status == kernels.CROSSING:
         return blamed(march, entry, MESSAGES[status])
     if status == kernels.PAUSED:
@@ -79,11 +80,11 @@ def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure
     return blamed(march, entry, MESSAGES[status].format(why))
 
 
-def _endless(march: Stopped, pair: int) -> RunFailure:
-    """Events of a pair have no end: told at the line of its contact where that has an advice."""
-    message, first = MESSAGES[kernels.STUCK], 0
+def _at_contact(march: Stopped, status: int, pair: int) -> RunFailure:
+    """Contacts have no way on: told at the line of that of the pair, or of the first, where it has an advice."""
+    message, first = MESSAGES[status], 0
     for pairs, origin, help in march.system.events:
-        if help and first <= pair < first + pairs:
+        if help and (status == kernels.UNSEEN or first <= pair < first + pairs):
             return RunFailure(message, part=origin.part, time=march.time, span=origin.span, help=help)
         first += pairs
     return blamed(march, 0, message)

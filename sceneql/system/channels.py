@@ -16,7 +16,8 @@ HOLDS: not 0 where a body rests on a local contact. In the next step the contact
 floats for the state at the step's end, so the rate must be evaluated there.
 
 CHANGED: not 0 where an exact contact, updating its resting pairs at the end of a step, changed the state or a flag;
-NO_WAY_ON where its events have no end, at an impact: the march stops.
+NO_WAY_ON where its events have no end, at an impact, and UNSEEN, at the end of a step, where bodies are otherwise than
+their contacts tell: the march stops.
 
 SETTLED: not 0 where nothing but what settles it (Assembly.after_step of samples) has changed the state since the end of
 the last step: a method of several steps goes on with what it remembers.
@@ -44,8 +45,8 @@ NO_SLOPES, OUTSIDE, BETWEEN = 0.0, -1.0, -2.0
 within implicit stages, and none is being solved. BETWEEN: they act between steps, but a solver needs slopes: a body
 that rests at a step's start stays tied up to its end, so that the rate is smooth within the step and has slopes."""
 
-NO_WAY_ON = -1.0
-"""Value of CHANGED with which an impact stops the march."""
+NO_WAY_ON, UNSEEN = -1.0, -2.0
+"""Values of CHANGED with which an impact stops the march."""
 
 ARRAYS = BASE, BEFORE, AFTER = 3, 2, 1
 """The arrays at the end begin at ``floats.size - channels.BASE * n``. BASE: the base of a stage; BEFORE and AFTER: the

@@ -26,13 +26,15 @@ SLOW, FAST = 1.0, 2.0
 """Ways to slide: so slowly that friction is against the pull, not the speed; else."""
 KIND, OWN_A, OWN_B, LINE_A, LINE_B, RADIUS_A, RADIUS_B, SIGN = 0, 1, 4, 7, 10, 13, 14, 15
 SHAPE_A, SHAPE_B, PAIR, SLIDES, PUSHES, ALONG, FORCE, EXTENT, SLIP = 16, 17, 18, 19, 20, 21, 24, 27, 28
-NORMAL, POINT, GAP, SPEED, SLIDE, BIAS, FIRST, SECOND, ROWS, AIMED, RECORD = 29, 32, 35, 36, 37, 40, 43, 46, 49, 85, 88
+NORMAL, POINT, GAP, SPEED, SLIDE, BIAS, FIRST, SECOND, ROWS, AIMED = 29, 32, 35, 36, 37, 40, 43, 46, 49, 85
+OF, DRIFT, RECORD = 88, 89, 92
 """Numbers of a contact. Kept: its kind; a point of each body, in its axes; the face's normal or the edge's direction of
 each, in its axes; both radii; the sign of the normal of two edges; the numbers of both shapes, and of their pair;
 whether it slides (0: it sticks) and pushes; the direction of slip then (3); its force along normal and tangents (3);
 how far inside its face it was, and how fast it slid, when these were written. Of a state: normal, point, gap, dgap/dt,
 slip (3); the biases of normal and tangents; two tangents; three rows by velocity and angular velocity of a, then of b;
-the direction of slip now."""
+the direction of slip now. Kept, too: of what is round on a polyhedron, the number of its face, edge or corner (else
+-1); and of a curved one now, which way it drifts over that."""
 
 
 @lean_inlined

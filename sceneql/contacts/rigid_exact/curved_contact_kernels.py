@@ -17,8 +17,10 @@ from numba import types
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
 from sceneql.bodies.rigid.tie_rows_kernels import AT_V, AT_W, AT_X, cross, put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.distance.core_kernels import REACH
 from sceneql.contacts.rigid_exact.contact_kernels import (
     BIAS,
+    DRIFT,
     GAP,
     KIND,
     LINE_A,
@@ -89,6 +91,12 @@ def write(floats, at, a, b, gap, nx, ny, nz, mx, my, mz, cx, cy, cz, gx, gy, gz)
     floats[at + GAP], floats[at + SPEED] = gap, speed
     floats[at + BIAS] = dot(mx, my, mz, ux, uy, uz) + dot(nx, ny, nz, px - qx, py - qy, pz - qz)
     put(floats, at + NORMAL, nx, ny, nz)
+    # Over a face as the point moves, over an edge or a corner as the normal turns.
+    far = floats[int(floats[at + LINE_A]) + REACH]
+    tx, ty, tz = cross(wb[0], wb[1], wb[2], nx, ny, nz)
+    put(
+        floats, at + DRIFT, hx - vx + far * (mx - tx), hy - vy + far * (my - ty), hz - vz + far * (mz - tz),
+    )  # fmt: skip
     place(floats, at, a, b, nx, ny, nz, cx, cy, cz, gx, gy, gz)
 
 

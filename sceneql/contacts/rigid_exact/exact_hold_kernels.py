@@ -132,11 +132,11 @@ def unaim(floats, ints):
     return some
 
 
-@lean(types.void(A, I, N))
+@lean(types.boolean(A, I, N))
 def decide(floats, ints, n):
-    """Drop the contacts that leave, let those slide that slip, and keep the forces as a guess."""
+    """Drop the contacts that leave, let those slide that slip, and keep the forces as a guess; whether some do."""
     memory = ints[MEMORY_AT]
-    kept, row = 0, ints[TIE_ROWS]
+    kept, row, changes = 0, ints[TIE_ROWS], False
     found, left = solution_at(ints), left_at(ints)
     for k in range(int(floats[memory + KEPT])):
         rec, to = ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * kept
@@ -151,8 +151,10 @@ def decide(floats, ints, n):
             p, q = floats[left + row + 1], floats[left + row + 2]
             size = math.sqrt(p * p + q * q)
             floats[rec + SLIDES] = SLOW if size > LEAVES * largest else 0.0
+            changes = changes or floats[rec + SLIDES] > 0.0
         row += rows
         if leaves:
+            changes = True
             continue
         if to != rec:
             for c in range(RECORD):
@@ -160,6 +162,7 @@ def decide(floats, ints, n):
         kept += 1
     floats[memory + KEPT] = kept
     floats[memory + UNDECIDED] = 0.0
+    return changes
 
 
 @lean(types.void(A, I, N, types.float64))
@@ -258,8 +261,8 @@ def hold(t, y, rate, floats, ints):
             floats[ints[ints[TIED_AT] + 3 * i + 2] + AT_FORCE] += force
     balance(rate, floats, ints, n)
     tell(floats, ints, n, friction)
-    if floats[memory + UNDECIDED] > 0.0:
-        decide(floats, ints, n)
+    if floats[memory + UNDECIDED] > 0.0 and decide(floats, ints, n):
+        floats[memory + SINCE] = max(t, floats[memory + SINCE])
 
 
 @lean_inlined

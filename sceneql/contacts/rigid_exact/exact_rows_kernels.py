@@ -61,9 +61,9 @@ the ties have; floats of working memory of distances. Where in the integers stan
 (tie_rows_kernels), two shapes a pair, the ties' own integers, of each of their rows both movers and its floats, room
 for kinds of rows, pivots and which contacts are struck, where the energy taken from each mover counts. Offsets in the
 floats: movers, places of shapes, those at the start of the step, working memory, contacts (twice), rows, the dense
-system, how many contacts each pair keeps (then of each pair how crowded its events are, and when it had its latest),
-memory, coefficients, what outputs read. Where in the integers is room for a question about curved shapes
-(curved_find_kernels)."""
+system, how many contacts each pair keeps (then of each pair how crowded its events are, and when it had its latest; how
+deep each may be), memory, coefficients, what outputs read. Where in the integers is room for a question about curved
+shapes (curved_find_kernels)."""
 
 (
     KEPT,

@@ -24,7 +24,7 @@ CONTACTS = f"{ROOM}.watch_kernels:gap", f"{ROOM}.strike_kernels:impact"
 MOST = 24
 """Bodies of one contact: all their conditions are one dense system."""
 ADVICE = "`mode: local` takes what jams or tumbles without end"
-"""What is said where impacts have no end."""
+"""What is said where there is no way on."""
 FEW = 8
 """Contacts by the body that there is room for, and besides."""
 
@@ -92,7 +92,7 @@ def assemble(
     records = assembly.floats(np.zeros(2 * contact_kernels.RECORD * most))
     units = assembly.floats(np.zeros(rows.UNIT * room))
     dense = assembly.floats(np.zeros(2 * room * room + (8 + exact_law_kernels.VECTORS) * room + 1))
-    kept = assembly.floats(np.zeros(3 * len(pairs)))
+    kept = assembly.floats(np.zeros(4 * len(pairs)))
     memory = assembly.floats(np.zeros(rows.MEMORY))
     outputs = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
     nan = float("nan")

@@ -64,7 +64,9 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     write_rows,
 )
 from sceneql.contacts.rigid_exact.exact_solve_kernels import solve_rows
-from sceneql.contacts.rigid_exact.find_kernels import begin, find, smaller, start_step
+from sceneql.contacts.rigid_exact.features_kernels import smaller
+from sceneql.contacts.rigid_exact.find_kernels import begin, find, start_step
+from sceneql.contacts.rigid_exact.true_gap_kernels import unseen
 from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
 
 APPROACHES = 1e-13
@@ -226,6 +228,7 @@ def impact(t, y, pair, floats, ints):
     """Strike the contacts of this instant; for pair -1, at the end of a step, find anew those that are kept."""
     memory = ints[MEMORY_AT]
     points, names = np.zeros(MOST_CORNERS * CORNER), np.zeros(MOST_CORNERS * NAME, dtype=np.int64)
+    wrong = pair < 0 and floats[memory + STARTED] > 0.0 and unseen(t, y, floats, ints, False)
     if pair >= 0:
         again = floats[memory + AGAIN] + 1.0 if t == floats[memory + LATEST] else 0.0
         floats[memory + LATEST], floats[memory + AGAIN] = t, again
@@ -236,20 +239,24 @@ def impact(t, y, pair, floats, ints):
         count_event(t, floats, ints, of)
         if again > ENDURANCE or level(floats, ints, of) > ENDLESS:
             floats[channels.CHANGED] = channels.NO_WAY_ON
-        find(t, y, floats, ints, points, names)
+        find(t, y, floats, ints, points, names, False)
         strike(t, y, floats, ints)
         keep(floats, ints, False)
-        begin(t, y, floats, ints)
+        begin(t, y, floats, ints, False)
     elif floats[memory + STARTED] == 0.0:
         floats[memory + STARTED] = 1.0
-        find(t, y, floats, ints, points, names)
+        unseen(t, y, floats, ints, True)
+        find(t, y, floats, ints, points, names, False)
         keep(floats, ints, False)
-        begin(t, y, floats, ints)
+        begin(t, y, floats, ints, False)
         floats[channels.CHANGED] = 1.0
     elif floats[memory + KEPT] > 0.0:
         floats[memory + AGAIN] = 0.0
-        find(t, y, floats, ints, points, names)
+        before = floats[memory + KEPT]
+        same = find(t, y, floats, ints, points, names, True)
         keep(floats, ints, True)
-        begin(t, y, floats, ints)
+        begin(t, y, floats, ints, same and floats[memory + KEPT] == before)
         floats[channels.CHANGED] = 1.0
+    if wrong:
+        floats[channels.CHANGED] = channels.UNSEEN
     start_step(t, y, floats, ints)

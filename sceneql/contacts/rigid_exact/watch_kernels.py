@@ -9,8 +9,7 @@ from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import CORE, HALF_SPACE, SHAPE
 from sceneql.contacts.distance.core_kernels import FACES, FLOATS, INTS, KIND, POINTS, RADIUS, REACH
 from sceneql.contacts.distance.first_touch_kernels import MOTION, first_touch, move
-from sceneql.contacts.distance.gap_kernels import gap as distance
-from sceneql.contacts.rigid_exact.contact_kernels import ALONG, EXTENT, GAP, PAIR, RECORD, SLIDE, SLIP, dot, three
+from sceneql.contacts.rigid_exact.contact_kernels import ALONG, EXTENT, OF, PAIR, RECORD, SLIDE, SLIP, dot, three
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
@@ -32,7 +31,9 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     mover_at,
     put_places,
 )
-from sceneql.contacts.rigid_exact.find_kernels import TOUCHES, extent, face_of, own, smaller
+from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, own, smaller
+from sceneql.contacts.rigid_exact.find_kernels import TOUCHES
+from sceneql.contacts.rigid_exact.true_gap_kernels import kept_gap, true_gap
 from sceneql.system.signatures_kernels import GAP as SIGNATURE
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -179,21 +180,10 @@ def gap(t, y, gaps, floats, ints):
         gaps[pair] = clear(floats, ints, a, b, h)
         if gaps[pair] > 0.0:
             continue
-        if is_curved(ints, ints[SHAPES_AT] + SHAPE * a):
-            now = meet(floats, ints, ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b)), -NEVER, 0, 0)[1]
-        else:
-            now = distance(
-                floats, ints, ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b, floats,
-                ints[PLACES_AT] + PLACE * a, ints[PLACES_AT] + PLACE * b, room,
-            )[0]  # fmt: skip
+        now = true_gap(floats, ints, pair)
         if floats[ints[KEPT_AT] + pair] > 0.0:
             # What is kept has errors of its own; what else meets is deeper.
-            least = 0.0
-            for k in range(count):
-                rec = ints[RECORDS_AT] + RECORD * k
-                if floats[rec + PAIR] == pair:
-                    least = min(least, floats[rec + GAP])
-            now += TOUCHES * smaller(floats, ints, a, b) - least
+            now += TOUCHES * smaller(floats, ints, a, b) - kept_gap(floats, ints, pair, 0.0)
         elif h > 0.0 and now > 0.0:
             now = passed(floats, ints, a, b, h, now, motions, room)
         gaps[pair] = now
@@ -209,5 +199,8 @@ def gap(t, y, gaps, floats, ints):
             ints[ints[PAIRS_AT] + 2 * int(floats[rec + PAIR])],
             ints[ints[PAIRS_AT] + 2 * int(floats[rec + PAIR]) + 1],
         )
-        if floats[rec + EXTENT] > INSIDE * size and floats[rec + EXTENT] < math.inf:
-            gaps[at + 1] = extent(floats, ints, rec)
+        if floats[rec + EXTENT] < math.inf:
+            if floats[rec + EXTENT] > INSIDE * size:
+                gaps[at + 1] = extent(floats, ints, rec)
+            elif floats[rec + OF] >= 0.0:  # at a border, from where it may turn back
+                gaps[at + 1] = INSIDE * size + extent(floats, ints, rec) - floats[rec + EXTENT]
