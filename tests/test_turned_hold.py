@@ -5,6 +5,7 @@ import pytest
 
 from runs import complaint, watch
 from sceneql.pipeline import load
+from sceneql.quantities.diagnostic import ScriptError
 from sceneql.run.run import Run
 
 ANGLE = '"2 * smoothstep(0, 1, time/(0.3 s)) * 1 rad"'
@@ -55,3 +56,22 @@ def test_the_work_that_turns_a_hold_is_all_that_the_solid_gains(tmp_path, elemen
 def test_a_hold_has_one_motion(tmp_path):
     told = complaint(tmp_path, scene("p1", "rk4: {step: 1 ms}", "follows: handle, shift: 1 0 0 m"))
     assert "either has a shift or follows an object" in told
+
+
+@pytest.mark.parametrize(
+    ("handle", "more", "said"),
+    [
+        ("box: {size: 1 1 1 m}", "stone: {rigid: {of: handle, mass: 1 kg}}", "functions of time: stone.origin is not"),
+        ('plane: {height: "0.1 m/s * time"}', "", "the height of 'handle' varies, by which a hold does not follow it"),
+        ('tube: {through: [["0.1 m/s * time", 0 m, 0 m], 1 0 0 m]}', "", "'handle' has no position of its own"),
+    ],
+)
+def test_a_hold_does_not_follow_what_it_cannot_see_move(tmp_path, handle, more, said):
+    script = scene("p1", "rk4: {step: 1 ms}").replace(HANDLE, f"handle: {{{handle}}}")
+    if more:
+        script = script.replace("models: {", f"models: {{{more}, ")
+    path = tmp_path / "scene.yaml"
+    path.write_text(script, encoding="utf-8")
+    with pytest.raises(ScriptError) as raised:
+        Run(load(path, pruned=False))
+    assert said in str(raised.value)

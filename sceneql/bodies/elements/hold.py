@@ -11,7 +11,7 @@ from sceneql.bodies.time_shift import APART, later
 from sceneql.kinds import Formula, Position, Problem, Record, Symbols, Value, field
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Symbol
+from sceneql.quantities.expression import Link, Symbol
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -231,17 +231,32 @@ def _turned_velocity(hold: Hold, places: Floats, assembly: Assembly) -> Floats:
 
 
 def _pose(hold: Hold, by: float, assembly: Assembly) -> tuple[int, int]:
-    """Offsets of the object's position and rotation a little later."""
-    assert hold.follows is not None
-    kind, found = assembly.object(hold.follows), []
+    """Offsets of the object's position and rotation a little later.
+
+    Raises ScriptError for an object without a position, one that moves by another field, or that follows what is
+    solved.
+    """
+    ref = hold.follows
+    assert ref is not None
+    kind, found = assembly.object(ref), []
+    position, height = getattr(kind, "position", None), getattr(kind, "height", None)
+    if not isinstance(position, Value):
+        message = f"'{ref.name}' has no position of its own, which a hold could follow"
+        help = f"put it into a group that moves, `{{group: {{children: [{ref.name}]}}}}`, and name that"
+        raise ScriptError([Diagnostic("no-position", message, ref.span, help)])
+    if isinstance(height, Value) and not height.constant:
+        message = f"the height of '{ref.name}' varies, by which a hold does not follow it"
+        raise ScriptError([Diagnostic("unsupported-link", message, height.span, "let its `position` vary")])
     try:
         for name, rest in (("position", (0.0, 0.0, 0.0)), ("rotation", (1.0, 0.0, 0.0, 0.0))):
             value = getattr(kind, name, None)
             if isinstance(value, Value):
-                found.append(assembly.value(Value(later(value.expr, by, assembly.formula), value.span)))
+                # By a link: the kind tells where an object starts that a model moves, and the link that it is moved.
+                link = Link(ref.name, name, value.expr.type)
+                found.append(assembly.value(Value(later(link, by, assembly.formula), value.span)))
             else:
                 found.append(assembly.floats(rest))
     except ValueError as error:
         message = f"a hold follows an object that moves by functions of time: {error}"
-        raise ScriptError([Diagnostic("unsupported-link", message, hold.follows.span)]) from None
+        raise ScriptError([Diagnostic("unsupported-link", message, ref.span)]) from None
     return found[0], found[1]
