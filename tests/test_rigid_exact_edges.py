@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import runs
+from sceneql.failure import RunFailure
 
 GRAVITY = 9.81
 TABLE = "{box: {size: 1 0.2 1 m, position: 0 -0.1 0 m}}"
@@ -141,3 +142,22 @@ def test_an_ellipsoid_rolls_off_an_edge_as_a_ball_that_is_as_round_across_it(tmp
     rows = watch(tmp_path, {"table": TABLE, "it": egg}, motion, times, "body.it.position", law=law, solver=solver)
     expected, _ = over_the_edge(0.3, moment, -0.04, times)
     np.testing.assert_allclose(np.array([x for (x,) in rows])[:, :2] - (0.5, 0), expected, atol=1e-9)
+
+
+def test_a_cube_on_its_corner_falls_from_where_the_corner_passes_the_edge(tmp_path):
+    height = 0.1 * np.sqrt(3)
+    turn = "{about: 0.7071067811865476 0 -0.7071067811865476, angle: 54.735610317245346 deg}"
+    cube = f"{{box: {{size: 0.2 0.2 0.2 m, position: 0.47 {height} 0 m, rotation: {turn}}}}}"
+    times = np.array([0.04, 0.06, 0.08])
+    rows = watch(
+        tmp_path, {"table": TABLE, "it": cube}, "velocity: 0.6 0 0 m/s", times, "body.it.position", law="restitution: 0"
+    )
+    falls = np.maximum(0.0, times - 0.05)
+    np.testing.assert_allclose([x[1] for (x,) in rows], height - GRAVITY * falls**2 / 2, atol=1e-6)
+
+
+def test_a_column_that_tips_over_an_edge_is_told_of_at_the_line_of_its_contact(tmp_path):
+    column = "{cylinder: {radius: 0.1 m, height: 0.2 m, position: 0.3 0.1 0 m, rotation: {about: y, angle: 20 deg}}}"
+    law = "restitution: 0, friction: 0.2"
+    with pytest.raises(RunFailure, match=r"contacts: \{touch"):
+        watch(tmp_path, {"table": TABLE, "it": column}, "velocity: 2 0 0 m/s", [0.3], "body.it.position", law=law)

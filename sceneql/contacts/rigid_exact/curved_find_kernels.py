@@ -29,7 +29,6 @@ from sceneql.contacts.distance.core_kernels import (
 )
 from sceneql.contacts.rigid_exact.contact_kernels import (
     CORNER_FACE,
-    DRIFT,
     EXTENT,
     LINE_A,
     LINE_B,
@@ -37,7 +36,6 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     OWN_A,
     OWN_B,
     PAIR,
-    POINT,
     RADIUS_A,
     RADIUS_B,
     RECORD,
@@ -49,16 +47,13 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FIELD, FORM, RING, SIZES
-from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, follow, own
+from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, own
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, out_of, slant
 from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT
-from sceneql.contacts.rigid_exact.features_kernels import AHEAD, smaller, way_ahead
 from sceneql.system.signatures_kernels import A, F, I, N
 
 FLAT = 1e-7
 """Sine of the angle between face and circle up to which it lies flat."""
-APART = 1e-4
-"""Distance of two contacts, in parts of the smaller body, up to which they are one, on the border of two features."""
 LEAST = 1e-7
 """Part by which what is beside a place may come nearer and the place still be the nearest."""
 PIECES = 8
@@ -340,31 +335,3 @@ def meet(floats, ints, who, margin, next, most):
     more, gap = at_corners(floats, ints, who, margin, next + RECORD * count, most - count)
     count, least = count + more, min(least, gap)
     return count, least if least < math.inf else separation(floats, ints, who)
-
-
-@lean(N(A, I, N, F, N, N))
-def meet_ahead(floats, ints, who, margin, next, most):
-    """As `meet`, with the contacts followed; of one on the border of two features that to which it moves; how many."""
-    ma, mb, sb = ints[who + MOVER_A], ints[who + MOVER_B], ints[who + SHAPE_OF_B]
-    count = meet(floats, ints, who, margin, next, most)[0]
-    for k in range(count):
-        follow(floats, ints, next + RECORD * k, ma, mb)
-    if count == 0 or ints[sb + KIND] != CORE or ints[ints[sb + INTS] + VERTICES] == 1:
-        return count
-    size = smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
-    for k in range(count):
-        for c in range(3):
-            if floats[next + RECORD * k + OF] < 0.0:
-                return count
-            if abs(floats[next + RECORD * k + POINT + c] - floats[next + POINT + c]) > APART * size:
-                return count
-    dx, dy, dz = way_ahead(floats, ints, next, *three(floats, next + DRIFT))
-    x, y, z = three(floats, ma + AT_X)
-    put(floats, ma + AT_X, x + dx, y + dy, z + dz)
-    more = meet(floats, ints, who, margin + LEAST * AHEAD * size, next, 1)[0]
-    if more == 0:
-        put(floats, ma + AT_X, x, y, z)
-        more = min(1, meet(floats, ints, who, margin, next, most)[0])
-    put(floats, ma + AT_X, x, y, z)
-    follow(floats, ints, next, ma, mb)
-    return more

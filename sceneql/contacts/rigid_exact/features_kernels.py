@@ -54,6 +54,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
+from sceneql.contacts.rigid_exact.curved import ELLIPSOID, FORM
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, follow, own, speed_at
 from sceneql.contacts.rigid_exact.exact_rows_kernels import PLACE, PLACES_AT, SHAPES_AT, mover_at
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -94,6 +95,13 @@ def smaller(floats, ints, a, b):
     """The reach of the smaller of two shapes."""
     fa, fb = ints[ints[SHAPES_AT] + SHAPE * a + FLOATS], ints[ints[SHAPES_AT] + SHAPE * b + FLOATS]
     return min(floats[fa + REACH], floats[fb + REACH])
+
+
+@lean(types.boolean(A, I, N))
+def is_plain(floats, ints, m):
+    """Whether a shape has no circle that may lie flat: its contacts with a polyhedron change at events alone."""
+    shape = ints[SHAPES_AT] + SHAPE * m
+    return ints[shape + KIND] == CORE or floats[ints[shape + FLOATS] + FORM] == ELLIPSOID
 
 
 @lean(N(I, N, N))

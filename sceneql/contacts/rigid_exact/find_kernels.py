@@ -9,7 +9,6 @@ from sceneql.bodies.rigid.tie_rows_kernels import AT_X, put
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import CORE, SHAPE
 from sceneql.contacts.distance.core_kernels import (
-    FLOATS,
     KIND,
 )
 from sceneql.contacts.distance.manifold_kernels import POINT as CORNER
@@ -34,9 +33,9 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SLOW,
     three,
 )
-from sceneql.contacts.rigid_exact.curved import ELLIPSOID, FORM
+from sceneql.contacts.rigid_exact.curved_ahead_kernels import meet_ahead
 from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
-from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet_ahead
+from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved
 from sceneql.contacts.rigid_exact.exact_hold_kernels import CREEP, still
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
@@ -66,6 +65,7 @@ from sceneql.contacts.rigid_exact.features_kernels import (
     LIMIT,
     extent,
     go_ahead,
+    is_plain,
     meet_ball,
     smaller,
     solid_side,
@@ -86,7 +86,7 @@ SLACK = 1e-4
 def carried(floats, ints, a, b, pair, before, margin):
     """The contact of a ball or an ellipsoid on a polyhedron, of which each change is an event; -1 for others."""
     sa, sb = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b
-    curved = is_curved(ints, sa) and floats[ints[sa + FLOATS] + FORM] == ELLIPSOID and ints[sb + KIND] == CORE
+    curved = is_curved(ints, sa) and is_plain(floats, ints, a) and ints[sb + KIND] == CORE
     found = -1
     if not curved and solid_side(ints, a, b) < 0:
         return found

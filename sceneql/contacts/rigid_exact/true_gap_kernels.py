@@ -9,6 +9,7 @@ from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.gap_kernels import gap as distance
 from sceneql.contacts.rigid_exact.contact_kernels import GAP, PAIR, RECORD
+from sceneql.contacts.rigid_exact.curved_ahead_kernels import is_cut
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     KEPT,
@@ -75,6 +76,9 @@ def unseen(t, y, floats, ints, first):
         held = floats[ints[KEPT_AT] + pair] > 0.0
         told = kept_gap(floats, ints, pair, math.inf if held else 0.0)
         size = smaller(floats, ints, ints[ints[PAIRS_AT] + 2 * pair], ints[ints[PAIRS_AT] + 2 * pair + 1])
+        a, b = ints[ints[PAIRS_AT] + 2 * pair], ints[ints[PAIRS_AT] + 2 * pair + 1]
+        if is_curved(ints, ints[SHAPES_AT] + SHAPE * a) and now < size:
+            found = found or is_cut(floats, ints, ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b)))
         deeper = now < min(told, floats[allowed]) - UNSEEN * size
         found = found or deeper or (held and told < math.inf and now > told + UNSEEN * size)
     return found

@@ -9,7 +9,18 @@ from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import CORE, HALF_SPACE, SHAPE
 from sceneql.contacts.distance.core_kernels import FACES, FLOATS, INTS, KIND, POINTS, RADIUS, REACH
 from sceneql.contacts.distance.first_touch_kernels import MOTION, first_touch, move
-from sceneql.contacts.rigid_exact.contact_kernels import ALONG, EXTENT, OF, PAIR, RECORD, SLIDE, SLIP, dot, three
+from sceneql.contacts.rigid_exact.contact_kernels import (
+    ALONG,
+    EXTENT,
+    OF,
+    PAIR,
+    RECORD,
+    SHAPE_A,
+    SLIDE,
+    SLIP,
+    dot,
+    three,
+)
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
@@ -31,7 +42,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     mover_at,
     put_places,
 )
-from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, own, smaller
+from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, is_plain, own, smaller
 from sceneql.contacts.rigid_exact.find_kernels import TOUCHES
 from sceneql.contacts.rigid_exact.true_gap_kernels import kept_gap, true_gap
 from sceneql.system.signatures_kernels import GAP as SIGNATURE
@@ -202,5 +213,7 @@ def gap(t, y, gaps, floats, ints):
         if floats[rec + EXTENT] < math.inf:
             if floats[rec + EXTENT] > INSIDE * size:
                 gaps[at + 1] = extent(floats, ints, rec)
-            elif floats[rec + OF] >= 0.0:  # at a border, from where it may turn back
+            elif floats[rec + OF] >= 0.0 and is_plain(
+                floats, ints, int(floats[rec + SHAPE_A])
+            ):  # at a border, from where it may turn back
                 gaps[at + 1] = INSIDE * size + extent(floats, ints, rec) - floats[rec + EXTENT]

@@ -1,0 +1,120 @@
+# mypy: ignore-errors
+"""Contacts of a curved body on the border of two features, by that to which it moves; and which are not found."""
+
+from numba import types
+
+from sceneql.bodies.rigid.tie_rows_kernels import AT_X, put
+from sceneql.compiled.kernels import lean
+from sceneql.contacts.distance.convex import CORE
+from sceneql.contacts.distance.core_kernels import (
+    EDGES,
+    FLOATS,
+    INTS,
+    KIND,
+    POINTS,
+    RADIUS,
+    VERTICES,
+    edges_at,
+)
+from sceneql.contacts.rigid_exact.contact_kernels import (
+    DRIFT,
+    OF,
+    POINT,
+    RECORD,
+    three,
+)
+from sceneql.contacts.rigid_exact.curved import COLUMN, FORM, RING
+from sceneql.contacts.rigid_exact.curved_contact_kernels import follow, speed_at
+from sceneql.contacts.rigid_exact.curved_find_kernels import (
+    FIRST,
+    LEAST,
+    MOVER_A,
+    MOVER_B,
+    SECOND,
+    SHAPE_OF_A,
+    SHAPE_OF_B,
+    in_axes_of_a,
+    meet,
+    slope_along,
+)
+from sceneql.contacts.rigid_exact.features_kernels import AHEAD, LIMIT, extent, is_plain, smaller, way_ahead
+from sceneql.system.signatures_kernels import A, F, I, N
+
+APART = 1e-4
+"""Distance of two contacts, in parts of the smaller body, up to which they are one, on the border of two features."""
+CUT, CUTS = 1e-5, 64
+"""Depth, in parts of the smaller body, from which an edge is in a ring or column; places on the edge that are asked."""
+
+
+@lean(N(A, I, N, N, N))
+def stay(floats, ints, who, next, count):
+    """Drop the points of a circle that lies flat which leave their face now; how many stay."""
+    ma, mb, kept = ints[who + MOVER_A], ints[who + MOVER_B], 0
+    size = smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
+    px, py, pz = three(floats, ma + AT_X)
+    for k in range(count):
+        rec, to = next + RECORD * k, next + RECORD * kept
+        if floats[rec + OF] < 0.0 and extent(floats, ints, rec) < LIMIT * size:
+            x, y, z = three(floats, rec + POINT)
+            ux, uy, uz = speed_at(floats, ma, x, y, z)
+            vx, vy, vz = speed_at(floats, mb, x, y, z)
+            dx, dy, dz = way_ahead(floats, ints, rec, ux - vx, uy - vy, uz - vz)
+            put(floats, ma + AT_X, px + dx, py + dy, pz + dz)
+            follow(floats, ints, rec, ma, mb)
+            leaves = extent(floats, ints, rec) < -LIMIT * size
+            put(floats, ma + AT_X, px, py, pz)
+            follow(floats, ints, rec, ma, mb)
+            if leaves:
+                continue
+        for c in range(RECORD if to != rec else 0):
+            floats[to + c] = floats[rec + c]
+        kept += 1
+    return kept
+
+
+@lean(types.boolean(A, I, N))
+def is_cut(floats, ints, who):
+    """Whether an edge of b is in a ring or a column, as where these lie on it flat: which is not found as a contact."""
+    sb, ma, mb = ints[who + SHAPE_OF_B], ints[who + MOVER_A], ints[who + MOVER_B]
+    fa, fb, ib = ints[ints[who + SHAPE_OF_A] + FLOATS], ints[sb + FLOATS], ints[sb + INTS]
+    form = floats[fa + FORM]
+    if (form != RING and form != COLUMN) or ints[sb + KIND] != CORE:
+        return False
+    deep = floats[fb + RADIUS] - CUT * smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
+    for e in range(ints[ib + EDGES]):
+        edge = edges_at(ints, ib) + 4 * e
+        x, y, z = in_axes_of_a(floats, ma, mb, *three(floats, fb + POINTS + 3 * ints[edge]))
+        ux, uy, uz = in_axes_of_a(floats, ma, mb, *three(floats, fb + POINTS + 3 * ints[edge + 1]))
+        ux, uy, uz = ux - x, uy - y, uz - z
+        for piece in range(CUTS + 1):
+            if slope_along(floats, ints, fa, x, y, z, ux, uy, uz, piece / CUTS)[0] < deep:
+                return True
+    return False
+
+
+@lean(N(A, I, N, F, N, N))
+def meet_ahead(floats, ints, who, margin, next, most):
+    """As `meet`, with the contacts followed; of one on the border of two features that to which it moves; how many."""
+    ma, mb, sb = ints[who + MOVER_A], ints[who + MOVER_B], ints[who + SHAPE_OF_B]
+    count = meet(floats, ints, who, margin, next, most)[0]
+    for k in range(count):
+        follow(floats, ints, next + RECORD * k, ma, mb)
+    if count == 0 or ints[sb + KIND] != CORE or ints[ints[sb + INTS] + VERTICES] == 1:
+        return count
+    if not is_plain(floats, ints, ints[who + FIRST]):
+        return stay(floats, ints, who, next, count)
+    size = smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
+    for k in range(count):
+        for c in range(3):
+            if abs(floats[next + RECORD * k + POINT + c] - floats[next + POINT + c]) > APART * size:
+                return count
+    dx, dy, dz = way_ahead(floats, ints, next, *three(floats, next + DRIFT))
+    x, y, z = three(floats, ma + AT_X)
+    put(floats, ma + AT_X, x + dx, y + dy, z + dz)
+    more = meet(floats, ints, who, margin + LEAST * AHEAD * size, next, 1)[0]
+    if more == 0:
+        put(floats, ma + AT_X, x, y, z)
+        more = min(1, meet(floats, ints, who, margin, next, most)[0])
+    put(floats, ma + AT_X, x, y, z)
+    follow(floats, ints, next, ma, mb)
+    return more
