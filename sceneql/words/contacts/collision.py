@@ -58,14 +58,16 @@ class Collision(Contact):
     rolling / r stays. Masses do not turn, and have none.
 
     Mode `exact`, asked for by name, is for few rigid bodies and what stands or moves by keys and formulas, ties
-    included. Spheres, boxes, planes and convex meshes touch one another, and are touched by ellipsoids (a sphere alone
-    in a group with a scale), cylinders and tori, and balls by implicit and blobby surfaces: what rolls over these is
-    exact. Two curved ones do not meet each other. All contacts that approach are reflected together until none
-    approaches (Smith et al. 2012), and what rests, rolls or slides has the forces of Coulomb's law at every stage of
-    the solver, whose order it keeps. Bounces that are lower than a billionth of the body's size end at once, and those
-    of a pair whose impacts crowd sooner: from a thousandth of it, or with no restitution left, so that what tips from
-    corner to corner comes to rest. Impacts without end stop the run at the contact's line. Many faces on one another,
-    as in a pile or an arch that falls, take long: mode `local` takes these.
+    included. Spheres, boxes, planes and convex meshes touch one another, and are touched by ellipsoids (a sphere
+    alone in a group with a scale), cylinders and tori, and balls by implicit and blobby surfaces: what rolls over
+    these is exact. Two curved ones do not meet each other; a cylinder or torus that stands on its face has four
+    contacts there, as a square would, and one that comes over an edge stops the run. All contacts that approach are
+    reflected together until none approaches (Smith et al. 2012), and what rests, rolls or slides has the forces of
+    Coulomb's law at every stage of the solver, whose order it keeps. Bounces that are lower than a billionth of the
+    body's size end at once, and those of a pair whose impacts crowd sooner: from a thousandth of it, or with no
+    restitution left, so that what tips from corner to corner comes to rest. Impacts without end stop the run at the
+    contact's line. Many faces on one another, as in a pile or an arch that falls, take long: mode `local` takes
+    these.
 
     Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
     no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There
