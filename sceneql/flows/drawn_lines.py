@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.flows.drawn_lines_kernels import choose
 from sceneql.grids.maps.interpolation import interpolation
 
 if TYPE_CHECKING:
@@ -50,26 +51,15 @@ def lines(velocity: Floats, layout: FieldLayout, apart: float, longest: float) -
     counts = np.maximum(np.floor(size / apart).astype(int), 1)
     rows = [low[k] + (np.arange(counts[k]) + 0.5) * size[k] / counts[k] for k in range(axes)]
     seeds = np.stack(np.meshgrid(*rows, indexing="ij"), axis=-1).reshape(-1, axes)
-    taken: set[tuple[int, ...]] = set()
     starts = np.zeros((len(seeds), 3))
     starts[:, :axes] = seeds
     ways = [_way(along, starts, way * step, min(MOST, longest / step)) for way in (1.0, -1.0)]
-    pieces = []
-    for k in range(len(starts)):
-        own: set[tuple[int, ...]] = set()
-        if _bucket(starts[k], low, apart, axes) in taken:
-            continue
-        line = []
-        for way in ways:
-            path = way[: _last(way[:, k], step), k]
-            boxes = [_bucket(point, low, apart, axes) for point in path[1:]]
-            free = next((n for n, box in enumerate(boxes) if box in taken), len(boxes))
-            line += [path[n : n + 2] for n in range(free)]
-            own |= set(boxes[:free])
-        if len(line) >= LEAST:
-            pieces += line
-            taken |= own
-    return np.array(pieces).reshape(-1, 2, 3)
+    found = np.empty(2 * (ways[0].size + ways[1].size))
+    side = 0.5 * apart
+    boxes = np.ceil(size / side).astype(np.int64) + 2  # and those that the last steps of lines end in, outside
+    paths = (way.ravel() for way in ways)
+    count = choose(*paths, len(starts), low - side, side, step, boxes, axes, LEAST, found)
+    return found[: 6 * count].reshape(-1, 2, 3).copy()
 
 
 def _way(along: Callable[[Floats], Floats], starts: Floats, step: float, most: float) -> Floats:
@@ -82,16 +72,3 @@ def _way(along: Callable[[Floats], Floats], starts: Floats, step: float, most: f
             break
         found.append(at + change)
     return np.stack(found)
-
-
-def _last(path: Floats, step: float) -> int:
-    """The number of points of a way until it rests, or comes back to its start."""
-    still = np.flatnonzero(~np.diff(path, axis=0).any(axis=1))
-    count = int(still[0]) + 1 if len(still) else len(path)
-    back = np.flatnonzero(np.linalg.norm(path[4:count] - path[0], axis=1) < 0.6 * step)
-    return int(back[0]) + 5 if len(back) else count
-
-
-def _bucket(point: Floats, low: Floats, apart: float, axes: int) -> tuple[int, ...]:
-    """The box of half the distance that a point stands in."""
-    return tuple(int(k) for k in np.floor((point - low)[:axes] / (0.5 * apart)))
