@@ -8,6 +8,7 @@ import pytest
 
 from flows import VORTEX, Air, waves
 from sceneql.flows.drawn_lines import lines
+from sceneql.flows.readings import _own
 from sceneql.grids.medium import FieldLayout
 
 LONG = bool(os.environ.get("SCENEQL_LONG"))
@@ -198,6 +199,63 @@ def test_walls_that_cut_cells_are_of_second_order_and_take_all_momentum(tmp_path
         assert max(abs(force) for _, force in found) < 1e-6
     assert errors[1] < 0.006
     assert order(errors) > 1.8
+
+
+@pytest.mark.parametrize("advection", ["central", "koren"])
+def test_a_round_solid_takes_the_momentum_that_a_force_gives_the_stream(tmp_path, advection):
+    """Steady in a periodic box: what is carried into faces that the solid shuts counts, too (Re about 15)."""
+    stone = "objects: {stone: {sphere: {position: 0.47 0.52 0 m, radius: 0.2 m}}}\n"
+    air = Air(
+        tmp_path, "{sbdf2: {step: 40 ms}}", 30.0, before=stone, around="[stone]", viscosity="0.03 Pa*s",
+        boundary="{left: {periodic: yes}, bottom: {periodic: yes}}", force='"[0.5, 0.1]"', advection=advection,
+    ).at(30.0)  # fmt: skip
+    state = air.run.state("air")
+    cells, ints = air.tasks["air"].kind.layout(state, "speed"), state.ints[5:]
+    volumes = [_own(ints, state.floats, cells, axis).sum() for axis in range(2)]
+    assert volumes == pytest.approx([1 - np.pi * 0.2**2] * 2, rel=4e-3)
+    force = air.read("stone.force")
+    assert force[:2] == pytest.approx([0.5 * volumes[0], 0.1 * volumes[1]], rel=1e-6)
+
+
+def past(folder, place, along, back):
+    """Force along and across on a ball, ``place`` off the middle of a channel along x or y, or back along it."""
+    middle = 0.4 + place
+    far = 0.9 if back else 0.3
+    where = (far, middle) if along == "x" else (middle, far)
+    speed = f"{'-' if back else ''}{'y*(0.8 - y)' if along == 'x' else 'x*(0.8 - x)'}"
+    ends = ("left", "right") if along == "x" else ("bottom", "top")
+    first, last = ends[::-1] if back else ends
+    velocity = f"[{speed}, 0]" if along == "x" else f"[0, {speed}]"
+    air = Air(
+        folder, "{sbdf2: {step: 20 ms}}", 0.6, size="1.2 0.8 m" if along == "x" else "0.8 1.2 m", cell="0.05 m",
+        before=f"objects: {{ball: {{sphere: {{position: {where[0]} {where[1]} 0 m, radius: 0.13 m}}}}}}\n",
+        around="[ball]", viscosity="1e-3 Pa*s",
+        boundary=f'{{{first}: {{inflow: {{velocity: "{velocity}"}}}}, {last}: {{outflow: {{}}}}}}',
+    ).at(0.6)  # fmt: skip
+    x, y, _ = air.read("ball.force")
+    drag, lift = (x, y) if along == "x" else (y, x)
+    return -drag if back else drag, lift
+
+
+def test_the_force_on_a_solid_is_mirrored_with_the_stream(tmp_path):
+    """Off to one side or the other, forth or back, along x or y; in the middle of a channel nothing lifts it."""
+    drag, lift = past(tmp_path, 0.013, "x", False)
+    assert abs(lift) > 1e-3 * drag
+    for place, along, back in itertools.product((0.013, -0.013), "xy", (False, True)):
+        found = past(tmp_path, place, along, back)
+        assert found == pytest.approx((drag, lift if place > 0.0 else -lift), rel=1e-9), (place, along, back)
+    assert abs(past(tmp_path, 0.0, "x", False)[1]) < 1e-12 * drag
+
+
+def test_the_pressure_in_a_solid_is_zero(tmp_path):
+    """Where no face of a cell is open: nothing solves for it."""
+    stone = "objects: {stone: {sphere: {position: 0.5 0.45 0 m, radius: 0.2 m}}}\n"
+    air = Air(tmp_path, "{sbdf2: {step: 5 ms}}", 0.05, before=stone, around="[stone]", boundary=BESIDE).at(0.05)
+    within = np.hypot(*(air.read("centers")[:, :2] - [0.5, 0.45]).T) < 0.12
+    pressure = air.read("pressure")
+    assert within.any()
+    assert (pressure[within] == 0.0).all()
+    assert np.abs(pressure).max() > 0.1
 
 
 def test_a_staircase_is_of_first_order(tmp_path):

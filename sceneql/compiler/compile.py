@@ -21,6 +21,7 @@ from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
+from sceneql.compiler.passes.unmoved import report_moving
 from sceneql.compiler.studies import check_studies
 from sceneql.graph import Origin, SimulationGraph, Task, Variants
 from sceneql.kinds import Camera, Clock, Exceeds, Model, Object, Output, Picture
@@ -45,6 +46,7 @@ def compile_script(
     background = checked.settings.background is not None
     tasks = expand(checked.tasks, catalogue, without=checked.without, background=background)
     report_hollow(tasks, found)
+    report_moving(tasks, found)
     check_sizes(tasks, found)
     groups = islands(tasks, found)
     drawn = _drawn(tasks)

@@ -6,6 +6,8 @@ Morinishi et al. 1998), upwind, or upwind with half a limited slope (Koren 1993)
 side, it brings no momentum: so what comes back in there cannot grow (Bruneau & Fabrie 1994).
 """
 
+from numba import types
+
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows.layout import (
     AREAS,
@@ -31,7 +33,7 @@ from sceneql.flows.layout import (
 from sceneql.grids.drift_kernels import KOREN as KOREN_SLOPE
 from sceneql.grids.drift_kernels import half_slope
 from sceneql.grids.multigrid.stencil_kernels import flow
-from sceneql.system.signatures_kernels import TERM
+from sceneql.system.signatures_kernels import TERM, A, I
 
 
 @lean_inlined
@@ -166,6 +168,12 @@ def advect(t, y, rate, floats, ints):
                         moved = passing * carried(scheme, y[at + up], y[at + down], step)
                         rate[at + before] -= moved * floats[inverses + before]
                         rate[at + face] += moved * floats[inverses + face]
+
+
+@lean(types.void(A, A, A, I))
+def advected(y, rate, floats, ints):
+    """`advect`, for readings."""
+    advect(0.0, y, rate, floats, ints)
 
 
 @lean(TERM, inner=True)

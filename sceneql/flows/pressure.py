@@ -43,11 +43,11 @@ def write_pressure(
         if not faces.periodic[axis]:
             ties[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = 0.0
         ints[layout.CONDUCTANCES + axis] = assembly.floats(ties.ravel())
-    ints[layout.SINK] = assembly.floats(sink)
     if solid:
         uniform = False
         whole = sum(np.bincount(np.arange(n), weights=_around_cell(faces, areas, axis)) for axis in range(faces.axes))
         sink[whole == 0.0] = -1.0
+    ints[layout.SINK] = assembly.floats(sink)
     ints[layout.ITERATES] = not uniform
     ints[layout.SINGULAR] = not opened.any()
     inner = [faces.areas[axis] / float(cells.spacing[axis]) for axis in range(faces.axes)]

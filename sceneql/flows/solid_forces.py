@@ -25,6 +25,7 @@ def on_solid(
     pressure = density * floats[ints[layout.PRESSURE] : ints[layout.PRESSURE] + cells.count]
     pressure = np.where(owners[count:] == number, pressure, 0.0).reshape(cells.shape[::-1])
     centers = cells.centers()
+    carried = _carried_in(ints, state)
     for axis in range(axes):
         shape = list(cells.shape)
         shape[axis] += not ints[layout.PERIODIC + axis]
@@ -39,13 +40,28 @@ def on_solid(
                 areas.take(range(1, shape[axis]), axis=2 - axis),
             )
         pushed = (pressure * (low - high)).ravel()
-        dragged, points = _dragged(axis, number, cells, ints, density, state, owners[first : first + n])
+        mine_by_face = owners[first : first + n]
+        dragged, points = _dragged(axis, number, cells, ints, density, state, mine_by_face)
+        dragged += density * np.where(mine_by_face == number, carried[first : first + n], 0.0)
         for strength, places in ((pushed, centers), (dragged, points)):
             force[axis] += strength.sum()
             direction = np.zeros(3)
             direction[axis] = 1.0
             torque += np.cross(places * strength[:, None], direction).sum(axis=0)
     return force if what == "force" else torque
+
+
+def _carried_in(ints: tuple[int, ...], state: ModelState) -> Floats:
+    """By face: what is carried into the own cells of shut faces, whose momentum the solid takes [m^4/s^2]."""
+    from sceneql.flows.advection_kernels import advected
+
+    count, at = ints[layout.FACES], ints[layout.AT]
+    floats, rate = state.floats.copy(), np.zeros(len(state.y))
+    floats[ints[layout.INVERSES] : ints[layout.INVERSES] + count] = 1.0
+    advected(state.y, rate, floats, np.array(ints))
+    shut = floats[ints[layout.AREAS] : ints[layout.AREAS] + count] == 0.0
+    found: Floats = np.where(shut, rate[at : at + count], 0.0)
+    return found
 
 
 def _dragged(

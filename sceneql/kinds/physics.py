@@ -118,6 +118,10 @@ class Model(Kind):
         """Objects whose insides it fills or spreads in."""
         return ()
 
+    def standing(self) -> Iterable[Ref]:
+        """Objects that it takes as they are at the start, so that they must not move."""
+        return ()
+
     def lasts(self) -> bool:
         """Whether its bodies are there all the time: births bring energy, and deaths take it."""
         return True

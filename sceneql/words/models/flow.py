@@ -29,6 +29,9 @@ class Flow(Model):
     of order 1. In formulas x, y, z and t are plain numbers in SI. A flat flow has x and y and a `depth`. Sources:
     Harlow & Welch (1965), Phys. Fluids 8, 2182-2189; Chorin (1968), Math. Comp. 22, 745-762; Koren (1993).
 
+    The density is one, so gravity would add the pressure of the fluid's weight and no motion: the scene's `gravity` and
+    other forces leave a flow alone. `force: "[0, -9.81*1000]"` has that pressure; `buoyancy` has warm fluid rise.
+
     A lid that moves along a square: `air: {flow: {size: 1 1 m, cell: 2 cm, density: 1 kg/m^3, viscosity: 0.01 Pa*s,
     boundary: {top: {wall: {velocity: "[1, 0]"}}}}}`, seen by `{field_map: {of: air.speed}}` and `{streamlines: {of:
     air.velocity}}`; a `diffusion` in the same box with `drift: {by: air}` is carried by it. Solvers for flows are
@@ -52,7 +55,7 @@ class Flow(Model):
         {},
     )
     around: tuple[kinds.ObjectRef, ...] = field(
-        "Solids that stand in the flow, where they are at the start; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
+        "Solids that stand still in the flow; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
     )
     edges: Literal["cut_cell", "staircase"] = field(
         "How cells meet these solids: cut by them, or whole where their centers lie outside.", "cut_cell"
@@ -86,6 +89,10 @@ class Flow(Model):
 
     def insides(self) -> Iterable[kinds.Ref]:
         """The solids."""
+        return self.around
+
+    def standing(self) -> Iterable[kinds.Ref]:
+        """The solids: cells are cut by them once."""
         return self.around
 
     def problems(self) -> Iterable[Problem]:
