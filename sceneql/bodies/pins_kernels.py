@@ -4,6 +4,7 @@
 A pin that has been released has an inverse mass above 0.
 """
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import inlined, kernel
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM
 
@@ -18,7 +19,8 @@ EPSILON, SAFE = 2.0**-52, 100.0
 @inlined
 def velocity(floats, ints, c):
     """Component of the prescribed velocity."""
-    return (floats[ints[LATER] + c] - floats[ints[EARLIER] + c]) / (2.0 * floats[ints[APART]])
+    found = (floats[ints[LATER] + c] - floats[ints[EARLIER] + c]) / (2.0 * floats[ints[APART]])
+    return found if floats[channels.STATIC] == 0.0 else 0.0
 
 
 @inlined
@@ -26,7 +28,15 @@ def acceleration(floats, ints, c):
     """Component of the prescribed acceleration."""
     apart = floats[ints[APART]]
     sides = floats[ints[LATER] + c] + floats[ints[EARLIER] + c]
-    return (sides - 2.0 * floats[ints[NOW] + c]) / (apart * apart)
+    found = (sides - 2.0 * floats[ints[NOW] + c]) / (apart * apart)
+    return found if floats[channels.STATIC] == 0.0 else 0.0
+
+
+@inlined
+def leading(x, floats, ints, k, c):
+    """Rate of a component x of the position of the k-th mass."""
+    off = floats[ints[STARTS] + 3 * k + c] + floats[ints[NOW] + c] - x
+    return off if floats[channels.STATIC] == channels.PLACING else velocity(floats, ints, c)
 
 
 @kernel(TERM, inner=True)
@@ -49,7 +59,8 @@ def lead(t, y, rate, floats, ints):
         if floats[ints[INVERSE_AT] + mass] > 0.0:
             continue
         for c in range(3):
-            rate[ints[POSITION_AT] + 3 * mass + c] = velocity(floats, ints, c)
+            x = ints[POSITION_AT] + 3 * mass + c
+            rate[x] = leading(y[x], floats, ints, k, c)
             rate[ints[VELOCITY_AT] + 3 * mass + c] = acceleration(floats, ints, c)
 
 

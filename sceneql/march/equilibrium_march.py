@@ -25,6 +25,9 @@ MOVED = 1e-6
 JUMPED = 1e-6
 """Force on a rest, relative to the largest of the loads, from which on these have jumped."""
 
+LEAPT = 1e-9
+"""Distance between a place and where what is led to it is, relative to the largest place, from which on it leaps."""
+
 
 class EquilibriumMarch(March):
     """Finds the rest of the start, then follows it through the run."""
@@ -34,6 +37,7 @@ class EquilibriumMarch(March):
 
     def _start(self) -> None:
         """Come to rest. Raises LimitRefused where models are held nowhere, RunFailure where there is no rest."""
+        self.floats[channels.STATIC] = channels.RESTING
         super()._start()
         self._refuse_free_motions()
         self._relax(0.0)
@@ -63,6 +67,20 @@ class EquilibriumMarch(March):
         super()._look_for_breakpoint(time)
         self._step_end = min(self._step_end, self._asked)
 
+    def _pass_breakpoint(self) -> None:
+        super()._pass_breakpoint()
+        if self._leaps(self.time):
+            self._relax(self.time)
+
+    def _leaps(self, t: float) -> bool:
+        """Whether what is led has places at an instant [s] to which it leaps from where it is."""
+        self.floats[channels.STATIC] = channels.PLACING
+        off = self.rate(t, self._y1)
+        self.floats[channels.STATIC] = channels.RESTING
+        self._floats_time = np.nan
+        placed = self.system.partner >= 0
+        return bool(np.abs(off[placed]).max(initial=0.0) > LEAPT * np.abs(self._y1[placed]).max(initial=0.0))
+
     def _goes_on(self, status: int) -> bool:
         """Where loads have jumped, rest is found anew; a path that has turned back ends the run."""
         if status != kernels.STEP_TOO_SMALL:
@@ -70,7 +88,7 @@ class EquilibriumMarch(March):
         t = self.time
         after = t + 4.0 * float(np.spacing(t))
         left = np.abs(self._forces(after, self._y1)).max(initial=0.0)
-        if left > JUMPED * max(self._load(t), self._load(after)):
+        if self._leaps(after) or left > JUMPED * max(self._load(t), self._load(after)):
             self._clock[kernels.T1] = after
             self._relax(after)
             return True

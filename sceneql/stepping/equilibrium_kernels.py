@@ -61,8 +61,6 @@ FIRST, LONG = 0.01, 100.0
 LONGEST = 1e6
 """The largest a [s], where motions are so slow that LONG is not beside their periods."""
 FASTER = 4.0
-FEW_PANELS, PANELS = 8, 32
-"""Parts of a step over which the velocities of led places are summed; few where nothing is led."""
 REGULAR = 1e-12
 """Inertia beside the largest stiffness: more than its rounding, less than what bends most easily."""
 FAILURES = 40
@@ -93,25 +91,23 @@ def at_rest(y, kept, numbers):
 
 
 @lean_inlined
-def from_rest(a, rest, velocity, plan, base, y):
-    """The base of a stage from rest, and its first guess y.
-
-    ``velocity``: rates there, of places that are led among them, which stay.
-    Of an entry that no unknown moves x = base + a v is its place, whatever the velocity v that leads it.
-    """
-    at = plan[POSITIONS_AT]
+def from_rest(rest, plan, base, y):
+    """The base of a stage from rest, and its first guess y."""
     for k in range(base.size):
         base[k] = y[k] = rest[k]
-    for k in range(at, at + 3 * plan[POSITIONS], 3):
-        base[plan[k]] -= a * velocity[plan[k]]
-        base[plan[k + 1]] = velocity[plan[k]] - a * velocity[plan[k + 1]]
     for k in range(plan[CORE_AT], plan[CORE_AT] + plan[UNKNOWNS]):
         base[plan[k]] = 0.0
+
+
+@lean_inlined
+def place(rate, t, rest, off, plan, floats, ints):
+    """Move what is led to its places at t, in a state without velocities; ``off``: scratch."""
+    floats[channels.STATIC] = channels.PLACING
+    rate(t, rest, off, floats, ints)
+    floats[channels.STATIC] = channels.RESTING
+    at = plan[POSITIONS_AT]
     for k in range(at, at + 3 * plan[POSITIONS], 3):
-        if base[plan[k + 1]] == 0.0:
-            base[plan[k]] = rest[plan[k]]
-        else:
-            y[plan[k + 1]] = velocity[plan[k]]
+        rest[plan[k]] += off[plan[k]]
 
 
 @lean_inlined
@@ -171,17 +167,16 @@ def relax(functions, t, y, work, settings, numbers, floats, ints):
     jacobian = work[ARRAYS * n : ARRAYS * n + numbers[ROOM]]
     store = work[ARRAYS * n + numbers[ROOM] :]
     scales, plan = settings[SCALES_AT:], numbers[numbers[PLAN_AT] :]
-    led = scratch[:n]
     for k in range(n):
         rest[k] = y[k]
     at_rest(rest, rest, numbers)
+    place(rate_at(functions[AT_RATE]), t, rest, scratch[:n], plan, floats, ints)
     a = FIRST
     failures = passes = pushes = 0
     while passes < PASSES:
         if a < LONG:
             settings[CAREFUL] = 1.0  # plain updates may come to rest on a saddle
-        rate_at(functions[AT_RATE])(t, rest, led, floats, ints)
-        from_rest(a, rest, led, plan, base, y)
+        from_rest(rest, plan, base, y)
         if newton(functions, t, a, base, rest, y, scratch, jacobian, store, scales, settings, plan, floats, ints):
             at_rest(y, rest, numbers)
             for k in range(n):
@@ -212,23 +207,6 @@ def relax(functions, t, y, work, settings, numbers, floats, ints):
     return ASTRAY
 
 
-@lean_inlined
-def led(rate, t, h, y0, rest, own, plan, floats, ints):
-    """Move places that are led on by their own velocities (Simpson's rule); ``own``: scratch."""
-    at, moves = plan[POSITIONS_AT], False
-    for panels in (FEW_PANELS, PANELS):
-        for k in range(at, at + 3 * plan[POSITIONS], 3):
-            rest[plan[k]] = y0[plan[k]]
-        for part in range(2 * panels + 1):
-            rate(t + 0.5 * part * h / panels, y0, own, floats, ints)
-            weight = h / (6.0 * panels) * (1.0 if part in (0, 2 * panels) else 2.0 + 2.0 * (part % 2))
-            for k in range(at, at + 3 * plan[POSITIONS], 3):
-                moves = moves or own[plan[k]] != 0.0
-                rest[plan[k]] += weight * own[plan[k]]
-        if not moves:
-            break
-
-
 @lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1, the rest at t + h on the path of y0; infinite where it is not found there.
@@ -242,22 +220,21 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     scales, plan = settings[SCALES_AT:], numbers[numbers[PLAN_AT] :]
     rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
     change, residual, tangent, own = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n], scratch[3 * n :]
-    end, at = t + h, plan[POSITIONS_AT]
+    end = t + h
     settings[CAREFUL] = 0.0
     settings[ENDED] = ASTRAY
     for k in range(n):
         rest[k] = y0[k]
-    led(rate, t, h, y0, rest, own, plan, floats, ints)
+    place(rate, end, rest, own, plan, floats, ints)
     foresee(rest, rest, floats)
     before = first = 0.0
     updates, reached = 0, False
     while updates < MOST:
-        rate(end, rest, own, floats, ints)
         if settings[SIGN] == 0.0:
             slopes(functions, end, rest, jacobian, floats, ints)
             settings[SIGN] = longest(plan, jacobian, scales, store)
         a = settings[SIGN]
-        from_rest(a, rest, own, plan, base, y1)
+        from_rest(rest, plan, base, y1)
         leave(rate, end, a, base, y1, residual, plan, floats, ints)
         floats[channels.NEWTON] = a * a
         slopes(functions, end, y1, jacobian, floats, ints)
@@ -269,9 +246,6 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             change[k] = residual[k]
         for k in range(HEAD + numbers[VELOCITIES], HEAD + numbers[VELOCITIES] + numbers[TALLIES]):
             change[numbers[k]] = 0.0
-        for k in range(at, at + 3 * plan[POSITIONS], 3):
-            if base[plan[k + 1]] != 0.0:
-                change[plan[k + 1]] = 0.0  # rounding, which a would multiply, of a velocity that is led
         if not factor_stage(plan, a, jacobian, scales, store):
             break
         if not solve_stage(plan, a, jacobian, scales, store, change):
@@ -279,9 +253,6 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         for k in range(n):
             y1[k] += change[k]
         follow(plan, a, base, y1)
-        for k in range(at, at + 3 * plan[POSITIONS], 3):
-            if base[plan[k + 1]] != 0.0:
-                y1[plan[k]] = rest[plan[k]]
         at_rest(y1, y0, numbers)
         foresee(rest, y1, floats)
         for k in range(n):

@@ -5,7 +5,7 @@ memories of words follow. Where a solver needs slopes, three arrays of the state
 where they are.
 """
 
-RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, GROWS, LAGS, STALE, HEAD = range(13)
+RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, GROWS, LAGS, STALE, STATIC, HEAD = range(14)
 """
 RATES: how many times the rate was evaluated.
 
@@ -38,12 +38,18 @@ takes the step again when the island has been laid out anew.
 LAGS: how many times numbers that a stage holds while its equations are solved were taken anew, as the loads of friction
 with a potential: from the state in BEFORE, when this changes. STALE: the largest part by which such numbers changed
 then; 1 where a stage has begun.
+
+STATIC: RESTING where a march is one of rests: what is led then has neither velocity nor acceleration. PLACING: rates of
+its positions are instead how far it is from its places [m]. 0 in a march in time.
 """
 
 NO_SLOPES, OUTSIDE, BETWEEN = 0.0, -1.0, -2.0
 """Values of STAGE, for contacts. NO_SLOPES: they act between steps, and no solver needs slopes. OUTSIDE: they act
 within implicit stages, and none is being solved. BETWEEN: they act between steps, but a solver needs slopes: a body
 that rests at a step's start stays tied up to its end, so that the rate is smooth within the step and has slopes."""
+
+RESTING, PLACING = 1.0, 2.0
+"""Values of STATIC."""
 
 NO_WAY_ON, UNSEEN = -1.0, -2.0
 """Values of CHANGED with which an impact stops the march."""

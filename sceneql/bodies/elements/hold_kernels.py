@@ -1,7 +1,17 @@
 # mypy: ignore-errors
 """Nodes that are held in some components, and moved."""
 
-from sceneql.bodies.pins_kernels import NOW, POSITION_AT, STARTS, VELOCITY_AT, WORK_AT, acceleration, rounding, velocity
+from sceneql.bodies.pins_kernels import (
+    NOW,
+    POSITION_AT,
+    STARTS,
+    VELOCITY_AT,
+    WORK_AT,
+    acceleration,
+    leading,
+    rounding,
+    velocity,
+)
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM
 
@@ -46,7 +56,7 @@ def lead(t, y, rate, floats, ints):
         for c in range(3):
             if ints[HELD + c] == 1:
                 at = 3 * ints[NODES + k] + c
-                rate[ints[POSITION_AT] + at] = velocity(floats, ints, c)
+                rate[ints[POSITION_AT] + at] = leading(y[ints[POSITION_AT] + at], floats, ints, k, c)
                 rate[ints[VELOCITY_AT] + at] = acceleration(floats, ints, c)
 
 

@@ -33,6 +33,8 @@ def place(floats, ints, k, pose):
 @lean_inlined
 def motion(y, floats, ints, k, c):
     """(velocity, acceleration) of a component of a node."""
+    if floats[channels.STATIC] != 0.0:
+        return 0.0, 0.0
     apart = floats[ints[APART]]
     before, after = place(floats, ints, k, EARLIER)[c], place(floats, ints, k, LATER)[c]
     here = place(floats, ints, k, NOW)[c]
@@ -86,6 +88,8 @@ def lead(t, y, rate, floats, ints):
             if ints[HELD + c] == 1:
                 at = 3 * ints[LISTS + k] + c
                 rate[ints[POSITION_AT] + at], rate[ints[VELOCITY_AT] + at] = motion(y, floats, ints, k, c)
+                if floats[channels.STATIC] == channels.PLACING:
+                    rate[ints[POSITION_AT] + at] = place(floats, ints, k, NOW)[c] - y[ints[POSITION_AT] + at]
 
 
 @lean(TERM, inner=True)
