@@ -58,3 +58,16 @@ def test_what_starts_away_from_its_place_or_leaps_is_at_rest_there_at_once(tmp_p
         np.testing.assert_allclose(end, -np.asarray(other), atol=1e-8)
         np.testing.assert_allclose(end, wanted, rtol=1e-7, atol=1e-7)
         assert energy == pytest.approx(wanted_energy, rel=1e-7, abs=1e-12)
+
+
+def test_a_pin_that_leaps_takes_along_what_hangs_on_it_at_once(tmp_path):
+    springs = ", ".join(f"{{between: [{ends}], rest: 0.5 m, stiffness: 100 N/m}}" for ends in ("a, b", "b, c"))
+    script = (
+        "clock: {end: 1 s}\nsolvers: {main: equilibrium}\nmodels: {m: {mass_spring: {mass: 1 kg, masses: "
+        "{a: {position: 0 0 0 m}, b: {position: 1 0 0 m}, c: {position: 2 0 0 m}}, "
+        f"springs: [{springs}], pins: {{a: {{}}, c: {{{along(repr('where(time < 0.2 s, 0.5 m, 1 m)'))}}}}}}}}}}}\n"
+    )
+    for shift, (found,) in zip(
+        (0.5, 0.5, 1, 1), watch(tmp_path, script, [0, 0.1, 0.2, 0.3], "m.positions"), strict=True
+    ):
+        np.testing.assert_allclose(np.asarray(found)[:, 0], [0, 1 + shift / 2, 2 + shift], rtol=1e-14)

@@ -52,8 +52,8 @@ class EquilibriumMarch(March):
             raise self._failure("the rest that was found is unstable: the least push would leave it")
         if found != REACHED:
             raise self._failure("no rest was found: forces have none, or move on without end")
-        self._y1[:] = y
-        self._rate1[:] = self.rate(t, y)
+        self._y0[:] = self._y1[:] = y  # an instant that is asked for may lie an ulp before this one
+        self._rate0[:] = self._rate1[:] = self.rate(t, y)
 
     def _march(self, target: float, pace: Pace) -> None:
         """Steps end at the instants that are asked for."""
