@@ -120,6 +120,22 @@ def test_the_object_and_the_points_follow_the_body(tmp_path):
         np.testing.assert_allclose(moment.read("it", "tip.velocity"), speed, rtol=1e-13)
 
 
+def test_bodies_that_share_an_object_drive_one_each(tmp_path):
+    script = """
+clock: {end: 0.5 s}
+objects: {brick: {box: {size: 0.4 0.2 0.2 m}}}
+models:
+  pair: {rigid: {density: 800 kg/m^3, bodies: {a: {of: brick, position: 0 1 0 m}, b: {of: brick, position: 1 1 0 m}}}}
+  row: {repeat: {count: 2, as: k}, rigid: {of: brick, density: 800 kg/m^3, position: ["1 m*k", 3 m, 0 m]}}
+"""
+    (tmp_path / "scene.yaml").write_text(script)
+    run = Run(load(tmp_path / "scene.yaml", pruned=False))
+    (moment,) = run.moments([0.5])
+    shapes = [name for name in run.graph.tasks if name.partition(".")[0] == "brick"]
+    places = sorted(tuple(moment.read(name, "position").tolist()) for name in shapes)
+    assert places == [(0, 1, 0), (0, 3, 0), (1, 1, 0), (1, 3, 0)]
+
+
 def test_a_center_of_mass_off_the_origin_moves_the_object_about_itself(tmp_path):
     script = BLOCK.replace("density: 500 kg/m^3", "mass: 2 kg, center: 0.1 0 0 m")
     rows = watch(tmp_path, script, [0, 1], "it.position", "it.origin", "it.energy", "plank.position")

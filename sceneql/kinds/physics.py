@@ -174,6 +174,10 @@ class Model(Kind):
         """Fields of objects that it sets: ``{object name: {field: output}}``."""
         return {}
 
+    def with_own_shapes(self, own: Callable[[Ref], Ref]) -> Model:
+        """Itself, each of its bodies driving the object that ``own`` gives for the one that the script names."""
+        return self
+
 
 class Interaction(Kind):
     """What adds to the rate of models: a force, or a tie between two bodies."""

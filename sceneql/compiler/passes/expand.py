@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.passes.own_shapes import own_shapes
 from sceneql.graph import Task
 from sceneql.kinds import Camera, Contact, Interaction, Kind, Light, Model, Object, Output, Picture, Solver, Value
 from sceneql.quantities.dimension import LENGTH
@@ -48,7 +49,7 @@ def expand(
         not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
     ):
         add("solver", "solvers", "auto")
-    driven = _drive(result)
+    driven = _drive(own_shapes(result))
     draws = any(isinstance(task.kind, Output) and task.kind.draws for task in driven.values())
     return _show(driven, catalogue) if draws else driven
 

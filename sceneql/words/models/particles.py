@@ -258,3 +258,7 @@ class Particles(Model):
     def drives(self) -> Mapping[str, Mapping[str, str]]:
         """The position of the object that is the particle."""
         return {} if self.of is None else {self.of.name: {"position": "position"}}
+
+    def with_own_shapes(self, own: Callable[[Ref], Ref]) -> Particles:
+        """Itself with an object of its own."""
+        return self if self.of is None else self.model_copy(update={"of": own(self.of)})

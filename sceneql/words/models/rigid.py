@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -58,12 +58,13 @@ class Rigid(Body, Model):
     """Rigid bodies: m dv/dt = F and dL/dt = torque (Euler 1776), L = R I R^T w being the angular momentum in the world.
 
     One is described by the fields themselves, several under `bodies` by name; the fields are then what each has that
-    says no other. A body is an object with an inside (`of`), which it drives, of even density; or it has a mass and
-    principal moments of inertia. Forces act at its center of mass, or at one of its `points`. The angular momentum is
-    part of the state, so that every method keeps it to rounding where no torque acts; `verlet`, `blanes_moan` and
-    `semi_implicit_euler` turn bodies by their exact free rotation between the forces' kicks. A body tells its
-    `position`, `velocity`, `acceleration`, `origin`, `rotation`, `spin`, `body_spin` and `inertia`, as `crate.spin` or
-    `stones.first.spin`; a point its `position` and `velocity`, as `crate.hook.position`.
+    says no other. A body is an object with an inside (`of`), which it drives, of even density; bodies that name one
+    object are drawn as copies of it. Or a body has a mass and principal moments of inertia. Forces act at its center of
+    mass, or at one of its `points`. The angular momentum is part of the state, so that every method keeps it to
+    rounding where no torque acts; `verlet`, `blanes_moan` and `semi_implicit_euler` turn bodies by their exact free
+    rotation between the forces' kicks. A body tells its `position`, `velocity`, `acceleration`, `origin`, `rotation`,
+    `spin`, `body_spin` and `inertia`, as `crate.spin` or `stones.first.spin`; a point its `position` and `velocity`,
+    as `crate.hook.position`.
     """
 
     turns: ClassVar[bool] = True
@@ -263,6 +264,17 @@ class Rigid(Body, Model):
             for name, body in self._each.items()
             if body.of is not None
         }
+
+    def with_own_shapes(self, own: Callable[[Ref], Ref]) -> Rigid:
+        """Itself with an object for each body."""
+
+        def shaped(body: Body) -> dict[str, Ref]:
+            return {} if body.of is None else {"of": own(body.of)}
+
+        several = {name: body.model_copy(update=shaped(body)) for name, body in (self.bodies or {}).items()}
+        found = self.model_copy(update={**shaped(self), "bodies": several or None})
+        found._whole, found._made = {}, {}
+        return found
 
     def insides(self) -> Iterable[Ref]:
         """The objects whose mass properties it takes."""
