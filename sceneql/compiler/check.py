@@ -28,6 +28,7 @@ from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure, whole, written
 from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
 from sceneql.quantities.expression import Link, Type, walk
+from sceneql.quantities.other_words import instead
 
 SETTINGS = tuple(Settings.model_fields)
 KEYS = (*SETTINGS, "sceneql", "define", "variants")
@@ -371,7 +372,7 @@ class _Checker:
         choices = [n for n in self.entries if self.family(n) in (mark.family, mark.also)]
         words = self.catalogue.words(mark.family)
         section, _, inside = name.partition(".")
-        hint = suggestion(name, [*choices, *words])
+        hint = instead("part", name) or suggestion(name, [*choices, *words])
         if section in self.script.sections and inside in self.entries:
             hint = f"a part is named without its section: write `{inside}`"
         elif hint is None and words:

@@ -14,7 +14,7 @@ from sceneql.quantities.diagnostic import Diagnostics
 
 MOST_COPIES: Final = 10_000
 _MOST_HOPS: Final = 64
-_NUMBERED = re.compile(r"(\w*)[{[(<$%]+(\w+)[}\])>]*\w*")
+_NUMBERED = re.compile(r"(\w*?)_?[{[(<$%]+(\w+)[}\])>]*\w*?((?:[{[(<$%]+\w+[}\])>]*\w*)*)")
 _LOOP = re.compile(r"for(?:each)?\s+\(?(?:int |let |var )?\s*(\w+)\b.*")
 
 
@@ -39,6 +39,9 @@ def numbered(name: str) -> str | None:
     """The help for a name with its copy's number in it, ``hook_{i}``, or a loop, ``for i in``; None for other names."""
     if (found := _NUMBERED.fullmatch(name)) is not None:
         plain, index = found[1].rstrip("_") or "name", found[2]
+        if found[3]:
+            copies = f"one number counts rows and columns, as `floor({index}/3)` and `mod({index}, 3)` of it"
+            return f"write `{plain}: {{repeat: {{count: 12, as: {index}}}, ...}}`; {copies}: `sceneql words repeat`"
     elif (loop := _LOOP.fullmatch(name)) is not None:
         plain, index = "name", loop[1]
     else:
