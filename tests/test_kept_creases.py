@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sceneql.bodies.elements.element_mesh import worst_angle
 from sceneql.bodies.filling.kept_creases import creases_kept
 from sceneql.bodies.filling.stuffing import stuffed
 from sceneql.bodies.filling.tetrahedra import boundary, volumes
@@ -41,6 +42,13 @@ def test_all_corners_of_a_box_are_nodes(tmp_path):
     mesh = made(tmp_path, OBJECTS["box"][0], 0.11)
     for corner in np.array(np.meshgrid([-0.5, 0.5], [-0.35, 0.35], [-0.265, 0.265])).reshape(3, -1).T:
         assert np.linalg.norm(mesh.points - corner, axis=1).min() < 1e-9
+
+
+@pytest.mark.parametrize("place", ["0 1.6 0", "0.1 0.3 7", "1e3 0 0"])
+def test_boxes_of_whole_numbers_of_spacings_have_good_angles_at_any_place(tmp_path, place):
+    box = made(tmp_path, f"box: {{size: 1 0.5 0.3 m, position: {place} m}}", 0.1)
+    assert np.degrees(worst_angle(box.points, box.cells)[0]) > 44.0
+    assert volumes(box.points, box.cells).sum() == pytest.approx(0.15, rel=1e-12)
 
 
 @pytest.mark.parametrize("spacing", [0.25, 0.4, 0.6, 0.9])

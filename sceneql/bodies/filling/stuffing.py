@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 NEAR = (0.41189, 0.24999)
 """An end of a short (a long) edge moves to where the surface cuts it within this part of the edge (table 1 there).
 Angles between faces were then from 17 to 150 degrees in smooth objects, from 10 to 160 in any that were tried."""
+TOUCHING = 1e-7
+"""Spacings from a side of the box within which a place of the lattice lies on it: it is taken as inside by as much, so
+that rounding does not decide whether a flat side of the object has its lattice there."""
 OUT, ON, IN = 0, 1, 2
 
 
@@ -41,7 +44,7 @@ class Stuffing:
 
 def lattice_counts(low: Floats, high: Floats, spacing: float) -> Floats:
     """(3,) corners of cubes along the sides of a box, so many that the outermost lie outside."""
-    counts: Floats = np.floor(np.maximum(high - low, 0.0) / spacing) + 3
+    counts: Floats = np.floor(np.maximum(high - low, 0.0) / spacing + TOUCHING) + 3
     return counts
 
 
@@ -61,7 +64,8 @@ def stuffed(
     start = 0.5 * (low + high) - 0.5 * spacing * (counts - 1)
     corners = _grid(counts)
     places = np.concatenate([start + spacing * corners, start + spacing * (_grid(counts - 1) + 0.5)])
-    inside = holds(places)
+    asked = _within(places, low, high, TOUCHING * spacing)
+    inside = holds(asked)
     tetrahedra = _lattice(counts, inside)
     odd = np.concatenate([corners.sum(axis=1), _grid(counts - 1).sum(axis=1)]) % 2
     used, tetrahedra = _compact(tetrahedra)
@@ -72,7 +76,9 @@ def stuffed(
     cut = state[ends[:, 0]] != state[ends[:, 1]]
     ends, long = ends[cut], long[cut]
     ends = np.where((state[ends[:, 0]] == IN)[:, None], ends, ends[:, ::-1])
-    share = crossing(points[ends[:, 0]], points[ends[:, 1]])
+    share = crossing(asked[used][ends[:, 0]], points[ends[:, 1]])
+    touches = (asked != places).any(axis=1)[used][ends[:, 0]]
+    share = np.where(touches & (share < 10.0 * TOUCHING), 0.0, share)
     surface = points[ends[:, 0]] + share[:, None] * (points[ends[:, 1]] - points[ends[:, 0]])
     points, state = _moved(points, state, ends, share, surface, np.where(long, NEAR[1], NEAR[0]))
     return _cut(points, state, tetrahedra, ends, surface, 2 * middle + odd[used])
@@ -81,6 +87,12 @@ def stuffed(
 def _grid(counts: NDArray[int64]) -> NDArray[int64]:
     """(n, 3) whole coordinates of a grid, z fastest."""
     return np.stack(np.meshgrid(*(np.arange(c) for c in counts), indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def _within(places: Floats, low: Floats, high: Floats, near: float) -> Floats:
+    """Places (n, 3), those within ``near`` of a side of the box as far inside."""
+    found: Floats = np.where(np.abs(places - low) < near, low + near, places)
+    return np.where(np.abs(found - high) < near, high - near, found)
 
 
 def _lattice(counts: NDArray[int64], inside: NDArray[bool_]) -> Ints:
