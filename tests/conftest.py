@@ -1,5 +1,6 @@
 """What holds for all tests: none of them fails for taking long, since machines differ and may be busy."""
 
+import gc
 import signal
 
 from hypothesis import settings
@@ -9,3 +10,13 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell leaves it fo
 
 settings.register_profile("unhurried", deadline=None)
 settings.load_profile("unhurried")
+
+
+def pytest_collection_modifyitems(items):
+    """The long tests come first, so that at the end no core works on one alone."""
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)
+
+
+def pytest_collection_finish():
+    """What was collected stays to the end, and is not looked over each time that Python looks for garbage."""
+    gc.freeze()

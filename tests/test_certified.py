@@ -7,6 +7,7 @@ import pytest
 from flint import fmpq_poly
 from hypothesis import example, given, settings
 
+from campaigns import LONG
 from common_scenes import COMMON, RAYS, SCENES, TOLERANCE, certified, check, chords, rays, scene, tape_of
 from exact_rays import along, blob_entry, exact, first_entry, real_roots, roots_of
 from plain_tapes import implicit
@@ -43,7 +44,7 @@ def test_first_roots_are_those_of_exact_arithmetic(name):
 def test_first_roots_of_forty_blobs_are_those_of_exact_arithmetic():
     tape, clip = scene("blob40")
     found = SCENES["blob40"]
-    segments = rays(clip, RAYS // 3)
+    segments = rays(clip, RAYS // (3 if LONG else 10))
     expected = [
         blob_entry(found["parts"], found["threshold"], (o, d), a, b) for o, d, a, b in zip(*segments, strict=True)
     ]

@@ -1,16 +1,38 @@
-"""The scenes hold what they promise, at any frame rate and with any number of threads."""
+"""The scenes hold what they promise, at any frame rate and with any number of threads.
+
+SCENEQL_LONG=1 measures their numbers at all frames of the whole films, as `sceneql gallery check` does; else few frames
+do, as far as the last instant that an expectation names, or a part of a film of which all ask for the most or the least
+alone.
+"""
 
 import math
 from pathlib import Path
 
 import pytest
 
+from campaigns import LONG
 from sceneql import pipeline
 from sceneql.march.equilibrium_march import EquilibriumMarch
+from sceneql.quantities.expression import Call, walk
+from sceneql.report.expect import outcomes
 from sceneql.report.gallery import compare, numbers, poster
+from sceneql.run.series import instant_of, plain
 
 SCENES = sorted((Path(__file__).parent.parent / "scenes").glob("*.yaml"))
 SOLVED = [path for path in SCENES if "models:" in path.read_text()]
+FRAMES = 12
+PART = 0.4
+ROUGH = ["element=p1", "spacing=25 mm"]
+FEWER = {
+    "bell": [f"models.struck.elastic.{given}" for given in ROUGH],
+    "bowl": ["models.parts.rigid.bodies={ring: {of: ring}, die: {of: die}, ball: {of: ball}}"],
+}
+"""By scene, what takes less time: parts that no expectation names are coarser, or fewer."""
+COARSER = {
+    "bell": [f"models.hum.elastic.{given}" for given in ROUGH],
+    "bracket_bends": [f"models.{name}.elastic.element=p1" for name in ("large", "small")],
+}
+"""What else leaves a scene's steps as they are: of these alone the law of frame rates tells."""
 
 
 def named(scene):
@@ -21,9 +43,34 @@ def test_there_are_scenes_to_show():
     assert len(SCENES) >= 6
 
 
+def few_frames(graph, variant):
+    """Settings by which a scene's expectations of a variant are measured at few frames, and no longer than need be."""
+    held = [one for one in graph.settings.expect.values() if one.variant == variant]
+    exprs = [value.expr for one in held for value in (one.of, one.value, one.below) if value is not None]
+    calls = [node for expr in exprs for node in walk(expr) if isinstance(node, Call)]
+    clock = graph.settings.clock
+    end = clock.end
+    if not any(call.op == "final" for call in calls) and not any(plain(one.of.expr) for one in held):
+        end = max([PART * end, *(instant_of(call) for call in calls if call.op == "at")])
+    return [*FEWER.get(graph.name, []), f"clock.end={end!r} s", f"clock.fps={FRAMES * clock.speed / end!r}"]
+
+
+def measured(path):
+    """What a scene's expectations measure."""
+    if LONG:
+        return numbers(path)
+    graph = pipeline.load(path)
+    found = []
+    for variant in dict.fromkeys(expect.variant for expect in graph.settings.expect.values()):
+        sets = few_frames(graph, variant)
+        found += outcomes(pipeline.load(path, variant=variant, sets=sets, pruned=False), variant)
+    return found
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_a_scene_gives_its_numbers_and_says_where_they_are_known_from(path):
-    found = numbers(path)
+    found = measured(path)
     assert found
     assert [str(outcome) for outcome in found if not outcome.holds] == []
     assert all(outcome.expect.because.strip() for outcome in found)
@@ -52,11 +99,16 @@ def test_the_ball_hits_and_rests_when_the_series_of_its_bounces_says():
     assert moment.read("ground", "rest.time") == pytest.approx(first * (1 + 0.8) / (1 - 0.8), abs=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", SOLVED, ids=lambda path: path.stem)
 def test_the_physics_does_not_know_the_frame_rate(path):
-    ends = []
-    for fps in (24, 60):
-        graph = pipeline.load(path, sets=[f"clock.fps={fps}", "clock.end=0.4 s"], pruned=False)
+    """Of a sixth of the film, at 6 and at 15 frames."""
+    lighter, ends = [*FEWER.get(path.stem, []), *COARSER.get(path.stem, [])], []
+    whole = pipeline.load(path).settings.clock
+    for count in (6, 15):
+        fps = count * 6 * whole.speed / whole.end
+        sets = [*lighter, f"clock.fps={fps!r}", f"clock.end={whole.end / 6!r} s"]
+        graph = pipeline.load(path, sets=sets, pruned=False)
         clock = graph.settings.clock
         *_, last = pipeline.simulate(graph, [*clock.frames(clock.fps), clock.end])
         marches = [island.march for island in last.run.islands]
