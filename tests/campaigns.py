@@ -3,3 +3,8 @@
 import os
 
 LONG = "SCENEQL_LONG" in os.environ
+
+
+def examples(count):
+    """Examples of a law that is tried on so many in the long run: a third of them in the others."""
+    return count if LONG else count // 3

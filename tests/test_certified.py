@@ -7,7 +7,7 @@ import pytest
 from flint import fmpq_poly
 from hypothesis import example, given, settings
 
-from campaigns import LONG
+from campaigns import LONG, examples
 from common_scenes import COMMON, RAYS, SCENES, TOLERANCE, certified, check, chords, rays, scene, tape_of
 from exact_rays import along, blob_entry, exact, first_entry, real_roots, roots_of
 from plain_tapes import implicit
@@ -209,7 +209,7 @@ def test_a_ray_that_begins_on_a_surface_does_not_meet_it_there():
         assert t[0] == pytest.approx(1.4, abs=1e-9)
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(tape=tapes(), ray=some_rays())
 @example(
     tape=implicit(lambda b, op, c: op("sin", op("pow", b.y, b.z))),
@@ -241,7 +241,7 @@ def test_bounds_on_a_ray_contain_values_and_slopes(tape, ray):
         assert (change <= most * np.diff(t) + blur).all()
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(tape=tapes(names=SMOOTH), ray=some_rays())
 def test_no_root_of_a_surface_is_missed(tape, ray):
     origin, direction, t0, t1 = ray

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from campaigns import LONG
+from campaigns import LONG, examples
 from meshes import (
     BALL,
     CLOSED,
@@ -166,7 +166,7 @@ def test_a_corner_pushed_through_the_mesh_is_found_folded():
     assert (folds(tape_of(BALL), Polygons(vertices, found.triangles, found.normals)) == np.flatnonzero(turned)).all()
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(tape=tapes(), cell=st.sampled_from([0.13, 0.25, 0.4]))
 def test_any_field_whatever_gives_a_closed_manifold_of_finite_vertices(tape, cell):
     found = polygonise(tape, (-1.5,) * 3, (1.5,) * 3, cell)
