@@ -200,7 +200,7 @@ def test_any_field_whatever_gives_a_closed_sharp_manifold_of_finite_vertices(tap
     assert ((np.abs(lengths - 1.0) < 1e-9) | (lengths == 0.0)).all()
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(tape=tapes(), cell=st.sampled_from([0.3, 0.5]), tolerance=st.sampled_from([None, 3e-3, 0.03]))
 def test_any_field_whatever_gives_a_closed_manifold_when_refined(tape, cell, tolerance):
     found, left = refined(tape, (-1.5,) * 3, (1.5,) * 3, cell, tolerance)
