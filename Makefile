@@ -17,7 +17,7 @@ test: $(VENV)/installed-test
 
 test-long: $(VENV)/installed-test
 	SCENEQL_FUZZ=1000000 $(BIN)/python -m pytest tests -k "fuzz"
-	SCENEQL_LONG=1 $(BIN)/python -m pytest tests/test_same_bytes.py tests/test_damaged_cache.py
+	SCENEQL_LONG=1 $(BIN)/python -m pytest -n auto --dist worksteal
 	@# Kernels that look at every index, compiled into a cache of their own.
 	NUMBA_BOUNDSCHECK=1 SCENEQL_CACHE=$(VENV)/checked $(BIN)/python -m pytest -n auto --dist worksteal
 	@# Kernels compiled by numba as it is, without what compiled/numba replaces of it; they have a cache of their own.

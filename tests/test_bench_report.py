@@ -11,7 +11,9 @@ import xml.etree.ElementTree as ET
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 
+from campaigns import LONG
 from sceneql import pipeline
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
@@ -63,6 +65,12 @@ def few(monkeypatch):
     monkeypatch.setattr(Catalogue, "words", lambda self, family: [w for w in words(self, family) if w in kept])
 
 
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Figures are made and their files written, but nothing is drawn: other tests look at what is."""
+    monkeypatch.setattr(Figure, "savefig", lambda self, file, **options: file.write(b"<svg/>"))
+
+
 def measured(tmp_path, script, *sets):
     path = tmp_path / "scene.yaml"
     path.write_text(script)
@@ -71,7 +79,9 @@ def measured(tmp_path, script, *sets):
         return text, list(csv.DictReader(file))
 
 
-def test_the_observed_orders_are_the_methods_orders(tmp_path, quick):
+def test_the_observed_orders_are_the_methods_orders(tmp_path, quick, undrawn, request):
+    if not LONG:  # the orders of all: test_solvers.py and test_implicit_solvers.py
+        request.getfixturevalue("few")
     text, rows = measured(tmp_path, SPRING + EXACT)
     orders = {row["solver"]: float(row["order"]) for row in rows if row["order"]}
     known = {"euler": 1, "semi_implicit_euler": 1, "midpoint": 2, "rk4": 4}
@@ -88,7 +98,7 @@ def test_the_observed_orders_are_the_methods_orders(tmp_path, quick):
     assert all(4 * int(row["steps"]) <= int(row["evaluations"]) <= 4 * int(row["steps"]) + 2 for row in rk4)
 
 
-def test_without_a_solution_the_reference_is_another_methods(tmp_path, quick, few):
+def test_without_a_solution_the_reference_is_another_methods(tmp_path, quick, few, undrawn):
     text, rows = measured(tmp_path, SPRING)
     assert "against scipy's DOP853" in text
     by_step = {(row["solver"], row["setting"]): float(row["error"]) for row in rows}
@@ -100,12 +110,12 @@ def test_without_a_solution_the_reference_is_another_methods(tmp_path, quick, fe
         assert found == pytest.approx(float(row["error"]), rel=0.02, abs=1e-12)
 
 
-def test_a_number_that_is_not_exact_is_no_solution(tmp_path, quick, few):
+def test_a_number_that_is_not_exact_is_no_solution(tmp_path, quick, few, undrawn):
     text, _ = measured(tmp_path, SPRING + HALF)
     assert "against scipy's DOP853" in text
 
 
-def test_failed_runs_are_listed_as_failed(tmp_path, quick, few):
+def test_failed_runs_are_listed_as_failed(tmp_path, quick, few, undrawn):
     text, rows = measured(tmp_path, SPRING, "define.k=1e4")
     failed = [row for row in rows if row["outcome"] != "ok"]
     assert {"rk4", "midpoint"} <= {row["solver"] for row in failed}
@@ -163,7 +173,7 @@ outputs: {table: {record: {of: [swing.energy]}}}
 
 
 @pytest.mark.parametrize("floor", ["", "{collision: {restitution: 0.7}}"])
-def test_masses_are_benched_with_their_drift_and_a_page_with_and_without_contacts(tmp_path, quick, few, floor):
+def test_masses_are_benched_with_their_drift_and_a_page_with_and_without_contacts(tmp_path, quick, few, undrawn, floor):
     script = PENDULUM.replace(", FLOOR", f", {floor}" if floor else "")
     graph = pipeline.load(written(tmp_path, script))
     text = bench(graph, tmp_path, asked=1e-3)
@@ -269,8 +279,6 @@ def test_labels_move_apart_as_little_as_they_need():
 
 def test_a_label_stands_at_the_end_that_is_nearest_to_it():
     """Of curves by run time that is the last point, of those by step the first."""
-    from matplotlib.figure import Figure
-
     axes = Figure().subplots()
     axes.plot([1.0, 2.0, 3.0], [1.0, 0.5, 0.1], label="time")
     axes.plot([3.0, 2.0, 1.0], [2.0, 1.0, math.nan], label="step")

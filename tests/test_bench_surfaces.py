@@ -64,6 +64,7 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
+@pytest.mark.long
 def test_rays_and_meshes_are_measured(tmp_path, monkeypatch):
     monkeypatch.setattr(surface_measures, "SIZES", (1_296, 5_184, 60_000))
     monkeypatch.setattr(surface_measures, "CELLS", (16, 32, 64))

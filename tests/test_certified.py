@@ -7,6 +7,7 @@ import pytest
 from flint import fmpq_poly
 from hypothesis import example, given, settings
 
+from campaigns import LONG, examples
 from common_scenes import COMMON, RAYS, SCENES, TOLERANCE, certified, check, chords, rays, scene, tape_of
 from exact_rays import along, blob_entry, exact, first_entry, real_roots, roots_of
 from plain_tapes import implicit
@@ -43,7 +44,7 @@ def test_first_roots_are_those_of_exact_arithmetic(name):
 def test_first_roots_of_forty_blobs_are_those_of_exact_arithmetic():
     tape, clip = scene("blob40")
     found = SCENES["blob40"]
-    segments = rays(clip, RAYS // 3)
+    segments = rays(clip, RAYS // (3 if LONG else 10))
     expected = [
         blob_entry(found["parts"], found["threshold"], (o, d), a, b) for o, d, a, b in zip(*segments, strict=True)
     ]
@@ -208,7 +209,7 @@ def test_a_ray_that_begins_on_a_surface_does_not_meet_it_there():
         assert t[0] == pytest.approx(1.4, abs=1e-9)
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(tape=tapes(), ray=some_rays())
 @example(
     tape=implicit(lambda b, op, c: op("sin", op("pow", b.y, b.z))),
@@ -240,7 +241,7 @@ def test_bounds_on_a_ray_contain_values_and_slopes(tape, ray):
         assert (change <= most * np.diff(t) + blur).all()
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(tape=tapes(names=SMOOTH), ray=some_rays())
 def test_no_root_of_a_surface_is_missed(tape, ray):
     origin, direction, t0, t1 = ray

@@ -21,11 +21,11 @@ def nodes(text):
     return [node for node in found if isinstance(node, ast.Subscript)], list(differences)
 
 
-def subscripts(text, name):
-    """What an array of this name, or an attribute of this name, is indexed by."""
+def subscripts(text, *names):
+    """The subscripts of arrays of these names, or of attributes of these names."""
     for node in nodes(text)[0]:
-        if name in (getattr(node.value, "id", ""), getattr(node.value, "attr", "")):
-            yield node.slice
+        if not {getattr(node.value, "id", ""), getattr(node.value, "attr", "")}.isdisjoint(names):
+            yield node
 
 
 def numbered(index):
@@ -37,9 +37,12 @@ def numbered(index):
 
 def slots_without_a_name(text):
     """Places of the floats of an island that a text knows by itself: numbers, own constants, counts from the end."""
+    if "floats" not in text:
+        return []
     found = re.findall(r"floats\[-?[0-9][^\]]*\]", text)
-    found += [ast.unparse(index) for index in subscripts(text, "floats") if numbered(index)]
-    found += [index.id for index in subscripts(text, "floats") if isinstance(index, ast.Name) and index.id.isupper()]
+    indices = [node.slice for node in subscripts(text, "floats")]
+    found += [ast.unparse(index) for index in indices if numbered(index)]
+    found += [index.id for index in indices if isinstance(index, ast.Name) and index.id.isupper()]
     for node in nodes(text)[1]:
         if getattr(node.left, "attr", "") == "size" and ast.unparse(node.left).endswith("floats.size"):
             found += [ast.unparse(node)] * ("channels." not in ast.unparse(node.right))
@@ -75,9 +78,10 @@ def test_nobody_but_the_channels_says_where_a_slot_is():
 
 def read_by_number(text, *arrays):
     """Entries of arrays that a text reads by number."""
-    found = (node for node in nodes(text)[0] if isinstance(node.slice, ast.Constant))
-    found = (node for node in found if ast.unparse(node.value) in arrays)
-    return [ast.unparse(node) for node in found]
+    if not any(f"{array}[" in text for array in arrays):
+        return []
+    found = (node for node in subscripts(text, *arrays) if isinstance(node.slice, ast.Constant))
+    return [ast.unparse(node) for node in found if isinstance(node.value, ast.Name)]
 
 
 def test_kernels_read_their_integers_by_name():

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from lane_checks import check_enclosures
 from sceneql.field.skeleton.skeleton import KERNELS, Skeleton
 from sceneql.field.tape.batch_gradient_kernels import differentiate
@@ -58,7 +59,7 @@ def test_density_is_the_kernel_of_the_best_point(kind, radii):
     assert field_values(tape_of(curves([CURVES[kind]], [radii])), on) == pytest.approx(1.0, abs=1e-12)
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(
     corners=st.tuples(POINTS, POINTS, POINTS), radii=st.tuples(*[st.sampled_from([0.2, 0.5, 0.9, 2.0])] * 3), x=POINTS
 )

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from sceneql.quantities.curves import CURVES
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.evaluate import evaluate
@@ -54,7 +55,7 @@ def test_the_curves_are_those_of_the_tree() -> None:
 
 
 @given(many, scalars | vectors | turns, curves, instants, st.none() | st.floats(0.5, 9))
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_evaluators_agree(spacing: Any, values: Any, curve: str, times: list[float], cycle: float | None) -> None:
     keys = keys_of(spacing, values, curve, cycle)
     together = evaluate(keys, {TIME: np.array(times)}, arrays=True)

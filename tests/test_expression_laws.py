@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, assume, example, given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from expressions import POINTS, H, bound, parsed, trees
 from sceneql.quantities import chance
 from sceneql.quantities.bind import bind
@@ -97,7 +98,7 @@ def test_empty_lists() -> None:
 
 
 @given(st.sampled_from([n for n in ORDINARY if OPERATIONS[n].primitive]), st.lists(numbers, min_size=3, max_size=3))
-@settings(max_examples=500)
+@settings(max_examples=examples(500))
 def test_floats_never_raise(name: str, args: list[float]) -> None:
     assert isinstance(
         getattr(FLOATS, name)(*args[: max(2 if name in ("min", "max") else 1, OPERATIONS[name].least)]), float

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from expressions import POINTS, H, P, Q, T, bound, parsed, span_of, trees, valued
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import differentiate
@@ -35,7 +36,7 @@ def code_of(text: str) -> str:
 
 
 @given(trees)
-@settings(max_examples=400)
+@settings(max_examples=examples(400))
 def test_what_is_shown_parses_to_the_same_tree(tree: Expr) -> None:
     text = show(tree)
     assume(len(text) <= 10_000)
@@ -299,7 +300,7 @@ def both(tree: Any) -> tuple[Expr, pint.Quantity]:
 
 
 @given(nested)
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 def test_dimensions_and_values_are_what_pint_says(tree: Any) -> None:
     try:
         ours, theirs = both(tree)

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from plain_tapes import fan, implicit
 from random_tapes import ARGUMENTS, COORDINATES, JUMPS, NAMES, NUMBERS, PARTS, arguments, of_one, rays, tapes
 from sceneql.field.enclose.enclosure_kernels import segment
@@ -60,7 +61,7 @@ def test_enclosure_of_every_operation_contains_its_values(name, ray):
     check_segment(of_one(name), *ray)
 
 
-@settings(max_examples=500)
+@settings(max_examples=examples(500))
 @given(tape=tapes(), ray=rays())
 def test_enclosure_of_any_tape_contains_its_values(tape, ray):
     check_segment(tape, *ray)
@@ -74,14 +75,14 @@ def test_interval_of_every_operation_contains_its_values(name, ray):
     check_box(of_one(name), low, low + np.abs(size) * abs(width))
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(tape=tapes(), ray=rays())
 def test_interval_of_any_tape_contains_its_values(tape, ray):
     low, size, _, width = ray
     check_box(tape, low, low + np.abs(size) * abs(width))
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(tape=tapes(most=5), point=st.tuples(COORDINATES, COORDINATES, COORDINATES))
 def test_gradient_agrees_with_differences(tape, point):
     h = 1e-5

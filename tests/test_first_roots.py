@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+from campaigns import examples
 from plain_tapes import fan, implicit, kernels, sphere
 from random_tapes import SMOOTH, arguments, rays, tapes
 from sceneql.field.roots.isolation_kernels import any_root, exit_root, first_root
@@ -14,7 +15,7 @@ from sceneql.field.tape.tape_solid import cast, field_values, scratch
 from search_kernels import searched
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(tape=tapes(), ray=rays())
 def test_no_crossing_is_missed_and_none_invented(tape, ray):
     origin, direction, t0, t1 = ray
@@ -39,7 +40,7 @@ def test_no_crossing_is_missed_and_none_invented(tape, ray):
         assert blocked != ops.MISS
 
 
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 @given(tape=tapes(names=SMOOTH), ray=rays())
 def test_the_way_out_is_the_way_into_the_negated_field(tape, ray):
     origin, direction, t0, t1 = ray

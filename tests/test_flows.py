@@ -1,17 +1,16 @@
 """Incompressible flow: against exact solutions, what is conserved, orders, solids, what it carries."""
 
 import itertools
-import os
 
 import numpy as np
 import pytest
 
+from campaigns import LONG
 from flows import VORTEX, Air, waves
 from sceneql.flows.drawn_lines import lines
 from sceneql.flows.readings import _own
 from sceneql.grids.medium import FieldLayout
 
-LONG = bool(os.environ.get("SCENEQL_LONG"))
 EDDY = {"initial": '{stream_function: "sin(pi*x)^2*sin(pi*y)^2"}', "viscosity": "0.02 Pa*s", "advection": "central"}
 BESIDE = '{left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}'
 

@@ -10,6 +10,7 @@ from flint import arb, ctx, fmpq
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from form_kernels import enclosed
 from sceneql.field.tape import tape_ops as ops
 
@@ -89,7 +90,7 @@ def precise():
 def test_one_argument(op):
     lowest, highest, value = UNARY[op]
 
-    @settings(max_examples=400)
+    @settings(max_examples=examples(400))
     @given(a=forms(lowest, highest), **PLACES)
     @example(a=(2e154, 0.0, 1e154), tau=0.0, sides=(-1.0, 0.0))
     def holds(a, tau, sides):
@@ -102,7 +103,7 @@ def test_one_argument(op):
 def test_two_arguments(op):
     lowest, highest, value = BINARY[op]
 
-    @settings(max_examples=400)
+    @settings(max_examples=examples(400))
     @given(a=forms(lowest, highest), b=forms(lowest, highest), **PLACES)
     def holds(a, b, tau, sides):
         check(op, value, a, b, tau, sides)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from runs import complaint
 from sceneql.pictures.plotting import Scale, scale_for
 from sceneql.pipeline import Report, Tools, load, simulate
@@ -140,7 +141,7 @@ def test_what_cannot_be_drawn_is_refused_where_it_stands(tmp_path, fields, said)
 
 
 @given(st.floats(-1e6, 1e6), st.floats(1e-6, 1e6), st.booleans(), st.integers(2, 12))
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_ticks_lie_on_the_axis_and_say_their_values(low, span, log, count):
     low = 10 ** (low / 1e5) if log else low
     high = low * (1 + span) if log else low + max(span, abs(low) * 1e-6)
@@ -156,7 +157,7 @@ def test_ticks_lie_on_the_axis_and_say_their_values(low, span, log, count):
 @given(st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=9), st.booleans())
 @example([1e9, 999999999.9999999], False)
 @example([5.0, 5.000000000000001], False)
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_an_axis_shows_all_that_it_can(values, log):
     scale = scale_for([np.array(values)], log, None)
     places = scale.place(values)
@@ -166,7 +167,7 @@ def test_an_axis_shows_all_that_it_can(values, log):
 
 
 @given(st.floats(-1e6, 1e6), st.floats(1e-6, 1e6), st.booleans(), st.integers(3, 6))
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_an_axis_has_at_least_three_ticks(low, span, log, count):
     low = 10 ** (low / 1e5) if log else low
     high = low * (1 + span) if log else low + max(span, abs(low) * 1e-6)

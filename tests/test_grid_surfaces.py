@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from renderers.tracing.pack import pack
 from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.grids import met
@@ -56,7 +57,7 @@ def box_span(start, way, low, high):
 
 
 @given(st.integers(0, 2**32 - 1), st.booleans(), st.booleans())
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 def test_a_ray_meets_the_first_change_of_sign_and_nothing_else(seed, cut, bounded):
     rng = np.random.default_rng(seed)
     shape = tuple(rng.integers(2, 12, 3))

@@ -54,6 +54,12 @@ print(moment.read("ball", "a.position")[0])
 """
 
 
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    """A cache for all these runs: of what is not the words folder's they compile the same."""
+    return tmp_path_factory.mktemp("cache")
+
+
 @pytest.mark.parametrize(
     ("statement", "name"),
     [
@@ -66,14 +72,14 @@ print(moment.read("ball", "a.position")[0])
         ("from sceneql_words.forces.laws import *", "shared_law"),
     ],
 )
-def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path, statement, name):
+def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path, cache, statement, name):
     forces = tmp_path / "forces"
     forces.mkdir()
     (forces / "even.py").write_text(FORCE)
     (forces / "even_kernels.py").write_text(KERNEL.replace("IMPORT", statement).replace("NAME", name))
     scene = tmp_path / "scene.yaml"
     scene.write_text(SCRIPT)
-    environment = {**os.environ, "SCENEQL_CACHE": str(tmp_path / "cache"), "PYTHONDONTWRITEBYTECODE": "1"}
+    environment = {**os.environ, "SCENEQL_CACHE": str(cache), "PYTHONDONTWRITEBYTECODE": "1"}
     laws = forces / "laws"
     laws.mkdir()
     (laws / "__init__.py").write_text('__all__ = ["shared_law"]\n')

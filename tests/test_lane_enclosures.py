@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from common_scenes import tape_of
 from extremes_kernels import extremes
 from lane_checks import check_enclosures
@@ -26,7 +27,7 @@ def test_enclosures_of_every_operation_contain_its_values(name, ray):
     check_enclosures(of_one(name), *ray)
 
 
-@settings(max_examples=500)
+@settings(max_examples=examples(500))
 @given(tape=tapes(), ray=rays())
 def test_enclosures_of_any_tape_contain_its_values(tape, ray):
     check_enclosures(tape, *ray)
@@ -42,7 +43,7 @@ def test_powers_of_what_is_never_negative_are_defined_all_over(text):
     assert (status == WHOLE).all()
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(tape=tapes(), ray=rays(), size=st.sampled_from([1e-20, 1e-6, 1e3, 1e8, 1e20, 1e30, 1e300]))
 def test_enclosures_far_from_one_claim_nothing_wrong(tape, ray, size):
     origin, direction, t0, t1 = ray

@@ -4,6 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from random_tapes import tapes
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.batch_gradient_kernels import differentiate
@@ -25,7 +26,7 @@ def boxes(draw):
     return low, low + draw(st.sampled_from([1e-3, 0.1, 0.5, 2.0]))
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
 def test_evaluators_of_many_points_agree_to_the_bit_also_when_simplified(tape, place, seed):
     low, high = place
@@ -49,7 +50,7 @@ def test_evaluators_of_many_points_agree_to_the_bit_also_when_simplified(tape, p
         assert np.array_equal(slope[-1, :, :40].T, slopes, equal_nan=True)
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 @given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
 def test_steepness_bounds_how_fast_any_tape_changes(tape, place, seed):
     low, high = place

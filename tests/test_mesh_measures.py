@@ -50,6 +50,7 @@ def test_curved_volumes_converge_with_order_four(text, half, exact):
     assert abs(errors[1]) < 2e-7
 
 
+@pytest.mark.long
 def test_the_curved_volume_of_steiners_solid_extrapolates():
     errors = []
     for cells in (128, 256):

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from runs import complaint
 from sceneql.failure import RunFailure
 from sceneql.frame import View
@@ -75,7 +76,7 @@ def test_a_legend_of_something_else_is_refused_with_its_line(tmp_path):
 
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-2, 1e6), st.integers(2, 20))
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_numbers_beside_a_bar_are_round_and_not_many(low, span, count):
     high = low + span
     found = round_numbers(low, high, count)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from common_scenes import tape_of
 from moment import IDENTITY, FakeMoment, const, formula
 from plain_tapes import implicit, kernels
@@ -24,7 +25,7 @@ from sceneql.words.objects.implicit import Implicit as Formula
 from sceneql.words.objects.implicit import Within
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(tape=tapes(), ray=rays(), spread=st.sampled_from([0.0, 1e-3, 0.5]), seed=st.integers(0, 99))
 def test_no_crossing_of_any_tape_is_missed_in_packets(tape, ray, spread, seed):
     origin, direction, t0, t1 = ray

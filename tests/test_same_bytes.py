@@ -24,6 +24,7 @@ def digests_of_a_process(name, **environment):
     return run.stdout.split()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", MADE)
 def test_same_bytes_with_the_processor_restricted_to_avx2(name):
     assert digests_of_a_process(name, NUMBA_CPU_NAME=AVX2) == digests([name])

@@ -88,6 +88,7 @@ def test_islands_of_many_kinds(tmp_path):
         np.testing.assert_array_equal(compiled[name], written[name], err_msg=name)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("tolerance", ["1e-9", "1e-8"], ids=["in packets", "one by one"])
 def test_pictures(tmp_path, tolerance):
     script = PICTURE.replace("TOLERANCE", tolerance)

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from campaigns import examples
 from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.dimension import FORCE, LENGTH, PLAIN, STIFFNESS, TIME, Dimension
@@ -54,7 +55,7 @@ factors = st.tuples(st.sampled_from(list(UNITS)), st.integers(-3, 3).filter(bool
 
 
 @given(st.lists(factors, min_size=1, max_size=4), st.booleans())
-@settings(max_examples=300)
+@settings(max_examples=examples(300))
 def test_a_product_of_units_is_what_pint_says(parts: list[tuple[str, int, str]], spaced: bool) -> None:
     gap = " " if spaced else ""
     text, theirs = "", "1"
