@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from sceneql import __version__, interrupts
+from sceneql import __version__, interrupts, room
 from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, as_words, options
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ def main() -> None:
     interrupts.end_at_once()
     _without_plugins()
     _without_overflows()
+    room.ask_before_imports()
     try:
         with interrupts.raised() as interrupted:
             code = _run(interrupted)

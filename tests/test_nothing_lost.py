@@ -22,6 +22,7 @@ from PIL import Image
 import test_program
 from renderers.encoders import mp4
 from sceneql import cli, files, interrupts, pipeline
+from sceneql.compiled.kernels import MODE
 from sceneql.failure import OutOfMemory, RunFailure, Unsuitable, failing_as, starved
 
 KILLS = int(os.environ.get("SCENEQL_KILLS", "2"))
@@ -179,6 +180,34 @@ def test_a_want_of_memory_tells_where_and_what_takes_less(tmp_path):
     assert "when making the frame" in said
     assert "--> s.yaml:" in said
     assert "help: a smaller `size` of 'still' takes less" in said
+
+
+@pytest.mark.skipif(MODE == "uncompiled", reason="nothing is compiled")
+def test_a_want_of_memory_for_the_compiler_is_told_before_it_ends_the_process(tmp_path):
+    (tmp_path / "f.yaml").write_text(FILM.replace("normals", "trace"))
+    limit = (
+        "import resource, sys; from sceneql import cli; from sceneql.compiled import kernels;"
+        "now = resource.getpagesize()*int(open('/proc/self/statm').read().split()[0]);"
+        "resource.setrlimit(resource.RLIMIT_AS, (now + 100*2**20,)*2);"
+        "sys.argv = ['sceneql', 'render', 'f.yaml']; cli.main()"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", limit], cwd=tmp_path, stderr=subprocess.PIPE, text=True,
+        env={**os.environ, "SCENEQL_CACHE": str(tmp_path / "cache"), "SCENEQL_THREADS": "1"},
+    )  # fmt: skip
+    said = process.communicate(timeout=300)[1]
+    assert process.returncode == cli.LIMIT_REFUSED, said
+    assert said.startswith("error[out-of-memory]: at 0 s, film: out of memory for 160 MiB to compile, when ")
+    assert "--> f.yaml:" in said
+
+
+def test_a_library_that_would_end_the_process_for_want_of_memory_is_not_loaded(tmp_path):
+    (tmp_path / "f.yaml").write_text(FILM)
+    process = started(tmp_path, "render", "f.yaml", preexec_fn=limited(resource.RLIMIT_AS, 150 * 2**20))
+    said = process.communicate(timeout=300)[1]
+    assert process.returncode == cli.LIMIT_REFUSED, said
+    assert said.startswith("error[out-of-memory]: at 0 s, f: out of memory for ")
+    assert "MiB to load numpy, when starting the run" in said
 
 
 def test_what_libraries_make_of_a_want_of_memory_is_one():

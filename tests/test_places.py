@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import yaml
 
+from runs import complaint
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.kinds import Model
 from sceneql.pipeline import load
@@ -51,6 +52,8 @@ COMPUTED = {"momentum"}
 OF_REST = {"frequencies", "mode_shapes"}
 """Outputs that no state changes, and that one that is none does not have."""
 """Of a mass of one kilogram momentum and velocity are one number."""
+NOT_TOLD = {"center", "hook.position", "a.hook.position"}
+"""Outputs that stand in the state of some scenes, or are made of what does; those of `equations` are the script's."""
 
 
 def run_of(folder: Path, model: str, force: str = "{mutual_gravity: {constant: 1}}") -> Run:
@@ -98,10 +101,12 @@ def test_places_are_where_reading_finds_an_output(tmp_path, name):
     chance = np.random.default_rng(5)
     written = next(iter(yaml.safe_load(MODELS[name]).values()))
     declared = []
-    for output in type(kind).outputs(written):
+    for output, gives in type(kind).outputs(written).items():
         places = kind.places(output, state)
         other = probed(kind, output, state)
         assert (places is None) == (other is None or output in COMPUTED), output
+        told = gives.computed or output in NOT_TOLD or name.startswith("equations")
+        assert not gives.computed if places is not None else told, output
         if places is not None:
             declared.append(output)
             np.testing.assert_array_equal(places, other, err_msg=output)
@@ -127,6 +132,38 @@ def test_a_link_to_what_is_computed_is_refused_with_its_place(tmp_path, pull):
     with pytest.raises(ScriptError, match="is no part of the state that is solved together with this") as told:
         run_of(tmp_path, MODELS["mass_spring"], f"{{attractor: {{position: '{pull}'}}}}")
     assert "scene.yaml" in str(told.value)
+
+
+READERS = {
+    "a force": "forces: [{drag: {linear: READ*(1 kg/s)}}]",
+    "a contact": "forces: [{collision: {between: [it, ball], restitution: READ}}]\n"
+    "objects: {ball: {sphere: {hidden: yes}}}",
+    "a motion": "  led: {motion: {position: [READ*(1 m), 0 m, 0 m]}}\nforces: [{attractor: {position: led.position}}]",
+    "an object": "objects: {mark: {sphere: {position: [READ*(1 m), 0 m, 0 m]}}}\n"
+    "forces: [{attractor: {position: mark.position, on: it}}]",
+    "a rate": "  m: {equations: {start: {x: 1}, rate: {x: -x*READ}}}",
+    "an output": "  m: {equations: {start: {x: 1}, rate: {x: -x}, gives: {g: READ}}}",
+}
+"""What reads READ, behind a model `it`."""
+
+
+@pytest.mark.parametrize(("output", "unit"), [("kinetic", "1 J"), ("energy", "1 J"), ("p.acceleration", "1 m/s^2")])
+@pytest.mark.parametrize("reader", READERS)
+def test_check_tells_of_what_is_computed_in_a_rate_at_its_place(tmp_path, reader, output, unit):
+    read = READERS[reader].replace("READ", f"(it.{output}{'.x' if output[1] == '.' else ''}/({unit}))")
+    model, table = "models:\n  it: {particles: {list: {p: {}}}}", "outputs: {table: {record: {of: it.kinetic}}}"
+    told = complaint(tmp_path, f"{model}\n{read}\n{table}\n")
+    assert told.startswith(
+        f"error[unsupported-link]: 'it.{output}' is no part of the state that is solved together with this\n"
+    )
+    assert told.count("error[") == 1
+    assert told.splitlines()[3].count(f"it.{output}") == 1
+
+
+def test_colors_of_what_is_solved_may_be_computed(tmp_path):
+    net = "{masses: {b: {}, c: {position: 1 0 0 m}}, springs: [{between: [b, c]}], color: hue(it.kinetic/(1 J))}"
+    script = f"models:\n  it: {{particles: {{list: {{p: {{}}}}}}}}\n  net: {{mass_spring: {net}}}\n"
+    assert complaint(tmp_path, f"{script}outputs: {{still: {{image: {{size: 16 9}}}}}}\n") == ""
 
 
 WORD = """

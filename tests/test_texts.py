@@ -60,6 +60,17 @@ def test_a_text_tells_its_values(tmp_path, text, expected):
     assert said(tmp_path, text) == expected
 
 
+@pytest.mark.parametrize("text", ["a {} b", "a { } b", "a {   } b", "{  :.2f}", "{ : s}"])
+def test_a_value_that_is_missing_in_a_text_has_its_place_between_the_braces(tmp_path, text):
+    with pytest.raises(ScriptError) as error:
+        said(tmp_path, f'"{text}"')
+    (told,) = error.value.diagnostics
+    source = told.span.source.text
+    assert told.code == "missing-value"
+    assert told.span.start == told.span.end
+    assert source.index(text) + text.index("{") < told.span.start <= source.index(text) + text.index("}")
+
+
 @given(st.floats(-1e12, 1e12), st.sampled_from([".12g", ".9e", ".3f", "+.10g"]))
 def test_a_number_is_read_back_from_what_is_written(number, form):
     text = written(number, form, None).replace("\u2212", "-").replace("·10", "e")

@@ -22,22 +22,24 @@ ANGULAR_MOMENTUM = dim.MOMENTUM * dim.LENGTH
 BODY_OUTPUTS: Mapping[str, Gives] = {
     "positions": Gives(quantity_type(dim.LENGTH, (None, 3)), "Where the masses are."),
     "velocities": Gives(quantity_type(dim.VELOCITY, (None, 3)), "How fast they move."),
-    "accelerations": Gives(quantity_type(dim.ACCELERATION, (None, 3)), "How fast that changes."),
-    "radii": Gives(quantity_type(dim.LENGTH, (None,)), "Their radii in contacts."),
-    "kinetic": Gives(quantity_type(dim.ENERGY), "Kinetic energy."),
-    "potential": Gives(quantity_type(dim.ENERGY), "Potential energy in the forces and springs."),
+    "accelerations": Gives(quantity_type(dim.ACCELERATION, (None, 3)), "How fast that changes.", computed=True),
+    "radii": Gives(quantity_type(dim.LENGTH, (None,)), "Their radii in contacts.", computed=True),
+    "kinetic": Gives(quantity_type(dim.ENERGY), "Kinetic energy.", computed=True),
+    "potential": Gives(quantity_type(dim.ENERGY), "Potential energy in the forces and springs.", computed=True),
     "dissipated": Gives(quantity_type(dim.ENERGY), "Energy that damping, drag and impacts have taken out.", tally=True),
-    "energy": Gives(quantity_type(dim.ENERGY), "Kinetic, potential and dissipated energy: conserved if all is right."),
-    "momentum": Gives(quantity_type(dim.MOMENTUM, (3,)), "Sum of mass times velocity."),
-    "angular_momentum": Gives(quantity_type(ANGULAR_MOMENTUM, (3,)), "About the origin."),
+    "energy": Gives(
+        quantity_type(dim.ENERGY), "Kinetic, potential and dissipated energy: conserved if all is right.", computed=True
+    ),
+    "momentum": Gives(quantity_type(dim.MOMENTUM, (3,)), "Sum of mass times velocity.", computed=True),
+    "angular_momentum": Gives(quantity_type(ANGULAR_MOMENTUM, (3,)), "About the origin.", computed=True),
     "center": Gives(quantity_type(dim.LENGTH, (3,)), "Center of mass."),
-    "count": Gives(Type(), "Number of masses."),
+    "count": Gives(Type(), "Number of masses.", computed=True),
 }
 
 MASS_OUTPUTS: Mapping[str, Gives] = {
     "position": Gives(quantity_type(dim.LENGTH, (3,)), "Where it is."),
     "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast it moves."),
-    "acceleration": Gives(quantity_type(dim.ACCELERATION, (3,)), "How fast that changes."),
+    "acceleration": Gives(quantity_type(dim.ACCELERATION, (3,)), "How fast that changes.", computed=True),
 }
 """Outputs of a single mass, under its own name: ``bob.position``."""
 

@@ -20,9 +20,10 @@ OUTPUTS: Mapping[str, Gives] = {
     "frequencies": Gives(
         quantity_type(dim.FREQUENCY, (None,)),
         "Of its lowest modes, `modes` in number; those of motions without strain are 0.",
+        computed=True,
     ),
     "mode_shapes": Gives(
-        Type((None, None, 3)), "By mode, how far each node moves, relative to the one that most does."
+        Type((None, None, 3)), "By mode, how far each node moves, relative to the one that most does.", computed=True
     ),
 }
 

@@ -56,10 +56,12 @@ class SpringModel(Model):
 
     gives: ClassVar[Mapping[str, Gives]] = {
         **point_masses.BODY_OUTPUTS,
-        "stretch": Gives(Type(), "Largest |L - L0| / L0 of a spring that holds."),
+        "stretch": Gives(Type(), "Largest |L - L0| / L0 of a spring that holds.", computed=True),
         "springs": Gives(quantity_type(dim.LENGTH, (None, 2, 3)), "The two ends of every spring that holds."),
-        "torn": Gives(Type(), "Number of springs that have torn."),
-        "triangles": Gives(Type((None, 3)), "Of a cloth or a solid: its surface by numbers of masses, less what tore."),
+        "torn": Gives(Type(), "Number of springs that have torn.", computed=True),
+        "triangles": Gives(
+            Type((None, 3)), "Of a cloth or a solid: its surface by numbers of masses, less what tore.", computed=True
+        ),
     }
 
     pins: tuple[str, ...] | dict[str, Pin] = field(

@@ -34,6 +34,7 @@ from sceneql.compiled import variables
 from sceneql.compiled.numba.collecting import collecting_later
 from sceneql.compiled.numba.kernel_cache import cached
 from sceneql.compiled.store import Store
+from sceneql.room import TO_COMPILE, TO_LOAD, ask_for
 
 config: Any = numba.config
 
@@ -179,7 +180,8 @@ class CompileAccount(Listener):
         self._started = 0.0
 
     def on_start(self, event: Any) -> None:
-        """A compilation starts."""
+        """A compilation starts. Raises MemoryError where it is sure to have too little."""
+        ask_for(TO_COMPILE, "to compile")
         if self._depth == 0:
             self._started = time.perf_counter()
         self._depth += 1
@@ -224,6 +226,7 @@ def kernel(signature: Any, *, inner: bool = False, **options: Any) -> Callable[[
         def made(part: str, pipeline: dict[str, Any]) -> Any:
             dispatcher = njit(**pipeline, **options)(function)
             with kept(dispatcher, function, part), register_dispatcher(dispatcher), collecting_later():
+                ask_for(TO_LOAD, "to load what is compiled")
                 dispatcher.compile(signature)
             dispatcher.disable_compile()
             return dispatcher

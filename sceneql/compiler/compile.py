@@ -18,6 +18,7 @@ from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.open_meshes import warn_of_open_meshes
 from sceneql.compiler.passes.prune import prune
+from sceneql.compiler.passes.readable import report_unreadable
 from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
@@ -49,6 +50,7 @@ def compile_script(
     report_moving(tasks, found)
     check_sizes(tasks, found)
     groups = islands(tasks, found)
+    report_unreadable(tasks, groups, found)
     drawn = _drawn(tasks)
     cameras = _cameras(tasks)
     clock = script.settings.get("clock")

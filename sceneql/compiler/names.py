@@ -178,7 +178,8 @@ class Names:
         for size in range(len(parts), first, -1):
             name = ".".join(parts[first:size])
             if name in outputs:
-                return self._component(Link(task, name, outputs[name].type, span), parts, size, span)
+                link = Link(task, name, outputs[name].type, span, outputs[name].computed)
+                return self._component(link, parts, size, span)
             whole = size == len(parts) or set(parts[size:]) <= {"x", "y", "z"}
             if f"{name}.position" in outputs and whole:  # a mass, or a point of a body, by its name alone is its place
                 link = Link(task, f"{name}.position", outputs[f"{name}.position"].type, span)

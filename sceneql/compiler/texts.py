@@ -55,7 +55,7 @@ def _told(
     begin, end = node.start, node.end
     if start is not None:
         begin = start + len(expression) - len(expression.lstrip())
-        end = start + len(expression.rstrip())
+        end = begin + len(expression.strip())
     part = Scalar(expression.strip(), "text", False, node.source, begin, end)
     expr = scalar_expr(part, names, found)
     if expr is None:

@@ -315,12 +315,12 @@ def gives_of(field: str, unit: Dimension, written: Mapping[str, Any]) -> Mapping
     one, amount = quantity_type(unit), quantity_type(unit * dim.VOLUME)
     return {
         "field": Gives(quantity_type(unit, (None,)), field),
-        "centers": Gives(quantity_type(dim.LENGTH, (None, 3)), "The centers of these cells."),
-        "mass": Gives(amount, "How much there is: the field over the volume."),
+        "centers": Gives(quantity_type(dim.LENGTH, (None, 3)), "The centers of these cells.", computed=True),
+        "mass": Gives(amount, "How much there is: the field over the volume.", computed=True),
         "inflow": Gives(amount, "How much has come in through the boundary and from sources since the start."),
-        "max": Gives(one, "Largest value."),
-        "min": Gives(one, "Least value."),
-        "mean": Gives(one, "Mean over the volume."),
+        "max": Gives(one, "Largest value.", computed=True),
+        "min": Gives(one, "Least value.", computed=True),
+        "mean": Gives(one, "Mean over the volume.", computed=True),
         **{
             name: Gives(one, "The value of the cell there.")
             for name in map(str, probes if isinstance(probes, Mapping) else ())

@@ -15,7 +15,7 @@ import numpy as np
 
 from sceneql.island.lowering import LOWERINGS
 from sceneql.kinds import Value
-from sceneql.kinds.values import MOST_READ
+from sceneql.kinds.values import MOST_READ, unreadable
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
@@ -157,9 +157,7 @@ class Inputs:
     def _found(self, link: Link) -> NDArray[int64]:
         places = self._places(link)
         if places is None:
-            text = f"'{link.task}.{link.output}' is no part of the state that is solved together with this"
-            help = "link to a position or velocity of a model of the same island, or to a kinematic model"
-            raise ScriptError([Diagnostic("unsupported-link", text, link.span, help)])
+            raise ScriptError([unreadable(link)])
         return places
 
     def _lower(self, expr: Expr) -> Lowered:

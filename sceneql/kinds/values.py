@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Shape, Symbol, walk
@@ -81,6 +82,13 @@ class Value(Checked):
     def number(self) -> Any:
         """The float, or nested tuple of floats, of a constant value, in SI."""
         return evaluate(self.expr, {})
+
+
+def unreadable(link: Link, place: Span | None = None) -> Diagnostic:
+    """What is said of an output that a value of what is solved reads, and that does not stand in the state."""
+    text = f"'{link.task}.{link.output}' is no part of the state that is solved together with this"
+    help = "link to a position or velocity of a model of the same island, or to a kinematic model"
+    return Diagnostic("unsupported-link", text, link.span or place, help)
 
 
 @dataclass(frozen=True, slots=True)

@@ -200,6 +200,8 @@ class Gives:
     doc: str
     tally: bool = False
     """Whether it is a sum over the run that the state holds, as of energy lost: values that read it have no slopes."""
+    computed: bool = False
+    """Whether it is worked out from the state, as an energy is: values of what is solved cannot read it."""
 
 
 def quantity_type(dimension: Dimension, shape: Shape = ()) -> Type:

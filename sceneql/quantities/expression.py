@@ -60,6 +60,8 @@ class Link:
     output: str
     type: Type = SCALAR
     span: Span | None = field(default=None, compare=False)
+    computed: bool = field(default=False, compare=False)
+    """Whether the part works it out from its state, and has it nowhere there."""
 
 
 class Shared:

@@ -20,28 +20,40 @@ STEPS = 8
 NODES = "of each node, the mean of the elements there"
 OUTPUTS: Mapping[str, Gives] = {
     "displacements": Gives(
-        quantity_type(dim.LENGTH, (None, 3)), "How far each node is from its place of the material."
+        quantity_type(dim.LENGTH, (None, 3)), "How far each node is from its place of the material.", computed=True
     ),
-    "stress": Gives(quantity_type(dim.PRESSURE, (None, 3, 3)), f"Cauchy's stress, without viscosity, {NODES}."),
-    "principal": Gives(quantity_type(dim.PRESSURE, (None, 3)), f"Its principal values, the largest first, {NODES}."),
-    "von_mises": Gives(quantity_type(dim.PRESSURE, (None,)), f"The stress of von Mises (1913), {NODES}."),
-    "strain": Gives(Type((None, 3, 3)), f"Green's strain, {NODES}."),
-    "J": Gives(Type((None,)), f"Volume over that at rest, {NODES}."),
-    "volume": Gives(quantity_type(dim.VOLUME), "Its volume."),
-    "inverted": Gives(Type(), "How many elements are turned inside out at a point at which their strain is looked at."),
-    "triangles": Gives(Type((None, 3)), "Its surface by numbers of nodes."),
+    "stress": Gives(
+        quantity_type(dim.PRESSURE, (None, 3, 3)), f"Cauchy's stress, without viscosity, {NODES}.", computed=True
+    ),
+    "principal": Gives(
+        quantity_type(dim.PRESSURE, (None, 3)), f"Its principal values, the largest first, {NODES}.", computed=True
+    ),
+    "von_mises": Gives(
+        quantity_type(dim.PRESSURE, (None,)), f"The stress of von Mises (1913), {NODES}.", computed=True
+    ),
+    "strain": Gives(Type((None, 3, 3)), f"Green's strain, {NODES}.", computed=True),
+    "J": Gives(Type((None,)), f"Volume over that at rest, {NODES}.", computed=True),
+    "volume": Gives(quantity_type(dim.VOLUME), "Its volume.", computed=True),
+    "inverted": Gives(
+        Type(), "How many elements are turned inside out at a point at which their strain is looked at.", computed=True
+    ),
+    "triangles": Gives(Type((None, 3)), "Its surface by numbers of nodes.", computed=True),
 }
 OF_PROBE: Mapping[str, Gives] = {
     "position": Gives(quantity_type(dim.LENGTH, (3,)), "Where it is."),
     "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast it moves."),
-    "acceleration": Gives(quantity_type(dim.ACCELERATION, (3,)), "How fast that changes."),
-    "displacement": Gives(quantity_type(dim.LENGTH, (3,)), "How far it is from its place of the material."),
-    "stress": Gives(quantity_type(dim.PRESSURE, (3, 3)), "Cauchy's stress there, by those of the nodes around."),
-    "von_mises": Gives(quantity_type(dim.PRESSURE), "The stress of von Mises there."),
+    "acceleration": Gives(quantity_type(dim.ACCELERATION, (3,)), "How fast that changes.", computed=True),
+    "displacement": Gives(
+        quantity_type(dim.LENGTH, (3,)), "How far it is from its place of the material.", computed=True
+    ),
+    "stress": Gives(
+        quantity_type(dim.PRESSURE, (3, 3)), "Cauchy's stress there, by those of the nodes around.", computed=True
+    ),
+    "von_mises": Gives(quantity_type(dim.PRESSURE), "The stress of von Mises there.", computed=True),
 }
 """Outputs of a probe, under its name: ``tip.position``."""
 OF_HOLD: Mapping[str, Gives] = {
-    "force": Gives(quantity_type(dim.FORCE, (3,)), "The force by which it holds the solid.")
+    "force": Gives(quantity_type(dim.FORCE, (3,)), "The force by which it holds the solid.", computed=True)
 }
 """Outputs of a hold, under its name."""
 

@@ -65,15 +65,23 @@ class Flow(Model):
     buoyancy: Buoyancy | None = field("What a temperature or concentration does to it.", None)
 
     gives = {  # noqa: RUF012
-        "velocity": Gives(quantity_type(dim.VELOCITY, (None, 3)), "The velocity at the centers of cells."),
-        "speed": Gives(quantity_type(dim.VELOCITY, (None,)), "Its size."),
-        "vorticity": Gives(quantity_type(dim.FREQUENCY, (None,)), "Its curl: along z in a flat flow, else its size."),
-        "pressure": Gives(quantity_type(dim.PRESSURE, (None,)), "The pressure; in a closed box its mean is 0."),
-        "centers": Gives(quantity_type(dim.LENGTH, (None, 3)), "The centers of the cells."),
-        "kinetic_energy": Gives(quantity_type(dim.ENERGY), "The kinetic energy."),
-        "momentum": Gives(quantity_type(dim.MASS * dim.VELOCITY, (3,)), "The momentum."),
-        "divergence": Gives(quantity_type(dim.FREQUENCY), "The largest divergence that the projection leaves."),
-        "largest_speed": Gives(quantity_type(dim.VELOCITY), "The largest speed."),
+        "velocity": Gives(
+            quantity_type(dim.VELOCITY, (None, 3)), "The velocity at the centers of cells.", computed=True
+        ),
+        "speed": Gives(quantity_type(dim.VELOCITY, (None,)), "Its size.", computed=True),
+        "vorticity": Gives(
+            quantity_type(dim.FREQUENCY, (None,)), "Its curl: along z in a flat flow, else its size.", computed=True
+        ),
+        "pressure": Gives(
+            quantity_type(dim.PRESSURE, (None,)), "The pressure; in a closed box its mean is 0.", computed=True
+        ),
+        "centers": Gives(quantity_type(dim.LENGTH, (None, 3)), "The centers of the cells.", computed=True),
+        "kinetic_energy": Gives(quantity_type(dim.ENERGY), "The kinetic energy.", computed=True),
+        "momentum": Gives(quantity_type(dim.MASS * dim.VELOCITY, (3,)), "The momentum.", computed=True),
+        "divergence": Gives(
+            quantity_type(dim.FREQUENCY), "The largest divergence that the projection leaves.", computed=True
+        ),
+        "largest_speed": Gives(quantity_type(dim.VELOCITY), "The largest speed.", computed=True),
     }
 
     @classmethod
@@ -83,8 +91,10 @@ class Flow(Model):
         names = [around] if isinstance(around, str) else around
         found = dict(cls.gives)
         for name in names if isinstance(names, list | tuple) else ():
-            found[f"{name}.force"] = Gives(quantity_type(dim.FORCE, (3,)), "What the fluid does to it.")
-            found[f"{name}.torque"] = Gives(quantity_type(dim.FORCE * dim.LENGTH, (3,)), "Its torque about the origin.")
+            found[f"{name}.force"] = Gives(quantity_type(dim.FORCE, (3,)), "What the fluid does to it.", computed=True)
+            found[f"{name}.torque"] = Gives(
+                quantity_type(dim.FORCE * dim.LENGTH, (3,)), "Its torque about the origin.", computed=True
+            )
         return found
 
     def insides(self) -> Iterable[kinds.Ref]:

@@ -44,12 +44,18 @@ PLACES: Mapping[str, tuple[str, ...]] = {
     "solid": SIDES,
 }
 SOLID_OUTPUTS = {
-    "volume": Gives(quantity_type(dim.VOLUME), "What the tetrahedra of a solid hold, those with a torn edge left out."),
-    "inverted": Gives(Type(), "How many tetrahedra of a solid are turned inside out."),
+    "volume": Gives(
+        quantity_type(dim.VOLUME),
+        "What the tetrahedra of a solid hold, those with a torn edge left out.",
+        computed=True,
+    ),
+    "inverted": Gives(Type(), "How many tetrahedra of a solid are turned inside out.", computed=True),
 }
 SPRING_OUTPUTS = {
-    "length": Gives(quantity_type(dim.LENGTH), "Length of the spring."),
-    "tension": Gives(quantity_type(dim.FORCE), "Force of its stretch, > 0 when it pulls (without damping)."),
+    "length": Gives(quantity_type(dim.LENGTH), "Length of the spring.", computed=True),
+    "tension": Gives(
+        quantity_type(dim.FORCE), "Force of its stretch, > 0 when it pulls (without damping).", computed=True
+    ),
 }
 
 

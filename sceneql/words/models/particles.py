@@ -58,7 +58,7 @@ class Particles(Model):
 
     gives: ClassVar[Mapping[str, Gives]] = {
         **masses.BODY_OUTPUTS,
-        "ages": Gives(quantity_type(dim.TIME, (None,)), "Time since each was born, or since the start."),
+        "ages": Gives(quantity_type(dim.TIME, (None,)), "Time since each was born, or since the start.", computed=True),
     }
 
     list: dict[str, Particle] | None = field("Particles by name.", None)

@@ -31,17 +31,19 @@ TURN, PLACE = Type((4,)), Type((3,), dim.LENGTH)
 ONE: Mapping[str, Gives] = {
     "position": Gives(PLACE, "Where its center of mass is."),
     "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast that moves."),
-    "acceleration": Gives(quantity_type(dim.ACCELERATION, (3,)), "How fast that changes."),
+    "acceleration": Gives(quantity_type(dim.ACCELERATION, (3,)), "How fast that changes.", computed=True),
     "origin": Gives(PLACE, "Where the origin of its own axes, and of its object, is."),
     "rotation": Gives(TURN, "How its axes are turned: quaternion [w, x, y, z]."),
-    "spin": Gives(quantity_type(dim.FREQUENCY, (3,)), "Angular velocity in the world's axes."),
-    "body_spin": Gives(quantity_type(dim.FREQUENCY, (3,)), "Angular velocity in its own axes."),
-    "inertia": Gives(quantity_type(INERTIA, (3, 3)), "Inertia about the center of mass, in its own axes."),
+    "spin": Gives(quantity_type(dim.FREQUENCY, (3,)), "Angular velocity in the world's axes.", computed=True),
+    "body_spin": Gives(quantity_type(dim.FREQUENCY, (3,)), "Angular velocity in its own axes.", computed=True),
+    "inertia": Gives(
+        quantity_type(INERTIA, (3, 3)), "Inertia about the center of mass, in its own axes.", computed=True
+    ),
 }
 """Outputs of one body."""
 POINT: Mapping[str, Gives] = {
     "position": Gives(PLACE, "Where it is."),
-    "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast it moves."),
+    "velocity": Gives(quantity_type(dim.VELOCITY, (3,)), "How fast it moves.", computed=True),
 }
 """Outputs of a point of a body."""
 

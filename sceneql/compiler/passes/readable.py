@@ -1,0 +1,68 @@
+"""Values of what is solved that read what is not solved but worked out from it, as an energy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from typing import Any
+
+from pydantic import BaseModel
+
+from sceneql.compiler.check import values_of
+from sceneql.graph import Island, Task
+from sceneql.kinds import Model, Paint, Quantity, Value, grammar_of
+from sceneql.kinds.values import unreadable
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.expression import Link
+from sceneql.quantities.span import Span
+
+
+def report_unreadable(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
+    """Refuse values of an island's parts that read such an output of its models; of its colors nothing is solved.
+
+    What stands in the state in some scenes alone, as the center of one mass, is left to the run.
+    """
+    for island in groups:
+        acting = (name for name, *_ in (*island.forces, *island.contacts))
+        told: set[Span | None] = set()
+        for part in dict.fromkeys((*island.models, *acting)):
+            links = (link for value in _solved_values(tasks[part].kind) for link in _read(value, tasks))
+            for link in links:
+                if link.computed and link.task in island.models and link.span not in told:
+                    told.add(link.span)
+                    found.add(unreadable(link, tasks[part].span))
+
+
+def _solved_values(part: Any) -> Iterator[Value]:
+    """The values below a kind, record, list or dict, but for colors."""
+    if isinstance(part, BaseModel):
+        for name, info in type(part).model_fields.items():
+            mark = grammar_of(info)[0]
+            of_cells = isinstance(mark, Quantity) and mark.shape == (None,) and mark.dimension is None
+            if not isinstance(mark, Paint) and not of_cells:  # of a field on a grid the part tells itself what fits
+                yield from _solved_values(getattr(part, name))
+    elif isinstance(part, dict):
+        for item in part.values():
+            yield from _solved_values(item)
+    elif isinstance(part, list | tuple):
+        for item in part:
+            yield from _solved_values(item)
+    else:
+        yield from values_of(part)
+
+
+def _read(value: Value, tasks: Mapping[str, Task]) -> Iterator[Link]:
+    """The outputs that a value reads, and those that these are made of where they are formulas themselves."""
+    stack, known = list(value.links), set[Link]()
+    while stack:
+        link = stack.pop()
+        if link in known:
+            continue
+        known.add(link)
+        yield link
+        kind = tasks[link.task].kind
+        if isinstance(kind, Model):
+            with suppress(ScriptError):  # a velocity that the run will tell of
+                stack += Value(kind.formula(link.output)).links if kind.kinematic else ()
+        elif isinstance(made := getattr(kind, link.output, None), Value):
+            stack += made.links

@@ -1,0 +1,45 @@
+"""Memory asked for ahead of what ends the process where it gets none: LLVM and OpenBLAS cannot fail in another way.
+
+Address space is what is asked for, which a limit of the process bounds; none of it is touched.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+import sys
+from collections.abc import Sequence
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+MIB = 2**20
+TO_COMPILE = 160 * MIB
+"""What compiling one function has taken at most, and the arena of malloc that a thread begins."""
+TO_LOAD = 16 * MIB
+"""The same of a function that is loaded from the cache."""
+BLAS, BLAS_THREAD = 80 * MIB, 48 * MIB
+"""What a library with OpenBLAS maps as it is loaded, and for each processor."""
+WITH_BLAS = ("numpy", "scipy.linalg")
+
+
+def ask_for(size: int, why: str) -> None:
+    """Raise MemoryError where so many bytes are not to be had."""
+    try:
+        mmap.mmap(-1, size).close()
+    except OSError:
+        raise MemoryError(f"Unable to allocate {size // MIB} MiB {why}") from None
+
+
+class _Libraries(MetaPathFinder):
+    """Finds no module, but asks for the memory of those with OpenBLAS before they are looked for."""
+
+    def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
+        if name in WITH_BLAS:
+            ask_for(BLAS + BLAS_THREAD * (os.cpu_count() or 1), f"to load {name.partition('.')[0]}")
+        return None
+
+
+def ask_before_imports() -> None:
+    """From here on the import of a library with OpenBLAS raises MemoryError where there is too little for it."""
+    sys.meta_path.insert(0, _Libraries())
