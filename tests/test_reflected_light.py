@@ -143,3 +143,11 @@ def test_light_goes_back_and_forth_between_bright_walls_until_it_is_gone(tone):
     lamp = PointLight((0.0,) * 3, ((1 - tone) / tone,) * 3, 0.02)
     picture = draw(stage.sphere(gray(tone)), lights=(lamp,), seen=seen)
     assert picture == pytest.approx(1 / np.pi, rel=0.025)
+
+
+@pytest.mark.parametrize("tone", [0.9, 0.98])
+def test_no_light_comes_into_a_hollow_mirror(tone):
+    mirror = Surface(color=(tone,) * 3, roughness=0.0, metallic=1.0)
+    seen = view((0.3, 0.2, 0.2), (0.2, 0.1, 0.0), (48, 36), 0.8, orthographic=False)
+    lights = sky(1.0), sun((0.5, 1.0, 0.3), (3.0,) * 3, 0.2)
+    assert draw(stage.sphere(mirror, radius=0.5), lights=lights, seen=seen).max() < 0.02
