@@ -14,9 +14,9 @@ from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, s
 from renderers.tracing.light.soft_boxes_kernels import soft_boxes
 from renderers.tracing.light.through_kernels import CLEAR
 from renderers.tracing.light.visibility_kernels import look_around
-from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted, refracted_spread
-from renderers.tracing.record_kernels import RADIUS as BROAD
+from renderers.tracing.path_kernels import behind, bend, beneath, describe, faded, mirrored, refracted, refracted_spread
 from renderers.tracing.record_kernels import IMAGED, SURFACE, TINT, TRACED, WEIGHT, copy_record, start_of
+from renderers.tracing.record_kernels import RADIUS as BROAD
 from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.thin_capsules_kernels import coverage
@@ -128,6 +128,11 @@ def advance(scene, scratch, path, first, second, spare):
     else:
         radius += spread * t
         outside = describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, abs(radius), spare)
+        if not outside and scene.reals[int(spare[SURFACE]) + layout.TRANSMISSION] > 0.0:
+            under = beneath(scene, scratch, spare)
+            if under >= 0:
+                item = under
+                outside = describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, abs(radius), spare)
         if bounce > 0:
             spare[BROAD] = min(spare[BROAD], NARROW * t)
         fade = faded(scene, item, spare) if perspective or bounce > 0 else 1.0
