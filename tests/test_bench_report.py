@@ -17,9 +17,9 @@ from campaigns import LONG
 from sceneql import pipeline
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
-from sceneql.report import work_precision
+from sceneql.report import plots, work_precision
 from sceneql.report.bench import bench, cheapest
-from sceneql.report.curve_ends import GAP, label_ends, spread
+from sceneql.report.curve_ends import GAP, band, label_ends, repeats, spread
 from sceneql.report.order import observed_order
 from sceneql.report.page import Table, write_page
 from sceneql.report.work_precision import Measurement
@@ -284,3 +284,20 @@ def test_a_label_stands_at_the_end_that_is_nearest_to_it():
     axes.plot([3.0, 2.0, 1.0], [2.0, 1.0, math.nan], label="step")
     label_ends(axes)
     assert {text.get_text(): text.xy for text in axes.texts} == {"time": (3.0, 0.1), "step": (3.0, 2.0)}
+
+
+@pytest.mark.parametrize("draw", [band, repeats])
+def test_a_run_that_was_slow_now_and_then_leaves_the_scale_to_the_points(draw):
+    from matplotlib.figure import Figure
+
+    axes = Figure().subplots()
+    axes.set(xscale="log", yscale="log")
+    (line,) = axes.plot([1e-3, 2e-3], [1e-2, 1e-3], label="rk4")
+    label_ends(axes)
+    before = axes.get_xlim()
+    draw(axes, line, [1e-3, 5.0])
+    assert axes.get_xlim() == before
+
+
+def test_ticks_of_a_map_are_plain_numbers():
+    assert [plots._tick(value) for value in (0.0316, 12.5, 1000.0, 46700.0)] == ["0.0316", "12.5", "1000", "46700"]

@@ -258,6 +258,13 @@ def test_auto_frames_all_and_sees_what_is_flat_from_the_front(sides, front):
     assert (abs(view.axes[2][0]) < 1e-9) == front
 
 
+@pytest.mark.parametrize("thin", [0, 1, 2])
+def test_a_flat_map_keeps_its_right_angles(thin):
+    moment, low, high = box_moment((0, 1, 0), tuple(0 if k == thin else 2 for k in range(3)))
+    places, _ = seen(Auto().view((640, 360), moment), framing.corners(low, high))
+    assert np.ptp(np.abs(places), axis=0) == pytest.approx(0, abs=1e-9)
+
+
 def test_a_single_point_is_seen_from_outside():
     view = Auto().view((640, 360), FakeMoment(box=((1, 1, 1), (1, 1, 1))))
     _, depth = seen(view, [[1, 1, 1]])

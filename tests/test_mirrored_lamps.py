@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -46,6 +47,18 @@ def test_an_image_smaller_than_a_pixel_gives_all_of_its_light(size):
     image = draw(light=sun((0.15, 0.1, 1.0), (1e-5,) * 3, size))  # so faint that no mean over a pixel is tamed
     pixel = 0.3 / 80
     assert image.sum() * pixel**2 == pytest.approx(1e-5, rel=0.15)
+
+
+@pytest.mark.parametrize("normal", [(0, 0, 1), (0.3, 0.2, 1), (1, 0, 1), (0.1, 0.7, 0.6)])
+def test_parallel_rays_from_a_flat_mirror_meet_a_sun_of_any_size_or_pass_it(normal):
+    normal, eye = (np.array(v) / np.linalg.norm(v) for v in (normal, (0.2, 0.1, 1.0)))
+    wall = replace(stage.floor(MIRROR), linear=tuple(normal))
+    for size in (0.0, 1e-9, 1e-3):
+        for off, met in ((0.0, True), (2e-3, False)):
+            toward = 2 * (normal @ eye) * normal - eye + off * np.cross(normal, (0.0, 1.0, 0.0))
+            seen = view(tuple(5 * eye), size=(8, 8))
+            picture = Trace().draw(frame(wall, lights=[sun(toward, (3.0,) * 3, size)], seen=seen)).linear
+            assert (picture > 1e4).all() if met else (picture == 0.0).all()
 
 
 def test_what_stands_before_a_lamp_hides_its_image():

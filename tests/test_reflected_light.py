@@ -119,15 +119,15 @@ def test_white_contacts_in_a_furnace_are_not_to_be_seen():
     assert np.abs(picture - 1).max() < 0.01
 
 
-@pytest.mark.parametrize("tone", [0.5, 0.8, 0.9])
-def test_no_sky_comes_into_a_closed_room(tone):
+@pytest.mark.parametrize(("tone", "most"), [(0.5, 0.0), (0.8, 0.0), (0.95, 0.0), (0.98, 0.0), (0.99, 0.005)])
+def test_no_sky_comes_into_a_closed_room(tone, most):
     walls = [
         stage.box(gray(tone), tuple(1.1 * side * np.eye(3)[axis]), tuple(2.4 - 2.2 * np.eye(3)[axis]))
         for axis in range(3)
         for side in (-1, 1)
     ]
     seen = view((0, 0, 0.9), (0, -0.3, 0), (48, 36), 0.8, orthographic=False)
-    assert draw(*walls, lights=(sky(1.0),), seen=seen).max() < 1e-6
+    assert draw(*walls, lights=(sky(1.0),), seen=seen).max() < 1e-6 + most
 
 
 @pytest.mark.parametrize("tone", [0.3, 0.6, 0.8, 0.9])
@@ -135,3 +135,19 @@ def test_a_lamp_in_a_hollow_ball_lights_it_by_all_that_goes_back_and_forth(tone)
     seen = view((0, 0, 0.5), (0, -0.3, 0), (48, 36), 0.8, orthographic=False)
     picture = draw(stage.sphere(gray(tone)), lights=(PointLight((0.0,) * 3, (1.0,) * 3, 0.02),), seen=seen)
     assert picture == pytest.approx(tone / (1 - tone) / np.pi, rel=0.015)  # as in an integrating sphere
+
+
+@pytest.mark.parametrize("tone", [0.95, 0.98, 0.99, 0.995])
+def test_light_goes_back_and_forth_between_bright_walls_until_it_is_gone(tone):
+    seen = view((0, 0, 0.5), (0, -0.3, 0), (48, 36), 0.8, orthographic=False)
+    lamp = PointLight((0.0,) * 3, ((1 - tone) / tone,) * 3, 0.02)
+    picture = draw(stage.sphere(gray(tone)), lights=(lamp,), seen=seen)
+    assert picture == pytest.approx(1 / np.pi, rel=0.025)
+
+
+@pytest.mark.parametrize("tone", [0.9, 0.98])
+def test_no_light_comes_into_a_hollow_mirror(tone):
+    mirror = Surface(color=(tone,) * 3, roughness=0.0, metallic=1.0)
+    seen = view((0.3, 0.2, 0.2), (0.2, 0.1, 0.0), (48, 36), 0.8, orthographic=False)
+    lights = sky(1.0), sun((0.5, 1.0, 0.3), (3.0,) * 3, 0.2)
+    assert draw(stage.sphere(mirror, radius=0.5), lights=lights, seen=seen).max() < 0.02

@@ -36,3 +36,19 @@ def test_edges_seen_through_glass_are_a_pixel_wide(thing):
     picture, exact = drawn(thing), drawn(thing, FINER)
     assert edge_width(picture) < edge_width(exact) + 0.5
     assert np.sqrt(((picture - exact) ** 2).mean()) < 0.05
+
+
+@pytest.mark.parametrize("on", ["floor", "table"])
+def test_glass_that_stands_on_something_shows_its_face_without_specks(on):
+    red = Surface(color=(0.8, 0.1, 0.1), roughness=1.0, specular=0.0)
+    below = (
+        [stage.floor(red)] if on == "floor" else [stage.floor(height=-0.8), stage.box(red, (0, -0.4, 0), (3, 0.8, 3))]
+    )
+    seen = view((1.2, 2.3, 3.1), (0, 0.3, 0), (64, 48), 1.0)
+    stands, sunk = (
+        Trace()
+        .draw(frame(*below, stage.box(GLASS, (0.1, 0.3 - by, 0), (0.7, 0.6, 0.8)), lights=[SKY], seen=seen))
+        .linear
+        for by in (0.0, 1e-3)
+    )
+    assert np.abs(stands - sunk).max() < 0.08

@@ -14,8 +14,9 @@ from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, s
 from renderers.tracing.light.soft_boxes_kernels import soft_boxes
 from renderers.tracing.light.through_kernels import CLEAR
 from renderers.tracing.light.visibility_kernels import look_around
-from renderers.tracing.path_kernels import behind, bend, describe, faded, mirrored, refracted, refracted_spread
+from renderers.tracing.path_kernels import behind, bend, beneath, describe, faded, mirrored, refracted, refracted_spread
 from renderers.tracing.record_kernels import IMAGED, SURFACE, TINT, TRACED, WEIGHT, copy_record, start_of
+from renderers.tracing.record_kernels import RADIUS as BROAD
 from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, part
 from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.thin_capsules_kernels import coverage
@@ -34,6 +35,10 @@ FAINTLY = -1.0
 """In place of doubt about a root: the path goes through a capsule thinner than a pixel."""
 WIDEST = 0.02
 """Spread of a ray's cone, after several mirrors or glass, from which on it sees no lamps: they would be smeared."""
+WIDE = 0.32
+"""Spread of a ray's cone, after several mirrors, from which on it sees what a rough surface does: the sky, blurred."""
+NARROW = 0.5
+"""Radius of a cone behind the first surface, by the length of its ray, up to which surfaces are left by some of it."""
 QUICK = 8
 """Samples of light and sky on surfaces beyond the second record: seen in a reflection or refraction of another."""
 RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIVE, DOUBTED, DARK = (
@@ -123,6 +128,13 @@ def advance(scene, scratch, path, first, second, spare):
     else:
         radius += spread * t
         outside = describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, abs(radius), spare)
+        if not outside and scene.reals[int(spare[SURFACE]) + layout.TRANSMISSION] > 0.0:
+            under = beneath(scene, scratch, spare)
+            if under >= 0:
+                item = under
+                outside = describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, abs(radius), spare)
+        if bounce > 0:
+            spare[BROAD] = min(spare[BROAD], NARROW * t)
         fade = faded(scene, item, spare) if perspective or bounce > 0 else 1.0
         if fade < 1.0:
             r, g, b = backdrop(scene.reals, max(dy, 0.0)) if straight else sky_radiance(scene.reals, max(dy, 0.0))
@@ -134,19 +146,22 @@ def advance(scene, scratch, path, first, second, spare):
         glass = clear > (0.0 if bounce == 0 else CLEAR)
         nv = facing_ratio(spare)
         sr, sg, sb = 0.0, 0.0, 0.0
-        traced = 0.0
+        traced = turn = lamps = 0.0
         if glass:
             traced = 1.0 if bounce == 0 or not outside else 0.0
         elif bounce < BOUNCES:
             traced = sharpness(scene.reals[s + layout.ROUGHNESS])
             if traced > 0.0:
+                turn = bend(scene, scratch, spare)
+                if bounce > 0:
+                    traced *= 1.0 - smoothstep(0.5 * WIDE, WIDE, abs(spread) + 2.0 * turn)
                 sr, sg, sb = mean_specular(scene.reals, spare, nv)
             traced *= smoothstep(FAINT, 2.0 * FAINT, traced * max(wr * sr, max(wg * sg, wb * sb)))
         spare[TRACED] = traced
-        turn, lamps = 0.0, 0.0
         goes_on = (glass or traced > 0.0) and bounce < BOUNCES
         if goes_on:
-            turn = bend(scene, scratch, spare)
+            if glass:
+                turn = bend(scene, scratch, spare)
             if outside or not glass:
                 lamps = polish(scene.reals[s + layout.ROUGHNESS])
             if bounce > 0:

@@ -9,6 +9,7 @@ from renderers.tracing.light.sampling_kernels import across
 from renderers.tracing.light.shade_kernels import facing_ratio
 from renderers.tracing.record_kernels import NORMAL, PLACE, VIEW, start_of
 from renderers.tracing.scene_kernels import part
+from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.surface_kernels import color_at, normal_at
 
 FADE = 0.04
@@ -113,6 +114,38 @@ def refracted_spread(scene, scratch, record, ratio, radius, spread):
     cosine = facing_ratio(record)
     after = np.sqrt(max(1.0 - ratio * ratio * (1.0 - cosine * cosine), 0.0))
     return ratio * spread - (after - ratio * cosine) * turn * radius
+
+
+@part
+def beneath(scene, scratch, record):
+    """The opaque item on whose face a record's face of glass lies, seen from within the glass, or -1.
+
+    Rounding says which of the two a ray meets first, so of a glass on a table some pixels would look into the table.
+    """
+    x, y, z = start_of(record)
+    bx, by, bz = behind(record)
+    nx, ny, nz = -float(record[NORMAL]), -float(record[NORMAL + 1]), -float(record[NORMAL + 2])
+    far = nx * (bx - x) + ny * (by - y) + nz * (bz - z)
+    _, _, light = walk(scene, scratch, x, y, z, nx, ny, nz, 0.0, far, True)
+    if light > 0.0:
+        return -1
+    u = scene.reals
+    for item in range(scene.ints[layout.ENDLESS_COUNT]):
+        h = scene.ints[layout.ITEMS + 4 * item + layout.REALS_AT]
+        if scene.ints[layout.ITEMS + 4 * item + layout.KIND] != layout.HALF_SPACE:
+            continue
+        if u[h] * bx + u[h + 1] * by + u[h + 2] * bz < u[h + 3] < u[h] * x + u[h + 1] * y + u[h + 2] * z:
+            return item
+    # A ray within the item, along the face: another face of it may lie on a floor, as this one under the glass.
+    ax, ay, az, vx, vy, vz = across(nx, ny, nz)
+    dx, dy, dz = 0.8 * ax + 0.6 * vx, 0.8 * ay + 0.6 * vy, 0.8 * az + 0.6 * vz
+    t, item, _ = walk(scene, scratch, bx, by, bz, dx, dy, dz, 0.0, np.inf, False)
+    if item < 0:
+        return -1
+    skin = normal_at(scene, scratch, item, bx + t * dx, by + t * dy, bz + t * dz)
+    s = scene.ints[layout.ITEMS + 4 * item + layout.SURFACE_AT]
+    inside = dx * skin[3] + dy * skin[4] + dz * skin[5] > 0.0
+    return item if inside and u[s + layout.TRANSMISSION] == 0.0 else -1
 
 
 @part

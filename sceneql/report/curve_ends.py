@@ -57,7 +57,18 @@ def spread(heights: Sequence[float]) -> list[float]:
 
 
 def band(axes: Any, line: Any, median: Sequence[float]) -> None:
-    """Shade the way from a line's points to the right, as far as the median of the repeats [s]."""
+    """Shade the way from a line's points to the right, as far as the median of the repeats [s], or out of the panel.
+
+    To be called once all lines are drawn: a machine that was busy for a moment leaves the scale to the points.
+    """
     fastest, errors = line.get_data()
     if len(fastest):
+        axes.autoscale(False)
         axes.fill_betweenx(errors, fastest, median, color=line.get_color(), alpha=0.2, lw=0)
+
+
+def repeats(axes: Any, line: Any, median: Sequence[float]) -> None:
+    """The same for points that are no curve: a bar from each."""
+    fastest, errors = line.get_data()
+    axes.autoscale(False)
+    axes.hlines(errors, fastest, median, color=line.get_color(), alpha=0.4, lw=3)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from sceneql.files import whole
-from sceneql.report.curve_ends import band, label_ends
+from sceneql.report.curve_ends import band, label_ends, repeats
 
 if TYPE_CHECKING:
     from sceneql.report.energy_drift import Drift
@@ -86,6 +86,7 @@ def _errors(
             logarithmic(axes)
             axes.set(xlabel=label, ylabel="relative error at the end", title=f"{title}: {island}")
             mine = [row for row in rows if row.island == island]
+            medians = []
             for solver, mark in zip(dict.fromkeys(row.solver for row in mine), cycle(MARKS), strict=False):
                 runs = [row for row in mine if row.solver == solver]
                 done = [row for row in runs if row.ok and row.error > 0.0]
@@ -93,8 +94,10 @@ def _errors(
                 places, errors = [place(row) for row in done], [row.error for row in done]
                 (line,) = axes.plot(places, errors, marker=mark, ms=4, label=text)
                 if farthest is not None:
-                    band(axes, line, [farthest(row) for row in done])
+                    medians.append((line, [farthest(row) for row in done]))
             label_ends(axes)
+            for line, median in medians:
+                band(axes, line, median)
 
 
 def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Sequence[MeshRun]) -> None:
@@ -140,14 +143,16 @@ def study_errors(
             axes = panel(figure, 2 if numbered else 1, k)
             logarithmic(axes)
             axes.set(xlabel=text, ylabel="relative error", title=title)
+            medians = []
             for (name, runs), mark in zip(rows.items(), cycle(MARKS), strict=False):
                 done = [run for run in runs if math.isfinite(run[1])]
                 style = "-" if column == 0 else "none"  # points of harder and harder problems are no line over run time
                 places, errors = [run[column] for run in done], [max(run[1], SMALLEST) for run in done]
                 (line,) = axes.plot(places, errors, linestyle=style, marker=mark, ms=4, label=name)
-                if column == 2:
-                    axes.hlines(errors, places, [run[3] for run in done], color=line.get_color(), alpha=0.4, lw=3)
+                medians.append((line, [run[3] for run in done]))
             label_ends(axes)
+            for line, median in medians if column == 2 else []:
+                repeats(axes, line, median)
 
 
 def panel(figure: Any, count: int, k: int) -> Any:
@@ -191,6 +196,11 @@ def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
             label_ends(axes)
 
 
+def _tick(value: float) -> str:
+    """A number in three digits, or as many as it has before its point: 0.0316, 12.5, 4670."""
+    return f"{value:.0f}" if 1e3 <= value < 1e6 else f"{value:.3g}"
+
+
 def stability_map(path: Path, title: str, label: str, cells: Sequence[Cell]) -> None:
     """Write an SVG with a panel an island: a row a solver, a column a value swept over, colored by the outcome.
 
@@ -219,7 +229,7 @@ def stability_map(path: Path, title: str, label: str, cells: Sequence[Cell]) -> 
                     if row.get(values[x - 1]) != row.get(values[x]):
                         axes.plot([x, x], [y, y + 1], color="black", lw=2.5, solid_capstyle="butt")
             axes.set(xlim=(0, len(values)), ylim=(0, len(words)), xlabel=label, title=f"{title}: {island}")
-            axes.set_xticks([i + 0.5 for i in range(len(values))], [f"{v:.3g}" for v in values], rotation=60)
+            axes.set_xticks([i + 0.5 for i in range(len(values))], [_tick(v) for v in values], rotation=60)
             axes.set_yticks([i + 0.5 for i in range(len(words))], words[::-1])
             axes.tick_params(length=0, labelsize=8)
         patches = [Patch(facecolor=color, label=name) for name, color in COLORS.items()]

@@ -32,9 +32,9 @@ BRIGHTEST = 4.0
 """Limit of the radiance of surfaces that hide the sky: small spots near a lamp, hit by few samples, left blotches."""
 BRIGHTEST_AGAIN = 1.0
 """The same of lamps' light on surfaces seen from these, of which samples tell even less."""
-AGAIN = 0.25
-"""Share of the sky that the last of SURFACES on the way of light from there is assumed to see."""
-SURFACES, LEAST = 64, 0.02
+AGAIN = 1 / 64
+"""Share of the sky that the last of SURFACES is assumed to see: little, since none before it has led out."""
+SURFACES, LEAST = 256, 0.02
 """Most surfaces beside the lit one that light from around is followed to, and its share of what the last of them
 gives below which it is followed no further: in closed rooms the sky is far, and in white corners."""
 BLURRED = 2
@@ -72,8 +72,8 @@ def step(scene, scratch, asked, way):
     """Follow a way from its surface to the next one, in the mode of ``asked``; it is not LIVE when it has ended.
 
     Light goes on in one direction from each surface, and those beyond the first are lit by one lamp in place of all.
-    After SURFACES, all of them bright, the last sees a part of the sky between neighbors as bright as itself, so that
-    nothing is lost in white corners. In ASKING the rays are listed alone.
+    After SURFACES, all of them bright, the last sees a little of the sky between neighbors as bright as the first, so
+    that nothing is lost in white corners and closed rooms. In ASKING the rays are listed alone.
     """
     u = scene.reals
     x, y, z, dx, dy, dz = way[AT], way[AT + 1], way[AT + 2], way[TOWARD], way[TOWARD + 1], way[TOWARD + 2]
@@ -128,10 +128,7 @@ def step(scene, scratch, asked, way):
     ended = number == SURFACES - 1
     if ended:
         hr, hg, hb = sky_ambient(u, ny)
-        hr, hg, hb = AGAIN * hr, AGAIN * hg, AGAIN * hb
-        er += hr / (1.0 - (1.0 - AGAIN) * min(r, 1.0))
-        eg += hg / (1.0 - (1.0 - AGAIN) * min(g, 1.0))
-        eb += hb / (1.0 - (1.0 - AGAIN) * min(b, 1.0))
+        er, eg, eb = er + AGAIN * hr, eg + AGAIN * hg, eb + AGAIN * hb
     else:
         ax, ay, az, bx, by, bz = across(nx, ny, nz)
         v, w = NEXT_DISK[shuffled(sample, number), 0], NEXT_DISK[shuffled(sample, number), 1]
@@ -160,6 +157,9 @@ def step(scene, scratch, asked, way):
         way[LIGHT + 1] + wg * eg,
         way[LIGHT + 2] + wb * eb,
     )
+    if number == SURFACES - 1:
+        for c in range(3):
+            way[LIGHT + c] /= 1.0 - (1.0 - AGAIN) * min((wr, wg, wb)[c], 1.0)
     way[WEIGHT], way[WEIGHT + 1], way[WEIGHT + 2] = wr * vr, wg * vg, wb * vb
     way[TOWARD], way[TOWARD + 1], way[TOWARD + 2], way[ITEM], way[NUMBER] = dx, dy, dz, item, number + 1
     way[LIVE] = 0.0 if ended else 1.0

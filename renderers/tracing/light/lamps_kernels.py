@@ -9,6 +9,9 @@ from renderers.tracing.scene_kernels import part
 
 BLUR = 2.0
 """Least radius of an image [half widths of a ray's cone]: it is two pixels across, so that points are not lost."""
+LEAST_SPREAD = 1e-6
+"""Least half width of a cone before a sun, as a tangent: the rays of an orthographic camera stay parallel in a flat
+mirror, and rounding alone would say whether they meet a sun of angle 0."""
 
 
 @part
@@ -23,7 +26,7 @@ def mirrored_lamps(scene, ox, oy, oz, dx, dy, dz, radius, spread, far):
         k = layout.LIGHTS + layout.LIGHT * l
         cx, cy, cz, t, size = u[k + 1], u[k + 2], u[k + 3], np.inf, u[k + 8]
         along = cx * dx + cy * dy + cz * dz
-        blur = abs(spread)
+        blur = max(abs(spread), LEAST_SPREAD)
         if u[k] == layout.POINT:
             cx, cy, cz = cx - ox, cy - oy, cz - oz
             along = t = cx * dx + cy * dy + cz * dz

@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 THREE_QUARTER = (0.55, 0.38, 1.0)
 ALONG = ((1.0, 0.1, 0.0), (0.0, 1.0, 0.12), (0.0, 0.1, 1.0))
 """Towards the camera, for what is flat in x, y or z."""
-FLAT = 0.2
-"""What is shallower along an axis than this part of its size along both others is seen along it."""
+FLAT, EVEN = 0.2, 0.005
+"""What is shallower along an axis than this part of its size along both others is seen along it, nearly, so that bodies
+and their ground are told apart; what is EVEN is seen exactly so, and keeps its right angles."""
 HEADROOM = 0.86
 """Part of the height between the margins that is filled at most: pictures are wider than what stands in them."""
 
@@ -47,4 +48,7 @@ def _towards(points: Floats) -> tuple[float, float, float]:
     sides = points.max(axis=0) - points.min(axis=0)
     thin = int(sides.argmin())
     others = [float(side) for k, side in enumerate(sides) if k != thin]
+    if sides[thin] < EVEN * min(others):
+        x, y, z = (float(k == thin) for k in range(3))
+        return x, y, z
     return ALONG[thin] if sides[thin] < FLAT * min(others) else THREE_QUARTER
