@@ -94,7 +94,7 @@ def in_tile(u, ball, x, y):
 
 @kernel(types.void(SCENE, MARKS), _nrt=False)
 def reach(scene, reached):
-    """Mark the tiles in which a ray of a pixel may meet an item: by the outlines of the hierarchy's boxes, and of balls."""
+    """Mark the tiles in which a ray of a pixel may meet an item: by outlines of the hierarchy's boxes, and of balls."""
     rows, columns = reached.shape
     everywhere = 1 if scene.ints[layout.ENDLESS_COUNT] > 0 else 0
     for y in range(rows):
