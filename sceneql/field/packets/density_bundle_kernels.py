@@ -41,11 +41,11 @@ MANY = 96
 
 @inlined
 def search_many(
-    room, i, begin, end, parts, near, kept, threshold, anywhere, table, state, order, listed, ids, found, queue, met,
-    doubted,
+    room, i, begin, end, rays, parts, near, kept, threshold, anywhere, table, state, order, listed, ids, found, queue,
+    met, doubted,
 ):  # fmt: skip
     """``search_packet`` of a piece of gathered ray i alone, among more points than have room in lanes."""
-    own = room[OWN_ROW, :BEAM]
+    hits, own = met, room[OWN_ROW, :BEAM]
     for k in range(kept):
         for j in range(8):
             near[k, j] = parts[listed[k], j]
@@ -63,12 +63,15 @@ def search_many(
     found[FOUND_LOW, j] += off
     found[FOUND_HIGH, j] += off
     found[FOUND_ROOT, j] += off
+    if met > hits and not anywhere:  # in the memory of the first ray, which is searched already
+        polish(near, kept, threshold, rays, queue[hits:], 1, room, found)
     return spent, met, doubted
 
 
 @inlined
 def search_ray(
-    room, i, blocks, parts, near, threshold, anywhere, table, state, order, listed, ids, found, queue, met, doubted
+    room, i, rays, blocks, parts, near, threshold, anywhere, table, state, order, listed, ids, found, queue, met,
+    doubted,
 ):  # fmt: skip
     """Search gathered ray i alone, piece by piece, since most rays among many parts end early."""
     far, unit, j = room[FAR, i], room[INVERSE_SPEED, i], np.uint64(ids[i])
@@ -80,8 +83,8 @@ def search_ray(
         kept = list_on_ray(blocks, 0, px, py, pz, dx, dy, dz, end - begin, listed)
         if kept > MOST_POINTS:
             more, met, doubted = search_many(
-                room, i, begin, end, parts, near, kept, threshold, anywhere, table, state, order, listed, ids, found,
-                queue, met, doubted,
+                room, i, begin, end, rays, parts, near, kept, threshold, anywhere, table, state, order, listed, ids,
+                found, queue, met, doubted,
             )  # fmt: skip
             spent += more
         elif kept > 0:
@@ -119,8 +122,8 @@ def roots_apart(
     spent = met = doubted = 0
     for i in range(n):
         more, met, doubted = search_ray(
-            room, i, blocks, parts, near, threshold, anywhere, table, state, order, listed, ids, found, queue, met,
-            doubted,
+            room, i, rays, blocks, parts, near, threshold, anywhere, table, state, order, listed, ids, found, queue,
+            met, doubted,
         )  # fmt: skip
         spent += more
     return spent, met, doubted
