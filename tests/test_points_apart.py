@@ -19,15 +19,18 @@ from stage import WHITE, frame
 THRESHOLD = 0.3
 
 
-def crowd(count, at=0.0, least=1.0):
-    """The tape of ``count`` points in a ball of radius 1 around (at, 0, 0), of weights from ``least`` to 1."""
+def crowd(count, at=0.0, least=1.0, wider=1.0, heaviest=1.0):
+    """The tape of ``count`` points in a ball of radius 1 around (at, 0, 0), of weights from ``least`` to ``heaviest``.
+
+    The reach of each is ``wider`` times about the distance of neighbors.
+    """
     rng = np.random.default_rng(count)
     centers = rng.normal(size=(count, 3))
     centers *= rng.uniform(size=(count, 1)) ** (1 / 3) / np.linalg.norm(centers, axis=1)[:, None]
     centers[:, 0] += at
-    radii = rng.uniform(0.8, 1.2, count) * 1.1 * count ** (-1 / 3)
+    radii = rng.uniform(0.8, 1.2, count) * 1.1 * wider * count ** (-1 / 3)
     corners, both = np.repeat(centers[:, None], 3, axis=1), np.stack([radii, radii], axis=1)
-    points = Skeleton(corners, both, rng.uniform(least, 1.0, count), np.arange(count, dtype=float))
+    points = Skeleton(corners, both, rng.uniform(least, heaviest, count), np.arange(count, dtype=float))
     build = TapeBuilder()
     depth = build.op("sub", build.constant(THRESHOLD), build.skeleton(points, build.x, build.y, build.z))
     return build.finish(build.op("mul", depth, build.constant(0.07)))
@@ -69,6 +72,30 @@ def test_rays_that_go_apart_find_what_the_certified_routine_finds(count, at, lea
     hit = known == HIT
     if not anywhere:
         assert t[hit] == pytest.approx(roots[hit], abs=1e-8 / speed)
+
+
+@pytest.mark.parametrize("anywhere", [False, True])
+def test_parallel_rays_from_scattered_places_find_what_the_certified_routine_finds(anywhere):
+    """Shadow rays of light from around: their bundle reaches thousands of points, each of them a few."""
+    tape = crowd(3000)
+    origins, _ = rays(tape, 0.0, 7)
+    ways = np.repeat([[0.48, 0.6, 0.64]], len(origins), axis=0)
+    status, t, certified = settled(tape, origins, ways, 2.2, anywhere)
+    known, roots = cast(tape, origins, ways, np.zeros(len(origins)), np.full(len(origins), 2.2))
+    assert (status == known).all()
+    assert certified <= 0.05 * len(origins)
+    assert anywhere or t[known == HIT] == pytest.approx(roots[known == HIT], abs=1e-8)
+
+
+@pytest.mark.parametrize("anywhere", [False, True])
+def test_rays_among_hundreds_of_points_at_each_place_are_searched_as_well(anywhere):
+    tape = crowd(900, 0.0, 0.002, 6.0, 0.012)
+    origins, ways = rays(tape, 0.0, 3)
+    status, t, _ = settled(tape, origins, ways, 2.2, anywhere)
+    known, roots = cast(tape, origins, ways, np.zeros(len(origins)), np.full(len(origins), 2.2))
+    assert (status == known).all()
+    assert 20 < (known == HIT).sum() < len(origins)
+    assert anywhere or t[known == HIT] == pytest.approx(roots[known == HIT], abs=1e-7)
 
 
 def test_a_bundle_of_any_size_is_searched_to_its_last_ray():

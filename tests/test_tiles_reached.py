@@ -13,7 +13,8 @@ from renderers.tracing import draw as drawing
 from renderers.tracing.pack import pack
 from renderers.tracing.probe import probe
 from renderers.tracing.tiles_kernels import reach
-from sceneql.frame import PointLight, Sky
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.frame import Implicit, PointLight, Sky
 from stage import GLOW, WHITE, frame, sun, view
 
 SKY = Sky((0.9, 1.0, 1.2), (0.8, 0.6, 0.4), (0.3, 0.3, 0.3))
@@ -55,6 +56,38 @@ def test_every_tile_in_which_something_is_met_is_marked(seed, orthographic):
         marks = reached(scene)
         assert set(np.unique(marks)) <= {0, 1}
         assert (marks[in_tiles(np.isfinite(probe(scene).depth))] == 1).all()
+
+
+def in_a_ball(random, stretch):
+    """A formula's solid in a ball or, with ``stretch``, in an ellipsoid; in a box far larger, turned and moved."""
+    b = TapeBuilder()
+    matrix = np.linalg.qr(random.normal(size=(3, 3)))[0] * random.uniform(0.7, 1.4, (3, 1) if stretch else 1)
+    x, y, z = b.affine(np.column_stack([matrix, random.uniform(-0.6, 0.6, 3)]), b.x, b.y, b.z)
+    squares = [b.op("square", axis) for axis in (x, y, z)]
+    ball = b.op("sub", b.op("add", b.op("add", squares[0], squares[1]), squares[2]), b.constant(0.36))
+    wave = b.op("sub", b.op("mul", b.op("sin", b.op("mul", x, b.constant(9.0))), y), b.constant(0.1))
+    return Implicit("cut", WHITE, b.finish(b.op("max", wave, ball)), (-3.0,) * 3, (3.0,) * 3)
+
+
+@pytest.mark.parametrize("orthographic", [True, False])
+@pytest.mark.parametrize("seed", range(4))
+def test_tiles_beside_the_ball_that_an_implicit_solid_is_in_are_left_out(seed, orthographic):
+    """Whether a formula says so, the points that it is made of, or both, and the camera is in the ball or behind it."""
+    random = np.random.default_rng(seed)
+    points = replace(stage.blob(WHITE, (0.2, 0.1, 0.0), seed), low=(-2.0,) * 3, high=(2.0,) * 3)
+    for shapes in (
+        (in_a_ball(random, False),),
+        (in_a_ball(random, True),),
+        (points,),
+        (points, in_a_ball(random, False)),
+    ):
+        for eye, half in (((0.5, 1.0, 4.0), 0.4), ((0.3, 0.2, 0.4), 1.5), ((1.0, 0.0, -3.0), 0.2)):
+            scene = frame(*shapes, seen=view(eye, random.uniform(-0.5, 0.5, 3), SIZE, half, orthographic))
+            marks = reached(scene)
+            assert (marks[in_tiles(np.isfinite(probe(scene).depth))] == 1).all()
+    seen = view((0.5, 1.0, 4.0), (0, 0, 0), (640, 360), 1.5 if orthographic else 0.4, orthographic)
+    assert 0.0 < reached(frame(in_a_ball(random, False), seen=seen)).mean() < 0.5
+    assert 0.0 < reached(frame(points, seen=seen)).mean() < 0.5
 
 
 def test_tiles_about_one_small_thing_are_few_and_with_a_floor_all_are():

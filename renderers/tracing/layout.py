@@ -18,9 +18,12 @@ HALF_SPACE (a quadric that is nothing else): unit normal, height of its face alo
 GRID: as grid_kernels says.
 THIN: as ROUND, of a capsule that the camera may see thinner than a pixel (thin_capsules_kernels), and the length of the
 line that it is a piece of: 11.
-IMPLICIT and SHEET: low, high, place of its ranges: 7. The ranges, in ints: place of the code, its rows, place of the
-constants, their number, place of the parts, their rows; place of the cells; the same six of its paint and of what a
-sheet lies within (no rows: it has none); place of the plan for single rays (sceneql.field.tape.plans), its length."""
+IMPLICIT and SHEET: low, high, place of its ranges, a ball that it is in (4; radius inf: none is known): 11. The ranges,
+in ints: place of the code, its rows, place of the constants, their number, place of the parts, their rows; place of the
+cells; the same six of its paint and of what a sheet lies within (no rows: it has none); place of the plan for single
+rays (sceneql.field.tape.plans), its length."""
+BALL = 7
+"""Column of the ball among these reals."""
 CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
 """Columns of the ranges, and their number."""
 CELLS = 32

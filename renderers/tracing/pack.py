@@ -16,6 +16,7 @@ from renderers.tracing.solids.thin_capsules_kernels import TENT
 from renderers.tracing.solids.triangles import LARGE, Packed, boxes_of, corners_of, rows_of, still_mesh
 from sceneql import frame as seen
 from sceneql.compiled.kernels import address
+from sceneql.field.roots.balls import ball_around
 from sceneql.field.tape.plans import ray_plan
 from sceneql.field.tape.tape_ops import scratch_rows
 
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
+NO_BALL = (0.0, 0.0, 0.0, np.inf)
 SAME = 1e-3
 """Half pixels below which two ends of thin capsules are one place."""
 
@@ -206,7 +208,8 @@ class Rows:
         self._items(index, kind, np.concatenate([low, high], axis=1), rows)
 
     def _implicit(self, index: int, shape: seen.Implicit) -> None:
-        box = np.array([[*shape.low, *shape.high, 0.0]], dtype=np.float64)
+        ball = ball_around(shape.tape) if shape.within is None else NO_BALL
+        box = np.array([[*shape.low, *shape.high, 0.0, *ball]], dtype=np.float64)
         self.implicits.append(self._size)
         self._items(index, layout.IMPLICIT if shape.within is None else layout.SHEET, box[:, :6], box)
         ranges = self._tape(shape.tape)

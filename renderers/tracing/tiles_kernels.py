@@ -62,9 +62,39 @@ def tile_at(pixels, count):
     return int(min(max(np.floor(pixels / TILE), -1.0), float(count)))
 
 
+@part
+def ball_of(scene, link):
+    """Place in the reals of the ball of a leaf of one implicit object that has one; -1 for other nodes."""
+    if scene.ints[link + 2] != 1:
+        return -1
+    item = layout.ITEMS + 4 * scene.ints[link + 1]
+    at = scene.ints[item + layout.REALS_AT] + layout.BALL
+    return at if scene.ints[item + layout.KIND] == layout.IMPLICIT and scene.reals[at + 3] < np.inf else -1
+
+
+@part
+def in_tile(u, ball, x, y):
+    """Whether a camera's ray of tile (x, y) may meet a ball in the reals ``u``.
+
+    All of the tile's rays are within a cone around the middle one; with rays through points some pixels off.
+    """
+    ox, oy, oz, dx, dy, dz, pixel, spread = camera_ray(u, (x + 0.5) * TILE, (y + 0.5) * TILE)
+    px, py, pz, radius = u[ball] - ox, u[ball + 1] - oy, u[ball + 2] - oz, u[ball + 3]
+    off = 2.0 * (RIM + np.sqrt(0.5) * TILE)
+    square = px * px + py * py + pz * pz
+    if spread > 0.0:  # of rays at least 1 - off spread as long before they were made unit vectors
+        if off * spread > 0.5:
+            return True
+        radius += (np.sqrt(square) + radius) * off * spread / (1.0 - off * spread)
+    radius += off * pixel
+    along = max(px * dx + py * dy + pz * dz, 0.0)
+    px, py, pz = px - along * dx, py - along * dy, pz - along * dz
+    return px * px + py * py + pz * pz <= radius * radius * (1.0 + 1e-9)
+
+
 @kernel(types.void(SCENE, MARKS), _nrt=False)
 def reach(scene, reached):
-    """Mark the tiles in which a ray of a pixel may meet an item: by the outlines of the hierarchy's boxes."""
+    """Mark the tiles in which a ray of a pixel may meet an item: by outlines of the hierarchy's boxes, and of balls."""
     rows, columns = reached.shape
     everywhere = 1 if scene.ints[layout.ENDLESS_COUNT] > 0 else 0
     for y in range(rows):
@@ -81,9 +111,11 @@ def reach(scene, reached):
         elif scene.ints[link + 2] == 0 and (last > first + 1 or end > begin + 1):
             n += 1
         else:
+            ball = ball_of(scene, link)
             for y in range(begin, end + 1):
                 for x in range(first, last + 1):
-                    reached[y, x] = 1
+                    if ball < 0 or in_tile(scene.reals, ball, x, y):
+                        reached[y, x] = 1
             # Behind a leaf the nodes of a mesh that has its own may follow: they are inside of the leaf's box.
             n = scene.ints[link]
 

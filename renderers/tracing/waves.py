@@ -48,8 +48,9 @@ ROOM = TILES * TILE * TILE
 """Rays of the camera in a wave: few enough that their memory stays in a core's cache."""
 RAYS = 4 * ROOM
 """Rays listed at a time."""
-FEW = 32
-"""Ways of light below which each is followed by itself: a wave would cost more than it saves."""
+FEW = 16
+"""Ways of light below which each is followed by itself: a wave would cost more than it saves, unless packets know all
+that ways meet. Then a single ray costs as much as a wave."""
 
 
 class Waves:
@@ -221,9 +222,10 @@ class Waves:
         assert self.packets is not None
         scene, asked, ways, live, hits = self.scene, self.asked, self.ways, self.live, self.ways_hit
         live[:count] = np.arange(count)
+        few = 1 if asked[0, layout.ALONE] else FEW
         while True:
             count, some = look_about(scene, self.scratch, ways, live, count, hits, self.ways_met)
-            if count < FEW:
+            if count < few:
                 asked[0, layout.MODE] = layout.PLAIN
                 follow_all(scene, self.scratch, asked, ways, live[:count])
                 return

@@ -38,7 +38,7 @@ class Packets:
             box, clips = np.array([shape.low, shape.high], dtype=np.float64), clips_of(shape.tape)
             reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
             self.bounds.append((box, clips, np.abs(clips) @ reach, matrix))
-        self.chosen, self.spans = np.empty((2, 1 + RAYS), dtype=np.int64), np.empty((2, 2, RAYS))
+        self.chosen, self.spans = np.empty((2, 1 + RAYS), dtype=np.int64), np.empty((3, 2, RAYS))
         tapes = [shape.tape for i in solids if isinstance(shape := shapes[i], Implicit)]
         tapes += [shape.paint for i in solids if isinstance(shape := shapes[i], Implicit) and shape.paint is not None]
         rows, parts = max(len(tape.code) for tape in tapes), max(len(tape.parts) for tape in tapes)

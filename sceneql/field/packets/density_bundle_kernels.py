@@ -4,8 +4,10 @@
 import numpy as np
 
 from sceneql.compiled.kernels import inlined, lean
-from sceneql.field.packets.point_blocks_kernels import keep_on_ray
-from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT
+from sceneql.field.packets.lone_ray_kernels import MOST_POINTS, place_points, search_piece
+from sceneql.field.packets.lone_ray_kernels import polish as polish_lone
+from sceneql.field.packets.point_blocks_kernels import list_on_ray
+from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.roots.beam_kernels import (
     BEAM,
     DX,
@@ -27,47 +29,84 @@ from sceneql.field.roots.density_march_kernels import LANES
 from sceneql.field.roots.density_roots_kernels import DENSITY_ROOTS, ROW_OF, THRESHOLD, search_packet
 from sceneql.field.roots.density_slice_kernels import BEAM_ROW, OWN_ROW, SPARE
 from sceneql.field.skeleton.density_polish_kernels import polish
-from sceneql.field.tape.tape_ops import DENSITY
+from sceneql.field.tape.tape_ops import DENSITY, HIT, MISS, UNDECIDED
 
 APART = 0.5
 """Cosine of the angle to the beam's axis below which rays of a bundle count as going apart."""
-FIRST, LONGER = 0.06, 2.0
+FIRST, LONGER = 0.12, 2.0
 """Of the pieces of such a ray: the share of its length that is the first, and how far the others end by the last."""
 MANY = 96
 """Parts that reach into a bundle from which on rays that go apart are each searched among the few in its own reach."""
 
 
 @inlined
-def search_ray(
-    room, i, far, blocks, parts, near, threshold, anywhere, table, state, order, rays, found, queue, met, doubted
+def search_many(
+    room, i, begin, end, rays, parts, near, kept, threshold, anywhere, table, state, order, listed, ids, found, queue,
+    met, doubted,
 ):  # fmt: skip
-    """``search_packet`` of gathered ray i alone, piece by piece, since most rays among many parts end early."""
-    ids = order[4 * LANES :]
-    listed = ids[rays.shape[1] :]
-    own = room[OWN_ROW, :BEAM]
+    """``search_packet`` of a piece of gathered ray i alone, among more points than have room in lanes."""
+    hits, own = met, room[OWN_ROW, :BEAM]
+    for k in range(kept):
+        for j in range(8):
+            near[k, j] = parts[listed[k], j]
+    before = room[PX, i], room[PY, i], room[PZ, i], room[FAR, i]
+    for axis in range(3):
+        room[PX + axis, i] += begin * room[DX + axis, i]
+    room[FAR, i] = end - begin
+    beam_of_ray(room, i, own)
+    spent, met, doubted = search_packet(
+        room, i, i + 1, near, kept, threshold, anywhere, table, state, order, listed, ids, own, 0.0, found, queue, met,
+        doubted,
+    )  # fmt: skip
+    room[PX, i], room[PY, i], room[PZ, i], room[FAR, i] = before
+    j, off = np.uint64(ids[i]), begin * room[INVERSE_SPEED, i]
+    found[FOUND_LOW, j] += off
+    found[FOUND_HIGH, j] += off
+    found[FOUND_ROOT, j] += off
+    if met > hits and not anywhere:  # in the memory of the first ray, which is searched already
+        polish(near, kept, threshold, rays, queue[hits:], 1, room, found)
+    return spent, met, doubted
+
+
+@inlined
+def search_ray(
+    room, i, rays, blocks, parts, near, threshold, anywhere, table, state, order, listed, ids, found, queue, met,
+    doubted,
+):  # fmt: skip
+    """Search gathered ray i alone, piece by piece, since most rays among many parts end early."""
+    far, unit, j = room[FAR, i], room[INVERSE_SPEED, i], np.uint64(ids[i])
+    x, y, z, dx, dy, dz = room[PX, i], room[PY, i], room[PZ, i], room[DX, i], room[DY, i], room[DZ, i]
     spent, before, begin, end = 0, met + doubted, 0.0, far * FIRST
-    x, y, z = room[PX, i], room[PY, i], room[PZ, i]
-    dx, dy, dz = room[DX, i], room[DY, i], room[DZ, i]
     while begin < far and met + doubted == before:
         end = min(end, far)
-        room[PX, i], room[PY, i], room[PZ, i] = x + begin * dx, y + begin * dy, z + begin * dz
-        room[FAR, i] = end - begin
-        kept = keep_on_ray(
-            blocks, parts, room[PX, i], room[PY, i], room[PZ, i], dx, dy, dz, end - begin, near,
-            listed,
-        )  # fmt: skip
-        if kept > 0:
-            beam_of_ray(room, i, own)
-            more, met, doubted = search_packet(
-                room, i, i + 1, near, kept, threshold, anywhere, table, state, order, listed, ids, own, 0.0, found,
-                queue, met, doubted,
+        px, py, pz = x + begin * dx, y + begin * dy, z + begin * dz
+        kept = list_on_ray(blocks, 0, px, py, pz, dx, dy, dz, end - begin, listed)
+        if kept > MOST_POINTS:
+            more, met, doubted = search_many(
+                room, i, begin, end, rays, parts, near, kept, threshold, anywhere, table, state, order, listed, ids,
+                found, queue, met, doubted,
             )  # fmt: skip
             spent += more
-        if met + doubted > before:
-            j, off = np.uint64(ids[i]), begin * room[INVERSE_SPEED, i]
-            found[FOUND_LOW, j] += off
-            found[FOUND_HIGH, j] += off
-            found[FOUND_ROOT, j] += off
+        elif kept > 0:
+            n, sums = place_points(parts, listed, kept, px, py, pz, dx, dy, dz, threshold, table)
+            outcome, low, high, at, more = search_piece(table, sums, n, end - begin, threshold, anywhere)
+            spent += more
+            if outcome != MISS:
+                root = float(at)
+                if outcome == HIT and not anywhere:
+                    root, settled = polish_lone(
+                        parts, listed, n, threshold, px, py, pz, dx, dy, dz, root, float(low), float(high), far
+                    )
+                    outcome = HIT if settled and begin + root < far else UNDECIDED
+                found[FOUND_STATUS, j] = outcome
+                found[FOUND_LOW, j], found[FOUND_HIGH, j] = (begin + low) * unit, (begin + high) * unit
+                found[FOUND_ROOT, j] = (begin + root) * unit
+                if outcome == HIT:
+                    queue[met] = ids[i]
+                    met += 1
+                else:
+                    queue[len(queue) - 1 - doubted] = ids[i]
+                    doubted += 1
         begin, end = end, end * LONGER
     return spent, met, doubted
 
@@ -77,22 +116,16 @@ def roots_apart(
     constants, parts, plan, rays, n, anywhere, found, queue, order, room, table, state, near, blocks
 ):  # fmt: skip
     """``density_roots`` of n gathered rays, each alone: of a hierarchy's parts a ray meets a few, all rays most."""
+    ids = order[4 * LANES :]
+    listed = ids[rays.shape[1] :]
     threshold = constants[plan[THRESHOLD]]
     spent = met = doubted = 0
     for i in range(n):
         more, met, doubted = search_ray(
-            room, i, room[FAR, i], blocks, parts, near, threshold, anywhere, table, state, order, rays, found, queue,
+            room, i, rays, blocks, parts, near, threshold, anywhere, table, state, order, listed, ids, found, queue,
             met, doubted,
         )  # fmt: skip
         spent += more
-    for i in range(0 if anywhere else met):
-        j = np.uint64(queue[i])
-        t = rays[6, j] + found[FOUND_ROOT, j]
-        kept = keep_on_ray(
-            blocks, parts, rays[0, j] + t * rays[3, j], rays[1, j] + t * rays[4, j], rays[2, j] + t * rays[5, j],
-            rays[3, j], rays[4, j], rays[5, j], 0.0, near, order,
-        )  # fmt: skip
-        polish(near, kept, threshold, rays, queue[i:], 1, room, found)
     return spent, met, doubted
 
 
@@ -118,12 +151,13 @@ def density_roots(
         return 0, 0, 0
     beam = room[BEAM_ROW, :BEAM]
     lowest = beam_around(room, n, beam, room[SPARE:])
+    most = MANY if lowest <= APART else max(MANY, 2 * n)
     if code[k, 0] == DENSITY:
         kept = keep_reaching(parts, code[k, 1], code[k, 2], beam, near)
     else:
-        kept = keep_reaching_skeleton(parts, code[k, 1], code[k, 2], beam, near)
+        kept = keep_reaching_skeleton(parts, code[k, 1], code[k, 2], beam, most, near)
     spent = met = doubted = 0
-    apart = code[k, 0] != DENSITY and kept > MANY and lowest <= APART
+    apart = code[k, 0] != DENSITY and kept > most
     if apart:
         kept = -1
         spent, met, doubted = roots_apart(

@@ -32,18 +32,19 @@ def inverse_of(d):
 
 
 @inlined
-def slab(low, high, place, inverse):
-    """(enter, leave) of a ray between planes across an axis, in lanes."""
-    a, b = (low - place) * inverse, (high - place) * inverse
-    return below(a, b, a, b), below(a, b, b, a)
+def planes(place, inverse, hair):
+    """(row of the boxes' planes that a ray meets first along an axis, from 0 on; what to subtract from these, and from
+    the planes behind, so that boxes are larger by ``hair``)."""
+    return (0, place + hair, place - hair) if inverse > ZERO else (3, place - hair, place + hair)
 
 
 @inlined
-def boxes_met(blocks, at, count, x, y, z, ix, iy, iz, far, hair):
+def boxes_met(blocks, at, count, ray, far):
     """Bit mask of those of ``count`` boxes from column ``at`` on, at most VECTOR, that a ray enters before ``far``."""
-    x0, x1 = slab(load(blocks[0], at) - hair, load(blocks[3], at) + hair, x, ix)
-    y0, y1 = slab(load(blocks[1], at) - hair, load(blocks[4], at) + hair, y, iy)
-    z0, z1 = slab(load(blocks[2], at) - hair, load(blocks[5], at) + hair, z, iz)
+    (x, x_in, x_out), (y, y_in, y_out), (z, z_in, z_out), ix, iy, iz = ray
+    x0, x1 = (load(blocks[x], at) - x_in) * ix, (load(blocks[3 - x], at) - x_out) * ix
+    y0, y1 = (load(blocks[1 + y], at) - y_in) * iy, (load(blocks[4 - y], at) - y_out) * iy
+    z0, z1 = (load(blocks[2 + z], at) - z_in) * iz, (load(blocks[5 - z], at) - z_out) * iz
     enter, leave = below(x0, y0, y0, x0), below(x1, y1, x1, y1)
     enter, leave = below(enter, z0, z0, enter), below(leave, z1, leave, z1)
     enter, leave = below(enter, ZERO, ZERO, enter), below(leave, far, leave, far)
@@ -75,14 +76,15 @@ def list_on_ray(blocks, base, px, py, pz, ux, uy, uz, length, listed):
     x, y, z, dx, dy, dz, far = F(px), F(py), F(pz), F(ux), F(uy), F(uz), F(length)
     ix, iy, iz = inverse_of(ux), inverse_of(uy), inverse_of(uz)
     hair = F(ROUNDED * (abs(px) + abs(py) + abs(pz) + length))
+    ray = planes(x, ix, hair), planes(y, iy, hair), planes(z, iz, hair), ix, iy, iz
     far = far + hair
     kept = 0
     for group in range(0, most, VECTOR):
-        groups = boxes_met(blocks, second + group, most - group, x, y, z, ix, iy, iz, far, hair)
+        groups = boxes_met(blocks, second + group, most - group, ray, far)
         while groups != 0:
             block = VECTOR * (group + first_bit(groups))
             groups &= groups - 1
-            some = boxes_met(blocks, first + block, many - block, x, y, z, ix, iy, iz, far, hair)
+            some = boxes_met(blocks, first + block, many - block, ray, far)
             while some != 0:
                 at = VECTOR * (block + first_bit(some))
                 some &= some - 1
@@ -91,14 +93,4 @@ def list_on_ray(blocks, base, px, py, pz, ux, uy, uz, length, listed):
                     listed[kept] = int(blocks[ROW, base + at + first_bit(points)])
                     points &= points - 1
                     kept += 1
-    return kept
-
-
-@inlined
-def keep_on_ray(blocks, parts, px, py, pz, ux, uy, uz, length, near, listed):
-    """Copy the points that ``list_on_ray`` lists to ``near``; returns their number."""
-    kept = list_on_ray(blocks, 0, px, py, pz, ux, uy, uz, length, listed)
-    for k in range(kept):
-        for j in range(8):
-            near[k, j] = parts[listed[k], j]
     return kept

@@ -230,11 +230,14 @@ def keep_reaching(parts, start, stop, beam, near):
 
 
 @inlined
-def keep_reaching_skeleton(parts, start, stop, beam, near):
-    """As ``keep_reaching`` for skeleton rows that are lone points with Wyvill's kernel, by their hierarchy."""
+def keep_reaching_skeleton(parts, start, stop, beam, most, near):
+    """As ``keep_reaching`` for skeleton rows that are lone points with Wyvill's kernel, by their hierarchy.
+
+    It ends where there are more than ``most``.
+    """
     kept = 0
     i = start
-    while i < stop:
+    while i < stop and kept <= most:
         if parts[i + 1, part.SHAPE] == part.NODE:
             hx, hy, hz = parts[i, 3] - parts[i, 0], parts[i, 4] - parts[i, 1], parts[i, 5] - parts[i, 2]
             half = 0.5 * np.sqrt(hx * hx + hy * hy + hz * hz) * (1.0 + HAIR)

@@ -36,12 +36,11 @@ def clip_rows(tape: Tape) -> list[int]:
 
     At least one other row of the tape's max is left.
     """
-    branches = _branches(tape)
     rows = [row for quadric, row in _clips(tape) if _convex(quadric)]
-    return rows if len(rows) < len(branches) else rows[1:]
+    return rows if len(rows) < len(branches(tape)) else rows[1:]
 
 
-def _branches(tape: Tape) -> list[int]:
+def branches(tape: Tape) -> list[int]:
     """Rows whose max is the tape, up to positive factors."""
     found = []
     rows = [len(tape.code) - 1]
@@ -58,7 +57,7 @@ def _branches(tape: Tape) -> list[int]:
 def _clips(tape: Tape) -> list[tuple[Floats, int]]:
     """Polynomials as of ``clips_of``, each with the row whose sign it has."""
     found = []
-    for branch in _branches(tape):
+    for branch in branches(tape):
         row, radius = root_of(tape, without_factor(tape, branch))
         with np.errstate(over="ignore", invalid="ignore"):  # polynomials that overflow are no clips
             quadric = _expanded(tape, row)
