@@ -42,7 +42,7 @@ MOST_POINTS = 192
 def place_points(parts, listed, kept, x, y, z, dx, dy, dz, threshold, table):
     """Write the points of the rows ``listed`` that reach a line, in their order; ``listed`` becomes that of these.
 
-    Returns their number, and of these the sums of |w|, |w|/R and |w|/R^2, the largest 1/R and the least w.
+    Returns their number and their ``sums``: of |w|, |w|/R and |w|/R^2, the largest 1/R, and the least w or 0.
     """
     n = 0
     bulk = bend = stiff = stiffer = lightest = leveled = 0.0
@@ -286,7 +286,8 @@ def search_piece(table, sums, n, far, threshold, anywhere):
     c, way = F(threshold), F(far)
     fine, hair = NARROW * way, HAIR * way
     begin, spent = ZERO, 0
-    positive, bend = sums[4] >= 0.0, F(BENT * sums[2])
+    _, _, stiffer, _, lightest = sums
+    positive, bend = lightest >= 0.0, F(BENT * stiffer)
     while True:
         start, end, dense = next_slice(table, n, begin)
         if not start < way:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.field.roots.clips import LAST, LINEAR, branches, clips_of
+from sceneql.field.skeleton.skeleton import plain_points
 from sceneql.field.tape.own_coordinates import in_own_coordinates
-from sceneql.field.tape.plans import density_of, plain_points, without_factor
+from sceneql.field.tape.plans import density_of, without_factor
 from sceneql.field.tape.tape_ops import DENSITY
 
 if TYPE_CHECKING:
