@@ -260,7 +260,7 @@ _SENTENCES = (
     (
         "section",
         "joints hinges constraints constraint",
-        "write `ties: {name: {hinge: {between: [a, b], at: 0 0 0 m}}}`: `sceneql words hinge`",
+        "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
     ),
     ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
     ("section", "collision contact", "write `forces: [gravity, collision]`"),
