@@ -116,7 +116,8 @@ class Reader:
             return None
         name, _, rest = node.text.partition(" ")
         if name in map(kinds.written_name, cls.model_fields):
-            return f"write `{name}: {rest.strip().removeprefix('=').strip()}`"
+            rest = rest.strip().removeprefix("=").strip()
+            return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {{...}}}}`"
         found = list(self._fitting(node, cls.model_fields))
         return f"write `{{{kinds.written_name(found[0])}: {node.span.text}}}`" if len(found) == 1 else None
 
@@ -315,7 +316,9 @@ class Reader:
 
     def _dict(self, node: Node, arms: tuple[Any, ...], what: str) -> dict[Any, Any]:
         if not isinstance(node, MappingNode):
-            raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span)
+            first = node.items[0].span.text if isinstance(node, Sequence) and node.items else "name"
+            help = f"write `{{{first}: ...}}`, each entry under a name of its own" if first.isidentifier() else None
+            raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, help)
         named, result, ok = _unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():
             if (help := numbered(name)) is not None:

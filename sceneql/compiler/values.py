@@ -13,7 +13,7 @@ from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.diagnostic import Diagnostics, Note, ScriptError, suggestion
-from sceneql.quantities.dimension import ANGLE, LENGTH, PERCENTAGE, PLAIN, TIME, Dimension, common, suits
+from sceneql.quantities.dimension import ANGLE, FREQUENCY, LENGTH, PERCENTAGE, PLAIN, TIME, Dimension, common, suits
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Keys, Link, Number, Shape, Symbol, Type, Vector, walk
 from sceneql.quantities.literal import vector_meant
@@ -176,7 +176,7 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
             "wrong-shape",
             f"{what} is {_shape_text(quantity.shape)}, not {_shape_text(expr.type.shape)}",
             span,
-            help=_repeated(expr, quantity.shape),
+            help=_repeated(expr, quantity),
             notes=origin(expr, span),
         )
         return False
@@ -199,11 +199,19 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
     return True
 
 
-def _repeated(expr: Expr, wanted: Shape) -> str | None:
-    """The help where one number stands for a vector of equal components."""
-    if not isinstance(expr, Number) or expr.span is None or len(wanted) != 1 or wanted[0] is None:
+def _repeated(expr: Expr, wanted: Quantity) -> str | None:
+    """The help where one value stands for a vector."""
+    size = (wanted.shape or (None,))[0]
+    if expr.type.shape or expr.span is None or len(wanted.shape or ()) != 1 or size is None:
         return None
-    vector = vector_meant(", ".join(wanted[0] * [expr.span.text]))
+    text = expr.span.text
+    if not isinstance(expr, Number):
+        zero = "0" if wanted.dimension is None or wanted.dimension.plain else f"0 {unit_of(wanted.dimension)}"
+        return f"write `[{', '.join([text, *(size - 1) * [zero]])}]`, a value for each axis"
+    items = size * [text]
+    if size == 3 and expr.type.dimension in (FREQUENCY, LENGTH / TIME):  # of these a direction is meant
+        items[0] = items[2] = re.sub(r"^[-+.\d]+(e[-+]?\d+)?", "0", text)
+    vector = vector_meant(", ".join(items))
     return None if vector is None else f"write `{vector}`, a number for each axis"
 
 

@@ -95,6 +95,16 @@ _LISTS = (
     ("mass_spring", "springs spring_system mass_springs"),
     ("diffusion", "heat heat_equation"),
     ("equations", "ode system odes equation"),
+    ("flow", "fluid liquid water air navier_stokes cfd"),
+    ("elastic", "fem finite_elements soft_body softbody deformable solid"),
+    ("rigid", "rigid_body rigidbody body"),
+    ("cloth", "membrane fabric shell film"),
+    ("hinge", "revolute revolute_joint"),
+    ("slider", "prismatic"),
+    ("weld", "fixed glue"),
+    ("hold", "fixed fix pins pinned anchor anchors clamped dirichlet"),
+    ("boundary", "inlet outlet inflow outflow boundaries"),
+    ("taper", "cone pyramid frustum"),
     ("gravity", "weight g"),
     ("drag", "air air_resistance"),
     ("force", "constant push pull thrust external constant_force"),
@@ -203,8 +213,14 @@ _SENTENCES = (
         'only the number of a copy by `repeat` stands in braces, in a name, `"ball.{i}.position"`: '
         "`sceneql words repeat`",
     ),
+    ("unit", "fps frames frame", "a number of frames has no unit: `clock: {fps: 30}`"),
     ("name", "t", "the time is written 'time'"),
     ("name", "if then else elif when", f"{_IF}: `sceneql words functions`"),
+    (
+        "name",
+        "x y z",
+        "an axis is `1 0 0`, `0 1 0` or `0 0 1`; the coordinates of a place stand in formulas of fields alone",
+    ),
     ("name", "true yes", "in a formula write `1`"),
     ("name", "false no", "in a formula write `0`"),
     (
@@ -233,9 +249,19 @@ _SENTENCES = (
         "animate animation keyframes keyframe key",
         "a value that changes is given by keys, `position: {keys: {0 s: 0 0 0 m, 1 s: 0 1 0 m}}`: `sceneql words keys`",
     ),
+    (
+        "field",
+        "young youngs_modulus young_modulus poisson poisson_ratio",
+        "a solid's law says it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`: `sceneql words elastic`",
+    ),
     ("field", "opacity alpha transparency transparent", "write `material: glass`: `sceneql words glass`"),
     ("field", "visible show enabled", "write `hidden: yes` for a part that is not drawn"),
     ("field", "parent", "a part moves with others in a group, `{group: {children: [a, b]}}`: `sceneql words group`"),
+    (
+        "section",
+        "joints hinges constraints constraint",
+        "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
+    ),
     ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
     ("section", "collision contact", "write `forces: [gravity, collision]`"),
     ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),
@@ -251,7 +277,7 @@ _SENTENCES = (
 
 INSTEAD = {(what, word): text for kinds, words, text in _SENTENCES for what in kinds.split() for word in words.split()}
 """The sentence of what to write in place of a called `function`, a `sign` or `name` of a formula, the `field` of a
-part, a `section` of the script, or the key of an `entry`."""
+part, a `section` of the script, the key of an `entry`, or a `unit`."""
 
 _TON = re.compile(r"\d\s*[^\s()\[\],]*[*/]t(?!\w)")
 

@@ -13,6 +13,7 @@ from functools import cache, lru_cache
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 from sceneql.quantities.dimension import PLAIN, TEMPERATURE, Dimension
+from sceneql.quantities.other_words import instead
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_names import sign_of
 from sceneql.quantities.unit_table import KNOWN_UNITS, OFFSET_UNITS, QUANTITIES, UNITS
@@ -203,9 +204,10 @@ def _unknown(name: str, span: Span | None, at: int) -> ScriptError:
     if written != name:
         hint: str | None = f"write `{written}`"
     else:
+        hint = instead("unit", name)
         same = [known for known in KNOWN_UNITS if known.lower() == name.lower()]
         meant = sign_of(name) or (same[0] if same else None)
-        hint = suggestion(name, KNOWN_UNITS) if meant is None else f"did you mean '{meant}'?"
+        hint = hint or (suggestion(name, KNOWN_UNITS) if meant is None else f"did you mean '{meant}'?")
     return _error("unknown-unit", f"there is no unit '{name}'", span, at, at + max(1, len(name)), hint)
 
 
