@@ -19,7 +19,9 @@ TO_COMPILE = 160 * MIB
 TO_LOAD = 16 * MIB
 """The same of a function that is loaded from the cache."""
 BLAS, BLAS_THREAD = 80 * MIB, 48 * MIB
-"""What a library with OpenBLAS maps as it is loaded, and for each processor."""
+"""What a library with OpenBLAS maps as it is loaded, and for each of its threads."""
+MOST_THREADS = 64
+"""That its builds for Python take."""
 WITH_BLAS = ("numpy", "scipy.linalg")
 
 
@@ -36,7 +38,9 @@ class _Libraries(MetaPathFinder):
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
         if name in WITH_BLAS:
-            ask_for(BLAS + BLAS_THREAD * (os.cpu_count() or 1), f"to load {name.partition('.')[0]}")
+            asked = os.environ.get("OPENBLAS_NUM_THREADS", "")
+            threads = min(int(asked) if asked.isdecimal() else os.cpu_count() or 1, MOST_THREADS)
+            ask_for(BLAS + BLAS_THREAD * threads, f"to load {name.partition('.')[0]}")
         return None
 
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from renderers.tracing.draw import draw
 from runs import complaint
+from sceneql.failure import RunFailure
 from sceneql.frame import Mesh, Segments
 from sceneql.grids.maps.colors import CONTROLS, colored, from_oklab, oklab, table
 from sceneql.grids.maps.domains import cut_open, flat, outside, section
@@ -247,6 +248,14 @@ def test_contours_and_heights_are_where_the_field_has_the_value(tmp_path):
     places = np.unique(np.round(lines.ends[..., 0], 9))
     np.testing.assert_allclose(places, [0.5, 1.25], atol=1e-9)
     assert set(lines.radii) == {0.002}
+
+
+def test_a_relief_without_measure_is_told_and_a_high_one_is_drawn(tmp_path):
+    mesh = next(shape for shape in shapes(tmp_path, "height: 1e9 m").shapes if isinstance(shape, Mesh))
+    assert mesh.vertices[:, 2].max() > 1e9
+    with pytest.raises(RunFailure, match=r"map.height: the field is lifted by 2e\+62 m, over a side of 2 m") as told:
+        shapes(tmp_path, "height: 1e62 m")
+    assert told.value.span.text == "1e62 m"
 
 
 def test_what_cannot_be_drawn_is_told_with_its_place(tmp_path):

@@ -88,3 +88,17 @@ def test_only_a_march_whose_steps_stay_too_short_is_given_up(growth, hopeless):
         t += 20_000 * 1e-15 * growth**look
         given_up = given_up or pace.hopeless(t, 20_000 * look)
     assert given_up == hopeless
+
+
+def test_a_march_that_leads_nowhere_is_looked_at_more_often():
+    """Calls of a million steps would take half a minute until it is known."""
+    pace = Pace(Deed("solving"), 1.0, 0.0, 0)
+    steps = pace.until_look
+    assert steps is not None
+    while not pace.hopeless(steps * 1e-15, steps):
+        assert pace.until_look is not None
+        steps += pace.until_look
+    assert steps < 100_000
+    fine = Pace(Deed("solving"), 1.0, 0.0, 0)
+    assert not fine.hopeless(0.1, 10_000)
+    assert fine.until_look is None

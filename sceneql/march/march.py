@@ -290,6 +290,7 @@ class March:
         self._floats_time = math.nan
         while True:
             left = max(100, ENTRIES_A_CALL // (len(self._y1) + 10))
+            left = min(left, pace.until_look or left)
             if self._switch is not None:
                 left = min(left, self._last_look + self._switch.until_look - int(counts[kernels.STEPS]))
             counts[kernels.LEFT] = left

@@ -25,7 +25,12 @@ class Pace:
         self._deed, self._target = deed, target
         self._last = t, steps, time.perf_counter()
         self._mean = 0.0
-        self._looks, self._since = 0, steps
+        self._looks, self._since, self._endless = 0, steps, True
+
+    @property
+    def until_look(self) -> int | None:
+        """Steps to the next look, where it is soon to be known whether the march leads anywhere; else None."""
+        return FEWEST if self._endless else None
 
     def hopeless(self, t: float, steps: int) -> bool:
         """Tell of the pace at a time [s] after so many steps; whether it leads nowhere."""
@@ -39,7 +44,8 @@ class Pace:
             f"solving, at {t:.6g} s: steps of {self._mean:.2g} s, to the next instant"
             f" {_told(left * (now - at) / (steps - before))}"
         )
-        if grown or left < MOST_STEPS:
+        self._endless = not left < MOST_STEPS
+        if grown or not self._endless:
             self._looks, self._since = 0, steps
         else:
             self._looks += 1

@@ -23,7 +23,7 @@ def report_unreadable(tasks: Mapping[str, Task], groups: Iterable[Island], found
     What stands in the state in some scenes alone, as the center of one mass, is left to the run.
     """
     for island in groups:
-        acting = (name for name, *_ in (*island.forces, *island.contacts))
+        acting = (*(name for name, _ in island.forces), *(name for name, _, _ in island.contacts))
         told: set[Span | None] = set()
         for part in dict.fromkeys((*island.models, *acting)):
             links = (link for value in _solved_values(tasks[part].kind) for link in _read(value, tasks))

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
 from sceneql import kinds
+from sceneql.failure import RunFailure
 from sceneql.grids.maps.map_names import ColorMap
 from sceneql.grids.maps.seen import Bounds, Field, Levels, seen, unfit
 from sceneql.kinds import Moment, Object, Problem, Quantity, Ref, Value, field
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from sceneql.grids.maps.sheets import Sheet
 
 FOREVER = 1e30
+HIGHEST = 1e15
+"""Heights, in parts of the longest side, beyond which float64 does not tell corners apart: no ray would end."""
 ROUNDING = 1e-12
 """Differences below this part of what they are differences of are none."""
 THIN = 1.5e-3
@@ -131,7 +134,11 @@ class FieldMap(Object):
         sheet = self._sheet(field, moment)
         values = field.at(sheet.vertices)
         if self.height is not None:
-            sheet = raised(sheet, values * float(moment.at(self.height)))
+            heights, side = values * float(moment.at(self.height)), float(np.ptp(sheet.vertices[:, :2], axis=0).max())
+            if (most := float(np.abs(heights).max())) > HIGHEST * side:
+                told = f"the field is lifted by {most:.3g} m, over a side of {side:.3g} m: too high to be drawn"
+                raise RunFailure(told, part="height", time=moment.time, span=self.height.span)
+            sheet = raised(sheet, heights)
         made = placed(sheet, place) if self.height is not None else still(sheet, name, place, moment)
         matte = Surface(color=(1.0, 1.0, 1.0), roughness=1.0, specular=0.0)
         look = matte if self.material is None else moment.surface(name, self.material, None)
