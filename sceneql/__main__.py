@@ -15,8 +15,6 @@ def main() -> None:
     from sceneql import interrupts
 
     interrupts.end_at_once()
-    # Matrices here are small or sparse: more threads of BLAS only wait for one another, and might change last bits.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from sceneql.cli import main as run
 
     try:

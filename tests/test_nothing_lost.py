@@ -334,17 +334,3 @@ def test_files_in_a_row_and_partial_names_are_refused_too(tmp_path):
             files.refuse_unwritable(tmp_path / "row.png", [tmp_path / name], marks=files.NUMBERS)
     for name in ("row.mask.png", "row.png"):
         files.refuse_unwritable(tmp_path / "row.png", [tmp_path / name], marks=files.NUMBERS)
-
-
-def test_blas_has_one_thread_unless_a_user_says_otherwise():
-    script = """
-import atexit, os, sys
-sys.argv = ["sceneql", "--version"]
-atexit.register(lambda: print(os.environ["OPENBLAS_NUM_THREADS"]))
-from sceneql.__main__ import main
-main()
-"""
-    without = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
-    for given, expected in ((without, "1"), ({**without, "OPENBLAS_NUM_THREADS": "3"}, "3")):
-        done = subprocess.run([sys.executable, "-c", script], env=given, capture_output=True, text=True, check=True)
-        assert done.stdout.split()[-1] == expected

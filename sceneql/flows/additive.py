@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sceneql.flows.multistep import UNSOLVED
 from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
@@ -56,6 +57,7 @@ def stepper(tolerance: float, step: float | None, largest: float | None) -> Step
         tolerance=0.0 if step is not None else tolerance,
         absolute=0.0 if step is not None else tolerance,
         largest_step=largest or float("inf"),
+        unsolved=UNSOLVED,
     )
     return Stepper(method, control, Needs(prepare="sceneql.flows.additive:prepare"))
 

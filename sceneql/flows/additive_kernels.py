@@ -23,14 +23,14 @@ from sceneql.flows.projection_kernels import project
 from sceneql.system.signatures_kernels import STEP, A, F, I, N
 
 STAGES, FLOW_AT, BLOCKS, AXES, OPERATORS, TABLES_AT, HEAD = range(7)
-SPREAD = 2
+SPREAD = 1
 """Where the integers begin as multistep_kernels.spread reads them."""
 EXACT, SHARE = 1e-10, 1e-3
 """Residual of a stage's velocities, in parts of their size, and of the tolerance, whichever is larger."""
 FINE, COARSE = 1e-12, 1e-3
 """Residuals of systems without projection, those of the preconditioner the second."""
-MOST = 30
-"""Iterations of a stage."""
+MOST, LEAST = 30, 1e3
+"""Iterations of a stage; how many times the residual asked for may be left then."""
 
 
 @lean(types.float64(N, A, A, A, I), inner=True)
@@ -44,11 +44,11 @@ def product(axes, x, y, floats, numbers):
     return total
 
 
-@lean(types.void(F, F, A, A, A, A, A, A, A, I), inner=True)
-def implicit(a, exact, wanted, y, spreading, room, more, floats, tables, numbers):
+@lean(types.boolean(F, F, A, A, A, A, A, A, I), inner=True)
+def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
     """Solve Y - a P L Y = wanted in y; wanted is free of divergence; ``exact``: the residual.
 
-    ``room``, ``more``: 4 arrays of y's size each.
+    Whether it was reached. ``room``, ``more``: 4 arrays of y's size each.
     """
     n = y.size
     one = numbers[numbers[FLOW_AT] :]
@@ -56,36 +56,38 @@ def implicit(a, exact, wanted, y, spreading, room, more, floats, tables, numbers
     axes = numbers[AXES]
     for number in range(numbers[OPERATORS]):
         op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
-        solve(op, a, wanted, y, FINE, floats, tables, floats[one[WORK] :], room)
+        if not solve(op, a, wanted, y, FINE, floats, tables, floats[one[WORK] :], room):
+            return False
     if axes == 0:
-        return
-    project(y, floats, one)
+        return True
+    solved = project(y, floats, one)
     r, z, p, q = more[:n], more[n : 2 * n], more[2 * n : 3 * n], more[3 * n : 4 * n]
-    spread(y, spreading, floats, numbers[SPREAD:])
     for k in range(first, last):
-        q[k] = spreading[k]
-    project(q, floats, one)
+        q[k] = 0.0
+    spread(y, q, 0, axes, floats, numbers[SPREAD:])
+    solved &= project(q, floats, one)
     for k in range(first, last):
         r[k] = wanted[k] - y[k] + a * q[k]
     whole = product(axes, y, y, floats, numbers)
     before = 0.0
-    for count in range(MOST):
-        if not product(axes, r, r, floats, numbers) > exact * exact * whole:
+    for count in range(MOST + 1):
+        enough = exact if count < MOST else LEAST * exact
+        if not product(axes, r, r, floats, numbers) > enough * enough * whole:
+            return solved
+        if count == MOST:
             break
         for k in range(first, last):
             z[k] = r[k]
         for number in range(axes):
             op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
             solve(op, a, r, z, COARSE, floats, tables, floats[one[WORK] :], room)
-        project(z, floats, one)
+        solved &= project(z, floats, one)
         now = product(axes, r, z, floats, numbers)
         part = now / before if count > 0 else 0.0
         for k in range(first, last):
             p[k] = z[k] + part * p[k]
-        spread(p, spreading, floats, numbers[SPREAD:])
-        for k in range(first, last):
-            q[k] = spreading[k]
-        project(q, floats, one)
+        spread(p, q, 0, axes, floats, numbers[SPREAD:])
+        solved &= project(q, floats, one)
         for k in range(first, last):
             q[k] = p[k] - a * q[k]
         length = now / product(axes, p, q, floats, numbers)
@@ -93,6 +95,7 @@ def implicit(a, exact, wanted, y, spreading, room, more, floats, tables, numbers
             y[k] += length * p[k]
             r[k] -= length * q[k]
         before = now
+    return False
 
 
 @lean(STEP, inner=True)
@@ -104,11 +107,12 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     explicit, damped = work[13 * n : (13 + s) * n], work[(13 + s) * n : (13 + 2 * s) * n]
     e, d = settings[: s * s], settings[s * s : 2 * s * s]
     b, wrong, nodes = settings[2 * s * s :], settings[2 * s * s + s :], settings[2 * s * s + 2 * s :]
-    latest = numbers[TABLES_AT] - 1
+    latest, tables, velocities = numbers[TABLES_AT] - 1, settings[numbers[TABLES_AT] :], numbers[AXES]
     tolerance, sizes = settings[2 * s * s + 3 * s], settings[2 * s * s + 3 * s + 1 :]
     one = numbers[numbers[FLOW_AT] :]
     rate = rate_at(functions[AT_RATE])
     floats[one[SKIP]] = 1.0
+    solved = True
     for i in range(s):
         own, mine = explicit[i * n : (i + 1) * n], damped[i * n : (i + 1) * n]
         if i == 0:
@@ -120,29 +124,22 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
                 for j in range(i):
                     total += e[i * s + j] * explicit[j * n + k] + d[i * s + j] * damped[j * n + k]
                 wanted[k] = y0[k] + h * total
-            project(wanted, floats, one)
+            solved &= project(wanted, floats, one)
             for k in range(n):
                 y1[k] = wanted[k]
-            implicit(
-                h * d[i * s + i],
-                max(EXACT, SHARE * tolerance),
-                wanted,
-                y1,
-                spreading,
-                room,
-                more,
-                floats,
-                settings[numbers[TABLES_AT] :],
-                numbers,
-            )
+            a, exact = h * d[i * s + i], max(EXACT, SHARE * tolerance)
+            solved &= implicit(a, exact, wanted, y1, room, more, floats, tables, numbers)
         if i == 0 and same(y0, end) and settings[latest] == t:
             for k in range(n):
                 own[k] = end_rate[k]
         else:
             rate(t + nodes[i] * h, y1, own, floats, ints)
-        spread(y1, mine, floats, numbers[SPREAD:])
+        for k in range(n):
+            mine[k] = 0.0
+        spread(y1, mine, velocities, numbers[OPERATORS], floats, numbers[SPREAD:])
         for k in range(n):
             own[k] -= mine[k]
+        spread(y1, mine, 0, velocities, floats, numbers[SPREAD:])
     for k in range(n):
         total = error = 0.0
         for j in range(s):
@@ -151,16 +148,19 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             error += wrong[j] * both
         y1[k] = y0[k] + h * total
         wanted[k] = h * error
-    project(y1, floats, one)
-    project(wanted, floats, one)
+    solved &= project(y1, floats, one) and project(wanted, floats, one)
     for number in range(numbers[OPERATORS]):
         tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     rate(t + h, y1, end_rate, floats, ints)
     floats[one[SKIP]] = 0.0
     for k in range(n):
-        end[k], rate1[k] = y1[k], end_rate[k]
+        end[k], spreading[k] = y1[k], 0.0
+    spread(y1, spreading, 0, velocities, floats, numbers[SPREAD:])
+    for k in range(n):
+        rate1[k] = end_rate[k] + spreading[k]
     settings[latest] = t + h
-    project(rate1, floats, one)
+    if not (project(rate1, floats, one) and solved):
+        y1[one[AT]] = math.nan
     worst = 0.0
     for block in range(numbers[BLOCKS]):
         place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block

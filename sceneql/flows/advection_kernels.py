@@ -9,6 +9,7 @@ side, it brings no momentum: so what comes back in there cannot grow (Bruneau & 
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.lanes_kernels import load, store
 from sceneql.flows.layout import (
     AREAS,
     AT,
@@ -26,13 +27,14 @@ from sceneql.flows.layout import (
     PERIODIC,
     PUSHES,
     SCHEME,
+    SKIP,
     STARTS,
     UPWIND,
     VISCOUS,
+    WORK,
 )
-from sceneql.grids.drift_kernels import KOREN as KOREN_SLOPE
-from sceneql.grids.drift_kernels import half_slope
-from sceneql.grids.multigrid.stencil_kernels import flow
+from sceneql.grids.drift_kernels import koren
+from sceneql.grids.multigrid.stencil_kernels import LANE, flow, flow_of_lanes
 from sceneql.system.signatures_kernels import TERM, A, I
 
 
@@ -46,128 +48,196 @@ def sides(component, ints):
 
 
 @lean_inlined
-def number(i, j, k, component, ints):
-    """The face (i, j, k) of a component, of all faces."""
-    nx, ny, _ = sides(component, ints)
-    return ints[STARTS + component] + i + nx * (j + ny * k)
+def mean(first, second, out, has_first, has_second, count):
+    """Half the sum of two rows, of which one may be missing."""
+    a, b = (0.5 if has_first else 0.0), (0.5 if has_second else 0.0)
+    for i in range(count):
+        out[i] = a * first[i] + b * second[i]
 
 
 @lean_inlined
-def through(i, j, k, component, axis, y, floats, ints):
-    """What flows along another axis between face (i, j, k) of a component and the one before it along that axis:
-    the mean of the flows through the faces of both cells [m^3/s]; of one, on the boundary."""
-    at, areas = ints[AT], ints[AREAS]
-    place = i if component == 0 else (j if component == 1 else k)
-    count = ints[CELLS + component]
-    total = 0.0
-    if place < count:
-        one = number(i, j, k, axis, ints)
-        total += floats[areas + one] * y[at + one]
-    before = place - 1
-    if before < 0 and ints[PERIODIC + component] == 1:
-        before = count - 1
-    if before >= 0:
-        i, j, k = (
-            (before if component == 0 else i),
-            (before if component == 1 else j),
-            (before if component == 2 else k),
-        )
-        one = number(i, j, k, axis, ints)
-        total += floats[areas + one] * y[at + one]
-    return 0.5 * total
+def passing(through, component, axis, place, j, k, out, ints):
+    """What flows along an axis between the own cells of a row of a component's faces and those before them, ``place``
+    being their number along it: the mean of the flows through the faces of both cells; of one, on the boundary.
+
+    ``through``: by face [m^3/s]. Along x of all places (the first two arguments of place are not read), else of one.
+    """
+    nx, ny, _ = sides(axis, ints)
+    own_nx, own_ny, _ = sides(component, ints)
+    start = ints[STARTS + axis]
+    if component == axis:
+        stride = own_nx if axis == 1 else own_nx * own_ny
+        count = ints[CELLS + axis]
+        row = start + own_nx * ((0 if axis == 1 else j) + own_ny * (0 if axis == 2 else k))
+        before = place - 1 if place > 0 else count - 1
+        mean(through[row + before * stride :], through[row + place * stride :], out, True, True, own_nx)
+        return
+    if axis == 1:
+        row = start + nx * (place + ny * k)
+    elif axis == 2:
+        row = start + nx * (j + ny * place)
+    else:
+        row = start + nx * (j + ny * k)
+    if component == 0:
+        last = ints[CELLS]
+        for i in range(1, last):
+            out[i] = 0.5 * (through[row + i] + through[row + i - 1])
+        if ints[PERIODIC] == 1:
+            out[0] = 0.5 * (through[row] + through[row + last - 1])
+        else:
+            out[0], out[last] = 0.5 * through[row], 0.5 * through[row + last - 1]
+        return
+    here, count = (j if component == 1 else k), ints[CELLS + component]
+    stride = nx if component == 1 else nx * ny
+    around = here == 0 and ints[PERIODIC + component] == 1
+    behind = row + (count - 1) * stride if around else row - stride
+    has_behind, has_here = here > 0 or around, here < count
+    first = through[behind:] if has_behind else through[row:]
+    second = through[row:] if has_here else first
+    mean(first, second, out, has_behind, has_here, own_nx if axis != 0 else nx)
 
 
 @lean_inlined
-def carried(scheme, up, down, steps_up):
-    """The value that a face carries; ``steps_up``: the upstream value less the one behind it."""
+def carried(scheme, flows, a, b, c, d, out, count):
+    """What flows carry between values b and c: ``a`` stands before b, ``d`` behind c."""
     if scheme == CENTRAL:
-        return 0.5 * (up + down)
-    if scheme == UPWIND:
-        return up
-    return up + half_slope(KOREN_SLOPE, steps_up, down - up)
+        for i in range(count):
+            out[i] = flows[i] * (0.5 * (b[i] + c[i]))
+    elif scheme == UPWIND:
+        for i in range(count):
+            out[i] = flows[i] * (b[i] if flows[i] > 0.0 else c[i])
+    else:
+        for i in range(count):
+            forth = flows[i] > 0.0
+            behind, ahead = (b[i] - a[i] if forth else c[i] - d[i]), (c[i] - b[i] if forth else b[i] - c[i])
+            out[i] = flows[i] * ((b[i] if forth else c[i]) + koren(behind, ahead))
 
 
 @lean_inlined
-def beside(edge, own, floats, ints):
-    """The value next to the boundary less the one beyond it; 0 where no velocity is given there."""
-    if floats[ints[EDGE_WEIGHTS] + edge] == 0.0:
-        return 0.0
-    return 2.0 * (own - floats[ints[EDGE_VALUES] + edge])
+def beyond(value, weight, own):
+    """The value beyond the boundary that has the given one on it; the same as within where none is given."""
+    return 2.0 * value - own if weight != 0.0 else own
+
+
+@lean_inlined
+def along_row(u, through, component, j, k, room, floats, ints):
+    """Momentum that crosses the ends of the own cells of a row along x: flux[i] and flux[i + 1] those of face i."""
+    nx, ny, _ = sides(component, ints)
+    row = ints[STARTS + component] + nx * (j + ny * k)
+    room_of = nx + 8
+    flux, flows, padded = room[:room_of], room[room_of : 2 * room_of], room[2 * room_of : 3 * room_of]
+    for i in range(nx):
+        padded[i + 2] = u[row + i]
+    low, high, edges = ints[EDGE_FIRST + 6 * component], ints[EDGE_FIRST + 6 * component + 1], j + ny * k
+    values, weights = floats[ints[EDGE_VALUES] :], floats[ints[EDGE_WEIGHTS] :]
+    if component == 0:
+        mean(through[row:], through[row + 1 :], flows[1:], True, True, nx - 1)
+        flows[0] = 0.5 * (through[row] + through[row + nx - 1])
+    else:
+        passing(through, component, 0, 0, j, k, flows, ints)
+    if ints[PERIODIC] == 1:
+        padded[0], padded[1], padded[nx + 2] = u[row + nx - 2], u[row + nx - 1], u[row]
+        padded[nx + 3] = u[row + 1]
+        carried(ints[SCHEME], flows, padded, padded[1:], padded[2:], padded[3:], flux, nx)
+        flux[nx] = flux[0]
+        return
+    padded[1], padded[nx + 2] = u[row], u[row + nx - 1]
+    if low >= 0:
+        padded[1] = beyond(values[low + edges], weights[low + edges], u[row])
+        padded[nx + 2] = beyond(values[high + edges], weights[high + edges], u[row + nx - 1])
+    carried(ints[SCHEME], flows[1:], padded[1:], padded[2:], padded[3:], padded[4:], flux[1:], nx - 1)
+    if component == 0:
+        flux[0], flux[nx] = min(through[row], 0.0) * u[row], max(through[row + nx - 1], 0.0) * u[row + nx - 1]
+    else:
+        flux[0] = flows[0] * (values[low + edges] if flows[0] > 0.0 else u[row])
+        flux[nx] = flows[nx] * (values[high + edges] if flows[nx] < 0.0 else u[row + nx - 1])
+
+
+@lean_inlined
+def across_row(u, through, component, axis, place, j, k, flux, room, floats, ints):
+    """Momentum that crosses the low sides along y or z of the own cells of a row, whose number along it is ``place``:
+    from 0 to the number of faces, which stands for the high sides of the last."""
+    nx, ny, nz = sides(component, ints)
+    count, stride, periodic = (ny if axis == 1 else nz), (nx if axis == 1 else nx * ny), ints[PERIODIC + axis] == 1
+    base = ints[STARTS + component] + (nx * ny * k if axis == 1 else nx * j)
+    flows, ghost = room[: nx + 8], room[nx + 8 :]
+    high = place == count
+    if not periodic and (place == 0 or high):
+        row = base + (count - 1 if high else 0) * stride
+        if component == axis:
+            for i in range(nx):
+                out = through[row + i]
+                flux[i] = (max(out, 0.0) if high else min(out, 0.0)) * u[row + i]
+            return
+        first = ints[EDGE_FIRST + 6 * component + 2 * axis + high] + nx * (k if axis == 1 else j)
+        given = floats[ints[EDGE_VALUES] + first :]
+        passing(through, component, axis, place, j, k, flows, ints)
+        for i in range(nx):
+            inward = flows[i] < 0.0 if high else flows[i] > 0.0
+            flux[i] = flows[i] * (given[i] if inward else u[row + i])
+        return
+    if high:
+        place = 0
+    passing(through, component, axis, place, j, k, flows, ints)
+    before = place - 1 if place > 0 else count - 1
+    c, b = u[base + place * stride :], u[base + before * stride :]
+    a, d = b, c
+    for way in range(2):
+        away = before - 1 if way == 0 else place + 1
+        outside = away < 0 or away >= count
+        if outside and periodic:
+            away = count - 1 if away < 0 else 0
+        if not outside or periodic:
+            if way == 0:
+                a = u[base + away * stride :]
+            else:
+                d = u[base + away * stride :]
+        elif component != axis:
+            first = ints[EDGE_FIRST + 6 * component + 2 * axis + way] + nx * (k if axis == 1 else j)
+            values, weights = floats[ints[EDGE_VALUES] + first :], floats[ints[EDGE_WEIGHTS] + first :]
+            mine = ghost[way * (nx + 8) :]
+            own = c if way == 1 else b
+            for i in range(nx):
+                mine[i] = beyond(values[i], weights[i], own[i])
+            if way == 0:
+                a = mine
+            else:
+                d = mine
+    carried(ints[SCHEME], flows, a, b, c, d, flux, nx)
 
 
 @lean(TERM, inner=True)
 def advect(t, y, rate, floats, ints):
-    """V du/dt = momentum in minus momentum out."""
-    at, scheme, inverses = ints[AT], ints[SCHEME], ints[INVERSES]
+    """V du/dt = momentum in minus momentum out; row by row, each of whose sides is computed once."""
+    faces = ints[FACES]
+    u, more = y[ints[AT] : ints[AT] + faces], rate[ints[AT] : ints[AT] + faces]
+    areas, inverses = floats[ints[AREAS] : ints[AREAS] + faces], floats[ints[INVERSES] : ints[INVERSES] + faces]
+    room = floats[ints[WORK] :]
+    through = room[:faces]
+    for f in range(faces):
+        through[f] = areas[f] * u[f]
     for component in range(ints[AXES]):
         nx, ny, nz = sides(component, ints)
-        for axis in range(ints[AXES]):
-            count = nx if axis == 0 else (ny if axis == 1 else nz)
-            stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
-            own, periodic = axis == component, ints[PERIODIC + axis] == 1
-            low_edge = ints[EDGE_FIRST + 6 * component + 2 * axis]
-            high_edge = ints[EDGE_FIRST + 6 * component + 2 * axis + 1]
-            for k in range(nz):
-                for j in range(ny):
+        wide = nx + 8
+        rows, flux = room[faces : faces + 5 * wide], room[faces + 5 * wide : faces + 6 * wide]
+        kept = room[faces + 6 * wide :]
+        for k in range(nz):
+            for j in range(ny):
+                row = ints[STARTS + component] + nx * (j + ny * k)
+                own, inverse = more[row : row + nx], inverses[row : row + nx]
+                along_row(u, through, component, j, k, rows, floats, ints)
+                for i in range(nx):
+                    own[i] += (rows[i] - rows[i + 1]) * inverse[i]
+                for axis in range(1, ints[AXES]):
+                    place, slot = (j, 0) if axis == 1 else (k, wide + nx * j)
+                    low = kept[slot : slot + nx]
+                    if place == 0:
+                        across_row(u, through, component, axis, 0, j, k, low, rows, floats, ints)
+                    across_row(u, through, component, axis, place + 1, j, k, flux, rows, floats, ints)
                     for i in range(nx):
-                        face = ints[STARTS + component] + i + nx * (j + ny * k)
-                        place = i if axis == 0 else (j if axis == 1 else k)
-                        across = (j + ny * k) if axis == 0 else ((i + nx * k) if axis == 1 else (i + nx * j))
-                        if place == 0 and not periodic:
-                            if own:
-                                out = min(floats[ints[AREAS] + face] * y[at + face], 0.0)
-                                rate[at + face] += out * y[at + face] * floats[inverses + face]
-                            else:
-                                passing = through(i, j, k, component, axis, y, floats, ints)
-                                if passing != 0.0:
-                                    given = passing > 0.0 and low_edge >= 0
-                                    value = floats[ints[EDGE_VALUES] + low_edge + across] if given else (
-                                        0.0 if passing > 0.0 else y[at + face])  # fmt: skip
-                                    rate[at + face] += passing * value * floats[inverses + face]
-                        if place == count - 1 and not periodic:
-                            if own:
-                                out = max(floats[ints[AREAS] + face] * y[at + face], 0.0)
-                                rate[at + face] -= out * y[at + face] * floats[inverses + face]
-                            else:
-                                further = (i + (axis == 0), j + (axis == 1), k + (axis == 2))
-                                passing = through(*further, component, axis, y, floats, ints)
-                                if passing != 0.0:
-                                    given = passing < 0.0 and high_edge >= 0
-                                    value = floats[ints[EDGE_VALUES] + high_edge + across] if given else (
-                                        0.0 if passing < 0.0 else y[at + face])  # fmt: skip
-                                    rate[at + face] -= passing * value * floats[inverses + face]
-                        if place == 0 and not periodic:
-                            continue
-                        before = face - stride if place > 0 else face + (count - 1) * stride
-                        if own:
-                            areas = ints[AREAS]
-                            passing = 0.5 * (
-                                floats[areas + before] * y[at + before] + floats[areas + face] * y[at + face]
-                            )
-                        else:
-                            passing = through(i, j, k, component, axis, y, floats, ints)
-                        if passing == 0.0:
-                            continue
-                        up, down = (before, face) if passing > 0.0 else (face, before)
-                        step = 0.0
-                        if scheme > CENTRAL:
-                            if passing > 0.0:
-                                ahead = (place if place > 0 else count) - 2
-                                if ahead < 0 and periodic:
-                                    step = y[at + up] - y[at + up + (count - 1) * stride]
-                                elif ahead >= 0:
-                                    step = y[at + up] - y[at + up - stride]
-                                elif not own and low_edge >= 0:
-                                    step = beside(low_edge + across, y[at + up], floats, ints)
-                            elif place + 1 < count:
-                                step = y[at + up] - y[at + up + stride]
-                            elif periodic:
-                                step = y[at + up] - y[at + up - (count - 1) * stride]
-                            elif not own and high_edge >= 0:
-                                step = beside(high_edge + across, y[at + up], floats, ints)
-                        moved = passing * carried(scheme, y[at + up], y[at + down], step)
-                        rate[at + before] -= moved * floats[inverses + before]
-                        rate[at + face] += moved * floats[inverses + face]
+                        own[i] += (low[i] - flux[i]) * inverse[i]
+                    for i in range(nx):
+                        low[i] = flux[i]
 
 
 @lean(types.void(A, A, A, I))
@@ -176,37 +246,57 @@ def advected(y, rate, floats, ints):
     advect(0.0, y, rate, floats, ints)
 
 
+@lean_inlined
+def viscous(component, y, rate, floats, ints):
+    """Add the sum over faces of g (neighbor - u) to the rates of a component."""
+    at, start = ints[AT], ints[STARTS + component]
+    nx, ny, nz = sides(component, ints)
+    n = nx * ny * nz
+    x, own = y[at + start : at + start + n], rate[at + start : at + start + n]
+    gx = floats[ints[VISCOUS] + start : ints[VISCOUS] + start + n]
+    gy = floats[ints[VISCOUS + 1] + start : ints[VISCOUS + 1] + start + n]
+    gz = floats[ints[VISCOUS + 2] + start : ints[VISCOUS + 2] + start + (n if nz > 1 else 0)]
+    inverse = floats[ints[INVERSES] + start : ints[INVERSES] + start + n]
+    deep, plane = nz > 1, nx * ny
+    for k in range(nz):
+        down, up = ((k - 1) % nz - k) * plane, ((k + 1) % nz - k) * plane
+        for j in range(ny):
+            row = nx * j + plane * k
+            last = row + nx - 1
+            low, high = ((j - 1) % ny - j) * nx, ((j + 1) % ny - j) * nx
+            rest = row + 1
+            for c in range(row + 1, last - LANE + 1, LANE):
+                total = flow_of_lanes(x, gx, gy, gz, c, c + low, c + high, c + down, c + up, deep)
+                store(own, c, load(own, c) + total * load(inverse, c))
+                rest = c + LANE
+            for c in range(rest, last):
+                total = flow(x, gx, gy, gz, c, c - 1, c + 1, c + low, c + high, c + down, c + up, deep)
+                own[c] += total * inverse[c]
+            for c in range(row, last + 1, max(1, nx - 1)):
+                left, right = (last if c == row else c - 1), (row if c == last else c + 1)
+                total = flow(x, gx, gy, gz, c, left, right, c + low, c + high, c + down, c + up, deep)
+                own[c] += total * inverse[c]
+
+
 @lean(TERM, inner=True)
 def rub(t, y, rate, floats, ints):
-    """V du/dt = sum of g (neighbor - u), and of the edges' beside it: viscosity; at solids; and what pushes."""
-    at = ints[AT]
-    for component in range(ints[AXES]):
-        nx, ny, nz = sides(component, ints)
-        n, start = nx * ny * nz, ints[STARTS + component]
-        x = y[at + start : at + start + n]
-        gx = floats[ints[VISCOUS] + start : ints[VISCOUS] + start + n]
-        gy = floats[ints[VISCOUS + 1] + start : ints[VISCOUS + 1] + start + n]
-        gz = floats[ints[VISCOUS + 2] + start : ints[VISCOUS + 2] + start + (n if nz > 1 else 0)]
-        inverse = floats[ints[INVERSES] + start : ints[INVERSES] + start + n]
-        own, deep, plane = rate[at + start : at + start + n], nz > 1, nx * ny
-        for k in range(nz):
-            down, up = ((k - 1) % nz - k) * plane, ((k + 1) % nz - k) * plane
-            for j in range(ny):
-                row = nx * j + plane * k
-                last = row + nx - 1
-                low, high = ((j - 1) % ny - j) * nx, ((j + 1) % ny - j) * nx
-                for c in range(row + 1, last):
-                    total = flow(x, gx, gy, gz, c, c - 1, c + 1, c + low, c + high, c + down, c + up, deep)
-                    own[c] += total * inverse[c]
-                for c in range(row, last + 1, max(1, nx - 1)):
-                    left, right = (last if c == row else c - 1), (row if c == last else c + 1)
-                    total = flow(x, gx, gy, gz, c, left, right, c + low, c + high, c + down, c + up, deep)
-                    own[c] += total * inverse[c]
-    for k in range(ints[FACES]):
-        if floats[ints[INVERSES] + k] != 0.0:
-            rate[at + k] += floats[ints[PUSHES] + k]
-            rate[at + k] -= floats[ints[FRICTION] + k] * y[at + k] * floats[ints[INVERSES] + k]
+    """V du/dt = sum of g (neighbor - u), and of the edges' beside it: viscosity; at solids; and what pushes.
+
+    Solvers that take viscosity implicitly ask for what the velocities on the boundary give alone.
+    """
+    at, faces = ints[AT], ints[FACES]
+    whole = floats[ints[SKIP]] == 0.0
+    inverses, pushes = floats[ints[INVERSES] : ints[INVERSES] + faces], floats[ints[PUSHES] : ints[PUSHES] + faces]
+    own = rate[at : at + faces]
+    if whole:
+        for component in range(ints[AXES]):
+            viscous(component, y, rate, floats, ints)
+        friction, u = floats[ints[FRICTION] : ints[FRICTION] + faces], y[at : at + faces]
+        for k in range(faces):
+            own[k] -= friction[k] * u[k] * inverses[k]
+    for k in range(faces):
+        own[k] += pushes[k] if inverses[k] != 0.0 else 0.0
     for e in range(ints[EDGES]):
         face = ints[EDGE_FACES + e]
-        given = floats[ints[EDGE_VALUES] + e] - y[at + face]
-        rate[at + face] += floats[ints[EDGE_WEIGHTS] + e] * given * floats[ints[INVERSES] + face]
+        given = floats[ints[EDGE_VALUES] + e] - (y[at + face] if whole else 0.0)
+        own[face] += floats[ints[EDGE_WEIGHTS] + e] * given * inverses[face]

@@ -11,6 +11,7 @@ from sceneql.flows import layout
 from sceneql.flows.edges import BEGIN, component_at, edges_of, timed
 from sceneql.flows.obstacles import LEAST, Solids
 from sceneql.flows.pressure import write_pressure
+from sceneql.flows.skin_velocities import wall_velocities
 from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces
@@ -80,7 +81,8 @@ def add_flow(model: Model, cells: Ground, assembly: Assembly) -> Flow:
 class _Builder:
     def __init__(self, model: Model, cells: Ground, assembly: Assembly) -> None:
         self.model, self.cells, self.assembly = model, cells, assembly
-        shared, self.periodic = shares(model.boundary, cells, assembly.line())
+        sides = {name: part for name, part in model.boundary.items() if name not in {ref.name for ref in model.around}}
+        shared, self.periodic = shares(sides, cells, assembly.line())
         self.faces = Faces(cells, self.periodic)
         self.parts: list[tuple[Side, Any]] = [(part, mine) for part, mine in shared if len(mine)]
         count = len(cells.boundary.cells)
@@ -117,7 +119,10 @@ class _Builder:
         friction, fills = np.zeros(faces.count), np.ones(faces.count)
         if self.solids is not None:
             areas, volumes, given, friction, fills = self._around(self.solids, areas, volumes, given)
-            x[areas == 0.0] = 0.0
+            walls = wall_velocities(self.solids, self.model.boundary, faces)
+            x[areas == 0.0] = walls[areas == 0.0]
+            pushes = pushes + friction * walls / volumes
+            ints[layout.WALLS] = assembly.floats(walls)
         inverses = np.where(given, 0.0, 1.0 / volumes)
         ints[layout.OWNERS] = assembly.floats([] if self.solids is None else self.solids.owners())
         ints[layout.FILLS] = assembly.floats(fills)
@@ -270,7 +275,9 @@ class _Builder:
 
         own = ints.copy()
         own[layout.AT] = 0
-        project(x, self.assembly.numbers(), own)
+        if not project(x, self.assembly.numbers(), own):
+            text = "the iterations for the pressure of the start do not end"
+            raise ScriptError([Diagnostic("invalid", text, self.assembly.line())])
         return x
 
     def _moving(self, at: int) -> int:

@@ -8,7 +8,9 @@ Frameworks for the Fast Fourier Transform (1992), 1.7); cosines come from it by 
 
 from numba import types
 
+from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.lanes_kernels import load, spread, store
 from sceneql.flows.layout import (
     FACTORS,
     FREE_FREE,
@@ -29,6 +31,60 @@ from sceneql.flows.layout import (
 from sceneql.system.signatures_kernels import A, I, N
 
 
+@lean_inlined
+def by_two(re, im, to_re, to_im, at, far, into, width, wave, n, turn):
+    """One butterfly of two for all lanes."""
+    c, s = wave[turn], -wave[n + turn]
+    for q in range(0, width, LANES):
+        first, o = at + q, into + q
+        ar, ai, br, bi = load(re, first), load(im, first), load(re, first + far), load(im, first + far)
+        dr, di = ar - br, ai - bi
+        store(to_re, o, ar + br)
+        store(to_im, o, ai + bi)
+        store(to_re, o + width, dr * c - di * s)
+        store(to_im, o + width, dr * s + di * c)
+
+
+@lean_inlined
+def by_four(re, im, to_re, to_im, at, far, into, width, wave, n, turn):
+    """One butterfly of four for all lanes."""
+    c1, s1, c2, s2 = wave[turn], -wave[n + turn], wave[2 * turn], -wave[n + 2 * turn]
+    c3, s3 = wave[3 * turn], -wave[n + 3 * turn]
+    for q in range(0, width, LANES):
+        k, o = at + q, into + q
+        ar, ai, br, bi = load(re, k), load(im, k), load(re, k + far), load(im, k + far)
+        cr, ci = load(re, k + 2 * far), load(im, k + 2 * far)
+        dr, di = load(re, k + 3 * far), load(im, k + 3 * far)
+        er, ei, fr, fi, gr, gi, hr, hi = ar + cr, ai + ci, ar - cr, ai - ci, br + dr, bi + di, br - dr, bi - di
+        store(to_re, o, er + gr)
+        store(to_im, o, ei + gi)
+        xr, xi = fr + hi, fi - hr
+        store(to_re, o + width, xr * c1 - xi * s1)
+        store(to_im, o + width, xr * s1 + xi * c1)
+        xr, xi = er - gr, ei - gi
+        store(to_re, o + 2 * width, xr * c2 - xi * s2)
+        store(to_im, o + 2 * width, xr * s2 + xi * c2)
+        xr, xi = fr - hi, fi + hr
+        store(to_re, o + 3 * width, xr * c3 - xi * s3)
+        store(to_im, o + 3 * width, xr * s3 + xi * c3)
+
+
+@lean_inlined
+def by_many(re, im, to_re, to_im, p, m, r, width, wave, n, fold):
+    """One butterfly of r for all lanes."""
+    for k in range(r):
+        o = (r * p + k) * width
+        for q in range(0, width, LANES):
+            sum_re, sum_im = spread(0.0), spread(0.0)
+            for j in range(r):
+                turn = (j * k * (n // r) + p * k * fold) % n
+                c, s, at = wave[turn], -wave[n + turn], (p + j * m) * width + q
+                xr, xi = load(re, at), load(im, at)
+                sum_re, sum_im = sum_re + (xr * c - xi * s), sum_im + (xr * s + xi * c)
+            store(to_re, o + q, sum_re)
+            store(to_im, o + q, sum_im)
+
+
 @lean(types.boolean(A, A, A, A, N, A, I), inner=True)
 def fourier(re, im, other_re, other_im, n, wave, factors):
     """sum over j of x_j exp(-2 pi i j k/n) of LANES sequences, entry j of lane l at LANES j + l; ``wave``: (2 n,).
@@ -43,43 +99,11 @@ def fourier(re, im, other_re, other_im, n, wave, factors):
         fold = n // left
         for p in range(m):
             if r == 2:
-                c, s = wave[p * fold], -wave[n + p * fold]
-                first, second, into = p * width, (p + m) * width, 2 * p * width
-                for q in range(width):
-                    ar, ai, br, bi = re[first + q], im[first + q], re[second + q], im[second + q]
-                    other_re[into + q], other_im[into + q] = ar + br, ai + bi
-                    dr, di = ar - br, ai - bi
-                    other_re[into + width + q], other_im[into + width + q] = dr * c - di * s, dr * s + di * c
+                by_two(re, im, other_re, other_im, p * width, m * width, 2 * p * width, width, wave, n, p * fold)
             elif r == 4:
-                c1, s1 = wave[p * fold], -wave[n + p * fold]
-                c2, s2 = wave[2 * p * fold], -wave[n + 2 * p * fold]
-                c3, s3 = wave[3 * p * fold], -wave[n + 3 * p * fold]
-                at, into, far = p * width, 4 * p * width, m * width
-                for q in range(width):
-                    k = at + q
-                    er, ei = re[k] + re[k + 2 * far], im[k] + im[k + 2 * far]
-                    fr, fi = re[k] - re[k + 2 * far], im[k] - im[k + 2 * far]
-                    gr, gi = re[k + far] + re[k + 3 * far], im[k + far] + im[k + 3 * far]
-                    hr, hi = re[k + far] - re[k + 3 * far], im[k + far] - im[k + 3 * far]
-                    o = into + q
-                    other_re[o], other_im[o] = er + gr, ei + gi
-                    xr, xi = fr + hi, fi - hr
-                    other_re[o + width], other_im[o + width] = xr * c1 - xi * s1, xr * s1 + xi * c1
-                    xr, xi = er - gr, ei - gi
-                    other_re[o + 2 * width], other_im[o + 2 * width] = xr * c2 - xi * s2, xr * s2 + xi * c2
-                    xr, xi = fr - hi, fi + hr
-                    other_re[o + 3 * width], other_im[o + 3 * width] = xr * c3 - xi * s3, xr * s3 + xi * c3
+                by_four(re, im, other_re, other_im, p * width, m * width, 4 * p * width, width, wave, n, p * fold)
             else:
-                for k in range(r):
-                    o = (r * p + k) * width
-                    for q in range(width):
-                        other_re[o + q] = other_im[o + q] = 0.0
-                    for j in range(r):
-                        turn = (j * k * (n // r) + p * k * fold) % n
-                        c, s, at = wave[turn], -wave[n + turn], (p + j * m) * width
-                        for q in range(width):
-                            other_re[o + q] += re[at + q] * c - im[at + q] * s
-                            other_im[o + q] += re[at + q] * s + im[at + q] * c
+                by_many(re, im, other_re, other_im, p, m, r, width, wave, n, fold)
         re, other_re, im, other_im = other_re, re, other_im, im
         swapped = not swapped
         left = m
@@ -111,91 +135,148 @@ def extended(j, kind, count, n, forward):
     return (count - 1 - place if kind == QUARTER_SINES else place), sign
 
 
-@lean(types.void(A, N, N, N, N, N, types.boolean, A, A, I), inner=True)
-def along(x, count, stride, rows, inner, outer, forward, tables, scratch, plan):
+@lean_inlined
+def bring(x, raw, count, stride, step, lanes):
+    """Numbers of rows ``step`` apart, the j-th of row l at 2 LANES j + l; 0 in rows from ``lanes`` on.
+
+    By blocks, so that rows whose numbers are neighbors are read a line of memory at a time.
+    """
+    for first in range(0, count, LANES):
+        last = min(first + LANES, count)
+        if step == 1:
+            for j in range(first, last):
+                for lane in range(lanes):
+                    raw[2 * LANES * j + lane] = x[j * stride + lane]
+        else:
+            for lane in range(lanes):
+                for j in range(first, last):
+                    raw[2 * LANES * j + lane] = x[j * stride + lane * step]
+        if lanes < 2 * LANES:
+            for j in range(first, last):
+                for lane in range(lanes, 2 * LANES):
+                    raw[2 * LANES * j + lane] = 0.0
+
+
+@lean_inlined
+def take_back(raw, x, count, stride, step, lanes):
+    """The way back of `bring`."""
+    for first in range(0, count, LANES):
+        last = min(first + LANES, count)
+        if step == 1:
+            for j in range(first, last):
+                for lane in range(lanes):
+                    x[j * stride + lane] = raw[2 * LANES * j + lane]
+        else:
+            for lane in range(lanes):
+                for j in range(first, last):
+                    x[j * stride + lane * step] = raw[2 * LANES * j + lane]
+
+
+@lean_inlined
+def laid_out(raw, re, im, kind, count, n, forward):
+    """The sequences whose transforms are sought, of rows and of those LANES further on as imaginary parts."""
+    for j in range(n):
+        place, sign = extended(j, kind, count, n, forward)
+        to = LANES * j
+        if kind < WAVES:
+            to = LANES * (j // 2 if j % 2 == 0 else n - 1 - j // 2)
+        at = 2 * LANES * place
+        store(re, to, sign * load(raw, at))
+        store(im, to, sign * load(raw, at + LANES))
+
+
+@lean_inlined
+def turned_back(raw, re, im, halves, n, cosines, sines):
+    """The sequences whose transforms are the numbers of which cosines are the modes (Makhoul 1980).
+
+    The inverse is the forward transform with real and imaginary parts swapped.
+    """
+    for k in range(n):
+        c, s, to = cosines[k], sines[k], LANES * k
+        here, there, first, second = 2 * LANES * k, 2 * LANES * (n - k), 1.0, (1.0 if k > 0 else 0.0)
+        if halves:
+            first = second = 1.0 * (k % 2)
+            here, there = 2 * LANES * (k // 2), 2 * LANES * ((n - k) // 2)
+        there = there if second > 0.0 else here
+        a, b = first * load(raw, here), first * load(raw, here + LANES)
+        an, bn = second * load(raw, there), second * load(raw, there + LANES)
+        store(im, to, (c * a + s * an) - (s * b - c * bn))
+        store(re, to, (s * a - c * an) + (c * b + s * bn))
+
+
+@lean_inlined
+def modes_of(re, im, raw, kind, count, n, forward, cosines, sines):
+    """The modes of rows, two of which are in each complex sequence."""
+    halves = kind == QUARTER_COSINES or kind == QUARTER_SINES
+    for q in range(count):
+        k = 2 * q + 1 if halves else q
+        if (kind == NODES_FREE or kind == FREE_NODES) and forward:
+            k = 2 * q - 1 if q > 0 else 0
+        to = 2 * LANES * (count - 1 - q if kind == FREE_NODES and not forward else q)
+        here, mirror = LANES * k, LANES * ((n - k) % n)
+        even, odd = 0.0, 1.0  # parts of the symmetric and of the antisymmetric sum
+        if kind == WAVES:
+            even, odd = 1.0, -1.0
+        elif kind == FREE_FREE:
+            even, odd = 1.0, 0.0
+        elif kind < WAVES:
+            even, odd = cosines[k], sines[k]
+        cr, ci, dr, di = load(re, here), load(im, here), load(re, mirror), load(im, mirror)
+        store(raw, to, 0.5 * (even * (cr + dr) + odd * (ci - di)))
+        store(raw, to + LANES, 0.5 * (even * (ci + di) + odd * (dr - cr)))
+
+
+@lean_inlined
+def values_of(re, im, raw, kind, count, n):
+    """The numbers of which cosines are the modes."""
+    for q in range(count):
+        at = LANES * (q // 2 if q % 2 == 0 else n - 1 - q // 2)
+        to = 2 * LANES * (count - 1 - q if kind == QUARTER_SINES else q)
+        sign = -1.0 if kind == SINES and q % 2 == 1 else 1.0
+        store(raw, to, sign * load(im, at))
+        store(raw, to + LANES, sign * load(re, at))
+
+
+@lean(types.void(A, N, N, N, N, N, N, types.boolean, A, A, I), inner=True)
+def along(x, count, stride, rows, step, groups, outer, forward, tables, scratch, plan):
     """Transform x in place along an axis of ``count`` numbers ``stride`` apart, forward or back.
 
-    Row c begins at (c // inner) outer + c % inner. ``scratch``: 4 LANES (length of the complex transform).
+    Of each of ``groups`` groups, ``outer`` apart, there are ``rows`` rows, ``step`` apart. ``scratch``: 2 LANES count +
+    4 LANES (length of the complex transform).
     """
+    widest()
     kind, n = plan[KIND], plan[LENGTH]
     wave = tables[plan[TWIDDLES] : plan[TWIDDLES] + 2 * n]
     cosines = tables[plan[TWISTS] : plan[TWISTS] + n]
     sines = tables[plan[TWISTS] + n : plan[TWISTS] + 2 * n]
-    size = n * LANES
-    halves = kind == QUARTER_COSINES or kind == QUARTER_SINES
-    whole = kind >= WAVES
-    for begin in range(0, rows, 2 * LANES):
-        re, im = scratch[:size], scratch[size : 2 * size]
-        more_re, more_im = scratch[2 * size : 3 * size], scratch[3 * size : 4 * size]
-        lanes = min(LANES, (rows - begin + 1) // 2)
-        for k in range(2 * size if lanes < LANES else 0):
-            scratch[k] = 0.0
-        for lane in range(lanes):
-            row, both = begin + 2 * lane, begin + 2 * lane + 1 < rows
-            base = (row // inner) * outer + row % inner
-            other = ((row + 1) // inner) * outer + (row + 1) % inner if both else base
-            if forward or whole:
-                for j in range(n):
-                    place, sign = extended(j, kind, count, n, forward)
-                    to = j
-                    if not whole:
-                        to = j // 2 if j % 2 == 0 else n - 1 - j // 2
-                    re[to * LANES + lane] = sign * x[base + place * stride] if sign != 0.0 else 0.0
-                    im[to * LANES + lane] = sign * x[other + place * stride] if sign != 0.0 else 0.0
-                continue
-            for k in range(n):
-                c, s = cosines[k], sines[k]
-                a = an = b = bn = 0.0
-                if not halves:
-                    a, b = x[base + k * stride], x[other + k * stride]
-                    if k > 0:
-                        an, bn = x[base + (n - k) * stride], x[other + (n - k) * stride]
-                elif k % 2 == 1:
-                    here, there = (k // 2) * stride, ((n - k) // 2) * stride
-                    a, b, an, bn = x[base + here], x[other + here], x[base + there], x[other + there]
-                # The inverse is the forward transform with real and imaginary parts swapped.
-                im[k * LANES + lane] = (c * a + s * an) - (s * b - c * bn)
-                re[k * LANES + lane] = (s * a - c * an) + (c * b + s * bn)
+    size, at = n * LANES, 2 * LANES * count
+    raw = scratch[:at]
+    for number in range(groups * ((rows + 2 * LANES - 1) // (2 * LANES))):
+        batches = (rows + 2 * LANES - 1) // (2 * LANES)
+        begin = 2 * LANES * (number % batches)
+        here = x[(number // batches) * outer + begin * step :]
+        lanes = min(2 * LANES, rows - begin)
+        re, im = scratch[at : at + size], scratch[at + size : at + 2 * size]
+        more_re, more_im = scratch[at + 2 * size : at + 3 * size], scratch[at + 3 * size : at + 4 * size]
+        bring(here, raw, count, stride, step, lanes)
+        back = kind < WAVES and not forward
+        if back:
+            turned_back(raw, re, im, kind == QUARTER_COSINES or kind == QUARTER_SINES, n, cosines, sines)
+        else:
+            laid_out(raw, re, im, kind, count, n, forward)
         if fourier(re, im, more_re, more_im, n, wave, plan[FACTORS:]):
             re, im = more_re, more_im
-        for lane in range(lanes):
-            row, both = begin + 2 * lane, begin + 2 * lane + 1 < rows
-            base = (row // inner) * outer + row % inner
-            other = ((row + 1) // inner) * outer + (row + 1) % inner if both else base
-            for q in range(count):
-                to = q
-                if forward or whole:
-                    k = 2 * q + 1 if halves else q
-                    if (kind == NODES_FREE or kind == FREE_NODES) and forward:
-                        k = 2 * q - 1 if q > 0 else 0
-                    here, mirror = k * LANES + lane, ((n - k) % n) * LANES + lane
-                    ar, ai = 0.5 * (re[here] + re[mirror]), 0.5 * (im[here] - im[mirror])
-                    br, bi = 0.5 * (im[here] + im[mirror]), -0.5 * (re[here] - re[mirror])
-                    if kind == WAVES:
-                        a, b = ar - ai, br - bi
-                    elif kind == FREE_FREE:
-                        a, b = ar, br
-                    elif whole:
-                        a, b = ai, bi
-                        if kind == FREE_NODES and not forward:
-                            to = count - 1 - q
-                    else:
-                        c, s = cosines[k], sines[k]
-                        a, b = ar * c + ai * s, br * c + bi * s
-                else:
-                    at = (q // 2 if q % 2 == 0 else n - 1 - q // 2) * LANES + lane
-                    to = count - 1 - q if kind == QUARTER_SINES else q
-                    sign = -1.0 if kind == SINES and q % 2 == 1 else 1.0
-                    a, b = sign * im[at], sign * re[at]
-                if both:
-                    x[other + to * stride] = b
-                x[base + to * stride] = a
+        if back:
+            values_of(re, im, raw, kind, count, n)
+        else:
+            modes_of(re, im, raw, kind, count, n, forward, cosines, sines)
+        take_back(raw, here, count, stride, step, lanes)
 
 
 @lean(types.void(A, N, N, N, types.boolean, A, A, I), inner=True)
 def transform(x, nx, ny, nz, forward, tables, scratch, plans):
     """Transform x in place along all its axes."""
-    along(x, nx, 1, ny * nz, 1, nx, forward, tables, scratch, plans[:PLAN])
-    along(x, ny, nx, nx * nz, nx, nx * ny, forward, tables, scratch, plans[PLAN : 2 * PLAN])
+    along(x, nx, 1, ny * nz, nx, 1, 0, forward, tables, scratch, plans[:PLAN])
+    along(x, ny, nx, nx, 1, nz, nx * ny, forward, tables, scratch, plans[PLAN : 2 * PLAN])
     if nz > 1:
-        along(x, nz, nx * ny, nx * ny, nx * ny, nx * ny * nz, forward, tables, scratch, plans[2 * PLAN : 3 * PLAN])
+        along(x, nz, nx * ny, nx * ny, 1, 1, 0, forward, tables, scratch, plans[2 * PLAN : 3 * PLAN])

@@ -19,7 +19,7 @@ SCHEME, SKIP, PRESSURE, WORK = 22, 23, 24, 25
 CONDUCTANCES, SINK = 26, 29
 """By cell along x, y, z: of the pressure's equation, with the face on the low side; where the pressure is 0."""
 ITERATES, SINGULAR, SPECTRUM = 30, 31, 32
-"""1: iterations, with the transform as preconditioner; 1: pressure up to a constant; by cell: 1/eigenvalue."""
+"""1: iterations, with the transform and CUT as preconditioner; 1: pressure up to a constant; by cell: 1/eigenvalue."""
 PUSHES = 33
 """By face: acceleration by given forces and pressures."""
 FRICTION = 34
@@ -28,7 +28,11 @@ OWNERS = 35
 """By face, then by cell: the number of the nearest solid."""
 FILLS = 36
 """By face: how far a force moves its own cell, whose inertia is that of more fluid where a solid leaves it little."""
-PLANS, PLAN = 37, 24
+CUT = 37
+"""By cell that solids or half open sides cut: 1/(2 its own entry of the pressure's equation); else 0."""
+WALLS = 38
+"""By face: the velocity of the wall of the nearest solid along its axis [m/s]."""
+PLANS, PLAN = 39, 24
 """Of each axis PLAN integers."""
 KIND, LENGTH, TWIDDLES, TWISTS, FACTORS = 0, 1, 2, 3, 4
 """Of a plan: the modes; length of the Fourier transform; cosines and sines of 2 pi k/length, then of pi k/(2 length);
@@ -42,5 +46,5 @@ COSINES, SINES, QUARTER_COSINES, QUARTER_SINES, WAVES, NODES, NODES_FREE, FREE_N
 """Modes of an axis. Of values at centers: none crosses the ends, 0 at both, none crosses and then 0, 0 and then none
 crosses; periodic. Of values at faces, with those at both ends: 0 there, 0 and then free, free and then 0, free."""
 UPWIND, CENTRAL, KOREN = range(3)
-LANES = 16
-"""Pairs of rows that are transformed side by side."""
+LANES = 8
+"""Pairs of rows that are transformed side by side: as many as numbers in a lane, and in a line of memory."""

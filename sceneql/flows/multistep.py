@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from sceneql.system import Flow, Grid
 
 CHORIN, CNAB2, SBDF2 = range(3)
+UNSOLVED = "a value is no longer finite, or the pressure and viscosity of a step are not solved for: it is too long"
+"""What a failed step of these solvers is told as."""
+SAME = 1e-9
+"""Difference from a box of one coefficient, in parts of the largest, that counts as rounding."""
 
 
 def stepper(scheme: int, order: int, step: float) -> Stepper:
@@ -21,7 +25,9 @@ def stepper(scheme: int, order: int, step: float) -> Stepper:
     method = Method(
         step="sceneql.flows.multistep_kernels:step", order=order, numbers=(scheme, 0), settings=(), last_stage=0
     )
-    return Stepper(method, Control(first_step=step), Needs(prepare="sceneql.flows.multistep:prepare"))
+    return Stepper(
+        method, Control(first_step=step, unsolved=UNSOLVED), Needs(prepare="sceneql.flows.multistep:prepare")
+    )
 
 
 class Tables:
@@ -49,9 +55,9 @@ def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[
     volume = floats[grid.cells.insides_at : grid.cells.insides_at + n].reshape(shape[::-1])
     sink = floats[grid.sink_at : grid.sink_at + n].reshape(shape[::-1])
     whole = float(volume.max())
-    decays, plans, lengths = [], [], 1
+    decays, plans, lengths, total, axes = [], [], 1, 0.0, []
     for axis in range(3):
-        count = shape[axis]
+        count, periodic = shape[axis], grid.cells.periodic[axis]
         ties = floats[grid.faces_at[axis] : grid.faces_at[axis] + n].reshape(shape[::-1])
         if axis == 2 and count == 1:
             decays.append(tables.store([0.0]))
@@ -61,16 +67,63 @@ def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[
         ends = [np.moveaxis(part, 2 - axis, 0) for part in (volume, sink, ties)]
         fixed = [float((ends[0][end] > 0.0).mean()) < 0.5 for end in (0, -1)]
         halved = [float(np.median(ends[0][end])) < 0.75 * whole for end in (0, -1)]
-        faces = any(halved) and not grid.cells.periodic[axis]
+        faces = any(halved) and not periodic
         middle = np.moveaxis(sink, 2 - axis, 0)[count // 2]
         held = [float(np.median(ends[1][end] - middle)) > rate * whole for end in (0, -1)]
         zero = (fixed[0], fixed[1]) if faces else (held[0], held[1])
-        kind, length, values = modes(count, grid.cells.periodic[axis], zero, faces)
+        kind, length, values = modes(count, periodic, zero, faces)
         decays.append(tables.store(rate * values))
         plans += plan_of(kind, length, tables.store)
         lengths *= length
+        total += 2.0 * rate * whole
+        axes.append((ties, *_line(count, rate, periodic, zero, faces)))
     offsets = (grid.at, *shape, grid.cells.insides_at, grid.sink_at, *grid.faces_at)
-    return [*offsets, *decays, tables.store([lengths]), grid.at + n if tallied else -1, *plans]
+    exact = int(_is_product(volume, sink, whole, axes))
+    sizes = tables.store([lengths, whole, total])
+    return [*offsets, *decays, sizes, grid.at + n if tallied else -1, exact, *plans]
+
+
+def _line(count: int, rate: float, periodic: bool, zero: tuple[bool, bool], faces: bool) -> tuple[Any, Any, Any]:
+    """Volumes, conductances to the one before and sinks (count,) of the line whose modes are `modes`."""
+    import numpy as np
+
+    volumes, ties, sinks = np.ones(count), np.full(count, rate), np.zeros(count)
+    if not periodic:
+        ties[0] = 0.0
+        for end, held in zip((0, -1), zero, strict=True):
+            if faces:
+                volumes[end] = 0.0 if held else 0.5
+            else:
+                sinks[end] += 2.0 * rate * held
+    return volumes, ties, sinks
+
+
+def _is_product(volume: Floats, sink: Floats, whole: float, axes: list[tuple[Any, ...]]) -> bool:
+    """Whether a field (nz, ny, nx) is the box whose lines along each axis are these, so that transforms solve it."""
+    import numpy as np
+
+    def spread(axis: int, values: Any) -> Any:
+        found = np.full((1, 1, 1), whole)
+        for other, (_, volumes, _, _) in enumerate(axes):
+            mine = values if other == axis else volumes
+            found = found * mine.reshape([-1 if k == 2 - other else 1 for k in range(3)])
+        return found
+
+    solved = volume > 0.0
+    sinks = sum(spread(axis, one[3]) for axis, one in enumerate(axes))
+    alike = _alike(volume, spread(0, axes[0][1]), np.ones_like(solved)) and _alike(sink, sinks, solved)
+    for axis, (ties, _, along, _) in enumerate(axes):
+        beside = solved | np.roll(solved, 1, axis=2 - axis)
+        alike = alike and _alike(ties, spread(axis, along), beside)
+    return alike
+
+
+def _alike(found: Any, wanted: Any, chosen: Any) -> bool:
+    """Whether the chosen numbers of two arrays are the same but for rounding."""
+    import numpy as np
+
+    wanted = np.broadcast_to(wanted, found.shape)
+    return bool((np.abs(found - wanted)[chosen] <= SAME * max(np.abs(wanted).max(), 1e-300)).all())
 
 
 def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, str]:
@@ -108,13 +161,13 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
     from sceneql.flows.multistep_kernels import ARRAYS, HEAD, OPERATOR
 
-    flow, operators, _, tables, text = operators_of(system)
-    head = (*stepper.method.numbers, len(operators), HEAD + OPERATOR * len(operators))
+    flow, operators, velocities, tables, text = operators_of(system)
+    head = (*stepper.method.numbers, len(operators), HEAD + OPERATOR * len(operators), velocities)
     volume = flow.areas[0] * flow.spacing[0]
     return Prepared(
         settings=np.array([-np.inf, -np.inf, 1.0, flow.viscosity / flow.density / volume, *tables.numbers]),
         numbers=np.array([*head, *np.ravel(operators), *flow.ints], dtype=np.int64),
-        work=ARRAYS * len(system.y) + 2 * int(np.prod(flow.cells.shape)),
+        work=ARRAYS * len(system.y) + 3 * int(np.prod(flow.cells.shape)),
         text=text,
     )
 

@@ -7,31 +7,49 @@ its divergence; the pressure grows by what that takes away, less viscosity times
 2001, J. Comput. Phys. 168, 464-499; Guermond & Shen 2004, Math. Comp. 73, 1719-1737), or is left out (Chorin 1968).
 
 ``settings``: start and end of the latest step, length of the one before it. ``numbers``: [scheme, 1 if there is a step
-before, number of operators, where the flow's integers begin], then of each operator OPERATOR integers (a field's offset
-in y, cells along x, y, z, volumes, 0 where nothing is solved, sinks, conductances along x, y, z; offsets into the
-tables, which follow the settings, of decay rates by mode along x, y, z and of the length of all transforms; the entry
-of y that tells what has come in, or -1; the plans of the transforms, flows/layout).
+before, number of operators, where the flow's integers begin, operators of velocities, which come first], then of each
+operator OPERATOR integers (a field's offset in y, cells along x, y, z, volumes, 0 where nothing is solved, sinks,
+conductances along x, y, z; offsets into the tables, which follow the settings, of decay rates by mode along x, y, z,
+and of the length of all transforms, the volume of a cell and the sum of its conductances; the entry of y that tells
+what has come in, or -1; 1 where the transforms solve it; the plans of the transforms, flows/layout).
 """
+
+import math
 
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.flows.fourier_kernels import transform
-from sceneql.flows.layout import CELLS, PLAN, PRESSURE, SKIP, WORK
+from sceneql.flows.layout import (
+    AT,
+    CELLS,
+    FREE_FREE,
+    FREE_NODES,
+    ITERATES,
+    KIND,
+    NODES,
+    NODES_FREE,
+    PLAN,
+    PRESSURE,
+    SKIP,
+    WORK,
+)
 from sceneql.flows.projection_kernels import less_gradient, outflow, project
-from sceneql.grids.multigrid.stencil_kernels import dot, flow, multiply
-from sceneql.system.signatures_kernels import STEP, A, F, I
+from sceneql.grids.multigrid.stencil_kernels import dot, multiply
+from sceneql.system.signatures_kernels import STEP, A, F, I, N
 
 CHORIN, CNAB2, SBDF2 = range(3)
-SCHEME, HAS_BEFORE, OPERATORS, FLOW_AT, HEAD = range(5)
+SCHEME, HAS_BEFORE, OPERATORS, FLOW_AT, VELOCITIES, HEAD = range(6)
 START, END, LENGTH, VISCOSITY, TABLES = range(5)
-DECAYS, SIZES_AT, TALLY, PLANS_AT = 9, 12, 13, 14
+DECAYS, SIZES_AT, TALLY, EXACT, PLANS_AT = 9, 12, 13, 14, 15
 OPERATOR = PLANS_AT + 3 * PLAN
 ARRAYS = 12
-SMALL = 1e-12
+SMALL = 1e-10
 """Residual of implicit parts, in parts of the right side."""
 MOST = 200
+EASY = 20.0
+"""Largest decay in a step that the diagonal is the cheaper preconditioner for."""
 
 
 @lean_inlined
@@ -43,37 +61,42 @@ def same(x, y):
     return True
 
 
-@lean(types.void(A, A, A, I), inner=True)
-def spread(y, out, floats, numbers):
-    """out = L y; 0 where no operator acts."""
-    for k in range(out.size):
-        out[k] = 0.0
-    for number in range(numbers[OPERATORS]):
+@lean(types.void(A, A, N, N, A, I), inner=True)
+def spread(y, out, first, last, floats, numbers):
+    """out = L y where the operators from ``first`` to before ``last`` act."""
+    for number in range(first, last):
         op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
         at, nx, ny, nz = op[0], op[1], op[2], op[3]
-        n, plane, deep = nx * ny * nz, nx * ny, nz > 1
+        n = nx * ny * nz
         x, volume, sink = y[at : at + n], floats[op[4] : op[4] + n], floats[op[5] : op[5] + n]
-        gx, gy, gz = floats[op[6] : op[6] + n], floats[op[7] : op[7] + n], floats[op[8] : op[8] + (n if deep else 0)]
-        for k in range(nz):
-            down, up = ((k - 1) % nz - k) * plane, ((k + 1) % nz - k) * plane
-            for j in range(ny):
-                row = nx * j + plane * k
-                last = row + nx - 1
-                low, high = ((j - 1) % ny - j) * nx, ((j + 1) % ny - j) * nx
-                for c in range(row, last + 1):
-                    if volume[c] > 0.0:
-                        left, right = (last if c == row else c - 1), (row if c == last else c + 1)
-                        total = flow(x, gx, gy, gz, c, left, right, c + low, c + high, c + down, c + up, deep)
-                        out[at + c] = (total - sink[c] * x[c]) / volume[c]
+        gx, gy = floats[op[6] : op[6] + n], floats[op[7] : op[7] + n]
+        gz, own = floats[op[8] : op[8] + (n if nz > 1 else 0)], out[at : at + n]
+        multiply(nx, ny, nz, 0.0, volume, sink, gx, gy, gz, x, own)
+        for c in range(n):
+            own[c] = -own[c] / volume[c] if volume[c] > 0.0 else 0.0
+
+
+@lean_inlined
+def more_at_end(place, count, kind):
+    """2 where the own cell of a face is half a one, as it is free on the boundary; else 1."""
+    low, high = kind == FREE_NODES or kind == FREE_FREE, kind == NODES_FREE or kind == FREE_FREE
+    return 2.0 if (low and place == 0) or (high and place == count - 1) else 1.0
 
 
 @lean(types.void(A, A, A, F, A, A, I), inner=True)
 def precondition(r, z, volume, a, tables, scratch, op):
-    """z = (1 - a coefficient lap)^-1 (r / V) on the uncut box; 0 where V is 0."""
+    """z = (1 - a coefficient lap)^-1 (r / V) with the volumes V of the uncut box, so that it is symmetric; 0 where
+    ``volume`` is."""
     nx, ny, nz = op[1], op[2], op[3]
-    for c in range(z.size):
-        z[c] = r[c] / volume[c] if volume[c] > 0.0 else 0.0
-    plans = op[PLANS_AT:]
+    plans, whole = op[PLANS_AT:], tables[op[SIZES_AT] + 1]
+    for k in range(nz):
+        deep = more_at_end(k, nz, plans[2 * PLAN + KIND]) / whole if nz > 1 else 1.0 / whole
+        for j in range(ny):
+            both, row = deep * more_at_end(j, ny, plans[PLAN + KIND]), nx * (j + ny * k)
+            for c in range(row, row + nx):
+                z[c] = both * r[c] if volume[c] > 0.0 else 0.0
+            z[row] *= more_at_end(0, nx, plans[KIND])
+            z[row + nx - 1] *= more_at_end(nx - 1, nx, plans[KIND])
     transform(z, nx, ny, nz, True, tables, scratch, plans)
     for k in range(nz):
         deep = tables[op[DECAYS + 2] + k] if nz > 1 else 0.0
@@ -86,42 +109,112 @@ def precondition(r, z, volume, a, tables, scratch, op):
         z[c] = z[c] if volume[c] > 0.0 else 0.0
 
 
-@lean(types.void(I, F, A, A, F, A, A, A, A), inner=True)
+@lean_inlined
+def diagonal(op, a, easy, floats, tables, out):
+    """1/(V - a L)'s own entries; 0 where V is 0. Where it is not easy half of them, and 0 in cells of the whole box."""
+    nx, ny, nz = op[1], op[2], op[3]
+    plane = nx * ny
+    n = plane * nz
+    volume, sink = floats[op[4] : op[4] + n], floats[op[5] : op[5] + n]
+    gx, gy = floats[op[6] : op[6] + n], floats[op[7] : op[7] + n]
+    gz = floats[op[8] : op[8] + (n if nz > 1 else 0)]
+    uncut = tables[op[SIZES_AT] + 1] + a * tables[op[SIZES_AT] + 2]
+    for k in range(nz):
+        up = ((k + 1) % nz - k) * plane
+        for j in range(ny):
+            high = ((j + 1) % ny - j) * nx
+            for i in range(nx):
+                c = i + nx * (j + ny * k)
+                total = sink[c] + gx[c] + gx[c + 1 if i < nx - 1 else c - i] + gy[c] + gy[c + high]
+                if nz > 1:
+                    total += gz[c] + gz[c + up]
+                whole = volume[c] + a * total
+                if volume[c] == 0.0:
+                    out[c] = 0.0
+                elif easy:
+                    out[c] = 1.0 / whole
+                else:
+                    out[c] = 0.5 / whole if abs(whole - uncut) > 1e-9 * uncut else 0.0
+
+
+@lean_inlined
+def given_beside(op, a, x, r, floats):
+    """Add what comes over the faces to entries that are given, which in a box stand at the ends of an axis."""
+    at_faces = 0
+    for axis in range(3):
+        at_faces += NODES <= op[PLANS_AT + PLAN * axis + KIND] <= FREE_NODES
+    if at_faces == 0:
+        return
+    counts = op[1:4]
+    volume = floats[op[4] : op[4] + x.size]
+    for axis in range(2 if op[3] == 1 else 3):
+        ties = floats[op[6 + axis] : op[6 + axis] + x.size]
+        stride, last = 1, counts[axis] - 1
+        for before in range(axis):
+            stride *= counts[before]
+        rows = x.size // counts[axis]
+        for row in range(rows if last > 0 else 0):
+            low = (row // stride) * stride * counts[axis] + row % stride
+            high = low + last * stride
+            if volume[low] == 0.0:
+                r[low + stride] += a * ties[low + stride] * x[low]
+            if volume[high] == 0.0:
+                r[high - stride] += a * ties[high] * x[high]
+
+
+@lean(types.boolean(I, F, A, A, F, A, A, A, A), inner=True)
 def solve(op, a, wanted, y, small, floats, tables, scratch, room):
-    """Solve (V - a L) x = V wanted for the entries of an operator, in y, from the values there, by conjugate gradients
-    with transforms of the box as preconditioner; where V is 0 they stay. ``small``: the residual in parts of wanted."""
+    """Solve (V - a L) x = V wanted for the entries of an operator, in y, from the values there; where V is 0 they stay.
+
+    On a box of one coefficient by transforms; else by conjugate gradients with these and the own entries of cut cells
+    as preconditioner, or with all own entries where the equations are not stiff. ``small``: the residual, as the
+    preconditioner measures it, in parts of wanted. Whether it was reached.
+    """
     at, nx, ny, nz = op[0], op[1], op[2], op[3]
     n = nx * ny * nz
     x, volume, sink = y[at : at + n], floats[op[4] : op[4] + n], floats[op[5] : op[5] + n]
     gx, gy = floats[op[6] : op[6] + n], floats[op[7] : op[7] + n]
-    gz = floats[op[8] : op[8] + (n if nz > 1 else 0)]
-    r, p, q, z = room[:n], room[n : 2 * n], room[2 * n : 3 * n], room[3 * n : 4 * n]
+    gz, aim = floats[op[8] : op[8] + (n if nz > 1 else 0)], wanted[at : at + n]
+    r, p, q, z, own = room[:n], room[n : 2 * n], room[2 * n : 3 * n], room[3 * n : 4 * n], room[4 * n : 5 * n]
+    if op[EXACT] == 1:
+        for c in range(n):
+            r[c] = volume[c] * aim[c]
+        given_beside(op, a, x, r, floats)
+        precondition(r, z, volume, a, tables, scratch, op)
+        for c in range(n):
+            x[c] = z[c] if volume[c] > 0.0 else x[c]
+        return True
     scale = 1.0 / a
     multiply(nx, ny, nz, scale, volume, sink, gx, gy, gz, x, q)
-    target = 0.0
     for c in range(n):
-        if volume[c] > 0.0:
-            r[c] = volume[c] * wanted[at + c] - a * q[c]
-            target += volume[c] * wanted[at + c] ** 2
-        else:
-            r[c] = 0.0
-    before = 0.0
+        r[c] = volume[c] * aim[c] - a * q[c] if volume[c] > 0.0 else 0.0
+    easy = 2.0 * a * tables[op[SIZES_AT] + 2] < EASY * tables[op[SIZES_AT] + 1]
+    diagonal(op, a, easy, floats, tables, own)
+    target = before = 0.0
+    for c in range(n):
+        target += volume[c] * aim[c] ** 2
+        p[c] = 0.0
     for count in range(MOST):
-        left = 0.0
-        for c in range(n):
-            left += r[c] * r[c] / volume[c] if volume[c] > 0.0 else 0.0
-        if not left > small * small * target:
-            break
-        precondition(r, z, volume, a, tables, scratch, op)
+        if not easy:
+            precondition(r, z, volume, a, tables, scratch, op)
+            for c in range(n):
+                z[c] += own[c] * r[c]
+        else:
+            for c in range(n):
+                z[c] = own[c] * r[c]
         now = dot(r, z)
+        if not now > small * small * target:
+            return True
         part = now / before if count > 0 else 0.0
         for c in range(n):
             p[c] = z[c] + part * p[c]
         length = now / (a * multiply(nx, ny, nz, scale, volume, sink, gx, gy, gz, p, q))
+        step = length * a
         for c in range(n):
             x[c] += length * p[c]
-            r[c] = r[c] - length * a * q[c] if volume[c] > 0.0 else 0.0
+            r[c] -= step * q[c]
         before = now
+    return False
 
 
 @lean(types.void(I, A, A, A), inner=True)
@@ -175,7 +268,6 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     floats[one[SKIP]] = 1.0
     rate(t, y0, latest, floats, ints)
     floats[one[SKIP]] = 0.0
-    spread(y0, spreading, floats, numbers)
     w = h / settings[LENGTH] if has_before else 0.0
     lead, a1, a2, b1, b2, implicit = 1.0, 1.0, 0.0, 1.0, 0.0, 1.0
     if scheme == CNAB2:
@@ -183,36 +275,63 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     elif scheme == SBDF2:
         lead, a1, a2 = (1.0 + 2.0 * w) / (1.0 + w), 1.0 + w, -w * w / (1.0 + w)
         b1, b2 = 1.0 + w, -w
+    if numbers[VELOCITIES] < numbers[OPERATORS]:
+        for k in range(n):
+            spreading[k] = 0.0
+        spread(y0, spreading, numbers[VELOCITIES], numbers[OPERATORS], floats, numbers)
+        for k in range(n):
+            latest[k] -= spreading[k]
+    first, second, old, new, former = a1 / lead, a2 / lead, before, h * b1 / lead, h * b2 / lead
+    if not has_before:
+        old, new, former = y0, h * (b1 + b2), 0.0
     for k in range(n):
-        latest[k] -= spreading[k]
-        other, old = (n_before[k], before[k]) if has_before else (latest[k], y0[k])
-        change = b1 * latest[k] + b2 * other + (1.0 - implicit) * spreading[k]
-        wanted[k] = (a1 * y0[k] + a2 * old + h * change) / lead
+        wanted[k] = first * y0[k] + second * old[k] + new * latest[k] + former * n_before[k]
+    if implicit < 1.0:
+        for k in range(n):
+            spreading[k] = 0.0
+        spread(y0, spreading, 0, numbers[OPERATORS], floats, numbers)
+        for k in range(n):
+            wanted[k] += h * (1.0 - implicit) * spreading[k]
     if scheme != CHORIN:
         less_gradient(wanted, pressure, h / lead, floats, one)
     for k in range(n):
         y1[k] = wanted[k]
+    solved, ahead = True, w if has_before else 0.0
     for number in range(numbers[OPERATORS]):
         op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
-        size = op[1] * op[2] * op[3]
-        for c in range(size):
-            if floats[op[4] + c] > 0.0:
-                k = op[0] + c
-                y1[k] = y0[k] + (w * (y0[k] - before[k]) if has_before else 0.0)
-        solve(op, h * implicit / lead, wanted, y1, SMALL, floats, settings[TABLES:], floats[one[WORK] :], room)
+        if op[EXACT] == 0:  # iterations begin with the values that go on as they went
+            size = op[1] * op[2] * op[3]
+            x, x0, x_before = y1[op[0] : op[0] + size], y0[op[0] : op[0] + size], before[op[0] : op[0] + size]
+            for c in range(size):
+                x[c] = x0[c] + ahead * (x0[c] - x_before[c]) if floats[op[4] + c] > 0.0 else x[c]
+        solved &= solve(
+            op, h * implicit / lead, wanted, y1, SMALL, floats, settings[TABLES:], floats[one[WORK] :], room
+        )
     if scheme != CHORIN:
         gathered = room[:cells]
         outflow(y1, gathered, floats, one)
-    project(y1, floats, one)
-    if scheme != CHORIN:
+    latest_q = pressure[2 * cells : 3 * cells]  # iterations begin with what the step before took away
+    guessed = has_before and one[ITERATES] == 1
+    if guessed:
+        less_gradient(y1, latest_q, 1.0, floats, one)
+    solved &= project(y1, floats, one)
+    if guessed:
         for c in range(cells):
-            pressure[c] += q[c] * lead / h - implicit * settings[VISCOSITY] * gathered[c]
+            q[c] += latest_q[c]
+    for c in range(cells):
+        latest_q[c] = q[c]
+    if scheme != CHORIN:
+        part, damped = lead / h, implicit * settings[VISCOSITY]
+        for c in range(cells):
+            pressure[c] += q[c] * part - damped * gathered[c]
     for number in range(numbers[OPERATORS]):
         tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
+    bend = w / (1.0 + w) if has_before else 0.0
+    slope, before_slope = (1.0 + bend) / h, -bend / settings[LENGTH] if has_before else 0.0
     for k in range(n):
-        slope = (y1[k] - y0[k]) / h
-        if has_before:
-            slope += w / (1.0 + w) * (slope - (y0[k] - before[k]) / settings[LENGTH])
-        rate1[k] = slope
+        rate1[k] = slope * (y1[k] - y0[k]) + before_slope * (y0[k] - old[k])
+    for k in range(n):
         end[k] = y1[k]
+    if not solved:
+        y1[one[AT]] = math.nan
     return 0.0

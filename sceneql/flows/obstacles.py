@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from sceneql.kinds import Moment, Ref
     from sceneql.system import Assembly
 
-SLIVER = 1e-3
-"""Open part of a face from which on it is closed."""
+SLIVER = 0.02
+"""Open part of a face below which it is closed: what little flows there would need a large pressure behind it."""
 NEAREST = 0.05
 """Least distance from a wall, in parts of a cell's side."""
 LEAST = 0.3
@@ -37,6 +37,7 @@ class Solids:
     def __init__(self, refs: Sequence[Ref], faces: Faces, staircase: bool, assembly: Assembly) -> None:
         """Raises ScriptError for an object without an inside, and where nothing is left of the box."""
         self.faces, self.staircase, self.spacing = faces, staircase, np.array(faces.cells.spacing)
+        self.refs = refs
         self.levels = []
         for ref in refs:
             try:
@@ -80,7 +81,7 @@ class Solids:
         points = [*map(faces.points, range(faces.axes)), self._centers()]
         return np.concatenate([np.argmin([level.values(one) for level in self.levels], axis=0) for one in points])
 
-    def _planes(self, points: Floats) -> tuple[Floats, Floats]:
+    def planes(self, points: Floats) -> tuple[Floats, Floats]:
         """The level (k,) and its gradient (k, 3)."""
         slopes = np.zeros((len(points), 3))
         for axis in range(self.faces.axes):
@@ -91,7 +92,7 @@ class Solids:
 
     def open(self, points: Floats, axes: Any) -> Floats:
         """The open part (k,) of boxes of a cell's sides along these axes, of no extent along others."""
-        phi, slopes = self._planes(points)
+        phi, slopes = self.planes(points)
         chosen = list(axes)
         found: Floats = np.where(phi > 0.0, 1.0, 0.0)
         near = np.abs(phi) <= np.abs(slopes[:, chosen]) @ self.spacing[chosen]
@@ -129,19 +130,32 @@ class Solids:
 
         ``closed`` (m,) bool: faces that are shut. A staircase has its walls halfway to these, across a component.
         """
-        if not self.staircase:
-            own = self.faces.points(component, (axis, -0.5))
-            shift = np.where(closed, 0.0, shifts[:, axis]).reshape(self.faces.shapes[component])
-            apart = 1.0 + (shift - np.roll(shift, 1, axis=2 - axis)).ravel() / self.spacing[axis]
-            whole = self.open(own, [k for k in range(self.faces.axes) if k != axis])
-            found: Floats = whole / np.clip(apart, 0.25, 2.0)
-            return found
         shape = self.faces.shapes[component]
         shut = closed.reshape(shape)
         before = np.roll(shut, 1, axis=2 - axis)
+        if not self.staircase:
+            own = self.faces.points(component, (axis, -0.5))
+            shift = np.where(closed, 0.0, shifts[:, axis]).reshape(shape)
+            apart = 1.0 + (shift - np.roll(shift, 1, axis=2 - axis)) / self.spacing[axis]
+            apart = np.where(shut != before, self._to_wall(component, axis, shut, shifts), apart).ravel()
+            whole = self.open(own, [k for k in range(self.faces.axes) if k != axis])
+            found: Floats = whole / np.clip(apart, 0.25, 2.0)
+            return found
         factor = np.where(shut != before, 1.0 if axis == component else 2.0, np.where(shut, 0.0, 1.0))
         steps: Floats = factor.ravel()
         return steps
+
+    def _to_wall(self, component: int, axis: int, shut: Any, shifts: Floats) -> Floats:
+        """Of a component's faces, where one of it and the one before along an axis is shut: how far the wall between
+        them is from the middle of the other one's fluid, in cells."""
+        points = self.faces.points(component)
+        level = self._values(points).reshape(shut.shape)
+        middle = self._values(points + shifts).reshape(shut.shape)
+        before = np.roll(level, 1, axis=2 - axis), np.roll(middle, 1, axis=2 - axis)
+        steps = np.where(shut, before[0] - level, level - before[0])
+        above = np.where(shut, before[1], middle)
+        found: Floats = np.where(steps > 0.0, above / np.where(steps > 0.0, steps, 1.0), 1.0)
+        return found
 
     def walls(self, component: int) -> tuple[Floats, Floats, Floats]:
         """Of a component's faces: the volume of the own cell in parts, (wall's area)/(distance) in it [m], and how far
@@ -163,7 +177,7 @@ class Solids:
         area = np.sqrt(vector)
         some = area > 1e-9 * max(faces.areas)
         middle = 0.5 * volumes * faces.volume / np.where(some, area, 1.0)
-        phi, slopes = self._planes(points)
+        phi, slopes = self.planes(points)
         steep = np.maximum(np.linalg.norm(slopes, axis=1), 1e-9)
         distance = phi / steep
         away = np.maximum(np.maximum(distance, middle), NEAREST * self.spacing[: faces.axes].min())

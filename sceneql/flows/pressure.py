@@ -24,7 +24,7 @@ def write_pressure(
     """
     cells = faces.cells
     n = len(cells.volumes)
-    sink = np.zeros(n)
+    sink, entries = np.zeros(n), np.zeros(n)
     ends_open = []
     uniform = True
     for axis in range(faces.axes):
@@ -42,12 +42,17 @@ def write_pressure(
         ties = ties[tuple(slice(0, m) for m in cells.shape[::-1])].copy()
         if not faces.periodic[axis]:
             ties[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = 0.0
+        entries += (ties + np.roll(ties, -1, axis=2 - axis)).ravel()
         ints[layout.CONDUCTANCES + axis] = assembly.floats(ties.ravel())
     if solid:
         uniform = False
         whole = sum(np.bincount(np.arange(n), weights=_around_cell(faces, areas, axis)) for axis in range(faces.axes))
         sink[whole == 0.0] = -1.0
     ints[layout.SINK] = assembly.floats(sink)
+    if not uniform:
+        entries += sink
+        cut = (sink >= 0.0) & (entries > 0.0) & (np.abs(entries - np.median(entries)) > 1e-9 * entries.max())
+        ints[layout.CUT] = assembly.floats(np.where(cut, 0.5 / np.where(cut, entries, 1.0), 0.0))
     ints[layout.ITERATES] = not uniform
     ints[layout.SINGULAR] = not opened.any()
     inner = [faces.areas[axis] / float(cells.spacing[axis]) for axis in range(faces.axes)]
@@ -55,6 +60,8 @@ def write_pressure(
     ints[layout.PLANS : layout.EDGE_FIRST] = tables
     ints[layout.SPECTRUM] = assembly.floats(spectrum)
     ints[layout.PRESSURE] = assembly.floats(np.zeros(n))
+    rows = (cells.shape[0] + 9) * 8 + (cells.shape[0] + 1) * (cells.shape[1] + 1)
+    room = max(room, faces.count + rows)
     ints[layout.WORK] = assembly.floats(np.zeros(room + (0 if uniform else 5 * n))) + (0 if uniform else 5 * n)
 
 

@@ -17,6 +17,7 @@ from sceneql.flows.layout import (
     AXES,
     CELLS,
     CONDUCTANCES,
+    CUT,
     FACES,
     INVERSES,
     ITERATES,
@@ -35,8 +36,8 @@ from sceneql.flows.layout import (
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
 from sceneql.system.signatures_kernels import TERM, A, F, I
 
-SMALL = 1e-11
-"""Residual of iterations, in parts of the right side."""
+SMALL = 2e-12
+"""Residual of iterations, in parts of what flows through faces."""
 MOST = 400
 """Iterations."""
 
@@ -68,98 +69,150 @@ def centered(x, sink, ints):
         x[c] = x[c] - total / count if sink[c] >= 0.0 else 0.0
 
 
-@lean(types.void(A, A, I), inner=True)
-def by_iterations(b, floats, ints):
-    """Solve the pressure's equation in place, by conjugate gradients from 0."""
+@lean_inlined
+def through_faces(x, floats, ints):
+    """The root of the sum of squares of what flows through all faces [m^3/s]."""
+    faces = ints[FACES]
+    u, areas = x[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
+    total = 0.0
+    for k in range(faces):
+        total += (areas[k] * u[k]) ** 2
+    return math.sqrt(total)
+
+
+@lean(types.boolean(A, F, A, I), inner=True)
+def by_iterations(b, small, floats, ints):
+    """Solve the pressure's equation in place, by conjugate gradients from 0, to a residual; whether it was reached.
+
+    The transform alone as preconditioner would take the more iterations the less is left of a cell: so a step of
+    Jacobi's method in cut cells goes before it and comes after it.
+    """
     nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
     n = nx * ny * nz
     room = floats[ints[WORK] - 5 * n : ints[WORK]]
     r, z, p, q, volume = room[:n], room[n : 2 * n], room[2 * n : 3 * n], room[3 * n : 4 * n], room[4 * n :]
-    sink = floats[ints[SINK] : ints[SINK] + n]
+    sink, cut = floats[ints[SINK] : ints[SINK] + n], floats[ints[CUT] : ints[CUT] + n]
     gx = floats[ints[CONDUCTANCES] : ints[CONDUCTANCES] + n]
     gy = floats[ints[CONDUCTANCES + 1] : ints[CONDUCTANCES + 1] + n]
     gz = floats[ints[CONDUCTANCES + 2] : ints[CONDUCTANCES + 2] + (n if nz > 1 else 0)]
     centered(b, sink, ints)
     for c in range(n):
         r[c], b[c], volume[c] = b[c], 0.0, 0.0
-    whole = math.sqrt(dot(r, r))
     before = 0.0
     for count in range(MOST):
-        if not math.sqrt(dot(r, r)) > SMALL * whole:
-            break
+        if not math.sqrt(dot(r, r)) > small:
+            return True
         for c in range(n):
-            z[c] = r[c]
+            z[c] = cut[c] * r[c]
+        multiply(nx, ny, nz, 0.0, volume, sink, gx, gy, gz, z, q)
+        for c in range(n):
+            z[c] = r[c] - q[c]
         by_transform(z, floats, ints)
+        for c in range(n):
+            z[c] = z[c] + cut[c] * r[c] if sink[c] >= 0.0 else 0.0
+        multiply(nx, ny, nz, 0.0, volume, sink, gx, gy, gz, z, q)
+        for c in range(n):
+            z[c] += cut[c] * (r[c] - q[c])
         centered(z, sink, ints)
         now = dot(r, z)
         part = now / before if count > 0 else 0.0
         for c in range(n):
             p[c] = z[c] + part * p[c]
-        multiply(nx, ny, nz, 0.0, volume, sink, gx, gy, gz, p, q)
-        step = now / dot(p, q)
+        length = now / multiply(nx, ny, nz, 0.0, volume, sink, gx, gy, gz, p, q)
         for c in range(n):
-            b[c] += step * p[c]
-            r[c] -= step * q[c]
+            b[c] += length * p[c]
+            r[c] -= length * q[c]
         before = now
+    return not math.sqrt(dot(r, r)) > small
 
 
 @lean_inlined
-def face(cell, place, axis, ints):
-    """The face on the low side of a cell (i, j, k), and the step to the one on its high side, of all faces."""
-    i, j, k = place
-    nx, ny = ints[CELLS], ints[CELLS + 1]
-    sx = nx + (1 if axis == 0 and ints[PERIODIC] == 0 else 0)
-    sy = ny + (1 if axis == 1 and ints[PERIODIC + 1] == 0 else 0)
-    low = ints[STARTS + axis] + i + sx * (j + sy * k)
-    stride = 1 if axis == 0 else (sx if axis == 1 else sx * sy)
-    number = i if axis == 0 else (j if axis == 1 else k)
-    count = ints[CELLS + axis]
-    around = ints[PERIODIC + axis] == 1 and number == count - 1
-    return low, low - (count - 1) * stride if around else low + stride
+def first_face(axis, j, k, ints):
+    """The face across an axis on the low side of the first cell of row (j, k), and how far on that on the high side of
+    the row is (along x: of its first cell), of all faces."""
+    nx = ints[CELLS] + (1 if axis == 0 and ints[PERIODIC] == 0 else 0)
+    ny = ints[CELLS + 1] + (1 if axis == 1 and ints[PERIODIC + 1] == 0 else 0)
+    stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
+    place = j if axis == 1 else k
+    around = axis > 0 and ints[PERIODIC + axis] == 1 and place == ints[CELLS + axis] - 1
+    return ints[STARTS + axis] + nx * (j + ny * k), -place * stride if around else stride
 
 
 @lean(types.void(A, A, A, I))
 def outflow(x, out, floats, ints):
     """Net outflow of each cell (cells,) of velocities x, at ints[AT] and on [m^3/s]."""
-    nx, ny, nz, at, areas = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2], ints[AT], ints[AREAS]
+    nx, ny, nz, faces = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2], ints[FACES]
+    u, areas = x[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
+    around = ints[PERIODIC] == 1
     for k in range(nz):
         for j in range(ny):
-            for i in range(nx):
-                cell = i + nx * (j + ny * k)
-                total = 0.0
-                for axis in range(ints[AXES]):
-                    low, high = face(cell, (i, j, k), axis, ints)
-                    total += floats[areas + high] * x[at + high] - floats[areas + low] * x[at + low]
-                out[cell] = total
+            own = out[nx * (j + ny * k) :]
+            low, _ = first_face(0, j, k, ints)
+            v, w, a, b = u[low:], u[low + 1 :], areas[low:], areas[low + 1 :]
+            for i in range(nx - 1 if around else nx):
+                own[i] = b[i] * w[i] - a[i] * v[i]
+            if around:
+                own[nx - 1] = a[0] * v[0] - a[nx - 1] * v[nx - 1]
+            for axis in range(1, ints[AXES]):
+                low, up = first_face(axis, j, k, ints)
+                v, w, a, b = u[low:], u[low + up :], areas[low:], areas[low + up :]
+                for i in range(nx):
+                    own[i] += b[i] * w[i] - a[i] * v[i]
+
+
+@lean_inlined
+def lessen(u, scales, factor, here, before, has_here, has_before, count):
+    """A row of velocities, less the gradient between two rows of pressures, one of which may be missing: 0."""
+    if has_here and has_before:
+        for i in range(count):
+            u[i] -= factor * scales[i] * (here[i] - before[i])
+    else:
+        one, sign = (here, factor) if has_here else (before, -factor)
+        for i in range(count):
+            u[i] -= sign * scales[i] * one[i]
 
 
 @lean(types.void(A, A, F, A, I), inner=True)
 def less_gradient(x, q, factor, floats, ints):
     """x minus factor times the gradient of q, which is 0 beyond open sides, at the faces whose velocity is free."""
-    nx, ny, nz, at, scales = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2], ints[AT], ints[SCALES]
+    nx, ny, nz, faces = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2], ints[FACES]
+    u, scales = x[ints[AT] : ints[AT] + faces], floats[ints[SCALES] : ints[SCALES] + faces]
+    around = ints[PERIODIC] == 1
     for k in range(nz):
         for j in range(ny):
-            for i in range(nx):
-                cell = i + nx * (j + ny * k)
-                for axis in range(ints[AXES]):
-                    low, high = face(cell, (i, j, k), axis, ints)
-                    x[at + low] -= factor * floats[scales + low] * q[cell]
-                    x[at + high] += factor * floats[scales + high] * q[cell]
+            row = nx * (j + ny * k)
+            low, _ = first_face(0, j, k, ints)
+            lessen(u[low + 1 :], scales[low + 1 :], factor, q[row + 1 :], q[row:], True, True, nx - 1)
+            lessen(u[low:], scales[low:], factor, q[row:], q[row + nx - 1 :], True, around, 1)
+            if not around:
+                lessen(u[low + nx :], scales[low + nx :], factor, q, q[row + nx - 1 :], False, True, 1)
+            for axis in range(1, ints[AXES]):
+                low, up = first_face(axis, j, k, ints)
+                place, count = (j if axis == 1 else k), ints[CELLS + axis]
+                stride, periodic = (nx if axis == 1 else nx * ny), ints[PERIODIC + axis] == 1
+                before = q[row + (count - 1) * stride :] if place == 0 else q[row - stride :]
+                if place == 0 and not periodic:
+                    before = q[row:]
+                lessen(u[low:], scales[low:], factor, q[row:], before, True, place > 0 or periodic, nx)
+                if place == count - 1 and not periodic:
+                    lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, nx)
 
 
-@lean(types.void(A, A, I))
+@lean(types.boolean(A, A, I))
 def project(x, floats, ints):
-    """Make x free of divergence; floats[ints[PRESSURE]:] is then what its gradient takes away."""
+    """Make x free of divergence; floats[ints[PRESSURE]:] is then what its gradient takes away. Whether it is."""
     n = ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2]
     q = floats[ints[PRESSURE] : ints[PRESSURE] + n]
     outflow(x, q, floats, ints)
     for c in range(n):
         q[c] = -q[c]
+    solved = True
     if ints[ITERATES] == 1:
-        by_iterations(q, floats, ints)
+        solved = by_iterations(q, SMALL * through_faces(x, floats, ints), floats, ints)
     else:
         by_transform(q, floats, ints)
     less_gradient(x, q, 1.0, floats, ints)
+    return solved
 
 
 @lean(TERM, inner=True)
@@ -169,5 +222,5 @@ def constrain(t, y, rate, floats, ints):
     for k in range(ints[FACES]):
         if floats[ints[INVERSES] + k] == 0.0:
             rate[at + k] = floats[ints[MOVES] + k]
-    if floats[ints[SKIP]] == 0.0:
-        project(rate, floats, ints)
+    if floats[ints[SKIP]] == 0.0 and not project(rate, floats, ints):
+        rate[at] = math.nan

@@ -7,17 +7,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.flows import layout
+from sceneql.flows.edges import component_at
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.grids.medium import FieldLayout
+    from sceneql.kinds import Formula
     from sceneql.system import ModelState
 
 
 def on_solid(
-    what: str, number: int, cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState
-) -> Floats:
-    """(3,) `force` [N] on a solid, or `torque` about the origin [N m]."""
+    what: str, number: int, cells: FieldLayout, ints: tuple[int, ...], fluid: tuple[float, float],
+    wall: Formula | None, state: ModelState,
+) -> Floats:  # fmt: skip
+    """(3,) `force` [N] on a solid, or `torque` about the origin [N m].
+
+    ``fluid``: density [kg/m^3] and viscosity [Pa s]; ``wall``: the velocity of its wall. Where that turns, the stress
+    viscosity (grad u + its transpose) has a second part, which moves no momentum and yet twists the solid.
+    """
+    density, viscosity = fluid
     force, torque = np.zeros(3), np.zeros(3)
     floats, axes = state.floats, ints[layout.AXES]
     count = ints[layout.FACES]
@@ -26,6 +34,7 @@ def on_solid(
     pressure = np.where(owners[count:] == number, pressure, 0.0).reshape(cells.shape[::-1])
     centers = cells.centers()
     carried = _carried_in(ints, state)
+    slopes = _slopes(wall, centers, cells, axes)
     for axis in range(axes):
         shape = list(cells.shape)
         shape[axis] += not ints[layout.PERIODIC + axis]
@@ -45,10 +54,24 @@ def on_solid(
         dragged += density * np.where(mine_by_face == number, carried[first : first + n], 0.0)
         for strength, places in ((pushed, centers), (dragged, points)):
             force[axis] += strength.sum()
-            direction = np.zeros(3)
-            direction[axis] = 1.0
-            torque += np.cross(places * strength[:, None], direction).sum(axis=0)
+            torque += np.cross(places * strength[:, None], np.eye(3)[axis]).sum(axis=0)
+        outward = np.where(owners[count:] == number, (high - low).ravel(), 0.0)
+        for other in range(axes):
+            twist = viscosity * slopes[other, axis] * outward
+            torque += np.cross(centers * twist[:, None], np.eye(3)[other]).sum(axis=0)
     return force if what == "force" else torque
+
+
+def _slopes(wall: Formula | None, centers: Floats, cells: FieldLayout, axes: int) -> Floats:
+    """(i, j, cells): the derivative by x_i of the wall's velocity along j, beside the centers of cells [1/s]."""
+    found = np.zeros((axes, axes, len(centers)))
+    for i in range(axes if wall is not None else 0):
+        assert wall is not None
+        step = 0.5 * np.array(cells.spacing) * np.eye(3)[i]
+        for j in range(axes):
+            ends = [component_at(wall, j, centers + way * step, 0.0) for way in (1, -1)]
+            found[i, j] = (ends[0] - ends[1]) / cells.spacing[i]
+    return found
 
 
 def _carried_in(ints: tuple[int, ...], state: ModelState) -> Floats:
@@ -79,11 +102,11 @@ def _dragged(
 
     u = state.y[ints[layout.AT] + first : ints[layout.AT] + first + n].reshape(shape[::-1])
     shut = by_face(ints[layout.AREAS]) == 0.0
-    total = by_face(ints[layout.FRICTION]) * u
+    total = by_face(ints[layout.FRICTION]) * (u - by_face(ints[layout.WALLS]))
     for other in range(ints[layout.AXES]):
         ties, line = by_face(ints[layout.VISCOUS + other]), 2 - other
-        total += ties * u * np.roll(shut, 1, axis=line)
-        total += np.roll(ties, -1, axis=line) * u * np.roll(shut, -1, axis=line)
+        total += ties * (u - np.roll(u, 1, axis=line)) * np.roll(shut, 1, axis=line)
+        total += np.roll(ties, -1, axis=line) * (u - np.roll(u, -1, axis=line)) * np.roll(shut, -1, axis=line)
     index = np.stack(np.meshgrid(*map(np.arange, shape[::-1]), indexing="ij")[::-1], axis=-1).reshape(-1, 3) + 0.5
     index[:, axis] -= 0.5
     points = np.array(cells.low) + index * np.array(cells.spacing)

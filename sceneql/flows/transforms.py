@@ -83,7 +83,7 @@ def plans(
     spectrum = total.ravel()
     least = spectrum[spectrum > 1e-12 * spectrum.max(initial=1e-300)].min(initial=np.inf)
     inverse = 1.0 / (np.where(spectrum >= least, spectrum, least) * prod(lengths))
-    return ints, np.where(np.isfinite(inverse), inverse, 0.0), 4 * LANES * 4 * max(shape)
+    return ints, np.where(np.isfinite(inverse), inverse, 0.0), LANES * (16 * max(shape) + 2 * (max(shape) + 1))
 
 
 def factors(n: int) -> list[int]:

@@ -51,7 +51,8 @@ class Flow(Model):
     initial: Start | None = field("The flow at the start; by default at rest.", None)
     boundary: dict[str, Side] = field(
         "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z), on any part `where` a "
-        "formula holds or `near` a place, or on `rest`: a `wall`, an `inflow`, an `outflow`, or `periodic`.",
+        "formula holds or `near` a place, or on `rest`: a `wall`, an `inflow`, an `outflow`, or `periodic`. Named like "
+        "a solid, a `wall` with the velocity of its skin: `{drum: {wall: {velocity: [-y, x]}}}` turns it in place.",
         {},
     )
     around: tuple[kinds.ObjectRef, ...] = field(
@@ -120,7 +121,12 @@ class Flow(Model):
             yield Problem(text, ("cell",), code="limit-refused")
         if min(shape[: len(self.size)]) < 2:
             yield Problem("a flow has two cells or more along each side", ("cell",))
-        known = (*SIDES[: 2 * len(self.size)], "rest")
+        solids = {ref.name for ref in self.around}
+        for name, part in self.boundary.items():
+            if name in solids and (part.wall is None or part.velocity is None or part.chosen or part.slip > 0.0):
+                text = f"of the solid '{name}' a flow takes a whole `wall` with a `velocity`, which fluid sticks to"
+                yield Problem(text, ("boundary", name), at_key=True)
+        known = (*SIDES[: 2 * len(self.size)], "rest", *solids)
         for name in [name for name, part in self.boundary.items() if name not in known and not part.chosen]:
             text = f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
             yield Problem(text, ("boundary", name), at_key=True)
@@ -170,5 +176,7 @@ class Flow(Model):
             from sceneql.flows.solid_forces import on_solid
 
             number = [ref.name for ref in self.around].index(name)
-            return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)
+            fluid, part = (self.density, self.viscosity), self.boundary.get(name)
+            wall = None if part is None else part.velocity
+            return on_solid(what, number, self.layout(state, output), state.ints[5:], fluid, wall, state)
         return measure(output, self.layout(state, output), state.ints[5:], self.density, state)
