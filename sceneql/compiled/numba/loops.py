@@ -73,7 +73,7 @@ def following(context, builder, signature, arguments):
     return packed(context, builder, signature.return_type, (value, there))
 
 
-def take_ranges():
+def take_loops():
     """Let numba lower ranges of 64 bits, and the pairs that iterators give, by the functions of this file."""
     for count in (1, 2, 3):
         lower_builtin(range, *[INT] * count)(range_of)
