@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from sceneql.linear import cone_kernels
+from sceneql.linear import cone_finish_kernels
 from sceneql.linear import cone_layout_kernels as rows
 from sceneql.linear.cones import cone_program
 
@@ -29,7 +29,7 @@ def write_contact(program, k, pair, normal, arms, friction, given, impulse=(0, 0
 def solve(program, contacts):
     """Solve for so many contacts: what the kernel returns."""
     program.ints[rows.CONTACTS] = contacts
-    return cone_kernels.solve(program.floats, program.ints)
+    return cone_finish_kernels.solve(program.floats, program.ints)
 
 
 def velocities(program):

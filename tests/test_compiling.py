@@ -12,6 +12,7 @@ import numba
 import numpy as np
 import pytest
 from numba import types
+from numba.core.runtime import _nrt_python, rtsys
 
 from sceneql.compiled.kernels import HELPER, MODE, PIPELINE
 from sceneql.compiled.numba.collecting import collecting_later
@@ -201,3 +202,71 @@ def test_least_and_most_are_those_of_python_of_nan_and_of_mixed_types():
     nan = float("nan")
     for a, b, c in product((1.0, -0.0, 0.0, nan, 7.5), (0.0, nan, -2.0), (3, -4)):
         assert repr(found(a, b, c)) == repr(tuple(map(float, found.py_func(a, b, c))))
+
+
+def items(start, stop, step):
+    count, total, last = 0, 0, -7
+    for k in range(start, stop, step):
+        if k == 5:
+            continue
+        for j in range(k):
+            total += j * step
+            if j > 3:
+                break
+        count, last = count + 1, k
+    for k in range(start, stop):
+        total += 10 * k
+    for k in range(stop - 1, start - 1, -1):
+        total -= 1000 * k
+    return count, total, last
+
+
+@compiled
+def test_loops_run_as_often_as_python_says():
+    kernel = numba.njit(types.UniTuple(types.int64, 3)(*[types.int64] * 3), **PIPELINE)(items)
+    for given in product((-3, 0, 2, 7), (-4, 0, 3, 8, 9), (-5, -2, -1, 1, 2, 3, 11)):
+        assert kernel(*given) == items(*given), given
+    with pytest.raises(ValueError, match="arg 3 must not be zero"):
+        kernel(0, 1, 0)
+
+
+@helper
+def root(x):
+    if x < 0.0:
+        raise ValueError("below 0")
+    return math.sqrt(x) if x < 100.0 else None
+
+
+def rooted(values, which):
+    total = 0.0
+    for x in values:
+        found = root(x)
+        if found is None:
+            total += 1000.0
+        else:
+            total += found
+    if which > 2:
+        values = values[1:]
+    while which > 0:
+        values, which = values[: values.size - 1].copy(), which - 1
+    return values, total
+
+
+@compiled
+def test_calls_that_raise_or_give_nothing_and_arguments_that_change_lose_no_memory():
+    kernel = numba.njit(types.Tuple((types.float64[::1], types.float64))(types.float64[::1], types.int64), **PIPELINE)(
+        rooted
+    )
+    values = np.array([4.0, 9.0, 400.0, 16.0, 1.0, 0.0])
+    _nrt_python.memsys_enable_stats()
+    before, kept = rtsys.get_allocation_stats(), sys.getrefcount(values)
+    for which, size in [(0, 6), (1, 5), (3, 2)] * 20:
+        found, total = kernel(values, which)
+        assert (found.size, total) == (size, 1010.0)
+        assert np.array_equal(found, values[which > 2 :][:size])
+        del found
+    after = rtsys.get_allocation_stats()
+    assert after.alloc - before.alloc == after.free - before.free
+    assert sys.getrefcount(values) == kept
+    with pytest.raises(ValueError, match="below 0"):
+        kernel(-values, 0)

@@ -124,6 +124,25 @@ outputs: {data: {record: {of: [load.energy]}}}
     assert modules_after(tmp_path, script.replace("TIES", hung), "render") >= ties
 
 
+def test_a_ball_on_a_plane_compiles_nothing_of_edges_and_faces_nor_what_it_does_not_ask_for(tmp_path):
+    script = """
+clock: {end: 0.5 s}
+objects: {floor: plane, ball: {sphere: {radius: 0.5 m, position: 0 0.6 0 m}}OTHER}
+models: {load: {rigid: {of: ball}}MORE}
+forces: [gravity]
+contacts: {touch: {collision: {mode: local}}}
+outputs: {data: {record: {of: [load.energy]}}}
+"""
+    distances = {f"sceneql.contacts.distance.{name}_kernels" for name in ("separation", "axes", "overlay")}
+    unasked = {"sceneql.bodies.rigid.free_rotation_kernels", "sceneql.contacts.distance.rolling_kernels"}
+    other = script.replace("OTHER", ", other: {box: {position: 1.0002 0.6 0 m}}")
+    names = modules_after(tmp_path, other.replace("MORE", ", more: {rigid: {of: other}}"), "render")
+    assert names >= distances
+    assert not names & unasked
+    alone = script.replace("OTHER", "").replace("MORE", "")
+    assert not modules_after(tmp_path, alone, "render") & (distances | unasked)
+
+
 def test_explain_imports_neither_renderer_nor_encoder(tmp_path):
     names = modules_after(tmp_path, FALL.replace("outputs: {", "outputs: {film: {video: {size: 32 18}}, "), "explain")
     assert not names & {"PIL", "av", "imageio", "matplotlib", "trimesh"}

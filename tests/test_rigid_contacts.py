@@ -105,6 +105,26 @@ def test_blocks_stand_up_to_the_harmonic_overhang(tmp_path, part, stands):
     assert stands or moved > 0.1
 
 
+@pytest.mark.parametrize(("thick", "stands"), [(0.107, True), (0.103, False)])
+def test_an_arch_of_eleven_stones_stands_by_its_thickness_alone(tmp_path, thick, stands):
+    """The limit is 0.10491 of the mean radius, by the line of thrust (linear program; Milankovitch 1907)."""
+    half = np.pi / 22
+    ring = [(r * np.cos(a), r * np.sin(a), z) for z in (-0.2, 0.2) for r in (1 - thick / 2, 1 + thick / 2)
+            for a in (-half, half)]  # fmt: skip
+    sides = ["1 2 4 3", "5 7 8 6", "1 3 7 5", "2 6 8 4", "1 5 6 2", "3 4 8 7"]
+    lines = ["v " + " ".join(f"{x:.17g}" for x in corner) for corner in ring] + [f"f {side}" for side in sides]
+    (tmp_path / "stone.obj").write_text("\n".join(lines))
+    objects = {
+        f"o{k}": f"{{mesh: {{file: stone.obj, rotation: {{about: z, angle: {(k + 0.5) * 180 / 11} deg}}}}}}"
+        for k in range(11)
+    }
+    objects["floor"] = "plane"
+    bodies = {f"s{k}": f"{{of: o{k}, density: 2400 kg/m^3}}" for k in range(11)}
+    law, solver = "restitution: 0, friction: 0.8", "semi_implicit_euler: {step: 5 ms}"
+    (start,), (end,) = watch(tmp_path, objects, bodies, [0, 0.8], "it.s5.position", law=law, solver=solver)
+    assert start[1] - end[1] < 1e-9 if stands else start[1] - end[1] > 0.01
+
+
 @pytest.mark.parametrize("spin", ["0 0 0", "100 30 0"])
 def test_a_small_box_of_500_m_a_second_stops_at_a_thin_wall(tmp_path, spin):
     objects = {"o": "{box: {size: 0.01 0.01 0.01 m, position: -1 0 0 m}}", "wall": "{box: {size: 0.001 2 2 m}}"}

@@ -142,6 +142,27 @@ def test_what_a_motor_gives_is_the_energy_that_the_body_has_and_hands_on(tmp_pat
     assert given == pytest.approx(0.125 * (6 * np.sin(8)) ** 2, abs=1e-9)
 
 
+def test_motors_of_a_cart_and_its_arm_and_what_they_give_are_in_the_balance_of_energy(tmp_path):
+    script = """
+clock: {end: 3 s}
+models:
+  cart: {rigid: {mass: 2 kg, inertia: 0.1 0.1 0.1 kg*m^2}}
+  arm: {rigid: {mass: 1 kg, inertia: 0.01 0.08 0.08 kg*m^2, position: 0.5 0 0 m}}
+forces: [gravity]
+ties:
+  rail:
+    slider: {between: [cart, world], axis: 1 0.5 0, damping: DAMPING, stiffness: 5 N/m, motor: {force: "4 N*cos(3*t)"}}
+  joint: {hinge: {between: [arm, cart], at: 0 0 0 m, axis: 0 0 1, motor: {torque: "2 N*m*sin(2*t)"}}}
+solvers: {main: {dop853: {tolerance: 1e-12}}}
+""".replace("*t)", "*time/(1 s))")
+    out = ("cart.energy", "arm.energy", "cart.dissipated", "arm.dissipated", "rail.given", "joint.given")
+    for one, other, *rest in watch(tmp_path, script.replace("DAMPING", "0.3 N*s/m"), [1, 2, 3], *out):
+        assert one + other == pytest.approx(0, abs=1e-9)  # what motors give is a dissipation below 0
+        assert abs(rest[2]) > 1
+    for _, _, lost, more, *given in watch(tmp_path, script.replace("DAMPING", "0 N*s/m"), [1, 2, 3], *out):
+        assert lost + more == pytest.approx(-sum(given), abs=1e-9)
+
+
 def test_explain_tells_where_steps_are_of_order_one(tmp_path):
     script = PENDULUM.replace("PART", "0").replace("SOLVER", "auto")
     watch(tmp_path, f"{script}outputs: {{table: {{record: {{of: [a.energy]}}}}}}", [0], "u.angle")

@@ -10,6 +10,7 @@ from sceneql.compiler.check import KEYS, check, values_of
 from sceneql.compiler.names import Parsed
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
+from sceneql.compiler.passes.contact_words import report_contacts
 from sceneql.compiler.passes.doubts import warn_of_doubts
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.fillings import check_fillings
@@ -51,6 +52,7 @@ def compile_script(
     check_sizes(tasks, found)
     groups = islands(tasks, found)
     report_unreadable(tasks, groups, found)
+    report_contacts(tasks, groups, found)
     drawn = _drawn(tasks)
     cameras = _cameras(tasks)
     clock = script.settings.get("clock")

@@ -11,6 +11,7 @@ from sceneql.kinds.stable_step import Oscillation, StaticMass
 from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Quantity, Ref, Value
 from sceneql.kinds.word import Kind, Problem, field
+from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.dimension import FORCE
 from sceneql.quantities.expression import Expr
 from sceneql.quantities.span import Span
@@ -285,6 +286,10 @@ class Contact(Kind):
     def ties(self) -> tuple[Ref, ...]:
         """The models and objects it acts between; empty: all models and the floor."""
         raise NotImplementedError
+
+    def refusals(self, models: Mapping[str, Model]) -> Iterable[Diagnostic]:
+        """What it asks of the models that it acts on and they do not have, for `check`."""
+        return ()
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
         """Add gaps and impacts (or local backing off) of one model against the others."""

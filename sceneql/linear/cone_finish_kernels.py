@@ -11,6 +11,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.linear.cone_layout_kernels import (
     AT_ARM_A,
     AT_ARM_B,
@@ -41,21 +42,25 @@ from sceneql.linear.cone_layout_kernels import (
     CONTACTS,
     CONTACTS_AT,
     FINISHES,
+    ITERATIONS,
     OVERLAP,
     PAIR_A,
     PAIR_B,
     RESIDUAL,
     RESULT_AT,
     ROWS,
+    TRIES,
     move_rows,
     open_rows,
     project_rows,
     see_rows,
 )
-from sceneql.linear.cone_points_kernels import determinant, tail
+from sceneql.linear.cone_points_kernels import determinant, prepare, tail
 from sceneql.linear.cone_rows_kernels import (
     factor,
+    fetch,
     in_world,
+    keep,
     momenta_left,
     pair_of,
     point_speed,
@@ -77,6 +82,16 @@ EXACT = 5e-15
 """What may be left at most, of the sizes of numbers, to need no further step."""
 ENOUGH = 1e-12
 """What is taken for rounding where further steps make it no smaller."""
+SOLVED, BALANCED, LOOSE = range(3)
+"""What a solution comes to: to rounding; all velocities in their cones and all power balanced to GOOD, where slips or
+forces next to nothing leave open which case of the law holds; or neither, as where contacts ask for what cannot be, or
+the method finds no way to a solution that is there: then RESULT tells what is left."""
+
+GOOD = 1e-9
+"""What may be left with contacts' power in place of their law (`see`) in a solution: contacts whose
+slip or force is next to nothing are at the edge of sticking, sliding or leaving, where the law itself is ill-posed."""
+OTHERWISE = types.int64(A, I)
+otherwise = lazy("sceneql.linear.cone_kernels:otherwise", OTHERWISE)
 
 
 @lean_inlined
@@ -245,3 +260,24 @@ def tell(floats, ints):
         put(floats, c + AT_IMPULSE, *in_world(floats, c + AT_FRAME, floats[x], floats[x + 1], floats[x + 2]))
         closing = max(closing, roughness(floats, c) * (tail(floats, s) - floats[s]))
     floats[ints[RESULT_AT] + OVERLAP] = closing
+
+
+@lean(types.boolean(A, I))
+def accepted(floats, ints):
+    """Whether v and x are the solution but for the least of slips."""
+    look(floats, ints)
+    return floats[ints[RESULT_AT] + BALANCE] <= GOOD
+
+
+@lean(types.int64(A, I))
+def solve(floats, ints):
+    """Solve a program, whose given numbers are written, from the guesses of velocities and impulses in it."""
+    ints[ITERATIONS], ints[FINISHES] = 0, 0
+    prepare(floats, ints)
+    keep(floats, ints)
+    found = SOLVED
+    if not finish(floats, ints, ints[TRIES], FULL):
+        fetch(floats, ints)
+        found = BALANCED if accepted(floats, ints) else otherwise(floats, ints)
+    tell(floats, ints)
+    return found

@@ -6,11 +6,11 @@ With M the masses, J the contacts' rows, u = J v + given their velocities and r 
     M (v - v_free) = J^T r,   u + mu |u_T| n in K*,   r in K,   r . (u + mu |u_T| n) = 0,   K: |r_T| <= mu r_N
 
 (Moreau 1988; mu |u_T| n is De Saxce & Feng's (1998) correction, without which the cones are those of Anitescu 2006).
-First Newton's method of cone_finish_kernels is tried from the guess: what rests is there. Else Mehrotra's
-interior-point method with Nesterov and Todd's scaling goes near the solution, the correction renewed at every iteration
-(as Acary, Armand, Nguyen & Shpakovych 2023) and its derivative in the matrix, which is then not symmetric. Where that
-does not get there, convex programs are solved, with the slips of the one before as corrections, or none. Ties, stops,
-motors and friction of joints are more rows of J (bounded_rows_kernels).
+First Newton's method of cone_finish_kernels is tried from the guess: what rests is there. Else, compiled at the first
+need, Mehrotra's interior-point method with Nesterov and Todd's scaling goes near the solution, the correction renewed
+at every iteration (as Acary, Armand, Nguyen & Shpakovych 2023) and its derivative in the matrix, which is then not
+symmetric. Where that does not get there, convex programs are solved, with the slips of the one before as corrections,
+or none. Ties, stops, motors and friction of joints are more rows of J (bounded_rows_kernels).
 """
 
 import math
@@ -18,7 +18,17 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.linear.cone_finish_kernels import FULL, LESS, finish, look, roughness, tell
+from sceneql.linear.cone_finish_kernels import (
+    BALANCED,
+    GOOD,
+    LESS,
+    LOOSE,
+    OTHERWISE,
+    SOLVED,
+    accepted,
+    finish,
+    roughness,
+)
 from sceneql.linear.cone_layout_kernels import (
     AT_B,
     AT_D,
@@ -47,11 +57,9 @@ from sceneql.linear.cone_layout_kernels import (
     CONTACT,
     CONTACTS,
     CONTACTS_AT,
-    FINISHES,
     ITERATIONS,
     RESULT_AT,
     ROWS,
-    TRIES,
     advance_rows,
     aim_rows,
     begin_rows,
@@ -62,7 +70,7 @@ from sceneql.linear.cone_layout_kernels import (
     spring_rows,
     turn_rows,
 )
-from sceneql.linear.cone_points_kernels import aim, inner, prepare, scale, scaled, scaled_step, tail
+from sceneql.linear.cone_points_kernels import aim, inner, scale, scaled, scaled_step, tail
 from sceneql.linear.cone_rows_kernels import (
     factor,
     fetch,
@@ -75,11 +83,6 @@ from sceneql.linear.cone_rows_kernels import (
 )
 from sceneql.system.signatures_kernels import A, F, I, N
 
-SOLVED, BALANCED, LOOSE = range(3)
-"""What a solution comes to: to rounding; all velocities in their cones and all power balanced to GOOD, where slips or
-forces next to nothing leave open which case of the law holds; or neither, as where contacts ask for what cannot be, or
-the method finds no way to a solution that is there: then RESULT tells what is left."""
-
 MOST = 60
 """Iterations of the interior-point method."""
 PATIENT, SURE, FALLS = 12, 10, 0.3
@@ -88,9 +91,6 @@ that stands still for some iterations and goes on; those of the convex program, 
 must have fallen to this part. Else the method has come to a stop."""
 CLOSE, CLOSED = 1e-6, 1e-12
 """What may be left, of the size of the numbers, when the finish is first tried, and where the method ends."""
-GOOD = 1e-9
-"""What may be left with contacts' power in place of their law (cone_finish_kernels.see) in a solution: contacts whose
-slip or force is next to nothing are at the edge of sticking, sliding or leaving, where the law itself is ill-posed."""
 FAIR = 1e-2
 """The same, up to which a solution in which nothing closes is better than that of the program without correction."""
 NEAR, NEARLY = 1e-4, 1e-2
@@ -272,13 +272,6 @@ def iterate(floats, ints, symmetric, least):
 
 
 @lean(types.boolean(A, I))
-def accepted(floats, ints):
-    """Whether v and x are the solution but for the least of slips."""
-    look(floats, ints)
-    return floats[ints[RESULT_AT] + BALANCE] <= GOOD
-
-
-@lean(types.boolean(A, I))
 def fair(floats, ints):
     """Whether v and x, that were looked at, are better than what the program without correction gives."""
     closing = 0.0
@@ -357,20 +350,13 @@ def by_rounds(floats, ints):
     return LOOSE
 
 
-@lean(types.int64(A, I))
-def solve(floats, ints):
-    """Solve a program, whose given numbers are written, from the guesses of velocities and impulses in it."""
-    ints[ITERATIONS], ints[FINISHES] = 0, 0
-    prepare(floats, ints)
-    keep(floats, ints)
-    found = SOLVED
-    if not finish(floats, ints, ints[TRIES], FULL):
-        fetch(floats, ints)
-        found = BALANCED if accepted(floats, ints) else inside(floats, ints, 1)
-        if found == LOOSE and not fair(floats, ints):
-            found = by_rounds(floats, ints)
-            if found == LOOSE:
-                correct(floats, ints, 0)
-                found = inside(floats, ints, 0)
-    tell(floats, ints)
+@lean(OTHERWISE, inner=True)
+def otherwise(floats, ints):
+    """The solution where the finish does not get there from the guess; what it comes to."""
+    found = inside(floats, ints, 1)
+    if found == LOOSE and not fair(floats, ints):
+        found = by_rounds(floats, ints)
+        if found == LOOSE:
+            correct(floats, ints, 0)
+            found = inside(floats, ints, 0)
     return found

@@ -12,7 +12,7 @@ from sceneql.graph import Island, SimulationGraph, Task
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
 from sceneql.kinds import Contact, Interaction, Model, Object, Ref, Tie, Value
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
 from sceneql.system import Bodies, IslandFacts, ModelState, Stepper
 
@@ -122,27 +122,9 @@ class Assembled:
                     return
             rigid = [(bodies, refs) for bodies, refs in masses if bodies.turning is not None]
             if rigid and not kind.mutual:
-                self._must_be_alone(contact, [bodies.model for bodies, _ in rigid])
                 kind.assemble_rigid(contact, self.assembly, [bodies for bodies, _ in masses], rigid[0][1])
             for bodies, refs in masses if not kind.mutual and not rigid else ():
                 kind.assemble(contact, self.assembly, bodies, refs)
-
-    def _must_be_alone(self, contact: str, models: list[str]) -> None:
-        """Raise ScriptError where an earlier word has contacts of the same rigid bodies: their forces are one problem.
-
-        Solved one after the other, a body between two surfaces would have the forces of neither.
-        """
-        names = list(dict.fromkeys(name for name, _, _ in self.island.contacts))
-        before = [
-            name for name in names[: names.index(contact)] if not cast(Contact, self.graph.tasks[name].kind).mutual
-        ]
-        for name, model, _ in self.island.contacts:
-            if name in before and model in models:
-                message = (
-                    f"'{model}' has its contacts in '{name}', and all contacts of a rigid body are solved together"
-                )
-                help = f"name all that '{model}' touches in '{name}'"
-                raise ScriptError([Diagnostic("invalid", message, self.assembly.line(), help)])
 
 
 def models_of(graph: SimulationGraph, island: Island) -> Assembled:

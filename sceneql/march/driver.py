@@ -152,9 +152,12 @@ def jacobian_text(structure: Structure) -> str:
 
 
 def modules(structure: Structure) -> tuple[str, ...]:
-    """The modules of an island's kernels; those of contacts, as a rule the largest, first."""
+    """The modules of an island's kernels; those of contacts, as a rule the largest, first.
+
+    Free motions and tied drifts, which only splittings ask for, are compiled at their first call.
+    """
     slopes = (name.partition("|")[0] for name in structure.slopes or ())
-    after = (*slopes, *structure.after, *structure.settling, *structure.free, *structure.tied, *structure.limits)
+    after = (*slopes, *structure.after, *structure.settling, *structure.limits)
     names = (*structure.local, *chain(*structure.exact), *after, *structure.terms)
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
 
@@ -168,7 +171,7 @@ def lazy_first(structure: Structure) -> list[str]:
 def text(structure: Structure) -> str:
     """The module's text."""
     names: dict[str, str] = {}
-    between = (*structure.local, *structure.after, *structure.settling, *structure.free, *structure.tied)
+    between = (*structure.local, *structure.after, *structure.settling)
     for name in (*structure.terms, *chain(*structure.exact), *between):
         names.setdefault(name, f"kernel_{len(names)}")
     lines = [
@@ -177,7 +180,10 @@ def text(structure: Structure) -> str:
         *(["from sceneql.island.inputs_kernels import refresh"] if structure.varying else []),
         "from sceneql.system.signatures_kernels import AFTER_STEP, BACK_OFF, GAP, IMPACT, TERM",
         *(["from sceneql.system.signatures_kernels import FREE_MOTION"] if structure.free else []),
-        *(["from sceneql.system.signatures_kernels import TIED_DRIFT"] if structure.tied else []),
+        *(["from sceneql.system.signatures_kernels import TIED_DRIFT, TIED_DRIFT_OF"] if structure.tied else []),
+        *(["from sceneql.compiled.numba.lazy_kernels import lazy"] if structure.free or structure.tied else []),
+        *(f'free_{k} = lazy("{name}", FREE_MOTION)' for k, name in enumerate(structure.free)),
+        *(f'tied_{k} = lazy("{name}", TIED_DRIFT_OF)' for k, name in enumerate(structure.tied)),
     ]
     refresh = [REFRESH] if structure.varying else []
     group = layout.GROUPS_AT
@@ -207,15 +213,14 @@ def text(structure: Structure) -> str:
         lines += ["    return changed"] if acting else []
     if structure.free:
         lines += ["", "", "@lean(FREE_MOTION)", "def free_motion(h, y, floats, ints):"]
-        for k, name in enumerate(structure.free, group):
-            lines += _blocks(k, f"{names[name]}(h, y, floats, ints[ints[b] : ints[b + 1]])")
+        for k in range(len(structure.free)):
+            lines += _blocks(group + k, f"free_{k}(h, y, floats, ints[ints[b] : ints[b + 1]])")
     group += len(structure.free)
     if structure.tied:
         lines += ["", "", "@lean(TIED_DRIFT)", "def tied_drift(functions, h, y0, kicked, y1, floats, ints):"]
-        for k, name in enumerate(structure.tied, group):
-            lines += _blocks(
-                k, f"{names[name]}(functions, h, y0, kicked, y1, floats, ints, ints[ints[b] : ints[b + 1]])"
-            )
+        for k in range(len(structure.tied)):
+            call = f"tied_{k}(functions, h, y0, kicked, y1, floats, ints, ints[ints[b] : ints[b + 1]])"
+            lines += _blocks(group + k, call)
     return "\n".join(lines) + "\n"
 
 

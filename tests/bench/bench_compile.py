@@ -58,7 +58,21 @@ def scene(model: str, solver: str, forces: str = "gravity", touched: str = "", m
     )
 
 
+def rigid(objects: str, models: str, more: str = "") -> str:
+    """A script of an island of rigid bodies."""
+    return f"clock: {{end: 1 s, fps: 100}}\nobjects: {{{objects}}}\nmodels: {{{models}}}\nforces: [gravity]\n{more}"
+
+
+BLOCK, LOCAL = "box: {size: 1 1 1 m, position: 0 0.5 0 m}", "contacts: {hit: {collision: {friction: 0.3, mode: local}}}"
+TWO = f"plane: plane, b: {{{BLOCK}}}, c: {{{BLOCK.replace('0 0.5', '0 1.5')}}}"
+
 ISLANDS = {
+    "rigid body that is free": rigid(f"b: {{{BLOCK}}}", "m: {rigid: {of: b, spin: 0 3 1 rad/s}}"),
+    "rigid ball on a plane": rigid("plane: plane, b: {sphere: {position: 0 1 0 m}}", "m: {rigid: {of: b}}", LOCAL),
+    "rigid boxes on a plane": rigid(TWO, "m: {rigid: {of: b}}, n: {rigid: {of: c}}", LOCAL),
+    "rigid pendulum on a hinge": rigid(
+        f"b: {{{BLOCK}}}", "m: {rigid: {of: b}}", "ties: {h: {hinge: {between: [m, world], at: 1 0.5 0 m}}}"
+    ),
     "equations, dopri5": scene(PENDULUM, "dopri5", ""),
     "equations, radau": scene(PENDULUM, "radau", ""),
     **{f"particles, {word}": scene(DUST, word) for word in SOLVERS},

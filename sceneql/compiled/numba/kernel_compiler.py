@@ -19,7 +19,9 @@ from numba.core.typed_passes import NativeLowering, NoPythonBackend, NopythonTyp
 from numba.core.untyped_passes import FixupArgs, GenericRewrites, InlineInlinables, ReconstructSSA, TranslateByteCode
 
 from sceneql.compiled.numba.builtin_calls import take_builtin_calls
+from sceneql.compiled.numba.calls import take_calls
 from sceneql.compiled.numba.elements import take_elements
+from sceneql.compiled.numba.loops import take_loops
 from sceneql.compiled.numba.python_entry import PythonEntry, add_python_entry
 from sceneql.compiled.numba.shortcuts import SHORTCUTS
 from sceneql.compiled.numba.statements import Free, KernelLower
@@ -208,7 +210,7 @@ def widen():
             config.CPU_FEATURES = f"{features.flatten()},-prefer-256-bit"
 
 
-REPLACEMENTS = [take_elements, *SHORTCUTS, take_builtin_calls, widen]
+REPLACEMENTS = [take_elements, take_calls, take_loops, *SHORTCUTS, take_builtin_calls, widen]
 """Functions that replace parts of numba for this whole process; the passes above are only for our kernels."""
 
 

@@ -31,6 +31,13 @@ MOVED = 2 * PLACE
 CHOSEN = 48
 """Numbers for the corners of a manifold that are chosen of many."""
 ROOM = HEAD + MOVED + CHOSEN
+CORNER = 6
+"""Numbers of a corner: its place (3), the height of the other core from it, the lines of the polygon before and after:
+sides of the core whose face is cut, then from overlay_kernels.SIDES on those of the face that cuts."""
+FAR, FACE_OF_A, FACE_OF_B, TWO_EDGES, CORNER_OF_A, CORNER_OF_B = range(6)
+"""What is nearest: not looked for; a face, two edges, a vertex of one and an edge of the other."""
+FOUND = types.Tuple((N, N, N))
+"""Of what is nearest: its kind, and the features of a and b (faces, edges, vertices by the kind)."""
 
 EPSILON = 2.220446049250313e-16
 ROUNDING = 4.0 * EPSILON

@@ -7,9 +7,14 @@ from numba import types
 
 from sceneql.bodies.rigid.rigid_kernels import to_world
 from sceneql.compiled.kernels import lean
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import CORE, HALF_SPACE
 from sceneql.contacts.distance.core_kernels import (
+    CORNER_OF_A,
+    CORNER_OF_B,
+    FAR,
     FLOATS,
+    FOUND,
     GAP,
     HEAD,
     INTS,
@@ -27,9 +32,9 @@ from sceneql.contacts.distance.core_kernels import (
     put3,
     relative,
 )
-from sceneql.contacts.distance.nearest_points_kernels import CORNER_OF_A, CORNER_OF_B, FAR
-from sceneql.contacts.distance.separation_kernels import FOUND, closest
 from sceneql.system.signatures_kernels import A, F, I, N
+
+closest = lazy("sceneql.contacts.distance.separation_kernels:closest", FOUND(A, I, N, N, A, N, N, F, A))
 
 
 @lean(FOUND(A, I, N, N, A, N, N, A), inner=True)

@@ -10,9 +10,12 @@ import math
 
 from numba import types
 
-from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.kernels import lean
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import CORE, HALF_SPACE
 from sceneql.contacts.distance.core_kernels import (
+    CORNER,
+    FAR,
     FLOATS,
     GAP,
     HEAD,
@@ -28,14 +31,19 @@ from sceneql.contacts.distance.core_kernels import (
     at3,
     cross,
     dot,
-    edges_at,
     end_of,
     put3,
 )
 from sceneql.contacts.distance.gap_kernels import nearest
-from sceneql.contacts.distance.nearest_points_kernels import FAR
-from sceneql.contacts.distance.overlay_kernels import CORNER, edge_along, overlay
 from sceneql.system.signatures_kernels import A, F, I, N
+
+overlay = lazy(
+    "sceneql.contacts.distance.overlay_kernels:overlay",
+    types.Tuple((N, N, N, N, N))(I, N, N, N, N, A, N, F, F, F, F),
+)
+two_lines = lazy(
+    "sceneql.contacts.distance.overlay_kernels:two_lines", types.Tuple((N, N, N))(I, N, N, N, N, A, N, F, F, F)
+)
 
 MOST = 8
 """Most points of a pair."""
@@ -47,8 +55,6 @@ SAME = 1e-9
 """Distance of two corners of one polygon, in parts of the size of the pair, up to which they are one point."""
 POSITION = 4
 """Numbers of a corner that say where it is and how high."""
-CROSSED = 1e-6
-"""Sine of the angle of two edges, seen along the normal, up to which they touch along a line."""
 OF_A, OF_B, ON_PLANE, TWO_LINES = range(4)
 """How points were found: corners of a over a face of b, of b over one of a, vertices over a plane, ends of edges."""
 LONE = -7.0
@@ -114,51 +120,6 @@ def thin_out(room, at, count, nx, ny, nz):
     for k in range(CORNER * MOST):
         room[at + k] = room[at + CORNER * count + k]
     return MOST
-
-
-@lean_inlined
-def ends_along(room, core, ints, e, ux, uy, uz):
-    """How far along a vector the ends of an edge are: first the nearer, then the farther."""
-    p = dot(*at3(room, core + 3 * ints[e]), ux, uy, uz)
-    q = dot(*at3(room, core + 3 * ints[e + 1]), ux, uy, uz)
-    return p, q
-
-
-@lean(types.Tuple((N, N, N))(I, N, N, N, N, A, N, F, F, F), inner=True)
-def two_lines(ints, ia, core_a, ib, core_b, room, work, x, y, z):
-    """The two ends, points of b, of what two edges share that are parallel as seen along (x, y, z), from a to b.
-
-    Their number, which is 0 where there are none, and the edges.
-    """
-    i, j = edge_along(ints, ia, core_a, room, x, y, z)[1], edge_along(ints, ib, core_b, room, -x, -y, -z)[1]
-    if i < 0 or j < 0:
-        return 0, i, j
-    e, g = edges_at(ints, ia) + 4 * i, edges_at(ints, ib) + 4 * j
-    px, py, pz = at3(room, core_a + 3 * ints[e])
-    ux, uy, uz = at3(room, core_a + 3 * ints[e + 1])
-    rx, ry, rz = at3(room, core_b + 3 * ints[g])
-    vx, vy, vz = at3(room, core_b + 3 * ints[g + 1])
-    ux, uy, uz, vx, vy, vz = ux - px, uy - py, uz - pz, vx - rx, vy - ry, vz - rz
-    square = dot(ux, uy, uz, ux, uy, uz) * dot(vx, vy, vz, vx, vy, vz)
-    if abs(dot(*cross(ux, uy, uz, vx, vy, vz), x, y, z)) > CROSSED * math.sqrt(square):
-        return 0, i, j
-    # Along the edge of a, across the normal.
-    part = dot(ux, uy, uz, x, y, z)
-    wx, wy, wz = ux - part * x, uy - part * y, uz - part * z
-    a0, a1 = ends_along(room, core_a, ints, e, wx, wy, wz)
-    b0, b1 = ends_along(room, core_b, ints, g, wx, wy, wz)
-    low, high = max(min(a0, a1), min(b0, b1)), min(max(a0, a1), max(b0, b1))
-    if high < low:
-        return 0, i, j
-    for k in range(2):
-        at = low if k == 0 else high
-        s, t = (at - a0) / (a1 - a0), (at - b0) / (b1 - b0)
-        bx, by, bz = rx + t * vx, ry + t * vy, rz + t * vz
-        height = dot(bx - px - s * ux, by - py - s * uy, bz - pz - s * uz, x, y, z)
-        # Which end of which edge it is.
-        end = (0 if at == a0 else 1) if at == a0 or at == a1 else (2 if at == b0 else 3)
-        put_corner(room, work + CORNER * k, bx, by, bz, height, 0.0, 1.0 * end)
-    return 2, i, j
 
 
 @lean(types.Tuple((N, F, F, F, F))(A, I, N, N, A, N, N, F, A, I, A))

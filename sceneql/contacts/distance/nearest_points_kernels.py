@@ -11,7 +11,13 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.distance.axes_kernels import over_corners
 from sceneql.contacts.distance.core_kernels import (
+    CORNER,
+    CORNER_OF_A,
+    CORNER_OF_B,
     EDGES,
+    FACE_OF_A,
+    FACE_OF_B,
+    FAR,
     NORMAL,
     ON_A,
     ON_B,
@@ -23,11 +29,8 @@ from sceneql.contacts.distance.core_kernels import (
     normals_at,
     put3,
 )
-from sceneql.contacts.distance.overlay_kernels import CORNER, overlay
+from sceneql.contacts.distance.overlay_kernels import overlay
 from sceneql.system.signatures_kernels import A, F, I, N
-
-FAR, FACE_OF_A, FACE_OF_B, TWO_EDGES, CORNER_OF_A, CORNER_OF_B = range(6)
-"""What is nearest: not looked for; a face, two edges, a vertex of one and an edge of the other."""
 
 
 @lean(types.boolean(I, N, N, N, N, N, A, F), inner=True)

@@ -11,6 +11,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.distance.core_kernels import (
+    CORNER,
     EDGES,
     FACES,
     VERTICES,
@@ -28,10 +29,9 @@ ALIGNED = 0.9
 """Least cosine between a direction and the normal of a face that faces it."""
 LEVEL = 0.43
 """Greatest cosine between a direction and an edge that faces it: the sine of that angle."""
-CORNER = 6
-"""Numbers of a corner: its place (3), the height of the other core from it, the lines of the polygon before and after:
-sides of the core whose face is cut, then from SIDES on those of the face that cuts."""
 SIDES = 1 << 20
+CROSSED = 1e-6
+"""Sine of the angle of two edges, seen along the normal, up to which they touch along a line."""
 NONE = -1
 
 
@@ -153,3 +153,49 @@ def overlay(ints, ia, core_a, ib, core_b, room, work, x, y, z, tiny):
         at = work + CORNER * k
         room[at + 3] = scale * dot(nx, ny, nz, room[at] - px, room[at + 1] - py, room[at + 2] - pz)
     return count, work, of_b, face, feature
+
+
+@lean_inlined
+def ends_along(room, core, ints, e, ux, uy, uz):
+    """How far along a vector the ends of an edge are: first the nearer, then the farther."""
+    p = dot(*at3(room, core + 3 * ints[e]), ux, uy, uz)
+    q = dot(*at3(room, core + 3 * ints[e + 1]), ux, uy, uz)
+    return p, q
+
+
+@lean(types.Tuple((N, N, N))(I, N, N, N, N, A, N, F, F, F), inner=True)
+def two_lines(ints, ia, core_a, ib, core_b, room, work, x, y, z):
+    """The two ends, points of b, of what two edges share that are parallel as seen along (x, y, z), from a to b.
+
+    Their number, which is 0 where there are none, and the edges.
+    """
+    i, j = edge_along(ints, ia, core_a, room, x, y, z)[1], edge_along(ints, ib, core_b, room, -x, -y, -z)[1]
+    if i < 0 or j < 0:
+        return 0, i, j
+    e, g = edges_at(ints, ia) + 4 * i, edges_at(ints, ib) + 4 * j
+    px, py, pz = at3(room, core_a + 3 * ints[e])
+    ux, uy, uz = at3(room, core_a + 3 * ints[e + 1])
+    rx, ry, rz = at3(room, core_b + 3 * ints[g])
+    vx, vy, vz = at3(room, core_b + 3 * ints[g + 1])
+    ux, uy, uz, vx, vy, vz = ux - px, uy - py, uz - pz, vx - rx, vy - ry, vz - rz
+    square = dot(ux, uy, uz, ux, uy, uz) * dot(vx, vy, vz, vx, vy, vz)
+    if abs(dot(*cross(ux, uy, uz, vx, vy, vz), x, y, z)) > CROSSED * math.sqrt(square):
+        return 0, i, j
+    # Along the edge of a, across the normal.
+    part = dot(ux, uy, uz, x, y, z)
+    wx, wy, wz = ux - part * x, uy - part * y, uz - part * z
+    a0, a1 = ends_along(room, core_a, ints, e, wx, wy, wz)
+    b0, b1 = ends_along(room, core_b, ints, g, wx, wy, wz)
+    low, high = max(min(a0, a1), min(b0, b1)), min(max(a0, a1), max(b0, b1))
+    if high < low:
+        return 0, i, j
+    for k in range(2):
+        at = low if k == 0 else high
+        s, t = (at - a0) / (a1 - a0), (at - b0) / (b1 - b0)
+        bx, by, bz = rx + t * vx, ry + t * vy, rz + t * vz
+        height = dot(bx - px - s * ux, by - py - s * uy, bz - pz - s * uz, x, y, z)
+        # Which end of which edge it is.
+        end = (0 if at == a0 else 1) if at == a0 or at == a1 else (2 if at == b0 else 3)
+        put(room, work + CORNER * k, bx, by, bz, 0.0, 1.0 * end)
+        room[work + CORNER * k + 3] = height
+    return 2, i, j

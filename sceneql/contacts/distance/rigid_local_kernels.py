@@ -13,7 +13,7 @@ import numpy as np
 from numba import types
 
 import sceneql.system.channels as channels
-from sceneql.bodies.rigid.groups_kernels import MASS
+from sceneql.bodies.rigid.groups_kernels import MASS, solve_groups
 from sceneql.bodies.rigid.moved_bodies_kernels import (
     ROW_BODIES_AT,
     ROWS,
@@ -34,8 +34,6 @@ from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel, lean
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import SHAPE
-from sceneql.contacts.distance.first_touch_kernels import first_touch
-from sceneql.contacts.distance.first_touch_kernels import move as place_after
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT, manifold
 from sceneql.contacts.distance.near_shapes_kernels import (
     is_skinned,
@@ -77,12 +75,15 @@ from sceneql.contacts.distance.rigid_layout import (
     TIES_AT,
 )
 from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, note_places, recall, with_room
-from sceneql.contacts.distance.rolling_kernels import solve_rolling
 from sceneql.contacts.distance.swept_boxes_kernels import BOX
 from sceneql.linear.block_order_kernels import filled
 from sceneql.linear.cone_layout_kernels import ROW
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
+TOUCH, ROLLING = "sceneql.contacts.distance.first_touch_kernels", "sceneql.contacts.distance.rolling_kernels"
+first_touch = lazy(f"{TOUCH}:first_touch", F(A, I, N, N, A, N, N, A, N, N, F, F, F, A))
+place_after = lazy(f"{TOUCH}:move", types.void(A, N, A, N, F, A, N))
+solve_rolling = lazy(f"{ROLLING}:solve_rolling", N(N, N, I, A, N, A, A, A, A, A, F, F, A, I, I, N))
 lead = lazy("sceneql.contacts.distance.led_kernels:lead", types.void(F, F, A, I, N, A, N, A, N))
 skin_points = lazy(
     "sceneql.contacts.distance.skin_pair_kernels:skin_points",
@@ -94,6 +95,13 @@ cut_at_impact = lazy(f"{MASSES}:cut_at_impact", types.void(F, F, A, I, A, A, A, 
 push_out = lazy(f"{MASSES}:push_out", types.void(F, A, I, A, A, A, A, A, A))
 tally = lazy(f"{MASSES}:tally", types.void(F, F, A, I, A, I, A, N))
 
+LAZY_FIRST = (
+    "sceneql.contacts.distance.separation_kernels",
+    "sceneql.contacts.distance.overlay_kernels",
+    TOUCH,
+    "sceneql.linear.cone_kernels",
+)
+"""Lazily compiled modules with which a background process begins (driver.lazy_first)."""
 ROUNDS = 12
 """Most solutions of a step."""
 DEEP = 1e-7
@@ -285,12 +293,16 @@ def back_off(t0, t1, y0, rate0, y1, floats, ints):
     found, touched = copied(before), filled(max(shapes, every), 0)
     for k in range(MOTION * n, MOTION * every):
         found[k] = motions[k]
-    first, loose, friction, some = contacts, 0, floats[ints[FRICTION_AT]], False
+    first, loose, some = contacts, 0, False
+    friction, rolling = floats[ints[FRICTION_AT]], floats[ints[ROLLING_AT]]
     for number in range(ROUNDS):
-        loose = solve_rolling(
-            n, every, who, where, contacts, masses, motions, before, seen, found, friction,
-            floats[ints[ROLLING_AT]], rows, sides, ints, bodies_at,
-        )  # fmt: skip
+        if rolling == 0.0 or contacts == 0:
+            loose = solve_groups(n, every, who, where, contacts, masses, motions, found, friction, rows, sides)
+        else:
+            loose = solve_rolling(
+                n, every, who, where, contacts, masses, motions, before, seen, found, friction, rolling, rows, sides,
+                ints, bodies_at,
+            )  # fmt: skip
         for k in range(touched.size):
             touched[k] = 0
         for k in range(contacts):

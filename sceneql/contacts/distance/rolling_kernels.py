@@ -104,8 +104,6 @@ def solve_rolling(
     ``motions``: velocities without impulses; ``before``: at the start of the step; ``led``: those of what is led;
     ``ints[own_at:]``: the bodies' integers.
     """
-    if rolling == 0.0 or contacts == 0:
-        return solve_groups(n, every, who, where, contacts, masses, motions, found, friction, bounded, sides)
     ties, loose = sides.size // 2, 0
     rows, both = np.zeros(ROW * (ties + AXES * contacts)), filled(2 * (ties + AXES * contacts), -1)
     turns, bounds = np.ones(contacts), np.zeros(contacts)

@@ -13,8 +13,12 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.axes_kernels import along, over_edges, over_faces
 from sceneql.contacts.distance.core_kernels import (
+    FACE_OF_A,
+    FACE_OF_B,
     FACES,
+    FAR,
     FLOATS,
+    FOUND,
     GAP,
     HEAD,
     INTS,
@@ -22,6 +26,7 @@ from sceneql.contacts.distance.core_kernels import (
     RADIUS,
     REACH,
     ROUNDING,
+    TWO_EDGES,
     VERTICES,
     at3,
     behind_at,
@@ -35,17 +40,11 @@ from sceneql.contacts.distance.core_kernels import (
     relative,
 )
 from sceneql.contacts.distance.nearest_points_kernels import (
-    FACE_OF_A,
-    FACE_OF_B,
-    FAR,
-    TWO_EDGES,
     at_corner,
     at_edges,
     at_face,
 )
 from sceneql.system.signatures_kernels import A, F, I, N
-
-FOUND = types.Tuple((N, N, N))
 
 
 @lean(types.void(I, N, N, A, F, F, F), inner=True)

@@ -7,8 +7,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from sceneql.contacts import layout
-from sceneql.kinds import Contact, DrawnRef, FixedLength, Gives, Length, Problem, Ref, Scalar, field, quantity_type
+from sceneql.kinds import (
+    Contact,
+    DrawnRef,
+    FixedLength,
+    Gives,
+    Length,
+    Model,
+    Problem,
+    Ref,
+    Scalar,
+    field,
+    quantity_type,
+)
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -166,7 +179,6 @@ class Collision(Contact):
 
             message = f"mode `barrier` is that of elastic solids, and '{bodies.model}' is none"
             raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
-        self._refuse_rolling(f"'{bodies.model}' has masses, which do not turn")
         if not others:
             return
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
@@ -221,13 +233,16 @@ class Collision(Contact):
         if self.mode in ("exact", "local") and self.gap is not None:
             yield Problem(f"mode {self.mode} has no gap: the mode barrier of elastic solids has", ("gap",), at_key=True)
 
-    def _refuse_rolling(self, why: str) -> None:
-        """Raise ScriptError where the script asks for a moment against rolling that nothing would have."""
-        from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-
-        if self.rolling.span is not None:
-            message = f"{why}: there is no moment against rolling"
-            raise ScriptError([Diagnostic("no-rolling", message, self.rolling.span, "rigid bodies have")])
+    def refusals(self, models: Mapping[str, Model]) -> Iterator[Diagnostic]:
+        """A moment against rolling that nothing would have."""
+        if self.rolling.span is None or not models or any(model.turns for model in models.values()):
+            return
+        if self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values()):
+            why = "elastic solids roll by their own elasticity"
+        else:
+            why = f"'{next(iter(models))}' has masses, which do not turn"
+        message = f"{why}: there is no moment against rolling"
+        yield Diagnostic("no-rolling", message, self.rolling.span, "rigid bodies have")
 
     def assemble_skins(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
@@ -235,7 +250,6 @@ class Collision(Contact):
         """Add the barrier between elastic solids and objects, unless the script asks for masses that collide."""
         if self.mode in ("exact", "local"):
             return False
-        self._refuse_rolling("elastic solids roll by their own elasticity")
         from sceneql.contacts.barrier.barrier_contact import assemble
 
         if self.restitution.span is not None:

@@ -1,0 +1,68 @@
+"""Contacts that cannot act as the script has them, on what they act on: refused before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from sceneql.graph import Island, Task
+from sceneql.kinds import Contact, Model, Tie
+from sceneql.quantities.diagnostic import Diagnostics
+
+
+def report_contacts(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
+    """Report what contacts ask of models that do not have it, and rigid bodies with contacts in two words."""
+    for island in groups:
+        acting: dict[str, list[str]] = {}
+        for contact, model, _ in island.contacts:
+            acting.setdefault(contact, []).append(model)
+        for contact, models in acting.items():
+            kind = tasks[contact].kind
+            assert isinstance(kind, Contact)
+            kinds = {name: one for name in models if (one := _model(tasks[name])) is not None}
+            found.extend(kind.refusals(kinds))
+        alone = [name for name in acting if not getattr(tasks[name].kind, "mutual", False)]
+        _report_shared({name: acting[name] for name in alone}, island, tasks, found)
+
+
+def _report_shared(
+    acting: Mapping[str, list[str]], island: Island, tasks: Mapping[str, Task], found: Diagnostics
+) -> None:
+    """Report a contact of rigid bodies that have theirs in an earlier word, or that ties hold to such bodies.
+
+    Contacts and ties of a body are one problem. Of two that are solved one after the other, a body between two surfaces
+    would have the forces of neither.
+    """
+    held = _held(island, tasks)
+    before: dict[str, tuple[str, str]] = {}
+    for contact, models in acting.items():
+        turning = [name for name in models if (kind := _model(tasks[name])) is not None and kind.turns]
+        for name in turning:
+            if held[name] not in before:
+                continue
+            word, other = before[held[name]]
+            if other == name:
+                text = f"'{name}' has its contacts in '{word}', and all contacts of a rigid body are solved together"
+                help = f"name all that '{name}' touches in '{word}'"
+            else:
+                text = (
+                    f"a tie holds '{name}' to '{other}', which has its contacts in '{word}': they are solved together"
+                )
+                help = f"name all that both touch in '{word}'"
+            found.error("invalid", text, tasks[contact].span, help=help)
+            break
+        for name in turning:
+            before.setdefault(held[name], (contact, name))
+
+
+def _held(island: Island, tasks: Mapping[str, Task]) -> dict[str, str]:
+    """By a model of an island the first of those that ties hold it to."""
+    first = {name: name for name in island.models}
+    for force in dict.fromkeys(force for force, _ in island.forces):
+        if isinstance(tasks[force].kind, Tie):
+            ends = [first[model] for name, model in island.forces if name == force]
+            first = {name: ends[0] if root in ends else root for name, root in first.items()}
+    return first
+
+
+def _model(task: Task) -> Model | None:
+    return task.kind if isinstance(task.kind, Model) else None
