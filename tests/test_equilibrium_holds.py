@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from runs import watch
+from sceneql.failure import RunFailure
+from sceneql.pipeline import load
+from sceneql.run.run import Run
 
 MOTION = "0.05 m*sin(40 rad/s*time)"
 """Of the led end of the bar: up to 80 m/s^2, by which its mass would pull with hundreds of newtons."""
@@ -71,3 +74,22 @@ def test_a_pin_that_leaps_takes_along_what_hangs_on_it_at_once(tmp_path):
         (0.5, 0.5, 1, 1), watch(tmp_path, script, [0, 0.1, 0.2, 0.3], "m.positions"), strict=True
     ):
         np.testing.assert_allclose(np.asarray(found)[:, 0], [0, 1 + shift / 2, 2 + shift], rtol=1e-14)
+
+
+def test_a_column_that_pins_alone_press_together_ends_where_it_buckles(tmp_path):
+    """Where springs aside, of 20 N/m together, no longer hold its middle: 2 P = 20 N/m (1 m - u/2), P = 50 N/m u."""
+    ends = "a: {position: 0 0 0 m}, b: {position: 1 0 0 m}, c: {position: 2 0 0 m}"
+    aside = {"d": "1 1 0", "e": "1 -1 0", "f": "1 0 1", "g": "1 0 -1"}
+    masses = ", ".join([ends, *(f"{name}: {{position: {at} m, fixed: yes}}" for name, at in aside.items())])
+    springs = [f"{{between: [{pair}], rest: 1 m, stiffness: 100 N/m}}" for pair in ("a, b", "b, c")]
+    springs += [f"{{between: [b, {name}], rest: 1 m, stiffness: 10 N/m}}" for name in aside]
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        "clock: {end: 1 s}\nsolvers: {main: equilibrium}\nmodels: {m: {mass_spring: {mass: 1 kg, masses: "
+        f"{{{masses}}}, springs: [{', '.join(springs)}], pins: {{a: {{}}, c: {{{along('-1 m/s*time')}}}}}}}}}}}\n"
+    )
+    run = Run(load(path, pruned=False))
+    with pytest.raises(RunFailure, match="unstable, as of a column that buckles") as told:
+        list(run.moments([0.0, 1.0]))
+    assert told.value.time == pytest.approx(20 / 110, rel=0.02)
+    assert run.islands[0].march.statistics.steps < 150

@@ -53,6 +53,17 @@ def test_the_work_that_turns_a_hold_is_all_that_the_solid_gains(tmp_path, elemen
     assert energy == pytest.approx([energy[0]] * 3, abs=1e-4 * kinetic[1])
 
 
+@pytest.mark.parametrize(
+    "motion", ["position: ['0.1 m/s * time', 0 m, 0 m]", "rotation: {about: x, angle: 1 rad}", "scale: 2"]
+)
+def test_a_hold_does_not_follow_a_member_of_a_group_that_stands_elsewhere(tmp_path, motion):
+    path, arm = tmp_path / "scene.yaml", f"arm: {{group: {{children: [handle], {motion}}}}}"
+    path.write_text(scene("p1", "rk4: {step: 1 ms}").replace(HANDLE, f"{HANDLE}, {arm}"), encoding="utf-8")
+    with pytest.raises(ScriptError) as raised:
+        Run(load(path, pruned=False))
+    assert "'handle' is a member of 'arm'" in str(raised.value)
+
+
 def test_a_hold_has_one_motion(tmp_path):
     told = complaint(tmp_path, scene("p1", "rk4: {step: 1 ms}", "follows: handle, shift: 1 0 0 m"))
     assert "either has a shift or follows an object" in told

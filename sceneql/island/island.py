@@ -196,13 +196,16 @@ class IslandAssembly(Reserved):
     def moved_by_forces_alone(self) -> bool:
         """Whether it is masses without springs, pins or contacts of their own, which nothing changes between steps."""
         others = self._terms["internal"] or self._terms["constrain"] or self.changed_between_steps
-        return (
-            bool(self._masses) and 2 * sum(n for *_, n in self._pairs) + len(self._masses) == self._size and not others
-        )
+        paired = 2 * sum(n for *_, n in self._pairs) + len(self._masses)
+        return bool(self._masses) and paired == self._size and not others
 
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
         return self.setting.object(ref)
+
+    def holder(self, ref: Ref) -> tuple[str, Object] | None:
+        """The group that an object is a member of, and its kind."""
+        return self.setting.holder(ref)
 
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""

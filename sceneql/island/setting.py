@@ -18,5 +18,8 @@ class Setting(Protocol):
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
 
+    def holder(self, ref: Ref) -> tuple[str, Object] | None:
+        """The group that an object of the script is a member of, and its kind; None where it is in none."""
+
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""

@@ -33,6 +33,14 @@ class Setting:
         task = self.tasks[ref.name]
         return cast(Object, task.original or task.kind)
 
+    def holder(self, ref: Ref) -> tuple[str, Object] | None:
+        """The group, or other object of objects, that an object of the script is a member of, and its kind."""
+        for name, task in self.tasks.items():
+            members = getattr(task.kind, "members", None)
+            if members is not None and any(one.name == ref.name for one in members()):
+                return name, cast(Object, task.original or task.kind)
+        return None
+
     def formula(self, link: Link) -> Expr | None:
         """The output of a kinematic model, or an object's field, as an expression; None of what stands in the state."""
         kind = self.tasks[link.task].kind

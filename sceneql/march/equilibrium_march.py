@@ -24,7 +24,8 @@ MOVED = 1e-6
 """Part of its size by which a model is moved to see that."""
 JUMPED = 1e-6
 """Force on a rest, relative to the largest of the loads, from which on these have jumped."""
-
+SHAKEN = 1e-8
+"""Part of its size by which a model is shaken to tell forces that have jumped from what Newton's method leaves."""
 LEAPT = 1e-9
 """Distance between a place and where what is led to it is, relative to the largest place, from which on it leaps."""
 
@@ -88,7 +89,7 @@ class EquilibriumMarch(March):
         t = self.time
         after = t + 4.0 * float(np.spacing(t))
         left = np.abs(self._forces(after, self._y1)).max(initial=0.0)
-        if self._leaps(after) or left > JUMPED * max(self._load(t), self._load(after)):
+        if self._leaps(after) or left > max(JUMPED * max(self._load(t), self._load(after)), self._shaken(after)):
             self._clock[kernels.T1] = after
             self._relax(after)
             return True
@@ -129,12 +130,30 @@ class EquilibriumMarch(March):
         moving = [self.floats[inverse_at : inverse_at + count] > 0.0 for _, inverse_at, count in system.masses]
         return float(sum(np.linalg.norm(each[free], axis=1).sum() for each, free in zip(parts, moving, strict=True)))
 
+    def _position_of(self) -> Any:
+        """(n,) the entry of the position whose rate each entry is; -1 where it is none."""
+        found = np.full(len(self.system.y), -1)
+        paired = np.flatnonzero(self.system.partner >= 0)
+        found[self.system.partner[paired]] = paired
+        return found
+
+    def _shaken(self, t: float) -> float:
+        """The largest change of a force on a rest as masses move by SHAKEN of their size [N].
+
+        Where nothing but holds loads a solid, this tells what is left by Newton's method from a load that has jumped.
+        """
+        y, some = self._y1.copy(), np.random.Generator(np.random.Philox(1))
+        position_of = self._position_of()
+        for velocity_at, _, count in self.system.masses:
+            places = position_of[velocity_at : velocity_at + 3 * count]
+            size = float(np.ptp(y[places].reshape(-1, 3), axis=0).max(initial=0.0))
+            y[places] += SHAKEN * size * some.standard_normal(3 * count)
+        return float(np.abs(self._forces(t, y) - self._forces(t, self._y1)).max(initial=0.0))
+
     def _refuse_free_motions(self) -> None:
         """Raise LimitRefused for models that nothing resists to move as they are."""
         system = self.system
-        position_of = np.full(len(system.y), -1)
-        paired = np.flatnonzero(system.partner >= 0)
-        position_of[system.partner[paired]] = paired
+        position_of = self._position_of()
         if not system.masses:
             part, span = system.ranges[0][2], system.ranges[0][3][0]
             raise LimitRefused(f"rest is found of masses, and '{part}' has none", span, "let auto march it")

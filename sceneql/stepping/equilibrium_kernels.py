@@ -9,7 +9,8 @@ slopes have the forces that the update before predicted (channels.NEWTON), and n
 so that it does not leap to another branch where a path has turned back.
 
 ``settings``: the memory of Newton's method (newton_kernels), a [s] at which the matrix's inertia outweighs its rounding
-alone, what ended the latest step; then the scales of the stage plan. ``numbers``: [entries of the Jacobian's room,
+alone, what ended the latest step, how many short steps were taken in a row, what ended the latest that was not; then
+the scales of the stage plan. ``numbers``: [entries of the Jacobian's room,
 where the plan starts, numbers of velocities, of tallies], velocities, tallies, the stage plan. ``work``: the step to
 try next, in an array of y's size; base; the rest before; scratch (4); the Jacobian; the store.
 """
@@ -50,8 +51,8 @@ from sceneql.linear.stage_kernels import (
 from sceneql.system.signatures_kernels import STEP, A, F, I
 
 ROOM, PLAN_AT, VELOCITIES, TALLIES, HEAD = range(5)
-SIGN, ENDED = MEMORY, MEMORY + 1
-SCALES_AT = MEMORY + 2
+SIGN, ENDED, CRAWLED, CAUSE = range(MEMORY, MEMORY + 4)
+SCALES_AT = MEMORY + 4
 ARRAYS = 7
 REACHED, ASTRAY, UNSTABLE = range(3)
 """What ended a step: a rest; updates that did not converge near the tangent; a rest that is unstable."""
@@ -75,8 +76,16 @@ CONVERGES = 0.6
 """Largest contraction of its updates."""
 BENDS = 0.5
 """Part of the first update by which all later ones together may change it."""
+NUDGE = 1e-6
+"""Part of the way of what is led by which it moves to see what that does."""
+SHORT, MOST_SHORT = 1e-9, 40
+"""Part of the time reached by which a step is short, and how many in a row end the path: beside a limit load, and where
+a column begins to buckle, every step that is short enough still finds a rest."""
 COARSE = 1e3
 """Update, in units of the tolerance, below which its direction is rounding."""
+ROUNDING, STALLS = 100.0, 2
+"""Update, in units of the tolerance, below which so many in a row that do not contract are rounding: it is all that
+forces tell of places where some are stiffer than others by many orders, as against a change of volume."""
 
 RELAX = types.int64(I, F, A, A, A, I, A, I)
 
@@ -108,6 +117,26 @@ def place(rate, t, rest, off, plan, floats, ints):
     at = plan[POSITIONS_AT]
     for k in range(at, at + 3 * plan[POSITIONS], 3):
         rest[plan[k]] += off[plan[k]]
+
+
+@lean_inlined
+def lead(rate, t, a, rest, led, base, y, residual, scratch, plan, floats, ints):
+    """Add to a residual at rest, with y of `from_rest`, its change to first order as places move to those of ``led``.
+
+    What is moved alone strains its neighbors by all of its way: volumes of what is nearly incompressible then resist
+    with forces far beyond those of any rest, by which the path was followed in steps of a thousandth of a strain.
+    """
+    moves = False
+    for k in range(y.size):
+        moves = moves or led[k] != rest[k]
+    if not moves:
+        return
+    for k in range(y.size):
+        base[k] += NUDGE * (led[k] - rest[k])
+    leave(rate, t, a, base, y, scratch, plan, floats, ints)
+    for k in range(y.size):
+        residual[k] += (scratch[k] - residual[k]) / NUDGE
+    from_rest(rest, plan, base, y)
 
 
 @lean_inlined
@@ -224,11 +253,11 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     settings[CAREFUL] = 0.0
     settings[ENDED] = ASTRAY
     for k in range(n):
-        rest[k] = y0[k]
-    place(rate, end, rest, own, plan, floats, ints)
+        rest[k] = tangent[k] = y0[k]
+    place(rate, end, tangent, own, plan, floats, ints)
     foresee(rest, rest, floats)
     before = first = 0.0
-    updates, reached = 0, False
+    updates, stalls, reached = 0, 0, False
     while updates < MOST:
         if settings[SIGN] == 0.0:
             slopes(functions, end, rest, jacobian, floats, ints)
@@ -236,6 +265,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         a = settings[SIGN]
         from_rest(rest, plan, base, y1)
         leave(rate, end, a, base, y1, residual, plan, floats, ints)
+        if updates == 0:
+            lead(rate, end, a, rest, tangent, base, y1, residual, own, plan, floats, ints)
         floats[channels.NEWTON] = a * a
         slopes(functions, end, y1, jacobian, floats, ints)
         floats[channels.NEWTON] = 0.0
@@ -252,6 +283,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             break
         for k in range(n):
             y1[k] += change[k]
+            if updates == 0:
+                base[k] += tangent[k] - rest[k]
         follow(plan, a, base, y1)
         at_rest(y1, y0, numbers)
         foresee(rest, y1, floats)
@@ -271,16 +304,23 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
                 change[k] = y1[k] - tangent[k]
             if size > CONVERGES * before or largest(change, y0, y1, settings) > BENDS * first:
                 break
-        if size <= 1.0:
+        stalls = stalls + 1 if updates > 1 and size <= ROUNDING and size > CONVERGES * before else 0
+        if size <= 1.0 or stalls == STALLS:
             reached = True
             break
         before = size
     if not reached:
+        settings[CAUSE] = ASTRAY
         work[0] = 0.5 * h
         return math.inf
     if unstable(functions, end, y1, jacobian, store, settings, plan, floats, ints):
-        settings[ENDED] = UNSTABLE
+        settings[ENDED] = settings[CAUSE] = UNSTABLE
         work[0] = 0.5 * h
+        return math.inf
+    settings[CRAWLED] = settings[CRAWLED] + 1.0 if h <= SHORT * end else 0.0
+    if settings[CRAWLED] > MOST_SHORT:
+        settings[ENDED] = settings[CAUSE]
+        work[0] = 0.0
         return math.inf
     settings[ENDED] = REACHED
     work[0] = h * (2.0 if updates <= EASY else 1.0)

@@ -158,6 +158,9 @@ class Assembly(Protocol):
     def object(self, ref: Ref) -> Kind:
         """The kind of an object of the script."""
 
+    def holder(self, ref: Ref) -> tuple[str, Kind] | None:
+        """The group that an object of the script is a member of, and its kind; None where it is in none."""
+
     def changing(self, at: int, count: int) -> None:
         """Say that bodies come and go, and that floats[at : at + count] change with them, alike in every block."""
 

@@ -1,4 +1,4 @@
-"""Finite elements beside exact values: Cook's membrane, elastica, Lame's sphere, a free sphere, a bar's torsion.
+"""Finite elements beside exact values: Cook's membrane, LE10, elastica, a strip rolled up, rubber, bars, spheres.
 
 Run: python tests/bench/bench_elements.py [name ...]. Rest is found by plain Newton's method on the project's own forces
 and stiffness (tests/solids.py), frequencies by SciPy from its matrices; `falling` times steps of bdf2 with 28,000
@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.sparse import diags_array
@@ -89,6 +90,88 @@ def elastica() -> None:
         u, w = (one.read("end.displacement", places) / 10)[[0, 2]]
         errors = w / ELASTICA[4][0] - 1, -u / ELASTICA[4][1] - 1
         told(f"elastica, load 4, {law}, {steps} plain Newton steps", *errors, seconds=time.perf_counter() - start)
+
+
+def followed(fields: str, outputs: tuple[str, ...], objects: str = "") -> tuple[list[Any], int, float]:
+    """Outputs at 1 s of what `equilibrium` follows, updates of Newton's method, seconds."""
+    script = f"clock: {{end: 1 s}}\nsolvers: {{main: equilibrium}}\n{objects}"
+    script += f"models: {{body: {{elastic: {{{fields}}}}}}}\n"
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "scene.yaml"
+        path.write_text(script)
+        run = Run(load(path, pruned=False))
+        start = time.perf_counter()
+        *_, last = run.moments([0, 1])
+        steps = int(run.islands[0].march._settings[ITERATIONS])
+    return [last.read("body", output) for output in outputs], steps, time.perf_counter() - start
+
+
+def rolled() -> None:
+    """A strip bent to a ring by M = 2 pi E I/L at its end: how far apart its ends are."""
+    torque = 2 * np.pi * 1.2e6 * 0.1**3 / 12 / 10
+    for cells, law in ((40, "saint_venant"), (40, "neo_hookean"), (80, "saint_venant")):
+        strip = (
+            f"block: {{size: 10 1 0.1 m, center: 5 0 0 m, cells: [{cells}, 1, 2], cut: five}}, element: p2, "
+            f"law: {{{law}: {{modulus: 1.2 MPa, poisson: 0}}}}, hold: {{left: {{where: x < 1e-9}}}}, "
+            f"loads: {{tip: {{where: x > 9.999, torque: [0 N*m, time*{-torque} N*m/s, 0 N*m]}}}}, "
+            "probes: {end: 10 0 0 m}"
+        )
+        (end,), steps, seconds = followed(strip, ("end.position",))
+        told(f"rolled up, {law}, {cells} cells, {steps} updates", np.linalg.norm(end) / 10, seconds=seconds)
+
+
+def le10() -> None:
+    """NAFEMS LE10 by our mesher: stress beside the inner ellipse, on top."""
+    objects = (
+        "objects:\n  disk: {cylinder: {radius: 1 m, height: 0.6 m}}\n  core: {cylinder: {radius: 1 m, height: 1 m}}\n"
+        "  wide: {group: {children: [disk], scale: [3.25, 1, 2.75], hidden: yes}}\n"
+        "  hole: {group: {children: [core], scale: [2, 1, 1], hidden: yes}}\n"
+        "  plate: {difference: {hidden: yes, of: [{intersection: {of: [wide, {box: {size: 4 1 4 m, "
+        "position: 2 0 2 m}}]}}, hole]}}\n"
+    )
+    outer = "(abs((x/3.25)^2 + (z/2.75)^2 - 1) < 1e-6)"
+    hold = f"outer: {{where: '{outer}', components: xz}}, middle: {{where: '{outer}*(abs(y) < 0.1)', components: y}}, "
+    hold += "one: {where: x < 1e-6, components: x}, two: {where: z < 1e-6, components: z}"
+    for spacing in (0.4, 0.35, 0.3, 0.28, 0.25, 0.22, 0.2):
+        start = time.perf_counter()
+        one = solid(
+            f"{{of: plate, spacing: {spacing} m, element: p2, law: {{linear: {{modulus: 210 GPa, poisson: 0.3}}}}, "
+            f"hold: {{{hold}}}, loads: {{top: {{where: y > 0.299999, pressure: 1 MPa}}}}, probes: {{d: 2 0.3 0 m}}}}",
+            objects,
+        )
+        places, _ = one.rest(tolerance=1e-6)
+        name = f"LE10, p2, spacing {spacing}, {len(one.mesh.cells)} elements"
+        told(name, one.read("d.stress", places)[2, 2] / -5.38e6 - 1, seconds=time.perf_counter() - start)
+
+
+def rubber() -> None:
+    """Incompressible neo-Hookean rubber: pulled to twice its length, a rod twisted by 1 rad, a sphere blown up."""
+    law = f"element: p2_mean, law: {{neo_hookean: {{modulus: {2 * 1.499999} Pa, poisson: 0.499999}}}}"
+    held = ", ".join(f"{axis}: {{where: {axis} < 1e-6, components: {axis}}}" for axis in "xyz")
+    pulled = "block: {size: 1 1 1 m, center: 0.5 0.5 0.5 m, cells: [2, 2, 2]}, "
+    pulled += f"hold: {{{held}, end: {{where: x > 0.9999, components: x, shift: [1 m/s*time, 0 m, 0 m]}}}}"
+    (force,), steps, seconds = followed(f"{pulled}, {law}", ("end.force",))
+    told(f"rubber pulled, {steps} updates", force[0] / 1.75 - 1, seconds=seconds)
+    for spacing in (0.4, 0.25):
+        objects = "objects: {rod: {cylinder: {radius: 0.5 m, height: 1 m, hidden: yes}}, "
+        objects += "handle: {sphere: {radius: 0.1 m, rotation: {about: y, angle: time*1 rad/s}, hidden: yes}}}\n"
+        hold = "top: {where: y > 0.4999, follows: handle}, bottom: {where: y < -0.4999}"
+        twisted = f"of: rod, spacing: {spacing} m, hold: {{{hold}}}, {law}"
+        (force, energy), steps, seconds = followed(twisted, ("top.force", "potential"), objects)
+        exact = np.pi * 0.5**4 / 4
+        told(f"rubber twisted, spacing {spacing}, {steps} updates; N, M", -force[1] / exact - 1, energy / exact - 1,
+             seconds=seconds)  # fmt: skip
+    outer = (1 + (1.5**3 - 1) / 8) ** (1 / 3)
+    pressure = 0.5 * (4 / outer + outer**-4 - 4 / 1.5 - 1.5**-4)
+    for spacing in (0.5, 0.4, 0.35):
+        objects = "objects:\n  hole: {sphere: {radius: 1.2 m, hidden: yes}}\n  part: {intersection: {hidden: yes, of: ["
+        objects += "{difference: {of: [{sphere: {radius: 2 m}}, {sphere: {radius: 1 m}}]}}, "
+        objects += "{box: {size: 3 3 3 m, position: 1.5 1.5 1.5 m}}]}}\n"
+        blown = f"of: part, spacing: {spacing} m, hold: {{{held}}}, probes: {{inner: 0.5774 0.5774 0.5774 m}}, "
+        blown += f"loads: {{air: {{object: hole, pressure: time*{pressure} Pa/s}}}}, {law}"
+        (place,), steps, seconds = followed(blown, ("inner.position",), objects)
+        name = f"rubber blown up, spacing {spacing}, {steps} updates; radius"
+        told(name, np.linalg.norm(place) / 1.5 - 1, seconds=seconds)
 
 
 def lame() -> None:
@@ -180,7 +263,7 @@ def falling() -> None:
         print(f"falling, {name}: median step {1e3 * np.median(np.diff(times)):.0f} ms", flush=True)
 
 
-BENCHES = {one.__name__: one for one in (cook, elastica, lame, sphere, torsion, falling)}
+BENCHES = {one.__name__: one for one in (cook, le10, elastica, rolled, lame, rubber, sphere, torsion, falling)}
 
 if __name__ == "__main__":
     for asked in sys.argv[1:] or BENCHES:

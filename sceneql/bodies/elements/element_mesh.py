@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.bodies.filling.kept_creases import CREASE
 from sceneql.bodies.filling.tetrahedra import ENDS, boundary, edges
 
 if TYPE_CHECKING:
@@ -113,13 +114,20 @@ def fine_rule() -> tuple[Floats, Floats]:
     return np.array([*places, *edges]), np.array([*weights, *(weight for _ in edges)])
 
 
-def meshed(
-    element: type[Element], points: Floats, tetrahedra: Ints, onto: Callable[[Floats, Floats], Floats] | None = None
-) -> ElementMesh:
+@dataclass(frozen=True, slots=True, eq=False)
+class Onto:
+    """What moves places near the surface of an object onto it."""
+
+    surface: Callable[[Floats, Floats], Floats]
+    """Places (k, 3) along directions (k, 3)."""
+    crease: Callable[[Floats, Floats, Floats], Floats]
+    """Places (k, 3) by the normals (k, 2, 3) of the two surfaces that meet there, and unit directions into these."""
+
+
+def meshed(element: type[Element], points: Floats, tetrahedra: Ints, onto: Onto | None = None) -> ElementMesh:
     """The mesh of elements on tetrahedra (t, 4) of points (n, 3).
 
-    ``onto`` moves places (k, 3) near the surface along directions (k, 3) onto it: with it, outer edges are curved where
-    no element is turned by that.
+    With ``onto`` outer edges are curved, where no element is turned by that.
     """
     if not element.edges:
         return ElementMesh(element, points, tetrahedra.astype(np.int32), len(points))
@@ -134,7 +142,7 @@ LEAST_BENT = 0.2
 """An element is bent no more than to this part of its straight size at any place that is looked at."""
 
 
-def _curved(straight: ElementMesh, onto: Callable[[Floats, Floats], Floats]) -> ElementMesh:
+def _curved(straight: ElementMesh, onto: Onto) -> ElementMesh:
     """With the nodes on outer edges moved onto the surface, but those that would bend an element too much."""
     faces, points = straight.faces, straight.points
     normals = np.zeros_like(points)
@@ -146,7 +154,12 @@ def _curved(straight: ElementMesh, onto: Callable[[Floats, Floats], Floats]) -> 
     length = np.linalg.norm(normals[outer], axis=1, keepdims=True)
     moved = points.copy()
     along = np.divide(normals[outer], length, out=np.zeros((len(outer), 3)), where=length > 0)
-    moved[outer] = onto(points[outer], along)
+    moved[outer] = onto.surface(points[outer], along)
+    nodes, flat, sides = _creases(points, faces, across)
+    if len(nodes):
+        found = onto.crease(points[nodes], flat, sides)
+        met = (found != points[nodes]).any(axis=1)
+        moved[nodes[met]] = found[met]
     places = np.concatenate([fine_rule()[0], np.eye(4), np.asarray(straight.element.rule[0])])
     least = LEAST_BENT * straight.sizes(places[:1])
     for _ in range(len(outer)):
@@ -157,6 +170,24 @@ def _curved(straight: ElementMesh, onto: Callable[[Floats, Floats], Floats]) -> 
         back = np.unique(straight.cells[bad, 4:])
         moved[back] = points[back]
     return straight
+
+
+def _creases(points: Floats, faces: Ints, across: Floats) -> tuple[Any, Floats, Floats]:
+    """Nodes (k,) on edges over which the outer faces turn, the faces' normals, directions into them (k, 2, 3)."""
+    normals = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-300)
+    nodes = faces[:, 3:].ravel().astype(np.int64)
+    twice = np.bincount(nodes)[nodes] == 2  # parts that touch along an edge have four faces there
+    order = np.argsort(nodes, kind="stable")
+    pairs = order[twice[order]].reshape(-1, 2)
+    one, two = normals[pairs[:, 0] // 3], normals[pairs[:, 1] // 3]
+    pairs = pairs[np.einsum("ki,ki->k", one, two) < CREASE]
+    corners = faces[:, :3]
+    start, end, top = (points[corners[pairs // 3, (pairs % 3 + k) % 3]] for k in range(3))
+    way, sides = end - start, top - start
+    way = way / np.linalg.norm(way, axis=2, keepdims=True)
+    sides -= np.einsum("kji,kji->kj", sides, way)[..., None] * way
+    sides /= np.maximum(np.linalg.norm(sides, axis=2, keepdims=True), 1e-300)
+    return nodes[pairs[:, 0]], normals[pairs // 3], sides
 
 
 def gathered(cells: Ints, count: int) -> NDArray[int64]:

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.bodies.elements.element_mesh import ElementMesh, meshed
+from sceneql.bodies.elements.element_mesh import ElementMesh, Onto, meshed
 from sceneql.bodies.filling.fill import Inside
-from sceneql.bodies.filling.kept_creases import creases_kept
+from sceneql.bodies.filling.kept_creases import creases_kept, onto_crease
+from sceneql.bodies.filling.split_creases import creases_split
 from sceneql.bodies.filling.stuffing import lattice_counts, stuffed
 from sceneql.bodies.filling.tetrahedra import volumes
 from sceneql.doing import doing
@@ -96,7 +97,8 @@ def _filled(inside: Inside, spacing: float, element: type[Element]) -> ElementMe
         raise inside.refusal("no tetrahedron lies in it; make the spacing smaller")
     if not (volumes(points, tetrahedra) > 0.0).all():
         raise inside.refusal("so far from the origin its tetrahedra have no volume in double precision")
-    points = creases_kept(points, tetrahedra, spacing, inside.holds, inside.crossing)
+    kept = creases_kept(points, tetrahedra, spacing, inside.holds, inside.crossing)
+    points, tetrahedra = creases_split(kept, tetrahedra, spacing, inside.holds, inside.crossing)
     _whole(inside, spacing, points)
 
     def onto(places: Floats, normals: Floats) -> Floats:
@@ -109,7 +111,10 @@ def _filled(inside: Inside, spacing: float, element: type[Element]) -> ElementMe
             found[crosses] = inner[crosses] + share[:, None] * (outer - inner)[crosses]
         return found
 
-    return meshed(element, points, tetrahedra, onto)
+    def onto_edge(places: Floats, normals: Floats, sides: Floats) -> Floats:
+        return onto_crease(places, normals, sides, spacing, inside.holds, inside.crossing)
+
+    return meshed(element, points, tetrahedra, Onto(onto, onto_edge))
 
 
 def _whole(inside: Inside, spacing: float, points: Floats) -> None:

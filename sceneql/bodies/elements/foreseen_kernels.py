@@ -5,6 +5,8 @@ Where a thin part turns, an update first stretches it, by the square of the angl
 stress S = F^-1 P of that stretch would hide the way (the stiffness S 1 of turning), so slopes have in its place the one
 that the update predicted from the state before it, S + dS/dE : sym(F^T dF): points of integration as in a method whose
 stresses are unknowns of their own (Magisano, Leonetti & Garcea 2017, Int. J. Numer. Meth. Engng. 109, 1237-1262).
+The stiffness itself has the predicted pressure, too: where volumes hardly change, that of the state is the square of
+the strain times a modulus far above all others.
 """
 
 from sceneql.bodies.elements.laws.law_kernels import SCRATCH, stiffness_at
@@ -32,8 +34,8 @@ from sceneql.compiled.kernels import lean_inlined
 
 LEAST = 0.1
 """The least J at which stresses are predicted."""
-SEEN = 9 * MOST_POINTS
-"""Numbers of a tile's scratch for the stresses of an element's points; TURN more are scratch."""
+PRESSURES, SEEN = 9 * MOST_POINTS, 10 * MOST_POINTS
+"""In a tile's scratch behind the stresses of an element's points: their pressures; TURN more are scratch."""
 TURN = 9
 
 
@@ -72,7 +74,7 @@ def has_moved(old, y, ints, e):
 
 @lean_inlined
 def foreseen(old, y, floats, ints, e, room, c, to):
-    """Write the predicted S (9,) of the points of an element from floats[to] on; False where there is none.
+    """Write the predicted S (9,) and pressures of the points of an element from floats[to] on; False if there is none.
 
     ``old``: the state before the update; ``c``: scratch for a stiffness.
     """
@@ -107,6 +109,10 @@ def foreseen(old, y, floats, ints, e, room, c, to):
             for k in range(3):
                 out[3 * i + k] = inverse[3 * i] * p[k] + inverse[3 * i + 1] * p[3 + k] + inverse[3 * i + 2] * p[6 + k]
         swelling = bulk * growth / volume if mean else 0.0
+        grown = swelling
+        for k in range(0 if mean else 9):
+            grown += bulk * m[k] * change[k]
+        floats[to + PRESSURES + q] = pressure + grown
         for k in range(9):  # P after it, by slopes, but for the stress that turns along
             i, j = 3 * (k // 3), k % 3
             total = p[k] + swelling * m[k]

@@ -233,12 +233,13 @@ def _turned_velocity(hold: Hold, places: Floats, assembly: Assembly) -> Floats:
 def _pose(hold: Hold, by: float, assembly: Assembly) -> tuple[int, int]:
     """Offsets of the object's position and rotation a little later.
 
-    Raises ScriptError for an object without a position, one that moves by another field, or that follows what is
-    solved.
+    Raises ScriptError for an object without a position, one that moves by another field or with a group that it is a
+    member of, or that follows what is solved.
     """
     ref = hold.follows
     assert ref is not None
     kind, found = assembly.object(ref), []
+    _refuse_member(ref, assembly)
     position, height = getattr(kind, "position", None), getattr(kind, "height", None)
     if not isinstance(position, Value):
         message = f"'{ref.name}' has no position of its own, which a hold could follow"
@@ -260,3 +261,26 @@ def _pose(hold: Hold, by: float, assembly: Assembly) -> tuple[int, int]:
         message = f"a hold follows an object that moves by functions of time: {error}"
         raise ScriptError([Diagnostic("unsupported-link", message, ref.span)]) from None
     return found[0], found[1]
+
+
+def _refuse_member(ref: kinds.Ref, assembly: Assembly) -> None:
+    """Raise ScriptError for a member of a group that is not where it would be without that.
+
+    Its own position and rotation are told in the group's coordinates.
+    """
+    found = assembly.holder(ref)
+    if found is None:
+        return
+    name, group = found
+    for field_, rest in (("position", (0.0, 0.0, 0.0)), ("rotation", (1.0, 0.0, 0.0, 0.0)), ("scale", (1.0, 1.0, 1.0))):
+        value = getattr(group, field_, None)
+        if isinstance(value, Value) and not (value.constant and _equal(assembly.initial(value), rest)):
+            message = f"'{ref.name}' is a member of '{name}', whose own {field_} a hold that follows it would not see"
+            help = f"write `follows: {name}`, or take '{ref.name}' out of that"
+            raise ScriptError([Diagnostic("unsupported-link", message, ref.span, help)])
+
+
+def _equal(value: Any, rest: tuple[float, ...]) -> bool:
+    import numpy as np
+
+    return bool((np.asarray(value) == np.asarray(rest)).all())

@@ -1,4 +1,4 @@
-"""Loads on the surface of a solid: traction, pressure, force."""
+"""Loads on the surface of a solid: traction, pressure, force, torque."""
 
 from __future__ import annotations
 
@@ -19,7 +19,13 @@ if TYPE_CHECKING:
     from sceneql.quantities.span import Span
     from sceneql.system import Assembly, Bodies, Slopes
 
-HOW = ("traction", "pressure", "force")
+HOW = ("traction", "pressure", "force", "torque")
+FOUND_AND_SCRATCH = 33
+"""Numbers behind the weights of a torque's nodes (load_kernels.turning, load_slopes_kernels.torque)."""
+LEAST_SHARE = 1e-9
+"""Of the largest share of a node, below which one is rounding."""
+MOST_TURNED = 500
+"""Nodes of a part on which a torque acts: the slopes of its forces couple each with all."""
 
 
 class Load(Part):
@@ -34,6 +40,9 @@ class Load(Part):
     force: Annotated[Value, Quantity(dim.FORCE, (3,))] | None = field(
         "The force in all, spread evenly, or at the point of the surface that is nearest to `near`.", None
     )
+    torque: Annotated[Value, Quantity(dim.FORCE * dim.LENGTH, (3,))] | None = field(
+        "The torque in all, by forces of no sum that grow from the middle of the part; its direction stays.", None
+    )
 
     def problems(self) -> Iterator[Problem]:
         """Several loads or none, and an area that is a point."""
@@ -41,7 +50,8 @@ class Load(Part):
         given = [name for name in HOW if getattr(self, name) is not None]
         if len(given) != 1:
             said = f", not {' and '.join(given)}" if given else ""
-            yield Problem(f"a load is one of `traction`, `pressure` and `force`{said}", tuple(given[1:2]), at_key=True)
+            text = f"a load is one of {', '.join(f'`{name}`' for name in HOW)}{said}"
+            yield Problem(text, tuple(given[1:2]), at_key=True)
         elif self.near is not None and self.within is None and given != ["force"]:
             yield Problem(f"a {given[0]} acts on an area: say `within`, how far from there", ("near",), at_key=True)
 
@@ -90,6 +100,9 @@ class Load(Part):
         areas = where.areas(mesh.points, faces)
         shares = areas if self.force is None else areas / areas.sum()
         weights = np.bincount(faces[where.faces].ravel(), (shares[:, None] * shapes).ravel(), len(mesh.points))
+        if self.torque is not None:
+            _add_torque(self.torque, weights, held, head, assembly, f"'{name}'")
+            return
         nodes = np.flatnonzero(weights)
         value = self.traction if self.force is None else self.force
         assert value is not None
@@ -120,3 +133,28 @@ def _add_pressure(
         return Slopes("sceneql.bodies.elements.load_slopes_kernels:pressure", rows, columns, own, blocks=True)
 
     assembly.term("internal", "sceneql.bodies.elements.load_kernels:pressure", ints.tolist(), derivatives)
+
+
+def _add_torque(
+    torque: Value, weights: Any, held: Any, head: tuple[int, int, int], assembly: Assembly, name: str
+) -> None:
+    """Add the term of a torque on nodes by their shares (n,) of the area. Raises LimitRefused for too many."""
+    import numpy as np
+
+    from sceneql.failure import LimitRefused
+    from sceneql.system import Slopes
+
+    nodes = np.flatnonzero(weights > LEAST_SHARE * weights.max())
+    if len(nodes) > MOST_TURNED:
+        message = f"the torque {name} acts on {len(nodes)} nodes; at most {MOST_TURNED}, for it couples each with all"
+        raise LimitRefused(message, torque.span, "let it act on a smaller part, or make the elements larger")
+    numbers = assembly.floats(np.concatenate([weights[nodes], np.zeros(FOUND_AND_SCRATCH)]))
+    ints = (*head, assembly.value(torque), numbers, len(nodes), *nodes.tolist())
+
+    def derivatives() -> Slopes:
+        at, count = 3 * nodes, len(nodes)
+        rows, columns = np.repeat(at, count) + head[1], np.tile(at, count) + head[0]
+        own = (*ints, *(int(k) for k in np.ravel(held[nodes])))
+        return Slopes("sceneql.bodies.elements.load_slopes_kernels:torque", rows, columns, own, blocks=True)
+
+    assembly.term("internal", "sceneql.bodies.elements.load_kernels:torque", ints, derivatives)

@@ -5,7 +5,7 @@ Newton's method gets them with the stress that its latest update predicted (fore
 """
 
 import sceneql.system.channels as channels
-from sceneql.bodies.elements.foreseen_kernels import SEEN, TURN, foreseen, put_foreseen
+from sceneql.bodies.elements.foreseen_kernels import PRESSURES, SEEN, TURN, foreseen, put_foreseen
 from sceneql.bodies.elements.laws.law_kernels import SCRATCH, stiffness_at
 from sceneql.bodies.elements.strain_kernels import (
     ELEMENTS,
@@ -181,6 +181,8 @@ def slopes_tile(number, positive, y, entries, floats, ints):
             at, law = room + POINT * q, ints[NUMBERS_AT] + numbers * (points * e + q)
             weight, f = floats[ints[WEIGHTS_AT] + points * e + q], floats[at : at + 9]
             pressure = floats[law] * (dilatation if mean else floats[at + D])
+            if seen:
+                pressure = floats[room + SEEN_AT + PRESSURES + q]
             stiffness(
                 f,
                 floats[law : law + numbers],

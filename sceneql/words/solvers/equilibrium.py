@@ -40,7 +40,7 @@ class Equilibrium(Solver):
                 step="sceneql.stepping.equilibrium_kernels:step",
                 order=1,
                 dense="sceneql.stepping.implicit_runge_kutta_kernels:linear",
-                settings=(0.0, 1.0, self.tolerance, self.tolerance, 1.0, *NO_MEMORY, 0.0, 0.0),
+                settings=(0.0, 1.0, self.tolerance, self.tolerance, 1.0, *NO_MEMORY, 0.0, 0.0, 0.0, 0.0),
             ),
             Control(
                 first_step=self.step or 1.0,

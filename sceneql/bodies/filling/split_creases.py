@@ -1,0 +1,109 @@
+"""Outer edges of tetrahedra that still cut off a crease are split on it. Imports numpy.
+
+What `creases_kept` cannot move onto a crease without spoiling a tetrahedron leaves notches there. An outer edge whose
+ends stand on no surface of the object together gets a new corner where two of theirs meet, and each tetrahedron around
+it becomes two.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.bodies.filling.kept_creases import (
+    CREASE,
+    FARTHEST,
+    ON,
+    Crossing,
+    Holds,
+    Kept,
+    around,
+    convex,
+    onto_crease,
+    onto_planes,
+    shapes,
+)
+from sceneql.bodies.filling.tetrahedra import boundary
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats, Ints
+
+PASSES = 12
+NOWHERE = [np.nan] * 3
+LEAST_SHAPE = 0.06
+"""Of each tetrahedron that a split makes: its volume over that of the regular one of its mean side."""
+
+
+def creases_split(
+    kept: Kept, tetrahedra: Ints, spacing: float, holds: Holds, crossing: Crossing
+) -> tuple[Floats, Ints]:
+    """Points (n, 3) and tetrahedra (t, 4), of which those on creases that are cut off are split."""
+    points, planes = kept.points, kept.normals
+    cells: Any = tetrahedra.astype(np.int64)
+    for _ in range(PASSES):
+        faces = boundary(cells).astype(np.int64)
+        sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+        sides = np.unique(sides, axis=0)
+        sides, chosen = _cut_off(points, planes, sides)
+        if not len(sides):
+            break
+        places, good = _places(points[sides], chosen, spacing, holds, crossing)
+        touched = np.zeros(len(cells), dtype=bool)
+        new: list[Any] = []
+        on: list[Any] = []
+        made: list[Any] = []
+        gone: list[Any] = []
+        which, starts = around(cells, len(points))
+        order = np.argsort(np.linalg.norm(places - points[sides].mean(axis=1), axis=1), kind="stable")
+        for k in order[good[order]]:
+            a, b = sides[k]
+            own = which[starts[a] : starts[a + 1]]
+            own = own[(cells[own] == b).any(axis=1)]
+            if touched[own].any():
+                continue
+            number = len(points) + len(new)
+            one, two = (np.where(cells[own] == end, number, cells[own]) for end in (a, b))
+            both = np.concatenate([one, two])
+            at = np.where((both == number)[:, :, None], places[k], points[np.minimum(both, len(points) - 1)])
+            if shapes(at).min() < LEAST_SHAPE:
+                continue
+            touched[own] = True
+            new.append(places[k])
+            on.append([*chosen[k], NOWHERE])
+            gone.append(own)
+            made.append(both)
+        if not new:
+            break
+        points = np.concatenate([points, new])
+        planes = np.concatenate([planes, on])
+        cells = np.concatenate([np.delete(cells, np.concatenate(gone), axis=0), *made])
+    return points, cells.astype(tetrahedra.dtype)
+
+
+def _cut_off(points: Floats, planes: Floats, sides: Any) -> tuple[Any, Floats]:
+    """The outer edges (s, 2) whose ends are on no surface together, and of each the nearest two of theirs (s, 2, 3)."""
+    cosines = np.einsum("sai,sbi->sab", planes[sides[:, 0]], planes[sides[:, 1]])
+    known = ~np.isnan(cosines)
+    which = np.flatnonzero(known.any(axis=(1, 2)) & ~(known & (cosines >= CREASE)).any(axis=(1, 2)))
+    chosen = np.zeros((len(which), 2, 3))
+    for k, side in enumerate(which):
+        ends, least = points[sides[side]], np.inf
+        for a, b in np.argwhere(known[side]):
+            pair = np.stack([planes[sides[side, 0], a], planes[sides[side, 1], b]])
+            move = float(np.linalg.norm(onto_planes(ends.mean(axis=0), ends, pair)))
+            if move < least:
+                least, chosen[k] = move, pair
+    return sides[which], chosen
+
+
+def _places(ends: Floats, planes: Floats, spacing: float, holds: Holds, crossing: Crossing) -> tuple[Floats, Any]:
+    """Where the creases over outer edges from and to ends (s, 2, 3) are (s, 3), and which of them (s,) are sure."""
+    middle = ends.mean(axis=1)
+    flat = middle + np.array([onto_planes(*one) for one in zip(middle, ends, planes, strict=True)])
+    ways = planes.sum(axis=1)
+    ways /= np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-300)
+    there = holds(flat - ON * spacing * ways) & ~holds(flat + ON * spacing * ways)
+    places = onto_crease(flat, planes, convex(ends, planes), spacing, holds, crossing)
+    near = np.linalg.norm(places - middle, axis=1) <= FARTHEST * spacing
+    return places, np.asarray(there) & near
