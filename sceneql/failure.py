@@ -25,6 +25,14 @@ class RunFailure(Exception):
         part = f"{name}.{self.part}" if self.part else name
         return type(self)(self.message, part=part, time=self.time, span=self.span or span, help=self.help)
 
+    def giving_way(self) -> GivesWay:
+        """The same failure, where there is another way for what is left."""
+        return GivesWay(self.message, part=self.part, time=self.time, span=self.span, help=self.help)
+
+
+class GivesWay(RunFailure):
+    """A run that cannot go on as it does, where a word has another way for what is left of it."""
+
 
 class OutOfMemory(RunFailure):
     """A run that cannot go on for want of memory."""

@@ -214,7 +214,9 @@ def test_too_many_bodies_are_refused(tmp_path):
         runs.watch(tmp_path, script, [0.1], "it.positions", pruned=False)
 
 
-@pytest.mark.parametrize(("mode", "why"), [("auto", "local: chosen for rigid bodies"), ("exact", "exact: asked for")])
+@pytest.mark.parametrize(
+    ("mode", "why"), [("auto", "exact: chosen for up to 8 rigid bodies"), ("exact", "exact: asked for")]
+)
 def test_explain_tells_the_mode_of_rigid_bodies_and_why(tmp_path, mode, why):
     script = "objects: {s: {sphere: {position: 0 2 0 m}}, floor: plane}\nmodels: {a: {rigid: {of: s}}}\n"
     script += f"forces: [gravity]\ncontacts: {{touch: {{collision: {{mode: {mode}}}}}}}\n"

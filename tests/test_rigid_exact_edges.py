@@ -161,3 +161,37 @@ def test_a_column_that_tips_over_an_edge_is_told_of_at_the_line_of_its_contact(t
     law = "restitution: 0, friction: 0.2"
     with pytest.raises(RunFailure, match=r"contacts: \{touch"):
         watch(tmp_path, {"table": TABLE, "it": column}, "velocity: 2 0 0 m/s", [0.3], "body.it.position", law=law)
+
+
+@pytest.mark.parametrize("friction", [0, 1000])
+def test_a_cylinder_goes_off_an_edge_along_its_axis_turning_about_it(tmp_path, friction):
+    """As a ball that turns about the edge, with the moment of rolling of a cylinder."""
+    turn = "rotation: {about: x, angle: 90 deg}"
+    can = f"{{cylinder: {{radius: 0.1 m, height: 0.3 m, position: 0.46 0.1 0.05 m, {turn}}}}}"
+    times = np.linspace(0.05, 0.35, 7)
+    motion = "velocity: 0.3 0 0 m/s" + (", spin: 0 0 -3 rad/s" if friction else "")
+    law = f"restitution: 0, friction: {friction}"
+    solver = "dop853: {tolerance: 1e-12}"
+    rows = watch(
+        tmp_path, {"table": TABLE, "it": can}, motion, times, "body.it.position", "touch.points", law=law, solver=solver
+    )
+    places = np.array([x for x, _ in rows])
+    expected, leaves = over_the_edge(0.3, 1.5 if friction else 1, -0.04, times)
+    np.testing.assert_allclose(places[:, :2] - (0.5, 0), expected, atol=1e-6 if friction else 1e-9)
+    np.testing.assert_allclose(places[:, 2], 0.05, atol=1e-9)
+    assert [len(points) for _, points in rows] == [2 if t < leaves else 0 for t in times]
+
+
+def test_a_cylinder_lies_on_the_edges_of_two_boxes(tmp_path):
+    boxes = {
+        f"box{k}": f"{{box: {{size: 1 0.2 {w} m, position: {x} -0.1 0 m}}}}"
+        for k, x, w in ((0, -0.55, 1), (1, 0.55, 0.2))
+    }
+    can = "{cylinder: {radius: 0.1 m, height: 0.4 m, position: 0.001 0.1 0 m, rotation: {about: x, angle: 90 deg}}}"
+    rows = watch(
+        tmp_path, {**boxes, "it": can}, "velocity: 0 0 0 m/s", [1, 2], "body.it.position", "touch.points",
+        law="restitution: 0, friction: 0.3",
+    )  # fmt: skip
+    for x, points in rows:
+        np.testing.assert_allclose(x[:2], [0, np.sqrt(0.1**2 - 0.05**2)], atol=1e-6)
+        assert len(points) == 4

@@ -357,6 +357,7 @@ class IslandAssembly(Reserved):
             rests=tuple(self._rests),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
             events=tuple((block.pairs, Origin(block.part, block.span), block.help) for block in events),
+            gives_way=self.gives_way,
             damped=any(block.damped for block in blocks[1:first_exact]),
         )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,7 @@ from sceneql.island.memory import LARGEST_MEMORY
 if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.quantities.span import Span
+    from sceneql.system import ModelState
 
 VECTORS = 12
 """Arrays of the state's size that a run keeps: states and rates at a step's ends, and the stages of a solver."""
@@ -25,6 +26,14 @@ VECTORS = 12
 class Reserved:
     """The state at the start and the numbers, each with the word that reserved it."""
 
+    went_on: Mapping[str, ModelState] = field(init=False, default_factory=dict)
+    """By contact that has given way (Assembly.gives_way) its state at that instant, from which the island goes on."""
+    before_contacts: int = field(init=False, default=0)
+    """How many numbers there are of models, forces and ties."""
+    gives_way: bool = field(init=False, default=False)
+    """Whether a contact has another way for what is left, where its events have none."""
+    by_tolerance: bool = field(init=False, default=False)
+    """Whether the solver is explicit, and a tolerance chooses its steps."""
     _starts: list[Floats] = field(init=False, default_factory=list)
     _size: int = field(init=False, default=0)
     _bodies: int = field(init=False, default=0)
@@ -45,6 +54,10 @@ class Reserved:
             yield
         finally:
             self._word = before
+
+    def begin_contacts(self) -> None:
+        """Say that all that comes now belongs to contacts."""
+        self.before_contacts = self._stored
 
     def state(
         self, initial: Any, spans: Sequence[Span | None] | None = None, named: Callable[[int], str] | None = None

@@ -101,6 +101,8 @@ class System:
     """The origins of the terms of the rate, in the order in which they act."""
     events: tuple[tuple[int, Origin, str], ...] = ()
     """Of each exact contact the number of its pairs, its origin, and what is said where they have no end."""
+    gives_way: bool = False
+    """Whether a word of such contacts has another way for what is left then."""
     damped: bool = False
     """Whether forces depend on velocities besides: then the energies are those of forces at rest."""
 

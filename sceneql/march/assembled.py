@@ -11,7 +11,7 @@ from sceneql.doing import doing
 from sceneql.graph import Island, SimulationGraph, Task
 from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
-from sceneql.kinds import Contact, Interaction, Model, Object, Ref, Tie, Value
+from sceneql.kinds import Contact, Interaction, Model, Object, Ref, Solver, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
 from sceneql.system import Bodies, IslandFacts, ModelState, Stepper
@@ -93,6 +93,7 @@ class Assembled:
 
             with self.word(next(name for name, _ in self.island.forces if isinstance(tasks[name].kind, Tie))):
                 add_ties(self.assembly, self.assembly.ties)
+        self.assembly.begin_contacts()
         contacts = dict.fromkeys(contact for contact, _, _ in self.island.contacts)
         # Contacts between masses come last: those with objects need the path of the whole step as the solver made it.
         for contact in sorted(contacts, key=lambda name: cast(Contact, tasks[name].kind).mutual):
@@ -138,6 +139,8 @@ class Assembled:
 def models_of(graph: SimulationGraph, island: Island) -> Assembled:
     """An island with its models, without forces and contacts yet."""
     made = Assembled(graph, island, IslandAssembly(Setting(graph.tasks, graph.settings.clock.end)))
+    stepper = cast(Solver, graph.tasks[island.solver].kind).stepper()
+    made.assembly.by_tolerance = stepper.control.adaptive and not (stepper.needs.jacobian or stepper.needs.march)
     for name in island.models:
         with made.word(name), doing(f"making {name}"):
             made.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, made.assembly)

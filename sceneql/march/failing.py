@@ -32,6 +32,7 @@ MESSAGES = {
     kernels.CROSSING: "surfaces would pass through one another within this step: take shorter ones",
     kernels.STUCK: "contacts push against each other at one instant without end",
     kernels.UNSEEN: "bodies are in each other, or held apart, by a contact that mode `exact` has not seen",
+    kernels.COSTLY: "contacts take more work than they may",
 }
 AHEAD = 1e-9
 """Part of the time reached in which a rate without a value is looked for."""
@@ -64,7 +65,7 @@ class Stopped:
 def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure:
     """The failure of a march that has stopped with a status; ``ahead``: the step that comes next [s]."""
     control = march.control
-    if status == kernels.STUCK or status == kernels.UNSEEN:
+    if status in (kernels.STUCK, kernels.UNSEEN, kernels.COSTLY):
         return _at_contact(march, status, entry)
     if status == kernels.CROSSING:
         return blamed(march, entry, MESSAGES[status])
@@ -84,7 +85,7 @@ def _at_contact(march: Stopped, status: int, pair: int) -> RunFailure:
     """Contacts have no way on: told at the line of that of the pair, or of the first, where it has an advice."""
     message, first = MESSAGES[status], 0
     for pairs, origin, help in march.system.events:
-        if help and (status == kernels.UNSEEN or first <= pair < first + pairs):
+        if help and (status != kernels.STUCK or first <= pair < first + pairs):
             return RunFailure(message, part=origin.part, time=march.time, span=origin.span, help=help)
         first += pairs
     return blamed(march, 0, message)

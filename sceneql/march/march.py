@@ -69,10 +69,13 @@ class March:
         stiff: Stepper | None = None,
         otherwise: Stepper | None = None,
         with_jacobian: Callable[[], System] | None = None,
+        before: March | None = None,
+        kept: int = 0,
     ) -> None:
         """``stiff``, ``otherwise``: methods that may replace ``stepper`` (kinds.Methods).
 
-        ``with_jacobian``: lays the island out again, with its Jacobian, for one of them that needs it.
+        ``with_jacobian``: lays the island out again, with its Jacobian, for one of them that needs it. ``before``: a
+        march of the same state that stops where this begins; its first ``kept`` floats are this one's, too.
         """
         self.system, self.stepper, self.end = system, stepper, end
         self._otherwise, self._with_jacobian = otherwise, with_jacobian
@@ -81,7 +84,7 @@ class March:
         self.driver = driver(system.structure)
         n = len(system.y)
         self._y0, self._rate0, self._rate1, self._sample = (np.zeros(n) for _ in range(4))
-        self._y1 = system.y.copy()
+        self._y1: Floats = system.y.copy() if before is None else before.stopped().y.copy()
         self._gaps = np.zeros(3 * system.pairs)
         self._leaving = np.zeros(system.pairs, dtype=np.int64)
         self._clock = np.zeros(kernels.CLOCKS)
@@ -102,8 +105,20 @@ class March:
         if stiff is not None:
             self._switch = Switch(stepper, stiff, self.rate, system.partner, end)
         self._last_look = 0
-        self._look_for_breakpoint(0.0)
+        self._from = 0.0 if before is None else self._go_on_from(before, kept)
+        """When it begins [s]."""
+        self._look_for_breakpoint(self._from)
         self._engage(stepper)
+
+    def _go_on_from(self, before: March, kept: int) -> float:
+        """Begin where another march ends, with its cost; when that is [s]."""
+        self.floats[channels.HEAD : kept] = before.floats[channels.HEAD : kept]
+        self.floats[channels.RATES] = before.floats[channels.RATES]
+        self.statistics = before.statistics
+        for k in (kernels.STEPS, kernels.REJECTED, kernels.EVENTS):
+            self._counts[k] = before._counts[k]
+        self._clock[[kernels.T0, kernels.T1]] = before.time
+        return before.time
 
     def _engage(self, stepper: Stepper) -> None:
         """Continue with a method."""
@@ -256,19 +271,19 @@ class March:
         self._started = True
         y = self._y1
         if self.system.pairs:
-            self.driver.impact(0.0, y, -1, self.floats, self.system.ints)
+            self.driver.impact(self._from, y, -1, self.floats, self.system.ints)
         if self._counts[kernels.SETTLES]:
-            settled = self._settled(0.0, y)
-            self.corrected = settled - y
+            settled = self._settled(self._from, y)
+            self.corrected = settled - y if self._from == 0.0 else None
             y[:] = settled
-        self._rate1[:] = self.rate(0.0, y)
+        self._rate1[:] = self.rate(self._from, y)
         bad = np.flatnonzero(~(np.maximum(np.abs(y), np.abs(self._rate1)) <= LARGEST))
         if len(bad):
             k = int(bad[0])
             finite = math.isfinite(y[k]) and math.isfinite(self._rate1[k])
             what = f"has a value beyond {LARGEST:.0e}" if finite else "has no finite value"
             message = f"the {'state' if abs(y[k]) > LARGEST else 'rate'} {what} at the start"
-            raise blamed(self._stopped(), k, message, () if finite else (0.0,))
+            raise blamed(self.stopped(), k, message, () if finite else (0.0,))
         moved = np.abs(self._rate1).max(initial=0.0) * self.end
         self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
         positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)
@@ -278,7 +293,7 @@ class March:
         if self._switch is not None:
             self._switch.start(y, step)
             if self._switch.active is not self.stepper:
-                self._change(self._switch, 0.0)
+                self._change(self._switch, self._from)
         self._clock[kernels.STEP] = step
 
     def _march(self, target: float, pace: Pace) -> None:
@@ -342,9 +357,11 @@ class March:
 
     def fail(self, status: int) -> None:
         """Raise the RunFailure of the compiled march's status."""
-        raise failure(self._stopped(), status, int(self._counts[kernels.INDEX]), float(self._clock[kernels.STEP]))
+        found = failure(self.stopped(), status, int(self._counts[kernels.INDEX]), float(self._clock[kernels.STEP]))
+        raise found.giving_way() if self.system.gives_way else found
 
-    def _stopped(self) -> Stopped:
+    def stopped(self) -> Stopped:
+        """The march where it stands."""
         state = self.stepper.control, self.floats, self.time, self._y1, self._rate1
         return Stopped(self.system, self.driver, *state, self.end, self.rate)
 

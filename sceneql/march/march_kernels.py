@@ -55,7 +55,7 @@ MOST_CRAWLED = 2000
 """Such steps in a row, or shorter than any, after which the march is stuck: an impact or a breakpoint takes far fewer
 to leave."""
 
-REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK, CROSSING, GROWS, UNSEEN = range(9)
+REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK, CROSSING, GROWS, UNSEEN, COSTLY = range(10)
 
 MOST_REPEATS = 100
 """Impacts for each pair at one instant before the contacts count as contradictory."""
@@ -339,10 +339,10 @@ def march(
         if leaving.size > 0:
             floats[channels.CHANGED] = 0.0
             impact(t1, y1, -1, floats, ints)
-            if floats[channels.CHANGED] == channels.UNSEEN:
+            if floats[channels.CHANGED] <= channels.UNSEEN:
                 copy(y0, y1)
                 copy(rate0, rate1)
-                return UNSEEN
+                return UNSEEN if floats[channels.CHANGED] == channels.UNSEEN else COSTLY
             if floats[channels.CHANGED] != 0.0:
                 rate(t1, y1, rate1, floats, ints)
         if counts[SETTLES] > 0:

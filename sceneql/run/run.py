@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from sceneql.doing import doing
-from sceneql.failure import LimitRefused
+from sceneql.failure import GivesWay, LimitRefused
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Interaction, Model, Object, Solver, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
@@ -138,13 +138,26 @@ class IslandRun:
 
     def __init__(self, graph: SimulationGraph, island: Island) -> None:
         from sceneql.compiled.compile_beside import compile_beside
-        from sceneql.compiled.numba import lazy_kernels
-        from sceneql.march.assembled import blocks_of, models_of
 
         compile_beside(("sceneql.march.march_kernels",))  # while the models are made here
         self.graph, self.island = graph, island
+        ties = (name for name, _ in island.forces if isinstance(graph.tasks[name].kind, Tie))
+        self.members = {*island.models, *(contact for contact, _, _ in island.contacts), *ties}
+        self._now: tuple[float, Floats, Floats] | None = None
+        self.notes: list[str] = []
+        """What has become of it on its way, for the account of a run."""
+        self._make({})
+
+    def _make(self, went_on: Mapping[str, ModelState], before: March | None = None, kept: int = 0) -> None:
+        """Assemble the island, and its march; from one that ends ``before``, whose first floats are ``kept``."""
+        from sceneql.compiled.compile_beside import compile_beside
+        from sceneql.compiled.numba import lazy_kernels
+        from sceneql.march.assembled import blocks_of, models_of
+
+        graph, island = self.graph, self.island
         solver = cast(Solver, graph.tasks[island.solver].kind)
         made = models_of(graph, island)
+        made.assembly.went_on = went_on
         self.bodies = made.bodies
         self.assembly = made.assembly
         self.assembly.places, self.assembly.points = self._places, self._points
@@ -158,12 +171,26 @@ class IslandRun:
         compile_beside(lazy_kernels.modules())  # nobody waits for what may never be called
         blocks = blocks_of(made, system, self.methods.first)
         try:
-            self.march = self._marched(system, blocks)
+            self.march = self._marched(system, blocks, before, kept)
         except LimitRefused as refused:
             raise refused.at(graph.tasks[island.solver].span) from None
-        ties = (name for name, _ in island.forces if isinstance(graph.tasks[name].kind, Tie))
-        self.members = {*island.models, *(contact for contact, _, _ in island.contacts), *ties}
-        self._now: tuple[float, Floats, Floats] | None = None
+
+    def _go_on(self, why: GivesWay) -> None:
+        """Assemble the island anew where a contact gives way, and go on from there. Raises RunFailure if it cannot."""
+        from sceneql.system import ModelState
+
+        march, assembly = self.march, self.assembly
+        at = march.stopped()
+        states = {
+            name: ModelState(at.time, at.y, at.rate, at.floats, None, assembly.remembered(name))
+            for name in dict.fromkeys(contact for contact, _, _ in self.island.contacts)
+        }
+        kept = assembly.before_contacts
+        self._make(states, march, kept)
+        if self.assembly.before_contacts != kept or len(self.march.system.y) != len(at.y):
+            raise why
+        mode = self.assembly.contact_mode
+        self.notes.append(f"{why.part}: contacts are {mode} from {at.time:.6g} s on: {why.message}")
 
     def _compiled(self, stepper: Stepper) -> System:
         """The island laid out for a method, when the kernels of both are compiled."""
@@ -193,7 +220,7 @@ class IslandRun:
         acting()
         return system
 
-    def _marched(self, system: System, blocks: Sequence[Block]) -> March:
+    def _marched(self, system: System, blocks: Sequence[Block], before: March | None, kept: int) -> March:
         """Its march: the method's own, that of blocks of bodies, or the one of all others."""
         from sceneql.compiled.generated import function
         from sceneql.march.march import March
@@ -213,6 +240,8 @@ class IslandRun:
             stiff=self.methods.stiff,
             otherwise=self.methods.otherwise,
             with_jacobian=None if stepper.needs.jacobian else lambda: self.assembly.finish(jacobian=True),
+            before=before,
+            kept=kept,
         )
 
     def _places(self, link: Link) -> Any:
@@ -238,8 +267,12 @@ class IslandRun:
         return ModelState(0.0, start, start, self.assembly.numbers(), self.bodies[name], ints)
 
     def advance(self, time: float) -> None:
-        """March to an instant [s]."""
-        y, rate = self.march.advance(time)
+        """March to an instant [s]. Raises RunFailure."""
+        try:
+            y, rate = self.march.advance(time)
+        except GivesWay as why:
+            self._go_on(why)
+            y, rate = self.march.advance(time)
         self._now = (time, y, rate)
 
     @property

@@ -170,8 +170,10 @@ class Watch:
         return tuple(found)
 
     def account(self) -> list[str]:
-        """A line for each invariant, and for each island with an energy: its drift, and a conserved momentum's."""
-        lines = [one.account() for one in self.invariants if one.times]
+        """A line for what became of islands, and for each invariant and each island with an energy: its drift, and a
+        conserved momentum's."""
+        lines = [note for island in self._islands for note in island.notes]
+        lines += [one.account() for one in self.invariants if one.times]
         for balance in self.balances:
             drifts = balance.drifts
             if not drifts:

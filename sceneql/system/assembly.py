@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 from sceneql.system.terms import Slopes, Stage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from sceneql.kinds.values import Ref, Value
     from sceneql.kinds.word import Kind
     from sceneql.quantities.expression import Expr, Link
     from sceneql.quantities.span import Span
     from sceneql.system.fields import Flow, Grid
-    from sceneql.system.state import Place
+    from sceneql.system.state import ModelState, Place
     from sceneql.system.ties import Tied
 
 Mode = Literal["exact", "local"]
@@ -203,6 +203,13 @@ class Assembly(Protocol):
     """The integers of the term that finds all ties' forces (bodies/rigid/tie_kernels.py), once it is there."""
     driven: bool
     """Whether a step lets stops, motors and friction of ties act already."""
+    went_on: Mapping[str, ModelState]
+    """By contact that has given way its state at that instant, from which the island goes on; empty at the start."""
+    gives_way: bool
+    """Whether a contact of mode `exact` has another way for what is left, where it finds none or takes too much work:
+    the island is then assembled anew, and goes on from there."""
+    by_tolerance: bool
+    """Whether the solver is explicit, and a tolerance chooses its steps."""
     contact_why: str
     """Why contacts of rigid bodies have their mode, for `explain`."""
 

@@ -17,7 +17,7 @@ floats for the state at the step's end, so the rate must be evaluated there.
 
 CHANGED: not 0 where an exact contact, updating its resting pairs at the end of a step, changed the state or a flag;
 NO_WAY_ON where its events have no end, at an impact, and UNSEEN, at the end of a step, where bodies are otherwise than
-their contacts tell: the march stops.
+their contacts tell, or COSTLY, where these have cost more work than they may: the march stops.
 
 SETTLED: not 0 where nothing but what settles it (Assembly.after_step of samples) has changed the state since the end of
 the last step: a method of several steps goes on with what it remembers.
@@ -51,7 +51,7 @@ that rests at a step's start stays tied up to its end, so that the rate is smoot
 RESTING, PLACING = 1.0, 2.0
 """Values of STATIC."""
 
-NO_WAY_ON, UNSEEN = -1.0, -2.0
+NO_WAY_ON, UNSEEN, COSTLY = -1.0, -2.0, -3.0
 """Values of CHANGED with which an impact stops the march."""
 
 ARRAYS = BASE, BEFORE, AFTER = 3, 2, 1

@@ -23,8 +23,9 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     RECORD,
     three,
 )
+from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved import COLUMN, FORM, RING
-from sceneql.contacts.rigid_exact.curved_contact_kernels import follow, speed_at
+from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_FACE, follow, speed_at
 from sceneql.contacts.rigid_exact.curved_find_kernels import (
     FIRST,
     LEAST,
@@ -34,9 +35,9 @@ from sceneql.contacts.rigid_exact.curved_find_kernels import (
     SHAPE_OF_A,
     SHAPE_OF_B,
     in_axes_of_a,
-    meet,
     slope_along,
 )
+from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
 from sceneql.contacts.rigid_exact.features_kernels import AHEAD, LIMIT, extent, is_plain, smaller, way_ahead
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -72,6 +73,23 @@ def stay(floats, ints, who, next, count):
     return kept
 
 
+@lean(N(A, I, N, F, N, N, N, N))
+def roll_ahead(floats, ints, who, margin, next, count, most, k):
+    """Of a column or ring at the border of a face, where its contact k is, the contacts to which it moves; how many."""
+    ma, mb = ints[who + MOVER_A], ints[who + MOVER_B]
+    size = smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
+    dx, dy, dz = way_ahead(floats, ints, next + RECORD * k, *three(floats, next + RECORD * k + DRIFT))
+    x, y, z = three(floats, ma + AT_X)
+    put(floats, ma + AT_X, x + dx, y + dy, z + dz)
+    more = min(most, meet(floats, ints, who, margin + LEAST * AHEAD * size, next, most)[0])
+    put(floats, ma + AT_X, x, y, z)
+    if more == 0:
+        more = min(count, meet(floats, ints, who, margin, next, most)[0])
+    for j in range(more):
+        follow(floats, ints, next + RECORD * j, ma, mb)
+    return more
+
+
 @lean(types.boolean(A, I, N))
 def is_cut(floats, ints, who):
     """Whether an edge of b is in a ring or a column, as where these lie on it flat: which is not found as a contact."""
@@ -101,9 +119,13 @@ def meet_ahead(floats, ints, who, margin, next, most):
         follow(floats, ints, next + RECORD * k, ma, mb)
     if count == 0 or ints[sb + KIND] != CORE or ints[ints[sb + INTS] + VERTICES] == 1:
         return count
-    if not is_plain(floats, ints, ints[who + FIRST]):
-        return stay(floats, ints, who, next, count)
     size = smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
+    if not is_plain(floats, ints, ints[who + FIRST]):
+        for k in range(count):
+            rec = next + RECORD * k
+            if floats[rec + WHICH] == ON_FACE and extent(floats, ints, rec) < LIMIT * size:
+                return roll_ahead(floats, ints, who, margin, next, count, most, k)
+        return stay(floats, ints, who, next, count)
     for k in range(count):
         for c in range(3):
             if abs(floats[next + RECORD * k + POINT + c] - floats[next + POINT + c]) > APART * size:

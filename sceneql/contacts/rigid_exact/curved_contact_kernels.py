@@ -26,6 +26,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     LINE_A,
     LINE_B,
     NORMAL,
+    OWN_A,
     OWN_B,
     RADIUS_B,
     SIGN,
@@ -35,12 +36,16 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import follow as follow_flat
-from sceneql.contacts.rigid_exact.curved_surface_kernels import away, bend, farthest, wander
+from sceneql.contacts.rigid_exact.curved import ELLIPSOID, FORM
+from sceneql.contacts.rigid_exact.curved_surface_kernels import away, bend, farthest, into, out_of, wander
 from sceneql.system.signatures_kernels import A, F, I, N
 
 ON_FACE, ON_EDGE, ON_CORNER = 6, 7, 8
 """Kinds of contacts, beside those of contact_kernels: of a curved body on a feature of b. LINE_A: where the numbers of
-the curved shape begin, and of an edge how far along its direction from OWN_B it touches; SIGN: the rim of a column."""
+the curved shape begin, and of an edge how far along its direction from OWN_B it touches; SIGN: the rim of a column;
+OWN_A: of a ring or column on a face which way, of its own axes, it was tilted when it was found (rim_kernels)."""
+FLAT = 1e-9
+"""Sine of the angle between face and circle up to which it lies flat."""
 TURNS = 30
 """Most steps of Newton's method along an edge."""
 
@@ -106,7 +111,17 @@ def follow_on_face(floats, at, a, b):
     shape = int(floats[at + LINE_A])
     nx, ny, nz = turned(floats, b + AT_TURN, *three(floats, at + LINE_B))
     dx, dy, dz = own(floats, a, -nx, -ny, -nz)
-    rx, ry, rz = turned(floats, a + AT_TURN, *farthest(floats, shape, dx, dy, dz, floats[at + SIGN]))
+    turn, on, px, py, pz = 1.0, 1.0, dx, dy, dz
+    if floats[shape + FORM] != ELLIPSOID:
+        x, y, z = into(floats, shape, dx, dy, dz)
+        u, w = floats[at + OWN_A], floats[at + OWN_A + 2]
+        if x * x + z * z < FLAT * FLAT and (u != 0.0 or w != 0.0):
+            # On its way through the face's plane: the point stays.
+            on = 0.0
+            px, py, pz = out_of(floats, shape, FLAT * u, y, FLAT * w)
+        elif x * u + z * w < 0.0:
+            turn = on = -1.0
+    rx, ry, rz = turned(floats, a + AT_TURN, *farthest(floats, shape, px, py, pz, floats[at + SIGN], turn))
     qx, qy, qz = turned(floats, b + AT_TURN, *three(floats, at + OWN_B))
     cx, cy, cz = three(floats, a + AT_X)
     cx, cy, cz = cx + rx, cy + ry, cz + rz
@@ -115,7 +130,7 @@ def follow_on_face(floats, at, a, b):
     wa, wb = three(floats, a + AT_W), three(floats, b + AT_W)
     mx, my, mz = cross(wb[0], wb[1], wb[2], nx, ny, nz)
     ex, ey, ez = own(floats, a, *cross(wa[0] - wb[0], wa[1] - wb[1], wa[2] - wb[2], nx, ny, nz))
-    ex, ey, ez = turned(floats, a + AT_TURN, *wander(floats, shape, dx, dy, dz, ex, ey, ez))
+    ex, ey, ez = turned(floats, a + AT_TURN, *wander(floats, shape, dx, dy, dz, ex, ey, ez, on))
     gx, gy, gz = speed_at(floats, a, cx, cy, cz)
     write(floats, at, a, b, gap, nx, ny, nz, mx, my, mz, cx, cy, cz, gx + ex, gy + ey, gz + ez)
 

@@ -3,7 +3,7 @@
 
 On a face touches the point that is farthest out towards it, if it is over that face rather than another; on an edge or
 at a corner what is nearest there, if the polyhedron goes away from it on all sides. A ring or column that lies flat has
-four points of its circle as corners.
+four points of its circle as corners, of which the first is the lowest (rim_kernels).
 """
 
 import math
@@ -11,7 +11,7 @@ import math
 from numba import types
 
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
-from sceneql.bodies.rigid.tie_rows_kernels import AT_X, put, turned
+from sceneql.bodies.rigid.tie_rows_kernels import AT_W, AT_X, cross, put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.distance.convex import CORE, SHAPE
 from sceneql.contacts.distance.core_kernels import (
@@ -46,16 +46,19 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
-from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FIELD, FORM, RING, SIZES
-from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, own
-from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, out_of, slant
+from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FORM, RING, SIZES
+from sceneql.contacts.rigid_exact.curved_contact_kernels import FLAT, ON_CORNER, ON_EDGE, ON_FACE, own
+from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, into, slant
 from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT
+from sceneql.contacts.rigid_exact.rim_kernels import on_circle
 from sceneql.system.signatures_kernels import A, F, I, N
 
-FLAT = 1e-7
-"""Sine of the angle between face and circle up to which it lies flat."""
+LEVEL = 1e-13
+"""Sine up to which none of its points is the lowest."""
 LEAST = 1e-7
 """Part by which what is beside a place may come nearer and the place still be the nearest."""
+PARALLEL = 1e-7
+"""Tangent of the angle of an edge and the axis of a column up to which they are parallel."""
 PIECES = 8
 """Pieces of an edge that are looked at for places that are nearest."""
 HALVINGS = 60
@@ -103,14 +106,24 @@ def begin_record(floats, ints, rec, who, kind, radius, shape):
     floats[rec + LINE_A], floats[rec + OF], floats[rec + EXTENT] = shape, -1.0, -math.inf
 
 
-@lean_inlined
-def on_circle(floats, f, spot, sign):
-    """One of four points of the circle of a ring or of a rim of a column."""
-    a, b = floats[f + SIZES], floats[f + SIZES + 1]
-    x = a if spot == 0 else (-a if spot == 1 else 0.0)
-    z = a if spot == 2 else (-a if spot == 3 else 0.0)
-    px, py, pz = out_of(floats, f, x, sign * b if floats[f + FORM] == COLUMN else 0.0, z)
-    return floats[f + CENTER] + px, floats[f + CENTER + 1] + py, floats[f + CENTER + 2] + pz
+@lean(types.UniTuple(F, 2)(A, N, N, N, F, F, F, F, F, F, types.boolean))
+def first_point(floats, fa, ma, mb, nx, ny, nz, dx, dy, dz, asked):
+    """The direction, of the shape's axes x and z, of the point of a circle that lies flat which is the lowest; if none
+    is, of that which comes nearer the fastest, where it is ``asked`` which. The normal n is in the world, d against it
+    in the axes of a."""
+    x, _, z = into(floats, fa, dx, dy, dz)
+    sine = math.sqrt(x * x + z * z)
+    if sine > LEVEL:
+        return x / sine, z / sine
+    if asked:
+        px, py, pz = three(floats, ma + AT_W)
+        qx, qy, qz = three(floats, mb + AT_W)
+        x, y, z = own(floats, ma, *cross(nx, ny, nz, px - qx, py - qy, pz - qz))
+        x, _, z = into(floats, fa, x, y, z)
+        size = math.sqrt(x * x + z * z)
+        if size > LEVEL * (abs(px) + abs(py) + abs(pz) + abs(qx) + abs(qy) + abs(qz)):
+            return -x / size, -z / size
+    return 1.0, 0.0
 
 
 @lean(types.boolean(A, I, N, N, F, F, F))
@@ -156,14 +169,18 @@ def on_faces(floats, ints, who, margin, next, most):
         dx, dy, dz = own(floats, ma, -nx, -ny, -nz)
         sine = slant(floats, fa, dx, dy, dz)
         flat = sine <= FLAT
+        ux, uz = first_point(floats, fa, ma, mb, nx, ny, nz, dx, dy, dz, most > 0) if flat else (1.0, 0.0)
         for side in range(2 if floats[fa + FORM] == COLUMN else 1):
             for spot in range(4 if flat else 1):
                 sign = -1.0 if side == 1 else 1.0
                 if flat:
-                    px, py, pz = on_circle(floats, fa, spot, sign)
+                    # Beside the first the others, a quarter of the circle on.
+                    cosine, quarter = (1.0 - spot if spot % 2 == 0 else 0.0), (2.0 - spot if spot % 2 == 1 else 0.0)
+                    u, w = cosine * ux - quarter * uz, cosine * uz + quarter * ux
+                    px, py, pz = on_circle(floats, fa, sign, u, w)
                     tube = floats[fa + SIZES + 1] if floats[fa + FORM] == RING else 0.0
                 else:
-                    px, py, pz = farthest(floats, fa, dx, dy, dz, sign)
+                    px, py, pz = farthest(floats, fa, dx, dy, dz, sign, 1.0)
                     tube = 0.0
                 x, y, z = turned(floats, ma + AT_TURN, px, py, pz)
                 x, y, z = own(floats, mb, ax + x - bx, ay + y - by, az + z - bz)
@@ -180,10 +197,16 @@ def on_faces(floats, ints, who, margin, next, most):
                 floats[rec + SIGN], floats[rec + OF] = sign, (-1 if flat else k)
                 if flat:
                     put(floats, rec + OWN_A, px, py, pz)
-                    put(floats, rec + LINE_A, 0.0, 0.0, 0.0)
                     floats[rec + RADIUS_A] = tube
                 count += 1
     return count, least
+
+
+@lean(types.boolean(A, N, F, F, F))
+def along_axis(floats, fa, ux, uy, uz):
+    """Whether an edge, of a's axes, is parallel to the axis of a column: it is met in curved_meet_kernels."""
+    x, y, z = into(floats, fa, ux, uy, uz)
+    return floats[fa + FORM] == COLUMN and math.sqrt(x * x + z * z) <= PARALLEL * abs(y)
 
 
 @lean(FOUND)
@@ -200,6 +223,8 @@ def at_corners(floats, ints, who, margin, next, most):
         gap -= radius
         if gap >= least and gap > margin:
             continue
+        mx, my, mz = three(floats, fa + CENTER)
+        within = abs(into(floats, fa, x - mx, y - my, z - mz)[1]) < floats[fa + SIZES + 1]
         nearest = True
         for e in range(ints[ib + EDGES]):
             edge = edges_at(ints, ib) + 4 * e
@@ -208,6 +233,8 @@ def at_corners(floats, ints, who, margin, next, most):
             other = ints[edge + 1] if ints[edge] == k else ints[edge]
             px, py, pz = in_axes_of_a(floats, ma, mb, *three(floats, fb + POINTS + 3 * other))
             px, py, pz = px - x, py - y, pz - z
+            if along_axis(floats, fa, px, py, pz) and within:
+                nearest = False  # the end of an edge along which it touches
             if dot(nx, ny, nz, px, py, pz) < -LEAST * math.sqrt(px * px + py * py + pz * pz):
                 nearest = False
         if not nearest:
@@ -272,6 +299,8 @@ def on_edges(floats, ints, who, margin, next, most):
         ux, uy, uz = ux - x, uy - y, uz - z
         length = math.sqrt(ux * ux + uy * uy + uz * uz)
         middle = away(floats, ints, fa, x + 0.5 * ux, y + 0.5 * uy, z + 0.5 * uz)[0]
+        if along_axis(floats, fa, ux, uy, uz):
+            continue
         if length == 0.0 or middle - 0.5 * length - radius > max(margin, least):
             continue
         low, before = 0.0, slope_along(floats, ints, fa, x, y, z, ux, uy, uz, 0.0)[1]
@@ -295,43 +324,29 @@ def on_edges(floats, ints, who, margin, next, most):
     return count, least
 
 
+@lean(F(A, I, N, N, N, N, N))
+def beyond_face(floats, ints, sa, sb, ma, mb, k):
+    """How far a curved body is on the outer side of face k of b; movers begin at ma and mb."""
+    fa, fb, ib = ints[sa + FLOATS], ints[sb + FLOATS], ints[sb + INTS]
+    ax, ay, az = three(floats, ma + AT_X)
+    bx, by, bz = three(floats, mb + AT_X)
+    mx, my, mz = three(floats, fb + POINTS + 3 * (ints[ib + VERTICES] + k))
+    ox, oy, oz = three(floats, fb + POINTS + 3 * ints[loop_at(ints, ib, k)[0]])
+    nx, ny, nz = turned(floats, mb + AT_TURN, mx, my, mz)
+    dx, dy, dz = own(floats, ma, -nx, -ny, -nz)
+    nearest = math.inf
+    for side in range(2):
+        px, py, pz = farthest(floats, fa, dx, dy, dz, -1.0 if side == 1 else 1.0, 1.0)
+        x, y, z = turned(floats, ma + AT_TURN, px, py, pz)
+        x, y, z = own(floats, mb, ax + x - bx, ay + y - by, az + z - bz)
+        nearest = min(nearest, dot(mx, my, mz, x - ox, y - oy, z - oz))
+    return nearest - floats[fb + RADIUS]
+
+
 @lean(F(A, I, N))
 def separation(floats, ints, who):
     """How far a curved body is on the outer side of a face of b, at most: below 0 where they overlap deeply."""
-    sb, ma, mb = ints[who + SHAPE_OF_B], ints[who + MOVER_A], ints[who + MOVER_B]
-    fa, fb, ib = ints[ints[who + SHAPE_OF_A] + FLOATS], ints[sb + FLOATS], ints[sb + INTS]
-    ax, ay, az = three(floats, ma + AT_X)
-    bx, by, bz = three(floats, mb + AT_X)
-    most = -math.inf
-    for k in range(ints[ib + FACES]):
-        mx, my, mz = three(floats, fb + POINTS + 3 * (ints[ib + VERTICES] + k))
-        ox, oy, oz = three(floats, fb + POINTS + 3 * ints[loop_at(ints, ib, k)[0]])
-        nx, ny, nz = turned(floats, mb + AT_TURN, mx, my, mz)
-        dx, dy, dz = own(floats, ma, -nx, -ny, -nz)
-        nearest = math.inf
-        for side in range(2):
-            px, py, pz = farthest(floats, fa, dx, dy, dz, -1.0 if side == 1 else 1.0)
-            x, y, z = turned(floats, ma + AT_TURN, px, py, pz)
-            x, y, z = own(floats, mb, ax + x - bx, ay + y - by, az + z - bz)
-            nearest = min(nearest, dot(mx, my, mz, x - ox, y - oy, z - oz))
-        most = max(most, nearest - floats[fb + RADIUS])
+    sa, sb, most = ints[who + SHAPE_OF_A], ints[who + SHAPE_OF_B], -math.inf
+    for k in range(ints[ints[sb + INTS] + FACES]):
+        most = max(most, beyond_face(floats, ints, sa, sb, ints[who + MOVER_A], ints[who + MOVER_B], k))
     return most
-
-
-@lean(FOUND)
-def meet(floats, ints, who, margin, next, most):
-    """The contacts of a curved body a with b within a margin, written to floats[next:], up to ``most`` of them.
-
-    How many they are, and the gap. Where they overlap so deeply that no place of b's surface is the nearest, how far
-    the one is behind the faces of the other.
-    """
-    if floats[ints[ints[who + SHAPE_OF_A] + FLOATS] + FORM] == FIELD:  # which balls alone meet
-        return at_corners(floats, ints, who, margin, next, most)
-    count, least = on_faces(floats, ints, who, margin, next, most)
-    if ints[ints[who + SHAPE_OF_B] + KIND] != CORE:
-        return count, least
-    more, gap = on_edges(floats, ints, who, margin, next + RECORD * count, most - count)
-    count, least = count + more, min(least, gap)
-    more, gap = at_corners(floats, ints, who, margin, next + RECORD * count, most - count)
-    count, least = count + more, min(least, gap)
-    return count, least if least < math.inf else separation(floats, ints, who)

@@ -45,9 +45,13 @@ def out_of(floats, f, x, y, z):
     )
 
 
-@lean(THREE(A, N, F, F, F, F))
-def farthest(floats, f, dx, dy, dz, side):
-    """The point that is farthest along a unit vector; of a column that of the rim at one ``side`` (-1, 1)."""
+@lean(THREE(A, N, F, F, F, F, F))
+def farthest(floats, f, dx, dy, dz, side, turn):
+    """The point that is farthest along a unit vector; of a column that of the rim at one ``side`` (-1, 1).
+
+    With a ``turn`` of -1 that of a circle is the one opposite, which goes on as the farthest where the circle has just
+    turned through the plane across the vector.
+    """
     x, y, z = into(floats, f, dx, dy, dz)
     a, b, c = floats[f + SIZES], floats[f + SIZES + 1], floats[f + SIZES + 2]
     if floats[f + FORM] == ELLIPSOID:
@@ -55,7 +59,7 @@ def farthest(floats, f, dx, dy, dz, side):
         x, y, z = a * a * x / s, b * b * y / s, c * c * z / s
     else:
         around = math.sqrt(x * x + z * z)
-        part = a / around if around > 0.0 else 0.0
+        part = turn * a / around if around > 0.0 else 0.0
         if floats[f + FORM] == RING:
             x, y, z = (part + b) * x, b * y, (part + b) * z
         else:
@@ -73,8 +77,8 @@ def slant(floats, f, dx, dy, dz):
     return math.sqrt(x * x + z * z)
 
 
-@lean(THREE(A, N, F, F, F, F, F, F))
-def wander(floats, f, dx, dy, dz, ex, ey, ez):
+@lean(THREE(A, N, F, F, F, F, F, F, F))
+def wander(floats, f, dx, dy, dz, ex, ey, ez, turn):
     """How fast the point that is farthest along d moves over the surface while d changes at the rate e, across d."""
     x, y, z = into(floats, f, dx, dy, dz)
     u, v, w = into(floats, f, ex, ey, ez)
@@ -87,7 +91,7 @@ def wander(floats, f, dx, dy, dz, ex, ey, ez):
     else:
         square = x * x + z * z
         along = (x * u + z * w) / square if square > 0.0 else 0.0
-        part = a / math.sqrt(square) if square > 0.0 else 0.0
+        part = turn * a / math.sqrt(square) if square > 0.0 else 0.0
         tube = b if floats[f + FORM] == RING else 0.0
         u, v, w = part * (u - along * x) + tube * u, tube * v, part * (w - along * z) + tube * w
     return out_of(floats, f, u, v, w)

@@ -82,6 +82,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     write_rows,
 )
 from sceneql.contacts.rigid_exact.exact_solve_kernels import solve_rows, within_reason
+from sceneql.contacts.rigid_exact.rim_kernels import any_rim, exchange_all, save
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, I, N
 
 STILL = 1e-10
@@ -95,6 +96,8 @@ ROUNDING = 2e-11
 CLOSED = 4e-16
 """Gap or speed, against the numbers that it is the difference of, below which it is rounding."""
 MOST_CLOSINGS = 4
+MOST_TURNS = 50
+"""Exchanges of points of circles that lie flat in one solution."""
 
 
 @lean_inlined
@@ -145,7 +148,8 @@ def decide(floats, ints, n):
             floats[rec + FORCE + rows] = floats[found + row + rows]
             rows += 1
         pushes, leaves = floats[found + row] > 0.0, floats[left + row] > LEAVES * largest
-        leaves = leaves and floats[memory + AGAIN] < PATIENCE
+        # (What pushes does not leave, where no solution was found to rounding.)
+        leaves = leaves and not pushes and floats[memory + AGAIN] < PATIENCE
         floats[rec + PUSHES] = 1.0 if pushes else 0.0
         if rows == 3 and not leaves:
             p, q = floats[left + row + 1], floats[left + row + 2]
@@ -213,6 +217,19 @@ def balance(rate, floats, ints, n):
                 rate[ints[at + MOMENTUM] + c] = 0.0
 
 
+@lean(types.Tuple((N, types.boolean, types.boolean))(A, I, types.float64))
+def forces(floats, ints, friction):
+    """Solve for the forces: rows that were solved for, whether to rounding, and whether no force fitted the slip."""
+    aim(floats, ints)
+    n = write_rows(floats, ints, FORCES, friction)
+    solved = solve_rows(floats, ints, n, friction, True)
+    if not (solved and within_reason(floats, ints, n)) and unaim(floats, ints):
+        # No force fits the slip: friction against the pull does, and what sticks by it is stopped at once.
+        n = write_rows(floats, ints, FORCES, friction)
+        return n, solve_rows(floats, ints, n, friction, True), True
+    return n, solved, False
+
+
 @lean(TERM, inner=True)
 def hold(t, y, rate, floats, ints):
     """Adds the forces of all contacts, and what they change of the ties' forces, once those are there."""
@@ -230,13 +247,16 @@ def hold(t, y, rate, floats, ints):
         return
     friction = floats[ints[FRICTION_AT]]
     follow_all(floats, ints)
-    aim(floats, ints)
-    n = write_rows(floats, ints, FORCES, friction)
-    solved = solve_rows(floats, ints, n, friction, True)
-    if not (solved and within_reason(floats, ints, n)) and unaim(floats, ints):
-        # No force fits the slip: friction against the pull does, and what sticks by it is stopped at once.
-        n = write_rows(floats, ints, FORCES, friction)
-        solved = solve_rows(floats, ints, n, friction, True)
+    n, solved, jammed = forces(floats, ints, friction)
+    turns = 0
+    while turns < MOST_TURNS and any_rim(floats, ints):
+        if turns == 0:
+            save(floats, ints, False)
+        if not exchange_all(floats, ints, n, True):
+            break
+        n, solved, jammed = forces(floats, ints, friction)
+        turns += 1
+    if jammed:
         floats[memory + JAMMED] += floats[memory + UNDECIDED]
     if not solved:
         floats[memory + LOOSE] += floats[memory + UNDECIDED]
@@ -261,8 +281,11 @@ def hold(t, y, rate, floats, ints):
             floats[ints[ints[TIED_AT] + 3 * i + 2] + AT_FORCE] += force
     balance(rate, floats, ints, n)
     tell(floats, ints, n, friction)
-    if floats[memory + UNDECIDED] > 0.0 and decide(floats, ints, n):
-        floats[memory + SINCE] = max(t, floats[memory + SINCE])
+    if floats[memory + UNDECIDED] > 0.0:
+        if decide(floats, ints, n):
+            floats[memory + SINCE] = max(t, floats[memory + SINCE])
+    elif turns > 0:  # nothing that is asked at an instant may change what comes after
+        save(floats, ints, True)
 
 
 @lean_inlined

@@ -39,7 +39,7 @@ FEWEST, SWEEPS, LAST = 25, 400, 1_000_000
 VECTORS = 7
 """Vectors of length n of scratch, before the matrix: sizes, projections, the step, points, the best x, the last x, and,
 given by the caller, sizes of the numbers that b is a sum of. Behind the matrix stands what is left, as a sum of squares
-(in energies)."""
+(in energies), and after it how many operations it took."""
 
 WORST = F(N, A, A, I, F, A, A, A)
 TRY = types.boolean(N, A, A, I, F, A, A, A, I, F, N)
@@ -153,6 +153,7 @@ def newton(n, w, kinds, mu, x, s, work, pivots, stiff):
         for j in range(n):
             matrix[row + j] /= largest
         step[i] /= largest
+    work[VECTORS * n + n * n + 1] += n * n * n + 10.0 * n * n
     if not factor(matrix, n, pivots):
         return False
     solve(matrix, n, pivots, step)
@@ -218,6 +219,7 @@ def attempt(n, w, b, kinds, mu, x, s, work, pivots, stiff, most):
 def relax(n, w, b, kinds, mu, x, s, work, sweeps):
     """Sweeps of projected relaxation, contact by contact (Jean 1999)."""
     to, z = work[n : 2 * n], work[3 * n : 4 * n]
+    work[VECTORS * n + n * n + 1] += float(sweeps) * n * n
     for _ in range(sweeps):
         i = 0
         while i < n:
@@ -250,7 +252,7 @@ def solve_law(n, w, b, kinds, mu, x, s, work, pivots, thorough):
 
     Not ``thorough``: what is nearly a solution will do, as where rows contradict each other by rounding.
 
-    ``w`` (n, n) row by row; ``work``: VECTORS n + n n + 1 numbers; ``pivots`` (n,).
+    ``w`` (n, n) row by row; ``work``: VECTORS n + n n + 2 numbers; ``pivots`` (n,).
     """
     # Where forces are not unique, those near the guess; else nearly those of rows that yield a little.
     if attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST):

@@ -77,12 +77,19 @@ shapes (curved_find_kernels)."""
     AGAIN,
     JAMMED,
     COUNTED,
+    WORK,
+    BOUNDED,
     MEMORY,
-) = range(12)
+) = range(14)
 """Memory: how many contacts are kept; whether it is open which of them slide or leave; since when they are these [s];
 whether it has begun; when the step began [s]; solutions that were not found to rounding, contacts without room;
 when the latest event was [s], and how many there were at that instant before;
-instants at which slip jammed, and those whose energy is counted."""
+instants at which slip jammed, and those whose energy is counted; work done, and whether it is bounded."""
+BEFOREHAND, A_SECOND = 1e9, 2e8
+"""Work that is allowed at the start, and by the second: operations, about as many as nanoseconds of one processor. As
+much as a few steps of mode `local` take in each 1/240 s."""
+A_PAIR, A_ROW = 3000.0, 100.0
+"""Work of a pair that is looked at, and of a row that is written."""
 PATIENCE, ENDURANCE = 20, 200
 """Events at one instant after which no contact is let go any more; after which there is no way on."""
 
@@ -106,6 +113,12 @@ def mover_at(ints, m):
 def pull_at(ints, m):
     """Where the accelerations of a mover stand by all forces but those of contacts, of the latest rate."""
     return ints[MOVED_AT] + MOVED * ints[MOVERS] + 6 * m
+
+
+@lean_inlined
+def answer_at(ints, m):
+    """Where the accelerations of a mover stand by all forces (rim_kernels)."""
+    return ints[MOVED_AT] + (MOVED + 6) * ints[MOVERS] + 6 * m
 
 
 @lean(types.void(F, A, A, I))

@@ -165,7 +165,8 @@ def apart_exactly(
 def gap_of(curved: Convex, place: Floats, other: Convex, there: Floats, numbers: Floats) -> float:
     """The gap [m] of a curved shape at a place (7,) and one that is not; ``numbers``: those of the island."""
     from sceneql.bodies.rigid.tie_rows_kernels import AT_R, AT_X, MOVED
-    from sceneql.contacts.rigid_exact.curved_find_kernels import MOVER_A, MOVER_B, SHAPE_OF_B, WHO, meet
+    from sceneql.contacts.rigid_exact.curved_find_kernels import MOVER_A, MOVER_B, SHAPE_OF_B, WHO
+    from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
 
     floats, ints = joined_fields([curved, other], len(numbers), 0)
     floats = np.concatenate([numbers, floats])

@@ -7,16 +7,19 @@ from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_MASS, MOVER, PO
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.rigid_exact.exact_law_kernels import VECTORS, solve_law
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
+    A_ROW,
     AT_FIRST,
     AT_ROW,
     AT_WEIGHED,
     DENSE_AT,
     KINDS_AT,
+    MEMORY_AT,
     MOVERS,
     MOVERS_AT,
     TIE_ROWS,
     UNIT,
     UNITS_AT,
+    WORK,
     diagonal_at,
     left_at,
     mover_at,
@@ -87,7 +90,7 @@ def solve_some(floats, ints, n, friction, thorough):
     room, dense, kinds = rooms(ints), ints[DENSE_AT], ints[KINDS_AT]
     rows, own = kinds + 2 * room, kinds + 3 * room
     w = floats[dense : dense + n * n]
-    own_at = dense + 2 * room * room + (5 + VECTORS) * room + 1
+    own_at = dense + 2 * room * room + (5 + VECTORS) * room + 2
     b, x, s = (
         floats[own_at : own_at + n],
         floats[own_at + room : own_at + room + n],
@@ -108,12 +111,14 @@ def solve_some(floats, ints, n, friction, thorough):
                             total += floats[f + c] * floats[g + c]
             w[i * n + j] = total
     at = sizes_at(ints) + room
-    work = floats[at : at + VECTORS * n + n * n + 1]
+    work = floats[at : at + VECTORS * n + n * n + 2]
+    work[VECTORS * n + n * n + 1] = A_ROW * n
     for i in range(n):
         work[6 * n + i] = floats[sizes_at(ints) + ints[rows + i]]
     solved = solve_law(
         n, w, b, ints[own : own + n], friction, x, s, work, ints[kinds + room : kinds + room + n], thorough
     )
+    floats[ints[MEMORY_AT] + WORK] += work[VECTORS * n + n * n + 1]
     largest = 0.0
     for i in range(n):
         largest = max(largest, work[i])

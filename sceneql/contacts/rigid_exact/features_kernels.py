@@ -54,7 +54,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
-from sceneql.contacts.rigid_exact.curved import ELLIPSOID, FORM
+from sceneql.contacts.rigid_exact.curved import CURVED, ELLIPSOID, FORM
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, follow, own, speed_at
 from sceneql.contacts.rigid_exact.exact_rows_kernels import PLACE, PLACES_AT, SHAPES_AT, mover_at
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -240,17 +240,10 @@ def inside_face(floats, ints, shape, line, x, y, z):
     return least if on else math.inf
 
 
-@lean(F(A, I, N, N, F, F, F, F, F, F, F))
-def inside_edge(floats, ints, shape, k, size, nx, ny, nz, x, y, z):
-    """How far a point is from the ends of an edge, or the normal n from those of its faces, times ``size``."""
-    f, i = ints[shape + FLOATS], ints[shape + INTS]
-    e = edges_at(ints, i) + 4 * k
-    p, q, r = three(floats, f + POINTS + 3 * ints[e])
-    u, v, w = three(floats, f + POINTS + 3 * ints[e + 1])
-    u, v, w = u - p, v - q, w - r
-    length = math.sqrt(dot(u, v, w, u, v, w))
-    s = dot(u, v, w, x - p, y - q, z - r) / length
-    least = min(s, length - s)
+@lean(F(A, I, N, N, F, F, F, F))
+def inside_wedge(floats, ints, shape, k, size, nx, ny, nz):
+    """How far the normal n is from those of the faces of an edge, times ``size``."""
+    e, least = edges_at(ints, ints[shape + INTS]) + 4 * k, math.inf
     if ints[e + 2] >= 0 and ints[e + 3] >= 0:
         one, _ = face_of(floats, ints, shape, ints[e + 2])
         other, _ = face_of(floats, ints, shape, ints[e + 3])
@@ -259,6 +252,18 @@ def inside_edge(floats, ints, shape, k, size, nx, ny, nz, x, y, z):
         by = size / math.sqrt(max(1e-300, 1.0 - both * both))
         least = min(least, by * (t - both * s), by * (s - both * t))
     return least
+
+
+@lean(F(A, I, N, N, F, F, F, F, F, F, F))
+def inside_edge(floats, ints, shape, k, size, nx, ny, nz, x, y, z):
+    """How far a point is from the ends of an edge, or the normal n from those of its faces, times ``size``."""
+    f, e = ints[shape + FLOATS], edges_at(ints, ints[shape + INTS]) + 4 * k
+    p, q, r = three(floats, f + POINTS + 3 * ints[e])
+    u, v, w = three(floats, f + POINTS + 3 * ints[e + 1])
+    u, v, w = u - p, v - q, w - r
+    length = math.sqrt(dot(u, v, w, u, v, w))
+    s = dot(u, v, w, x - p, y - q, z - r) / length
+    return min(s, length - s, inside_wedge(floats, ints, shape, k, size, nx, ny, nz))
 
 
 @lean(F(A, I, N, N, F, F, F, F))
@@ -311,6 +316,8 @@ def extent(floats, ints, rec):
     if not on_face and of < 0:
         return math.inf
     side = 0 if kind == FACE_CORNER or kind == EDGE_CORNER else 1
+    beside = kind == EDGE_CORNER and ints[ints[SHAPES_AT] + SHAPE * int(floats[rec + SHAPE_A]) + KIND] == CURVED
+    side = 1 if beside else side  # a column along an edge that ends there
     if kind == CORNERS:
         side = solid_side(ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
     m = int(floats[rec + SHAPE_A + side])
@@ -326,6 +333,8 @@ def extent(floats, ints, rec):
     if side == 0:
         nx, ny, nz = -nx, -ny, -nz
     size = smaller(floats, ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
+    if beside:
+        return inside_wedge(floats, ints, shape, of, size, nx, ny, nz)
     if kind == CORNERS or kind == ON_CORNER:
         return inside_corner(floats, ints, shape, of, size, nx, ny, nz)
     if kind == CORNER_EDGE or kind == EDGE_CORNER or kind == ON_EDGE:

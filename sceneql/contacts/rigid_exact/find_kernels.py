@@ -72,6 +72,7 @@ from sceneql.contacts.rigid_exact.features_kernels import (
     until_it_leaves,
 )
 from sceneql.contacts.rigid_exact.naming_kernels import name
+from sceneql.contacts.rigid_exact.rim_kernels import begin_tilt, lies
 from sceneql.system.signatures_kernels import A, F, I, N
 
 TOUCHES = 1e-10
@@ -190,6 +191,14 @@ def find(t, y, floats, ints, points, names, goes_on):
                 floats[next + RECORD * count + c] = floats[old + c]
             count, same = count + 1, same + 1
             continue
+        if is_curved(ints, sa) and goes_on and lies(floats, ints, pair, before):
+            for j in range(before):
+                old = ints[RECORDS_AT] + RECORD * j
+                if floats[old + PAIR] == pair and count < most:
+                    for c in range(RECORD):
+                        floats[next + RECORD * count + c] = floats[old + c]
+                    count, same = count + 1, same + 1
+            continue
         if is_curved(ints, sa):
             who = ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b))
             count += meet_ahead(floats, ints, who, margin, next + RECORD * count, most - count)
@@ -245,6 +254,7 @@ def begin(t, y, floats, ints, same):
         floats[rec + SLIP] = slip if slides else 0.0
         if slides:
             put(floats, rec + ALONG, sx / slip, sy / slip, sz / slip)
+        begin_tilt(floats, ints, rec)
         inside = extent(floats, ints, rec)
         # (From where it began, so that what creeps over a border is told.)
         floats[rec + EXTENT] = max(inside, floats[rec + EXTENT]) if floats[rec + OF] >= 0.0 else inside

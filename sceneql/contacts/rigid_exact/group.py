@@ -30,9 +30,17 @@ FEW = 8
 
 
 def assemble(
-    assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref], restitution: Value, friction: Value
+    assembly: Assembly,
+    everyone: Sequence[Bodies],
+    others: Sequence[Ref],
+    restitution: Value,
+    friction: Value,
+    *,
+    gives_way: bool = False,
 ) -> tuple[int, ...]:
     """Add the exact contacts of rigid bodies: what outputs read (Collision).
+
+    ``gives_way``: whether another mode goes on where this one finds no way, or has taken more work than it may.
 
     Raises ScriptError for a shape that is not covered, for bodies that start inside each other, for too many bodies.
     """
@@ -86,14 +94,15 @@ def assemble(
     room = len(tied) + 3 * most
     length = convex.room_length(found.shapes)
     moved, places, begun = (
-        assembly.floats(np.zeros(size)) for size in ((MOVED + 6) * len(movers), 7 * count, 7 * count)
+        assembly.floats(np.zeros(size)) for size in ((MOVED + 12) * len(movers), 7 * count, 7 * count)
     )
     working = assembly.floats(np.zeros(length + 12))
-    records = assembly.floats(np.zeros(2 * contact_kernels.RECORD * most))
+    records = assembly.floats(np.zeros((2 * most + 1) * contact_kernels.RECORD + 1))
     units = assembly.floats(np.zeros(rows.UNIT * room))
-    dense = assembly.floats(np.zeros(2 * room * room + (8 + exact_law_kernels.VECTORS) * room + 1))
+    dense = assembly.floats(np.zeros(2 * room * room + (8 + exact_law_kernels.VECTORS) * room + 2))
     kept = assembly.floats(np.zeros(4 * len(pairs)))
-    memory = assembly.floats(np.zeros(rows.MEMORY))
+    memory = assembly.floats([0.0] * rows.BOUNDED + [float(gives_way)])
+    assembly.gives_way = assembly.gives_way or gives_way
     outputs = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
     nan = float("nan")
     tally = assembly.floats([0.0, nan, nan, 0.0, nan])

@@ -34,7 +34,10 @@ from sceneql.contacts.rigid_exact.crowd_kernels import ENDLESS, TIRED, count_eve
 from sceneql.contacts.rigid_exact.exact_law_kernels import BILATERAL, UNILATERAL
 from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
+    A_SECOND,
     AGAIN,
+    BEFOREHAND,
+    BOUNDED,
     ENDURANCE,
     FRICTION_AT,
     IMPACTS,
@@ -51,6 +54,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     STARTED,
     TALLY_AT,
     TIE_ROWS,
+    WORK,
     count_energy,
     energy,
     follow_all,
@@ -66,6 +70,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
 from sceneql.contacts.rigid_exact.exact_solve_kernels import solve_rows
 from sceneql.contacts.rigid_exact.features_kernels import smaller
 from sceneql.contacts.rigid_exact.find_kernels import begin, find, start_step
+from sceneql.contacts.rigid_exact.rim_kernels import any_rim, exchange_all
 from sceneql.contacts.rigid_exact.true_gap_kernels import unseen
 from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
 
@@ -112,8 +117,10 @@ def reflect(t, y, floats, ints, restitution, friction):
 
 @lean(N(A, I))
 def mark_approaching(floats, ints):
-    """Mark the contacts that approach; how many."""
+    """Mark the contacts that approach, of circles that lie flat the points that do so fastest; how many."""
     count = 0
+    if any_rim(floats, ints):
+        exchange_all(floats, ints, 0, False)
     for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
         rec = ints[RECORDS_AT] + RECORD * k
         a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
@@ -148,6 +155,8 @@ def strike(t, y, floats, ints):
     # (Without friction nothing ends what bounces with a restitution of 1.)
     if (restitution < 1.0 or friction > 0.0) and tired(floats, ints):
         restitution = 0.0
+    if any_rim(floats, ints):
+        exchange_all(floats, ints, 0, False)
     count = int(floats[memory + KEPT])
     fastest = 0.0
     for k in range(count):
@@ -173,7 +182,7 @@ def strike(t, y, floats, ints):
             n, solved = reflect(t, y, floats, ints, part, friction)
         rounds += 1
     # What approaches still, or would bounce lower than it is seen, stays together.
-    caught, later = 0, 0.0
+    count, caught, later = int(floats[memory + KEPT]), 0, 0.0
     for k in range(count):
         rec = ints[RECORDS_AT] + RECORD * k
         a, b = int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B])
@@ -199,6 +208,11 @@ def strike(t, y, floats, ints):
             floats[memory + LOOSE] += 1.0
             reflect(t, y, floats, ints, 0.0, 0.0)
         reflect(t, y, floats, ints, -1.0, 0.0)
+        rounds = 0
+        while rounds < MOST_ROUNDS and any_rim(floats, ints) and exchange_all(floats, ints, 0, False):
+            mark_approaching(floats, ints)
+            reflect(t, y, floats, ints, 0.0, friction)
+            rounds += 1
         if math.isnan(floats[ints[TALLY_AT] + layout.REST_TIME]):
             floats[ints[TALLY_AT] + layout.REST_TIME] = t + later
     count_energy(y, floats, ints, -1.0)
@@ -259,4 +273,6 @@ def impact(t, y, pair, floats, ints):
         floats[channels.CHANGED] = 1.0
     if wrong:
         floats[channels.CHANGED] = channels.UNSEEN
+    elif pair < 0 and floats[memory + BOUNDED] > 0.0 and floats[memory + WORK] > BEFOREHAND + A_SECOND * t:
+        floats[channels.CHANGED] = channels.COSTLY
     start_step(t, y, floats, ints)

@@ -10,7 +10,8 @@ from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.gap_kernels import gap as distance
 from sceneql.contacts.rigid_exact.contact_kernels import GAP, PAIR, RECORD
 from sceneql.contacts.rigid_exact.curved_ahead_kernels import is_cut
-from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
+from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved
+from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     KEPT,
     KEPT_AT,

@@ -3,6 +3,8 @@
 
 import math
 
+from numba import types
+
 from sceneql.bodies.rigid.rigid_kernels import to_world
 from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_R, AT_X, MOVED
 from sceneql.compiled.kernels import lean
@@ -21,8 +23,11 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     dot,
     three,
 )
-from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved, meet
+from sceneql.contacts.rigid_exact.curved import FIELD, FORM
+from sceneql.contacts.rigid_exact.curved_find_kernels import ask, beyond_face, is_curved
+from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
+    A_PAIR,
     BEGUN,
     BEGUN_AT,
     KEPT,
@@ -37,6 +42,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     ROOM,
     ROOM_AT,
     SHAPES_AT,
+    WORK,
     follow_all,
     look,
     mover_at,
@@ -44,6 +50,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
 )
 from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, is_plain, own, smaller
 from sceneql.contacts.rigid_exact.find_kernels import TOUCHES
+from sceneql.contacts.rigid_exact.rim_kernels import lying
 from sceneql.contacts.rigid_exact.true_gap_kernels import kept_gap, true_gap
 from sceneql.system.signatures_kernels import GAP as SIGNATURE
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -79,10 +86,26 @@ def motion(floats, begun, now, h, motions, to):
     return angle
 
 
-@lean(F(A, I, N, N, N, N, A, F, F, F))
-def curved_touch(floats, ints, a, b, from_a, from_b, motions, speed, h, margin):
+@lean(types.boolean(A, I, N, N, N, N, A, F))
+def stays_beyond(floats, ints, a, b, ma, mb, motions, h):
+    """Whether a curved body is beyond the same face of what does not turn where movers are ma and mb and h [s] later,
+    now, and between: how far it is, less the way of a straight line, bends by its spin's square at most."""
+    sa, sb = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b
+    if floats[ints[sa + FLOATS] + FORM] == FIELD or motions[9] != 0.0 or motions[10] != 0.0 or motions[11] != 0.0:
+        return False
+    square = motions[3] ** 2 + motions[4] ** 2 + motions[5] ** 2
+    bound = 0.125 * h * h * square * floats[ints[sa + FLOATS] + REACH]
+    for k in range(ints[ints[sb + INTS] + FACES]):
+        if beyond_face(floats, ints, sa, sb, mover_at(ints, a), mover_at(ints, b), k) > bound:
+            if beyond_face(floats, ints, sa, sb, ma, mb, k) > bound:
+                return True
+    return False
+
+
+@lean(F(A, I, N, N, N, N, A, F, F, F, F))
+def curved_touch(floats, ints, a, b, from_a, from_b, motions, speed, h, margin, last):
     """When a curved body and another first are within a margin, at the latest; as `first_touch`, by the gap over the
-    largest speed."""
+    largest speed; ``last``: the gap at the end."""
     ma, mb = ints[ROOM_AT], ints[ROOM_AT] + MOVED
     t = 0.0
     for _ in range(MOST_ADVANCES):
@@ -94,11 +117,15 @@ def curved_touch(floats, ints, a, b, from_a, from_b, motions, speed, h, margin):
                 floats[to + AT_X + c] = floats[moved + c]
                 column = to_world(floats, moved + 3, 1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2))
                 floats[to + AT_R + c], floats[to + AT_R + 3 + c], floats[to + AT_R + 6 + c] = column
+        floats[ints[MEMORY_AT] + WORK] += A_PAIR
         gap = meet(floats, ints, ask(ints, -1, a, b, ma, mb), -NEVER, 0, 0)[1]
-        if gap <= margin or t >= h:
+        if gap <= margin and t > 0.0:
             return t
-        t += gap / speed
-    return t
+        if t >= h or gap + last > (h - t) * speed or stays_beyond(floats, ints, a, b, ma, mb, motions, h - t):
+            return h
+        # (A pair may touch where it begins.)
+        t += max(gap, LITTLE * smaller(floats, ints, a, b)) / speed if t == 0.0 else gap / speed
+    return h
 
 
 @lean(F(A, I, N, N, F, F, A, A))
@@ -119,7 +146,7 @@ def passed(floats, ints, a, b, h, gap, motions, room):
         return gap
     if is_curved(ints, ints[SHAPES_AT] + SHAPE * a):
         touch = curved_touch(
-            floats, ints, a, b, begun + PLACE * a, begun + PLACE * b, motions, far / h, h, 1e-10 * size
+            floats, ints, a, b, begun + PLACE * a, begun + PLACE * b, motions, far / h, h, 1e-10 * size, gap
         )
         return gap if touch >= h else -(h - touch) * far / h
     touch = first_touch(
@@ -191,6 +218,7 @@ def gap(t, y, gaps, floats, ints):
         gaps[pair] = clear(floats, ints, a, b, h)
         if gaps[pair] > 0.0:
             continue
+        floats[memory + WORK] += A_PAIR
         now = true_gap(floats, ints, pair)
         if floats[ints[KEPT_AT] + pair] > 0.0:
             # What is kept has errors of its own; what else meets is deeper.
@@ -217,3 +245,4 @@ def gap(t, y, gaps, floats, ints):
                 floats, ints, int(floats[rec + SHAPE_A])
             ):  # at a border, from where it may turn back
                 gaps[at + 1] = INSIDE * size + extent(floats, ints, rec) - floats[rec + EXTENT]
+        gaps[at + 1] = min(gaps[at + 1], lying(floats, ints, rec))

@@ -1,0 +1,117 @@
+"""Cylinders and rings in mode `exact` that stand, tip, slide and fall flat: all of their circle bears."""
+
+import numpy as np
+import pytest
+
+import runs
+
+TIGHT = "dop853: {tolerance: 1e-12}"
+GRAVITY = 9.81
+
+
+def watch(folder, shape, motion, times, *outputs, law, down=(0, -1, 0), solver=TIGHT, floor="plane", mode="exact"):
+    """Outputs of the rigid body `it` of a shape on a floor, with gravity along ``down``."""
+    pull = " ".join(str(float(GRAVITY * x)) for x in down)
+    script = f"""
+clock: {{end: {float(max(times))} s}}
+objects: {{can: {{{shape}}}, floor: {floor}}}
+models: {{it: {{rigid: {{of: can, {motion}}}}}}}
+forces: [{{gravity: {{acceleration: {pull} m/s^2}}}}]
+contacts: {{touch: {{collision: {{mode: {mode}, {law}}}}}}}
+solvers: {{main: {{{solver}}}}}
+"""
+    return runs.watch(folder, script, times, *outputs, pruned=False)
+
+
+def slope(angle, around):
+    """Down, for a plane that falls by an angle towards a direction around y [deg]."""
+    a, b = np.radians([angle, around])
+    return np.sin(a) * np.cos(b), -np.cos(a), np.sin(a) * np.sin(b)
+
+
+@pytest.mark.parametrize("around", [0, 17, 45])
+@pytest.mark.parametrize(
+    "shape", ["cylinder: {radius: 0.1 m, height: 0.4 m, ", "torus: {radius: 0.08 m, tube: 0.06 m, "]
+)
+def test_what_is_round_stands_on_a_slope_up_to_the_exact_angle_whichever_way_it_falls(tmp_path, shape, around):
+    """The moment about the lowest point of the circle: tan(angle) = radius / height of the center."""
+    radius, height, friction = (0.1, 0.2, 1) if "cyl" in shape else (0.08, 0.06, 1.6)
+    limit = np.degrees(np.arctan2(radius, height))
+    body = f"{shape}position: 0 {height} 0 m}}"
+    for part, stands in ((0.999, True), (1.001, False)):
+        down = slope(part * limit, around)
+        ((x, w),) = watch(
+            tmp_path, body, "mass: 1 kg", [0.5], "it.position", "it.spin",
+            law=f"restitution: 0, friction: {friction}", down=down,
+        )  # fmt: skip
+        axis = np.cross((0, 1, 0), down) / np.linalg.norm(np.cross((0, 1, 0), down))
+        if stands:
+            np.testing.assert_allclose(x, [0, height, 0], atol=1e-8)
+        else:
+            assert w @ axis > 1e-3
+            np.testing.assert_allclose(w, (w @ axis) * axis, atol=1e-3 * abs(w @ axis))
+
+
+def test_a_cylinder_slides_down_a_slope_upright_and_keeps_to_it(tmp_path):
+    """g (sin - mu cos) t^2 / 2, as a block: the center of pressure is mu h/2 ahead, within the circle."""
+    down, mu = slope(30, 33), 0.4
+    rows = watch(
+        tmp_path, "cylinder: {radius: 0.1 m, height: 0.2 m, position: 0 0.1 0 m}", "mass: 2 kg", [0.3, 1],
+        "it.position", "it.spin", law=f"restitution: 0, friction: {mu}", down=down,
+    )  # fmt: skip
+    along = np.array([down[0], 0, down[2]]) / np.hypot(down[0], down[2])
+    for (x, w), t in zip(rows, (0.3, 1), strict=True):
+        way = GRAVITY * (np.sin(np.pi / 6) - mu * np.cos(np.pi / 6)) * t**2 / 2
+        np.testing.assert_allclose(x, way * along + (0, 0.1, 0), atol=1e-9)
+        np.testing.assert_allclose(w, 0, atol=1e-9)
+
+
+def test_a_cylinder_that_slides_tips_forwards_where_friction_times_its_height_exceeds_its_width(tmp_path):
+    for mu, tips in ((0.99, False), (1.01, True)):
+        ((w,),) = watch(
+            tmp_path, "cylinder: {radius: 0.1 m, height: 0.2 m, position: 0 0.1 0 m}",
+            "mass: 1 kg, velocity: 0.6 0 0.8 m/s", [0.02], "it.spin", law=f"restitution: 0, friction: {mu}",
+        )  # fmt: skip
+        assert bool(w @ (0.8, 0, -0.6) > 1e-3) is tips
+
+
+def test_a_cylinder_rolls_down_a_slope_at_two_thirds_of_its_pull(tmp_path):
+    turn = "rotation: {about: x, angle: 90 deg}"
+    times = np.array([0.5, 1])
+    rows = watch(
+        tmp_path, f"cylinder: {{radius: 0.1 m, height: 0.3 m, position: 0 0.1 0 m, {turn}}}", "mass: 1 kg", times,
+        "it.position", "it.spin", law="restitution: 0, friction: 0.5", down=slope(20, 0),
+    )  # fmt: skip
+    way = GRAVITY * np.sin(np.radians(20)) * times**2 / 3
+    np.testing.assert_allclose([x for x, _ in rows], np.column_stack([way, 0.1 + 0 * way, 0 * way]), atol=1e-9)
+    np.testing.assert_allclose([w[2] for _, w in rows], -2 * way / times / 0.1, atol=1e-8)
+
+
+@pytest.mark.parametrize("floor", ["plane", "{box: {size: 8 0.2 8 m, position: 0 -0.1 0 m}}"])
+@pytest.mark.parametrize(("tilt", "friction"), [(1, 1), (15, 0), (15, 1), (25, 0.3)])
+def test_a_cylinder_that_is_let_go_on_its_rim_falls_flat_and_makes_no_energy(tmp_path, tilt, friction, floor):
+    a, r, h = np.radians(tilt), 0.1, 0.1
+    place = f"position: 0 {r * np.sin(a) + h / 2 * np.cos(a)} 0 m, rotation: {{about: 1 0 0.3, angle: {tilt} deg}}"
+    rows = watch(
+        tmp_path, f"cylinder: {{radius: {r} m, height: {h} m, {place}}}", "mass: 1 kg", np.linspace(0, 0.5, 26),
+        "it.position", "it.kinetic", "it.energy", "it.dissipated", law=f"restitution: 0, friction: {friction}",
+        floor=floor,
+    )  # fmt: skip
+    x, kinetic, energy, dissipated = (np.array(some) for some in zip(*rows, strict=True))
+    assert x[-1, 1] == pytest.approx(h / 2, abs=1e-12)
+    assert kinetic[-1] < 1e-9
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
+    assert np.diff(dissipated).min() > -1e-9
+    assert x[:, 1].min() > h / 2 - 1e-9
+
+
+def test_a_ring_bounces_and_wobbles_down_without_making_energy(tmp_path):
+    body = "torus: {radius: 0.148 m, tube: 0.056 m, position: 0 0.4 0 m, rotation: {about: -1 0 -0.09, angle: 23 deg}}"
+    rows = watch(
+        tmp_path, body, "density: 1000 kg/m^3, velocity: 0.15 0 0 m/s", np.linspace(0, 2, 41), "it.energy",
+        "it.dissipated", law="restitution: 0.3, friction: 0", solver="auto: {}",
+        floor="{box: {size: 8 0.2 8 m, position: 0 -0.1 0 m}}",
+    )  # fmt: skip
+    energy, dissipated = np.array(rows).T
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-6)
+    assert np.diff(dissipated).min() > -1e-6 * energy[0]
