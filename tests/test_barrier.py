@@ -196,6 +196,20 @@ def test_a_solid_stays_above_a_floor(tmp_path, solver, friction):
     assert island.march.statistics.evaluations < 40_000
 
 
+def test_auto_takes_a_fast_soft_solid_through_its_impact(tmp_path):
+    island = run_of(
+        tmp_path,
+        "clock: {end: 0.15 s}\nobjects: {floor: plane}\nmodels:\n"
+        "  jelly: {elastic: {block: {size: 0.2 0.2 0.2 m, cells: [2, 2, 2]}, element: p1, velocity: 0 -3 0 m/s,"
+        " position: 0 0.15 0 m, law: {neo_hookean: {modulus: 20 kPa, poisson: 0.4}}}}\nforces: [gravity]\n"
+        "contacts: {touch: {collision: {between: [jelly, floor], friction: 0.4}}}\n",
+    )
+    y, _ = island.march.advance(0.15)
+    assert 36 <= island.march.statistics.steps <= 72  # those of bdf2, some halved
+    bodies = island.bodies["jelly"]
+    assert y[bodies.position_at : bodies.position_at + 3 * bodies.count].reshape(-1, 3)[:, 1].min() > 0.0
+
+
 def test_friction_is_the_same_by_implicit_and_explicit_methods(tmp_path):
     ends = []
     for solver in ("radau", "dop853", "verlet: {step: 0.1 ms}"):

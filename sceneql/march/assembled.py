@@ -81,6 +81,7 @@ class Assembled:
             fields=made.on_grids,
             floats=made.numbers,
             orbits=bool(forces) and made.moved_by_forces_alone and all(force.at_a_distance() for force in forces),
+            apart="barrier" in made.contact_mode,
         )
 
     def act(self) -> None:

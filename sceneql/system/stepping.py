@@ -133,3 +133,5 @@ class IslandFacts:
     """The island's floats, which the offsets of fields are into."""
     orbits: bool = False
     """Whether it is masses that nothing but forces at a distance moves (Force.at_a_distance)."""
+    apart: bool = False
+    """Whether a barrier keeps surfaces apart, towards which explicit steps would creep."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from sceneql.kinds import FixedScalar, Methods, Solver, field
 from sceneql.stepping.tableau import DORMAND_PRINCE
 from sceneql.words.solvers.ark3 import Ark3
+from sceneql.words.solvers.bdf2 import Bdf2
 from sceneql.words.solvers.dop853 import Dop853
 from sceneql.words.solvers.dopri5 import Dopri5
 from sceneql.words.solvers.exact import Exact
@@ -27,6 +28,8 @@ HOPEFUL = 1e-7
 ORBITS = 1e-10
 """Tolerance from which on order 15 takes less time on orbits, at IN_ORBITS, where it errs by less than 1e-12."""
 IN_ORBITS = 1e-6
+APART = 1.0 / 240.0
+"""Steps [s] where a barrier keeps surfaces apart."""
 
 
 class Auto(Solver):
@@ -40,9 +43,9 @@ class Auto(Solver):
     a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less. (On large nets
     tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty masses keep
     it with dopri5. A field on a grid is marched by tr_bdf2, and on a box whose coefficient and boundary do not vary by
-    exact; a flow, with all that is solved with it, by ark3. Errors are measured as those of `radau` are. Sources: see
-    these words; the sign of stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996),
-    IV.2.
+    exact; a flow, with all that is solved with it, by ark3; elastic solids that may touch by bdf2 in steps of 1/240 s.
+    Errors are measured as those of `radau` are. Sources: see these words; the sign of stiffness is that of Hairer &
+    Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """
 
     tolerance: FixedScalar = field(
@@ -87,6 +90,9 @@ class Auto(Solver):
             return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1), absolute=self.absolute).choose(island)
         if island.fields.flow is not None:
             return Ark3(tolerance=min(100.0 * self.tolerance, 0.1)).choose(island)
+        if island.apart:
+            there = "in steps of one length, since a barrier keeps surfaces apart, towards which others would creep"
+            return replace(Bdf2(step=APART).choose(island), remark=there)
         few = island.entries <= BY_DIFFERENCES
         if island.local_contacts and few:
             return Methods(self, self._order_5(), bounded_by=Dopri5(tolerance=self.tolerance))
