@@ -38,6 +38,7 @@ def rendered(tmp_path, entry):
         ('implicit: {field: "x^2 + y^2 + z^2 - 1", unit: 1e-200 m}', "less than 1e-100 m"),
         ("sphere: {radius: 1e160 m}", "more than 1e.100 m"),
         ("sphere: {color: 1e300 0 0}", "the numbers of a color are from 0 to 1"),
+        ("sphere: {color: hue(1e308*100)}", "the numbers of a color are from 0 to 1"),
         ("box: {size: 1e-200 1e-200 1e-200 m}", "less than 1e-100 m"),
         ("torus: {radius: 1e200 m}", "more than 1e.100 m"),
         ("blobby: {points: [0 0 0 m], radius: 1e150 m}", "more than 1e.100"),

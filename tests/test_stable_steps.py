@@ -215,3 +215,16 @@ def test_two_masses_on_an_oblique_spring_swing_at_its_frequency(seed):
     found = dominant(spectrum(rate, partner, 0.0, np.concatenate([places, np.zeros(7)])))
     assert found.imag == pytest.approx(math.sqrt(stiffness * np.sum(1.0 / masses)), rel=1e-3)
     assert abs(found.real) < 1e-3 * found.imag
+
+
+def test_numbers_beyond_all_doubles_leave_a_check_whole(tmp_path):
+    stream = (
+        "models: {water: {flow: {size: 2 1 m, cell: 0.1 m, density: 1 kg/m^3, viscosity: 1e-3 Pa*s, "
+        "boundary: {left: {inflow: {velocity: '[1e300*y, 0]'}}, right: {outflow: {}}}}}}\n"
+        "solvers: {main: {sbdf2: {step: 1 ms}}}\n"
+    )
+    outputs = "clock: {end: 1 s}\noutputs: {data: {record: {of: [water.kinetic_energy]}}}\n"
+    assert ["stable at no step" in one for one in warnings(loaded(tmp_path, stream + outputs))] == [True]
+    cells = "models: {m: {diffusion: {size: 1 1 m, cell: 1e308 m, coefficient: 1 m^2/s}}}\n"
+    cells += "solvers: {main: {rk4: {step: 1 ms}}}\n"
+    assert warnings(loaded(tmp_path, cells + outputs.replace("water.kinetic_energy", "m.mass"))) == []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from math import inf
 
 from sceneql.compiler.css_colors import NAMED, css_color
 from sceneql.compiler.keyframes import read_keys
@@ -46,8 +47,8 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
             return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
     numbers = evaluate(value.expr, {}) if value is not None and value.constant else (0.0,)
-    if not 0 <= min(numbers) <= max(numbers) <= 1:
-        help = None if min(numbers) < 0 else _of_bytes(numbers)
+    if not all(0 <= number <= 1 for number in numbers):  # nor are they NaN
+        help = _of_bytes(numbers) if all(0 <= number < inf for number in numbers) else None
         found.error("out-of-range", "the numbers of a color are from 0 to 1", node.span, help=help)
         return None
     return value

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import cache
+from functools import cache, partial
 from typing import cast
 
 from sceneql.graph import Island, Task
@@ -50,7 +51,7 @@ def warn_of_steps(
         )
         for name, modes in _modes(island, tasks):
             entry = script.sections.get(tasks[name].family, {}).get(name)
-            for fastest in _known(modes):
+            for fastest in modes:
                 wrong = _wrong(growth, stable, solver.word, step, fastest, end, damped)
                 if wrong is not None:
                     message, smaller = wrong
@@ -62,21 +63,21 @@ def warn_of_steps(
                     break
 
 
-def _modes(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, Iterable[Oscillation]]]:
+def _modes(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, tuple[Oscillation, ...]]]:
     """Each model and force by name, with bounds on its fastest oscillations."""
     models = {name: cast(Model, tasks[name].kind) for name in island.models}
     for name, model in models.items():
-        yield name, model.fastest(name)
+        yield name, _known(partial(model.fastest, name))
     known = {name: model.static_masses() for name, model in models.items()}
     for force in dict.fromkeys(force for force, _ in island.forces):
         on = {model: known[model] for other, model in island.forces if other == force}
-        yield force, cast(Interaction, tasks[force].kind).fastest(force, on)
+        yield force, _known(partial(cast(Interaction, tasks[force].kind).fastest, force, on))
 
 
-def _known(modes: Iterable[Oscillation]) -> tuple[Oscillation, ...]:
+def _known(modes: Callable[[], Iterable[Oscillation]]) -> tuple[Oscillation, ...]:
     """The bounds that can be computed; where numbers over- or underflow, the run reports more."""
     try:
-        return tuple(modes)
+        return tuple(modes())
     except ArithmeticError:
         return ()
 
@@ -107,7 +108,10 @@ def _wrong(
     scale = fastest.size
     if scale == 0.0 or not math.isfinite(scale):
         return None
-    grown = growth(fastest.frequency, fastest.decay, step, fastest.turn)
+    try:
+        grown = growth(fastest.frequency, fastest.decay, step, fastest.turn)
+    except OverflowError:  # so far beyond the bound that no double holds it
+        grown = sys.float_info.max
     if grown is None:
         return None
     # Scaled by the largest rate, oscillations of many masses become one mode, searched once.
