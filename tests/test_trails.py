@@ -52,6 +52,12 @@ def test_at_the_start_there_is_no_trail_yet(tmp_path):
     assert shapes(tmp_path, SCENE, [0.0], ["way"])[0][1] == []
 
 
+def test_a_trail_of_an_item_that_is_not_there_fails_at_its_line(tmp_path):
+    with pytest.raises(RunFailure, match="no item 7 in a list of 2") as caught:
+        shapes(tmp_path, SCENE.replace("of: sky.positions,", 'of: "item(sky.positions, 7)",'), [1.0], ["way"])
+    assert (caught.value.part, caught.value.span.line) == ("way", 8)
+
+
 def test_what_decorates_hides_no_model(tmp_path):
     path = tmp_path / "scene.yaml"
     path.write_text(SCENE)

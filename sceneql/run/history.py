@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
+from sceneql.failure import failing_as
 from sceneql.kinds import Camera, Object, Value
 
 if TYPE_CHECKING:
@@ -23,12 +24,14 @@ class History:
     """The values that objects and cameras among some parts ask to be remembered (`remembers`), as far back as asked."""
 
     def __init__(self, tasks: Iterable[Task]) -> None:
-        kinds = [task.kind for task in tasks if isinstance(task.kind, Object | Camera)]
-        asked = [one for kind in kinds for one in kind.remembers()]
+        asked = [
+            (task, one) for task in tasks if isinstance(task.kind, Object | Camera) for one in task.kind.remembers()
+        ]
         self._kept: dict[int, tuple[Remembered, float, float, deque[tuple[float, Any]]]] = {
             id(value): (value, keep, max(every, min(keep, 1e300) / MOST, SHORTEST), deque())
-            for value, keep, every in asked
+            for _, (value, keep, every) in asked
         }
+        self._of = {id(value): task for task, (value, _, _) in asked}
         self._seen = dict.fromkeys(self._kept, -1)
 
     def due(self, time: float) -> Iterator[tuple[float, list[int]]]:
@@ -43,10 +46,12 @@ class History:
         yield from sorted(wanted.items())
 
     def see(self, moment: Moment, keys: Iterable[int]) -> None:
-        """Record the values of these keys at an instant."""
+        """Record the values of these keys at an instant. Raises RunFailure where one has none then."""
         for key in keys:
             value, keep, every, kept = self._kept[key]
-            kept.append((moment.time, moment.at(value) if isinstance(value, Value) else value.at(moment)))
+            task = self._of[key]
+            with failing_as(task.name, moment.time, value.span if isinstance(value, Value) else task.span):
+                kept.append((moment.time, moment.at(value) if isinstance(value, Value) else value.at(moment)))
             while kept[0][0] < moment.time - keep - every:
                 kept.popleft()
 
