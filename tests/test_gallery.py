@@ -67,6 +67,7 @@ expect:
   end: {of: ball.volume, value: final(ball.volume), tolerance: 0, because: exact}
   middle: {of: "at(ball.volume, 0.55 s)", value: 4/3*pi*(1.55 m)^3, tolerance: 0.02, because: exact}
   whole: {of: max(ball.pieces), value: 1, tolerance: 0, because: exact}
+  fixed: {of: "max(2) + at(1, 0.5 s) + relative_drift(3)", value: initial(4) - final(1), tolerance: 0, because: exact}
 """
 
 

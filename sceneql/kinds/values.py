@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Expr, Link, Shape, Symbol, walk
+from sceneql.quantities.expression import Call, Expr, Link, Shape, Symbol, walk
+from sceneql.quantities.operations import OPERATIONS
 from sceneql.quantities.span import Span
 
 if TYPE_CHECKING:
@@ -44,8 +45,8 @@ class Value(Checked):
 
     expr: Expr
     span: Span | None = None
-    _read: tuple[Symbol | Link, ...] | None = field(default=None, init=False, repr=False, compare=False)
-    """The times and outputs that it reads, once they are asked for."""
+    _read: tuple[Symbol | Link | Call, ...] | None = field(default=None, init=False, repr=False, compare=False)
+    """The times and outputs that it reads, and what looks over the whole run, once they are asked for."""
     _list: Any = field(default=None, init=False, repr=False, compare=False)
     """What ``fixed_list`` gave before."""
 
@@ -59,9 +60,9 @@ class Value(Checked):
         """The outputs of other parts that it reads."""
         return tuple(node for node in self._reads() if isinstance(node, Link))
 
-    def _reads(self) -> tuple[Symbol | Link, ...]:
+    def _reads(self) -> tuple[Symbol | Link | Call, ...]:
         if self._read is None:
-            read = tuple(node for node in walk(self.expr) if isinstance(node, Symbol | Link))
+            read = tuple(node for node in walk(self.expr) if isinstance(node, Symbol | Link) or _over_time(node))
             object.__setattr__(self, "_read", read)
             return read
         return self._read
@@ -82,6 +83,10 @@ class Value(Checked):
     def number(self) -> Any:
         """The float, or nested tuple of floats, of a constant value, in SI."""
         return evaluate(self.expr, {})
+
+
+def _over_time(node: Expr) -> TypeGuard[Call]:
+    return isinstance(node, Call) and OPERATIONS[node.op].series
 
 
 def unreadable(link: Link, place: Span | None = None) -> Diagnostic:

@@ -52,6 +52,8 @@ def course(expr: Expr, series: Series, times: list[float]) -> Any:
 
     Operations over the whole run use the times that are given.
     """
+    import numpy as np
+
     known: dict[Symbol, Any] = {}
 
     def look_up(node: Symbol | Link) -> Any:
@@ -62,7 +64,9 @@ def course(expr: Expr, series: Series, times: list[float]) -> Any:
     def solved(old: Expr, node: Expr) -> Expr:
         if not isinstance(node, Call) or not OPERATIONS[node.op].series:
             return node
-        value = evaluate(node.args[0], look_up, arrays=True)
+        value = np.asarray(evaluate(node.args[0], look_up, arrays=True))
+        if value.ndim == len(node.args[0].type.shape):  # constant, it has one value for the whole run
+            value = np.broadcast_to(value, (len(times), *value.shape))
         symbol = Symbol(f"series {len(known)}", node.type)
         known[symbol] = _SERIES[node.op].of(value, times, node)
         return symbol
