@@ -18,6 +18,7 @@ from sceneql.linear import krylov_kernels as krylov
 from sceneql.linear import multifrontal, multifrontal_kernels
 from sceneql.linear import multifrontal_layout as layout
 from sceneql.linear.solver_kernels import PRECONDITION
+from sceneql.stepping.eigenmodes_kernels import BLOCK, solve_block
 
 UNIT = 2.3e-16
 
@@ -102,6 +103,11 @@ def test_fronts_solve_to_rounding(columns, rows, seed, symmetric, dissected):
     assert multifrontal_kernels.factor_system(numbers, matrix.data, factors, work, symmetric)
     multifrontal_kernels.solve_system(numbers, matrix.data, factors, x, work, symmetric)
     assert np.abs(matrix @ x - right).max() <= 1e-12
+    if symmetric and not numbers[layout.IN_SINGLE]:
+        many = np.random.default_rng(seed).standard_normal((matrix.shape[0], BLOCK))
+        found = many.ravel().copy()
+        solve_block(numbers, factors, found, np.zeros(BLOCK * plan.work))
+        assert np.abs(matrix @ found.reshape(many.shape) - many).max() <= 1e-12
 
 
 @pytest.mark.parametrize("symmetric", [True, False])

@@ -20,7 +20,7 @@ ZERO = 1e-12
 MORE = 4
 """So many more are sought, so that the last ones of several equal squares are not missed."""
 BLOCK = 8
-"""Vectors at a time: more than the modes of most symmetries that share a frequency."""
+"""Vectors at a time, those of eigenmodes_kernels: more than the modes of most symmetries that share a frequency."""
 LOOKS = 4
 """After so many blocks the modes found are looked at."""
 EXACT, ALONE = 1e-9, 1e-20
@@ -59,11 +59,15 @@ def _sparse(stiffness: Any, mass: Any, count: int, points: Floats, shift: float)
     solve = _inverse(stiffness, mass, points, shift)
     block = np.random.Generator(np.random.Philox(1)).standard_normal((n, BLOCK))
     block, _ = _orthonormal(block, mass)
-    basis, weighed = np.zeros((n, 0)), np.zeros((n, 0))
+    rooms, whole = (np.empty((n, 4 * count)), np.empty((n, 4 * count))), 0
     projected = np.zeros((0, 0))
     while True:
-        basis, weighed = np.hstack([basis, block]), np.hstack([weighed, mass @ block])
-        width, whole = block.shape[1], basis.shape[1]
+        width = block.shape[1]
+        whole += width
+        if whole > rooms[0].shape[1]:
+            rooms = np.hstack([rooms[0], np.empty_like(rooms[0])]), np.hstack([rooms[1], np.empty_like(rooms[1])])
+        basis, weighed = rooms[0][:, :whole], rooms[1][:, :whole]
+        basis[:, -width:], weighed[:, -width:] = block, mass @ block
         found = solve(weighed[:, -width:])
         along = weighed.T @ found
         found -= basis @ along
@@ -108,11 +112,12 @@ def _orthonormal(block: Floats, mass: Any) -> tuple[Floats, Floats]:
 
 
 def _inverse(stiffness: Any, mass: Any, points: Floats, shift: float) -> Callable[[Floats], Floats]:
-    """The solution with K + shift M of each column (n, k)."""
+    """The solutions with K + shift M of the columns (n, k), at most BLOCK of them."""
     from scipy.sparse import csr_array
 
     from sceneql.linear import multifrontal, multifrontal_kernels
     from sceneql.linear.multifrontal_layout import SINGLE_FACTOR
+    from sceneql.stepping.eigenmodes_kernels import solve_block
 
     whole = csr_array(stiffness + shift * mass)
     whole.sum_duplicates()
@@ -122,10 +127,12 @@ def _inverse(stiffness: Any, mass: Any, points: Floats, shift: float) -> Callabl
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     multifrontal_kernels.factor_system(plan.numbers, whole.data, factors, work, True)
 
+    room = np.zeros(BLOCK * plan.work)
+
     def solve(right: Floats) -> Floats:
-        found = np.array(right.T, dtype=np.float64, order="C")
-        for one in found:
-            multifrontal_kernels.solve_system(plan.numbers, whole.data, factors, one, work, True)
-        return found.T
+        found = np.zeros((len(right), BLOCK))
+        found[:, : right.shape[1]] = right
+        solve_block(plan.numbers, factors, found.ravel(), room)
+        return found[:, : right.shape[1]]
 
     return solve

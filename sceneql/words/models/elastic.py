@@ -248,7 +248,7 @@ class Elastic(Model):
             drawn = cache(partial(skins.carried, self.of, spacing, mesh, assembly))
         resting = solid_modes.Resting(strain, places, held)
         if self.bent is not None:
-            away = resting.modes(assembly.numbers(), self.bent.mode).start(self.bent, line)
+            away = resting.modes(assembly.numbers(), max(self.bent.mode, self.modes)).start(self.bent, line)
             assembly.displaced(bodies.position_at, (places + away).ravel())
         self._made = Made(strain, probes, forces, angles, drawn, resting)
         period = 2.0 * np.pi / strain.squared**0.5
