@@ -5,10 +5,12 @@ import pty
 import select
 import signal
 from contextlib import suppress
+from itertools import count
 
 import pytest
 
 from sceneql.doing import Deed, doing, now
+from sceneql.march import pace
 from sceneql.march.pace import Pace
 from sceneql.report.progress import bar
 
@@ -76,28 +78,36 @@ def test_what_takes_minutes_is_told_in_a_line_where_there_is_no_terminal(monkeyp
 
 def test_a_march_tells_its_steps_and_when_it_will_be_at_the_next_instant():
     deed = Deed("solving")
-    pace = Pace(deed, 1.0, 0.0, 0)
-    assert not pace.hopeless(1e-9, 1_000_000)
+    march = Pace(deed, 1.0, 0.0, 0)
+    assert not march.hopeless(1e-9, 1_000_000)
     assert "at 1e-09 s: steps of 1e-15 s, to the next instant" in deed.what
 
 
 @pytest.mark.parametrize(("growth", "hopeless"), [(1.0, True), (2.0, False)])
 def test_only_a_march_whose_steps_stay_too_short_is_given_up(growth, hopeless):
-    pace, t, given_up = Pace(Deed("solving"), 1.0, 0.0, 0), 0.0, False
+    march, t, given_up = Pace(Deed("solving"), 1.0, 0.0, 0), 0.0, False
     for look in range(1, 8):
         t += 20_000 * 1e-15 * growth**look
-        given_up = given_up or pace.hopeless(t, 20_000 * look)
+        given_up = given_up or march.hopeless(t, 20_000 * look)
     assert given_up == hopeless
+
+
+@pytest.mark.parametrize(("seconds", "hopeless"), [(1.0, True), (1e-9, False)])
+def test_few_long_steps_are_enough_where_all_would_take_years(monkeypatch, seconds, hopeless):
+    clock = count(0.0, 1000 * seconds)
+    monkeypatch.setattr(pace.time, "perf_counter", lambda: next(clock))
+    march = Pace(Deed("solving"), 1.0, 0.0, 0)
+    assert [march.hopeless(1e-12 * look, 1000 * look) for look in (1, 2, 3, 4)][3] == hopeless
 
 
 def test_a_march_that_leads_nowhere_is_looked_at_more_often():
     """Calls of a million steps would take half a minute until it is known."""
-    pace = Pace(Deed("solving"), 1.0, 0.0, 0)
-    steps = pace.until_look
+    march = Pace(Deed("solving"), 1.0, 0.0, 0)
+    steps = march.until_look
     assert steps is not None
-    while not pace.hopeless(steps * 1e-15, steps):
-        assert pace.until_look is not None
-        steps += pace.until_look
+    while not march.hopeless(steps * 1e-15, steps):
+        assert march.until_look is not None
+        steps += march.until_look
     assert steps < 100_000
     fine = Pace(Deed("solving"), 1.0, 0.0, 0)
     assert not fine.hopeless(0.1, 10_000)

@@ -12,6 +12,8 @@ MOST_STEPS = 1e11
 """Most steps of a run, or of the rest of a way to the next instant: those of a single mass take half an hour."""
 LOOKS, FEWEST = 3, 10_000
 """Looks in a row, and steps meanwhile, that must find so many: the first steps of a stiff start are as short."""
+YEARS, FEWER = 1e8, 2_000
+"""Where steps take long: seconds that all would take, from which on fewer of them are enough."""
 GROWING = 1.5
 """Factor from look to look by which steps grow that are on their way to be longer."""
 MINUTES, HOURS = 100.0, 6000.0
@@ -40,16 +42,14 @@ class Pace:
         now, grown = time.perf_counter(), t - t0 > GROWING * self._mean * (steps - before)
         self._last, self._mean = (t, steps, now), (t - t0) / (steps - before)
         left = (self._target - t) / self._mean if self._mean > 0.0 else float("inf")
-        self._deed.what = (
-            f"solving, at {t:.6g} s: steps of {self._mean:.2g} s, to the next instant"
-            f" {_told(left * (now - at) / (steps - before))}"
-        )
+        seconds = left * (now - at) / (steps - before)
+        self._deed.what = f"solving, at {t:.6g} s: steps of {self._mean:.2g} s, to the next instant {_told(seconds)}"
         self._endless = not left < MOST_STEPS
         if grown or not self._endless:
             self._looks, self._since = 0, steps
         else:
             self._looks += 1
-        return self._looks >= LOOKS and steps - self._since >= FEWEST
+        return self._looks >= LOOKS and steps - self._since >= (FEWER if seconds > YEARS else FEWEST)
 
 
 def _told(seconds: float) -> str:
