@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Mapping
+from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Any, Protocol, Self, TypeVar, Union
 
 if TYPE_CHECKING:
@@ -117,6 +118,9 @@ class Moment(Protocol):
 
     def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
         """The surface of object ``name``: its material's, with the color replaced where given; a default by order."""
+
+    def coloring(self) -> AbstractContextManager[None]:
+        """What is read inside gives colors: by it nothing that is drawn leaves the bounds that it has."""
 
     def kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:
         """The result of ``make`` for a part: the last one where its key equals this one, else a new one.

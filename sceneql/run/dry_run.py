@@ -149,7 +149,7 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
             for key, piece in asked_for.items():
                 rows[key].append(moment.measure(piece))
             times.append(moment.now)
-            if not changing and not every > 1:
+            if not changing and not wanted:
                 break
     except RunFailure:
         if not times:

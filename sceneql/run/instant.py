@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
@@ -171,11 +172,19 @@ class Instant:
         """The surface of a drawn part: its material's, its color in place of that, a default by order."""
         from sceneql.frame import Surface
 
-        own = None if color is None else linear(self.at(color))
-        if material is None:
-            return Surface(color=own or default_color(self.run.palette.get(name, 0)), roughness=0.35)
-        kind = cast(Material, self.run.graph.tasks[material.name].kind)
-        return kind.surface(self, own)
+        with self.coloring():
+            own = None if color is None else linear(self.at(color))
+            if material is None:
+                return Surface(color=own or default_color(self.run.palette.get(name, 0)), roughness=0.35)
+            kind = cast(Material, self.run.graph.tasks[material.name].kind)
+            return kind.surface(self, own)
+
+    @contextmanager
+    def coloring(self) -> Iterator[None]:
+        """What is read inside gives colors: by it nothing that is drawn leaves the bounds that it has."""
+        before = self.asked
+        yield
+        self.asked = before
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
         """Low and high corner (3,) of what the parts draw over the whole film; for no names of all that stays."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import nullcontext
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
@@ -123,6 +124,10 @@ class FieldMap(Object):
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A mesh with a color a vertex, and lines as segments. Raises ValueError for a cut through a flat field."""
+        with moment.coloring() if self.height is None and self.on is None else nullcontext():
+            return list(self._lowered(name, place, moment))
+
+    def _lowered(self, name: str, place: Floats, moment: Moment) -> Iterator[Shape]:
         import numpy as np
 
         from sceneql.frame import Mesh, Segments, Surface
