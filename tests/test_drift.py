@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 import numpy as np
 import pytest
 
@@ -247,3 +249,11 @@ def test_species_that_stay_in_place_are_not_carried(tmp_path):
 def test_what_is_wrong_is_told(tmp_path, drift, said):
     with pytest.raises(ScriptError, match=said):
         drifted(tmp_path, drift, "heun", 1, boundary=AROUND).at(0.1)
+
+
+def test_cells_outside_a_domain_do_not_count_where_a_flow_is_factored(tmp_path, monkeypatch):
+    monkeypatch.setattr("scipy.sparse.linalg.cg", lambda matrix, target, **rest: (target, 1))
+    for most, holds in ((380, True), (280, False)):  # of 441 cells some 350 lie inside
+        monkeypatch.setattr(flow, "LARGEST_FACTORED", {2: most, 3: 0})
+        with nullcontext() if holds else pytest.raises(LimitRefused, match="on so many cells"):
+            in_disk(tmp_path, "{velocity: '[y, -x^2]'}", "heun", 0.1)

@@ -124,7 +124,7 @@ def _projected(
 ) -> Flow:
     """The nearest flow free of divergence, by projection: minus the gradient of a potential (Chorin 1968), which is 0
     on open boundaries, where the flow is free."""
-    from scipy.sparse import csr_array
+    from scipy.sparse import csr_array, diags_array
     from scipy.sparse.csgraph import connected_components
     from scipy.sparse.linalg import cg, splu
 
@@ -156,20 +156,26 @@ def _projected(
         raise ScriptError([Diagnostic("no-way-out", text, formula.span, help)])
     _, firsts = np.unique(piece, return_index=True)
     held = np.zeros(n)
-    held[firsts[~freed]] = np.where(diagonal[firsts[~freed]] > 0.0, diagonal[firsts[~freed]], 1.0)
-    matrix = (matrix + csr_array((held, (np.arange(n), np.arange(n))), shape=(n, n))).tocsc()
-    if n <= LARGEST_FACTORED[2 if cells.flat else 3]:
-        solve = splu(matrix).solve
+    held[firsts[~freed]] = diagonal[firsts[~freed]]
+    inside = np.flatnonzero(diagonal > 0.0)
+    matrix = (matrix + diags_array(held))[inside][:, inside].tocsc()
+    if len(inside) <= LARGEST_FACTORED[2 if cells.flat else 3]:
+        solved = splu(matrix).solve
     else:
-        scaled = csr_array((1.0 / np.maximum(matrix.diagonal(), 1e-300), (np.arange(n),) * 2))
+        scaled = diags_array(1.0 / matrix.diagonal())
 
-        def solve(target: Floats) -> Floats:
+        def solved(target: Floats) -> Floats:
             potential: Floats
             potential, missed = cg(matrix, target, rtol=1e-12, maxiter=20_000, M=scaled)
             if missed:
                 text = "the drift could not be made free of divergence on so many cells"
                 raise LimitRefused(text, formula.span, "take larger cells, or the drift as it is: `incompressible: no`")
             return potential
+
+    def solve(target: Floats) -> Floats:
+        potential = np.zeros(n)
+        potential[inside] = solved(target[inside])
+        return potential
 
     found = given
     for _ in range(ROUNDS):
