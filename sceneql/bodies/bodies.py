@@ -88,7 +88,7 @@ def reserve(
     if inertia is not None:
         from sceneql.bodies import consistent
 
-        consistent.close(assembly, bodies, inertia, np.asarray(positions))
+        consistent.close(assembly, bodies, inertia)
         return bodies
     ints = (position_at, velocity_at, n, bodies.inverse_at)
     assembly.inertia(velocity_at, bodies.inverse_at, n)

@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sceneql.frame import Floats
     from sceneql.system import Assembly, Bodies
 
 KERNELS = "sceneql.bodies.consistent"
 
 
-def close(assembly: Assembly, bodies: Bodies, matrix: Any, positions: Floats) -> None:
+def close(assembly: Assembly, bodies: Bodies, matrix: Any) -> None:
     """Add the closing term of masses with this inertia, factored once: M dv/dt = F, and dx/dt = v.
 
     ``matrix``: scipy sparse, symmetric, positive definite but for rows and columns of zeros of entries that are held,
-    (3 count, 3 count) [kg]; ``bodies.inverse_at`` tells lumped masses, to contacts. ``positions`` (count, 3) [m]: where
-    the masses lie, which orders the elimination.
+    (3 count, 3 count) [kg]; ``bodies.inverse_at`` tells lumped masses, to contacts.
     """
     import numpy as np
     from scipy.sparse import csr_array, diags_array
@@ -31,7 +29,7 @@ def close(assembly: Assembly, bodies: Bodies, matrix: Any, positions: Floats) ->
     whole = csr_array(matrix + diags_array(1.0 * held))
     whole.sum_duplicates()
     whole.sort_indices()
-    plan = multifrontal.plan(whole, points=np.repeat(positions, 3, axis=0))
+    plan = multifrontal.plan(whole)
     plan.numbers[SINGLE_FACTOR] = -1
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     if not multifrontal_kernels.factor_system(plan.numbers, whole.data, factors, work, True):
