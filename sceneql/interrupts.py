@@ -6,9 +6,11 @@ and they end the process at once. A signal that the caller has switched off (noh
 
 from __future__ import annotations
 
+import _thread
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -17,10 +19,18 @@ from typing import Any
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
+AT_LOCKS = ("__enter__", "__exit__", "acquire", "release")
+"""Functions between whose lines a lock is taken or given back: broken off there, it would stay taken for ever."""
+LATER, LATEST = 5e-3, 400
+"""Seconds after which a signal is raised that comes in one of these, and how often; one that waits ends then."""
+
+
 class _Received:
     first = 0
     """The number of the first signal; 0 before one has come."""
     count = 0
+    late = 0
+    """How often in a row it has come in one of AT_LOCKS."""
     held = 0
     """How many blocks are open that no signal may break off."""
     raising = 0
@@ -74,6 +84,13 @@ def raised() -> Iterator[Callable[[], bool]]:
 
 
 def _press(number: int, frame: FrameType | None) -> None:
+    if frame is not None and frame.f_code.co_name in AT_LOCKS and _Received.late < LATEST:
+        _Received.late += 1
+        again = threading.Timer(LATER, _thread.interrupt_main, (number,))
+        again.daemon = True
+        again.start()
+        return
+    _Received.late = 0
     _Received.first = _Received.first or number
     _Received.count += 1
     if not _Received.held:

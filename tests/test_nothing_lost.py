@@ -56,6 +56,36 @@ def limited(kind, limit):
     return lambda: resource.setrlimit(kind, (limit, limit))
 
 
+class Lock:
+    """One written in Python, as LLVM's is, with a signal between its lines."""
+
+    taken = 0
+
+    def __init__(self, struck):
+        self.struck = struck
+
+    def __enter__(self):
+        self.taken += 1
+        if self.struck == "enter":
+            signal.raise_signal(signal.SIGINT)
+
+    def __exit__(self, *_):
+        if self.struck == "exit":
+            signal.raise_signal(signal.SIGINT)
+        self.taken -= 1
+
+
+@pytest.mark.parametrize("struck", ["enter", "exit"])
+def test_a_signal_while_a_lock_is_taken_or_given_back_leaves_it_free(struck):
+    """It stayed taken, and the threads that compile waited for ever."""
+    lock = Lock(struck)
+    with pytest.raises(KeyboardInterrupt), interrupts.raised():  # noqa: PT012
+        with lock:
+            pass
+        time.sleep(5.0)
+    assert lock.taken == 0
+
+
 # --- several processes ---
 
 
