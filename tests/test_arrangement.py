@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from itertools import product
 
@@ -311,3 +312,10 @@ def test_a_variant_that_bursts_does_not_make_the_others_vanish(tmp_path):
     near, far, middle = (Panel(graph.variant(name)) for name in ("near", "far", "middle"))
     moment = replace(near.at(0.0), beside=(far, middle))
     assert moment.bounds(())[1][0] == pytest.approx(2.1)
+
+
+@pytest.mark.parametrize("far", [1e308, math.inf, -math.inf, math.nan])
+def test_a_label_of_a_place_beyond_all_numbers_stands_inside_the_picture(far):
+    left, top, right, bottom = stand((far, 5.0, far, 5.0), UP, (30, 10), (64, 36), 2.0, 10)
+    assert 0 <= left <= right <= 64
+    assert 0 <= top <= bottom <= 36

@@ -55,8 +55,8 @@ def _tries(
     for one in ((x, y), (-y, x), (y, -x), (-x, -y)):
         for k in range(math.ceil(FARTHEST / STEP)):
             left, top = _outside(thing, one, block, gap + k * STEP * em)
-            left = max(min(round(left), picture[0] - block[0] - 1), 0)
-            top = max(min(round(top), picture[1] - block[1] - 1), 0)
+            left = round(max(0, min(picture[0] - block[0] - 1, left)))  # which need not be finite
+            top = round(max(0, min(picture[1] - block[1] - 1, top)))
             yield left, top, left + block[0], top + block[1]
 
 
