@@ -131,8 +131,9 @@ class Watch:
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings: energy gained, springs overstretched, fields ringing or overshooting, breakpoints, halved steps."""
-        found = list(self._ringing)
+        """Warnings: contacts that gave way, energy gained, springs overstretched, fields ringing or overshooting,
+        breakpoints, halved steps."""
+        found = [*self._ringing, *(note for island in self._islands for note in island.notes)]
         for span in self._turning:
             message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"
             help = "choose a solver of given steps, or bound its `largest_step`"
@@ -170,10 +171,8 @@ class Watch:
         return tuple(found)
 
     def account(self) -> list[str]:
-        """A line for what became of islands, and for each invariant and each island with an energy: its drift, and a
-        conserved momentum's."""
-        lines = [note for island in self._islands for note in island.notes]
-        lines += [one.account() for one in self.invariants if one.times]
+        """A line for each invariant and each island with an energy: its drift, and a conserved momentum's."""
+        lines = [one.account() for one in self.invariants if one.times]
         for balance in self.balances:
             drifts = balance.drifts
             if not drifts:

@@ -58,10 +58,9 @@ class Collision(Contact):
     Rigid bodies collide with one another and with objects, which may move by keys or formulas and so carry and push
     them. `auto` is mode `exact` for up to 8 bodies, where that takes all their shapes, ties and the solver (explicit,
     with steps that a tolerance chooses), and `explain` tells why if not; where it then finds no way on, or has taken
-    more work than some steps of `local` in each 1/240 s, the run goes on from that instant in mode `local`, which
-    `render --report` tells. In mode `local` the velocities at the end of a step, of all contacts together, obey
-    Coulomb's law to rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are
-    of order 1 in the step. Spheres, boxes, planes and convex meshes touch exactly. Any other shape with an inside
+    more work than some steps of `local` in each 1/240 s, the run goes on from that instant in mode `local` and warns of
+    it. In mode `local` the velocities at the end of a step, of all contacts together, obey Coulomb's law to rounding
+    (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in the step. Spheres, boxes, planes and convex meshes touch exactly. Any other shape with an inside
     (cylinders, rings, meshes, solids cut out of one another, implicit surfaces) touches by points of its surface, those
     of its edges and those of its smooth parts slid to where the two face each other, 20 cells along it and more where
     it is thin: details smaller than a cell on both are not seen, all else to a millionth of the size. Where a step
