@@ -18,6 +18,7 @@ from sceneql.compiled.numbered_kernels import number_of
 from sceneql.contacts import layout
 from sceneql.contacts.distance import convex
 from sceneql.contacts.distance.convex import Convex
+from sceneql.contacts.distance.core_kernels import REACH
 from sceneql.contacts.distance.led import is_led
 from sceneql.contacts.distance.rigid_contact import DEEP, must_be_apart
 from sceneql.contacts.rigid_exact.curved import CURVED, FIELD, FORM, SIZES, Curved
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
     from sceneql.contacts.distance.rigid_shapes import Shapes
     from sceneql.frame import Floats
+    from sceneql.quantities.span import Span
     from sceneql.system import Assembly
 
 HELP = "mode `exact` takes spheres, ellipsoids, cylinders, tori, boxes, planes, convex meshes and implicit surfaces"
@@ -59,6 +61,19 @@ def exact_shape(ref: Ref | None, center: Floats, place: Floats | None, known: Sh
         return field_shape(kind, ref, center, assembly)
     message = f"'{ref.name}' touches by points of its surface, which mode `local` alone can do"
     raise ScriptError([Diagnostic("no-collider", message, ref.span or assembly.line(), HELP)])
+
+
+def point(radius: float, size: float) -> Convex:
+    """The shape of a mass: a ball, or without a radius a point, whose gaps are small against ``size`` [m]."""
+    ball = convex.ball(radius)
+    floats = ball.floats.copy()
+    floats[REACH] = radius or size
+    return Convex(ball.kind, floats, ball.ints)
+
+
+def upright(x: Floats) -> Floats:
+    """The place (7,) of what does not turn."""
+    return np.concatenate([x, [1.0, 0.0, 0.0, 0.0]])
 
 
 def field_shape(kind: Any, ref: Ref, center: Floats, assembly: Assembly) -> Convex:
@@ -126,40 +141,58 @@ def apart_exactly(
     shapes: Sequence[Convex],
     places: Sequence[Floats],
     moving: int,
-    names: Sequence[Ref | None],
+    names: Sequence[Ref | str],
     joined: set[tuple[int, int]],
     assembly: Assembly,
 ) -> None:
-    """Raise ScriptError for bodies that start inside one another or inside what stands, and for two curved shapes."""
+    """Raise ScriptError for bodies that start inside one another or inside what stands, and for two curved shapes.
+
+    ``names``: the object of each shape, or what it is said to be.
+    """
     flat = [k for k, shape in enumerate(shapes) if shape.kind != CURVED]
     number = {old: new for new, old in enumerate(flat)}
     both = {(number[a], number[b]) for a, b in joined if a in number and b in number}
     some, there, refs = [shapes[k] for k in flat], [places[k] for k in flat], [names[k] for k in flat]
+    found, count = Diagnostics(), sum(k < moving for k in flat)
     if some:
-        must_be_apart(known, some, there, sum(k < moving for k in flat), refs, both, assembly)
-    found = Diagnostics()
+        objects = [ref if isinstance(ref, Ref) else None for ref in refs]
+        must_be_apart(known, some, there, count, objects, both, assembly)
+        for (a, b), gap in known.gaps(some, there, count) if None in objects else ():
+            mass, body = (a, b) if objects[a] is None else (b, a)
+            if objects[mass] is None and objects[body] is not None and -gap > DEEP * some[mass].reach:
+                message = f"{refs[mass]} starts inside {said(refs[body])}, {-gap:.3g} m deep"
+                found.error("starts-inside", message, assembly.line(), help="move it outside")
     for a, b in combinations(range(len(shapes)), 2):
         if a >= moving or (a, b) in joined or (a in number and b in number):
             continue
         one, other = names[a], names[b]
-        assert one is not None
-        assert other is not None
         if a not in number and b not in number:
-            message = f"'{one.name}' and '{other.name}' are both curved, which mode `exact` does not know to meet"
+            message = f"{said(one)} and {said(other)} are both curved, which mode `exact` does not know to meet"
             help = "let only those that meet collide, by `between`; mode `local` takes both"
-            found.error("no-collider", message, one.span or assembly.line(), help=help)
+            found.error("no-collider", message, _place(one, assembly), help=help)
             continue
         first, second = (b, a) if a in number else (a, b)
         if is_field(shapes[first]) and not is_ball(shapes[second]):
             which, what = (other, one) if first == b else (one, other)
-            message = f"'{which.name}' is met by balls alone in mode `exact`, and '{what.name}' is none"
-            found.error("no-collider", message, what.span or assembly.line(), help="mode `local` takes both")
+            message = f"{said(which)} is met by balls alone in mode `exact`, and {said(what)} is none"
+            found.error("no-collider", message, _place(what, assembly), help="mode `local` takes both")
             continue
         gap = gap_of(shapes[first], places[first], shapes[second], places[second], assembly.numbers())
         if -gap > DEEP * min(shapes[a].reach, shapes[b].reach):
-            message = f"'{one.name}' starts {-gap:.3g} m inside '{other.name}'"
+            first, last = (other, one) if isinstance(other, str) else (one, other)
+            message = f"{said(first)} starts {-gap:.3g} m inside {said(last)}"
             found.error("starts-inside", message, assembly.line(), help="move one of them away")
     found.raise_errors()
+
+
+def said(name: Ref | str) -> str:
+    """What a message says of a shape."""
+    return f"'{name.name}'" if isinstance(name, Ref) else name
+
+
+def _place(name: Ref | str, assembly: Assembly) -> Span | None:
+    """Where it stands in the script."""
+    return (name.span if isinstance(name, Ref) else None) or assembly.line()
 
 
 def gap_of(curved: Convex, place: Floats, other: Convex, there: Floats, numbers: Floats) -> float:
