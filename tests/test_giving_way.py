@@ -90,7 +90,20 @@ def test_explain_tells_which_mode_and_why(tmp_path, law, more, solver, told):
     assert told in text(explain(scene(tmp_path, law, more=more, solver=solver)))
 
 
-def test_two_curved_bodies_have_local_contacts_and_explain_tells_why(tmp_path):
-    other = "other: {torus: {radius: 0.2 m, tube: 0.05 m, position: 0 1 0 m}}"
-    graph = scene(tmp_path, "friction: 0", f"{TABLE}, {COLUMN}, {other}")
-    assert "local: chosen for rigid bodies: 'it' and 'other' are both curved" in text(explain(graph))
+RING = "it: {torus: {radius: 0.1 m, tube: 0.03 m, position: 0.3 0.03 0 m}}"
+
+
+@pytest.mark.parametrize(
+    ("it", "other", "told"),
+    [
+        (RING, "torus: {radius: 0.2 m, tube: 0.05 m, position: 0 1 0 m}", "'it' and 'other' are both curved"),
+        (
+            COLUMN,
+            "cylinder: {radius: 0.2 m, height: 0.1 m, position: 0.3 0.25 0 m}",
+            "'it' and 'other' touch by an end",
+        ),
+    ],
+)
+def test_two_curved_bodies_have_local_contacts_and_explain_tells_why(tmp_path, it, other, told):
+    graph = scene(tmp_path, "friction: 0", f"{TABLE}, {it}, other: {{{other}}}")
+    assert f"local: chosen for rigid bodies: {told}" in text(explain(graph))

@@ -29,6 +29,8 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
 )
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts.distance.convex import SHAPE
+from sceneql.contacts.distance.core_kernels import KIND as CORE_KIND
 from sceneql.contacts.rigid_exact.contact_kernels import (
     AIMED,
     BIAS,
@@ -49,6 +51,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     pace,
     three,
 )
+from sceneql.contacts.rigid_exact.curved import CURVED
 from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
 from sceneql.contacts.rigid_exact.exact_law_kernels import ACROSS, ALONG, BILATERAL, UNILATERAL, VECTORS
 from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
@@ -114,6 +117,13 @@ and the contact (-1: a tie's)."""
 FORCES, SPEEDS, GAPS, IMPACTS = range(4)
 """What is solved for: forces by accelerations; what is left of speeds and of gaps; impulses of contacts that are
 marked."""
+
+
+@lean_inlined
+def core_at(ints, b):
+    """Where a shape begins as others meet it: of a column its axis with a radius (curved_meet_kernels)."""
+    shape = ints[SHAPES_AT] + SHAPE * b
+    return shape + SHAPE * ints[SHAPES] if ints[shape + CORE_KIND] == CURVED else shape
 
 
 @lean_inlined

@@ -56,7 +56,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved import CURVED, ELLIPSOID, FORM
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, follow, own, speed_at
-from sceneql.contacts.rigid_exact.exact_rows_kernels import PLACE, PLACES_AT, SHAPES_AT, mover_at
+from sceneql.contacts.rigid_exact.exact_rows_kernels import PLACE, PLACES_AT, SHAPES_AT, core_at, mover_at
 from sceneql.contacts.rigid_exact.stop_kernels import SIZE, STOP
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -330,7 +330,7 @@ def extent(floats, ints, rec):
     if kind == CORNERS:
         side = solid_side(ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
     m = int(floats[rec + SHAPE_A + side])
-    shape, mover = ints[SHAPES_AT] + SHAPE * m, mover_at(ints, m)
+    shape, mover = core_at(ints, m), mover_at(ints, m)
     if ints[shape + KIND] != CORE:
         return math.inf
     x, y, z = three(floats, rec + POINT)

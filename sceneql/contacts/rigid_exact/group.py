@@ -55,9 +55,9 @@ def assemble(
     from sceneql.contacts.distance import convex
     from sceneql.contacts.rigid_exact import contact_kernels, curved_find_kernels, exact_law_kernels
     from sceneql.contacts.rigid_exact import exact_rows_kernels as rows
-    from sceneql.contacts.rigid_exact.curved import CURVED
+    from sceneql.contacts.rigid_exact.curved import axis_of
     from sceneql.contacts.rigid_exact.drives import drives_of
-    from sceneql.contacts.rigid_exact.exact_shapes import joined_fields
+    from sceneql.contacts.rigid_exact.exact_shapes import comes_first, joined_fields
     from sceneql.contacts.rigid_exact.stop_kernels import DRIVEN
 
     if assembly.ints_of(HOLD):
@@ -84,9 +84,8 @@ def assemble(
     tied, ties = _tied(assembly, movers, works, TIE_ROW, integers, POSITION)
     drives, drive_ints = drives_of(assembly, movers, works)
     count = len(found.shapes)
-    # Of a pair with a curved shape, this first.
     pairs = [
-        (b, a) if found.shapes[b].kind == CURVED else (a, b)
+        (b, a) if comes_first(found.shapes[b], found.shapes[a]) else (a, b)
         for a in range(n)
         for b in range(a + 1, count)
         if (a, b) not in found.joined and not (found.is_mass(a) and found.is_mass(b))
@@ -110,8 +109,9 @@ def assemble(
     outputs = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
     nan = float("nan")
     tally = assembly.floats([0.0, nan, nan, 0.0, nan])
-    data = assembly.floats(convex.joined(found.shapes, 0, 0)[0])
-    numbers, shapes = joined_fields(found.shapes, data, rows.HEAD)
+    whole = [*found.shapes, *map(axis_of, found.shapes)]
+    data = assembly.floats(convex.joined(whole, 0, 0)[0])
+    numbers, shapes = joined_fields(whole, data, rows.HEAD)
     assembly.write(data, numbers)
     lists = [
         shapes.tolist(),
@@ -121,7 +121,7 @@ def assemble(
         list(chain(*tied)),
         [0] * (6 * room + len(movers) + most),
         works,
-        [0] * curved_find_kernels.WHO,
+        [0] * (2 * curved_find_kernels.WHO),
         [0] * (len(drives) + 1),
     ]
     *begins, who_at, drives_at, at = np.cumsum([rows.HEAD, *(len(some) for some in lists)]).tolist()

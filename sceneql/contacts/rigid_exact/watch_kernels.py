@@ -50,6 +50,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     SHAPES_AT,
     WATCHED,
     WORK,
+    core_at,
     driven_at,
     follow_all,
     look,
@@ -100,7 +101,7 @@ def motion(floats, begun, now, h, motions, to):
 def stays_beyond(floats, ints, a, b, ma, mb, motions, h):
     """Whether a curved body is beyond the same face of what does not turn where movers are ma and mb and h [s] later,
     now, and between: how far it is, less the way of a straight line, bends by its spin's square at most."""
-    sa, sb = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b
+    sa, sb = ints[SHAPES_AT] + SHAPE * a, core_at(ints, b)
     if floats[ints[sa + FLOATS] + FORM] == FIELD or motions[9] != 0.0 or motions[10] != 0.0 or motions[11] != 0.0:
         return False
     square = motions[3] ** 2 + motions[4] ** 2 + motions[5] ** 2
@@ -152,7 +153,7 @@ def passed(floats, ints, a, b, h, gap, motions, room):
     dx, dy, dz = motions[0] - motions[6], motions[1] - motions[7], motions[2] - motions[8]
     far += h * math.sqrt(dx * dx + dy * dy + dz * dz)
     size = smaller(floats, ints, a, b)
-    if far <= max(gap, LITTLE * size) or ints[ints[SHAPES_AT] + SHAPE * b + KIND] != CORE:
+    if far <= max(gap, LITTLE * size) or ints[core_at(ints, b) + KIND] != CORE:
         return gap
     if is_curved(ints, ints[SHAPES_AT] + SHAPE * a):
         touch = curved_touch(

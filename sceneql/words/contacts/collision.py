@@ -76,15 +76,15 @@ class Collision(Contact):
     Mode `exact` is for few rigid bodies and what stands or moves by keys and formulas, for masses that strike them, and
     for ties with their stops, motors and friction. Spheres, boxes, planes and convex meshes touch one another, and are
     touched by ellipsoids (a sphere alone in a group with a scale), cylinders and tori, and balls by implicit and blobby
-    surfaces: what rolls over these is exact. Two curved ones do not meet each other. A cylinder or torus that lies flat
-    stands and tips as if its whole circle were there, and has the friction of the points of it that are told; over an
-    edge it stops the run, or `local` goes on, but for a column that lies along it. All contacts that approach are
-    reflected together until none approaches (Smith et al. 2012), and what rests, rolls or slides has the forces of
-    Coulomb's law, and the moments of `rolling`, at every stage of the solver, whose order it keeps. Bounces that are
-    lower than a billionth of the body's size end at once, and those of a pair whose impacts crowd sooner: from a
-    thousandth of it, or with no restitution left, so that what tips from corner to corner comes to rest. Impacts
-    without end stop the run of a contact whose mode is named `exact` at its line. Many faces on one another, as in a
-    pile or an arch that falls, take long.
+    surfaces: what rolls over these is exact. Of two curved ones one has to be a cylinder, which others meet by its
+    round side, cylinders by their rims, too. A cylinder or torus that lies flat stands and tips as if its whole circle
+    were there, and has the friction of the points of it that are told; over an edge it stops the run, or `local` goes
+    on, but for a column that lies along it. All contacts that approach are reflected together until none approaches
+    (Smith et al. 2012), and what rests, rolls or slides has the forces of Coulomb's law, and the moments of `rolling`,
+    at every stage of the solver, whose order it keeps. Bounces that are lower than a billionth of the body's size end
+    at once, and those of a pair whose impacts crowd sooner: from a thousandth of it, or with no restitution left, so
+    that what tips from corner to corner comes to rest. Impacts without end stop the run of a contact whose mode is
+    named `exact` at its line. Many faces on one another, as in a pile or an arch that falls, take long.
 
     Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
     no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There
@@ -233,7 +233,9 @@ class Collision(Contact):
         if self.mode == "barrier" and self.restitution.span is not None:
             yield Problem(NO_RESTITUTION, ("restitution",), at_key=True)
         if self.mode == "barrier" and self.rolling.span is not None:
-            yield Problem("mode barrier has no moment against rolling: modes exact and local have", ("rolling",), at_key=True)
+            yield Problem(
+                "mode barrier has no moment against rolling: modes exact and local have", ("rolling",), at_key=True
+            )
         if self.mode in ("exact", "local") and self.gap is not None:
             yield Problem(f"mode {self.mode} has no gap: the mode barrier of elastic solids has", ("gap",), at_key=True)
 
