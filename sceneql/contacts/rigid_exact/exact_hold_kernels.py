@@ -67,6 +67,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     POINTS_AT,
     RECORDS_AT,
     SINCE,
+    SPARING,
     SPEEDS,
     TIE_ROWS,
     TIED_AT,
@@ -272,13 +273,20 @@ def hold(t, y, rate, floats, ints):
     follow_all(floats, ints)
     n, solved, jammed = forces(floats, ints, friction)
     turns = 0
-    while turns < MOST_TURNS and any_rim(floats, ints):
-        if turns == 0:
-            save(floats, ints, False)
-        if not exchange_all(floats, ints, n, True):
+    # With as few points of a circle as bear it; where no solution is found so, with more.
+    for way in range(2):
+        floats[memory + SPARING] = 1.0 - way
+        while turns < MOST_TURNS * (1 + way) and any_rim(floats, ints):
+            if turns == 0:
+                save(floats, ints, False)
+            if not exchange_all(floats, ints, n, True):
+                break
+            n, solved, jammed = forces(floats, ints, friction)
+            turns += 1
+        if solved or turns == 0 or way == 1:
             break
+        save(floats, ints, True)
         n, solved, jammed = forces(floats, ints, friction)
-        turns += 1
     if jammed:
         floats[memory + JAMMED] += floats[memory + UNDECIDED]
     if not solved:

@@ -91,14 +91,15 @@ each of these ties."""
     COUNTED,
     WORK,
     PASSED,
+    SPARING,
     BOUNDED,
     MEMORY,
-) = range(15)
+) = range(16)
 """Memory: how many contacts are kept; whether it is open which of them slide or leave; since when they are these [s];
 whether it has begun; when the step began [s]; solutions that were not found to rounding, contacts without room;
 when the latest event was [s], and how many there were at that instant before;
 instants at which slip jammed, and those whose energy is counted; work done; whether the end of the step before was
-left alone; whether work is bounded."""
+left alone; whether a circle that lies flat has few points (rim_kernels); whether work is bounded."""
 BEFOREHAND, A_SECOND = 1e9, 2e8
 """Work that is allowed at the start, and by the second: operations, about as many as nanoseconds of one processor. As
 much as a few steps of mode `local` take in each 1/240 s."""
