@@ -73,7 +73,8 @@ def _moving(assembly: Assembly, bodies: dict[tuple[int, ...], tuple[int, Place]]
     from sceneql.bodies.rigid.turning import unpacked
     from sceneql.shapes.placement import rotation_matrix
 
-    y, numbers = assembly.start().copy(), assembly.numbers()
+    y: Floats = assembly.start().copy()
+    numbers = assembly.numbers()
     for at, place in bodies.values():
         _, velocity, _, _, rotation, momentum, inverse, _ = place.ints
         y[velocity : velocity + 3] = speeds[at : at + 3]

@@ -196,8 +196,8 @@ def apart_exactly(
             found.error("no-collider", message, _place(one, assembly), help="mode `local` takes both")
             continue
         if -gap > DEEP * min(shapes[a].reach, shapes[b].reach):
-            first, last = (other, one) if isinstance(other, str) else (one, other)
-            message = f"{said(first)} starts {-gap:.3g} m inside {said(last)}"
+            who, what = (other, one) if isinstance(other, str) else (one, other)
+            message = f"{said(who)} starts {-gap:.3g} m inside {said(what)}"
             found.error("starts-inside", message, assembly.line(), help="move one of them away")
     found.raise_errors()
 
