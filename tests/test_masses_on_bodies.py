@@ -186,7 +186,7 @@ outputs: {t: {record: {of: [it.energy, net.energy]}}}
 """
     assert not complaint(tmp_path, script % (2, "local"))
     for height, mode, text in (
-        (2, "exact", "mode `exact` has no contacts of masses, as of 'net', with rigid bodies"),
+        (0.8, "exact", "mass 0 of 'net' starts inside 'o', 0.25 m deep"),
         (0.8, "local", "mass 0 of 'net' starts inside 'o', 0.2 m deep"),
     ):
         with pytest.raises(runs.ScriptError, match=text):

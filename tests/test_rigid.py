@@ -253,3 +253,37 @@ models:
     np.testing.assert_allclose(place, [1, 1, 0], rtol=1e-12)
     ball = 1000 * 4 / 3 * np.pi * 1e-3
     assert kinetic == pytest.approx(0.5 * 8 + 0.5 * 0.4 * ball * 0.01 * 4, rel=1e-12)
+
+
+def test_a_ball_on_a_stiff_spring_swings_as_near_as_a_mass_for_as_much_work(tmp_path):
+    """The spring pendulum of k = 1e8 N/m, from its side and at rest: its place after 2 s by Radau at 1e-12."""
+    clock, solver = "clock: {end: 2 s}\n", "solvers: {main: {radau: {tolerance: 1e-6}}}\n"
+    spring = "stiffness: 1e8 N/m, rest: 1 m"
+    scripts = {
+        "mass": f"""{clock}{solver}forces: [gravity]
+models:
+  it:
+    mass_spring:
+      masses: {{a: {{position: 1 0 0 m, mass: 1 kg}}, o: {{position: 0 0 0 m, fixed: true}}}}
+      springs: [{{between: [o, a], {spring}}}]
+""",
+        "ball": f"""{clock}{solver}objects: {{s: {{sphere: {{radius: 0.1 m, position: 1 0 0 m}}}}}}
+forces: [gravity, {{spring: {{from: it.position, to: o.a.position, {spring}}}}}]
+models:
+  it: {{rigid: {{of: s, mass: 1 kg}}}}
+  o: {{mass_spring: {{masses: {{a: {{position: 0 0 0 m, fixed: true}}}}}}}}
+""",
+    }
+
+    exact = [0.7935655612626729, -0.6084850516915553]
+    errors, work = {}, {}
+    for name, script in scripts.items():
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(script)
+        run = Run(load(path, pruned=False))
+        (moment,) = run.moments([2])
+        x = moment.read("it", "a.position" if name == "mass" else "position")
+        errors[name], work[name] = np.abs(x[:2] - exact).max(), run.islands[0].march.statistics.evaluations
+    assert max(errors.values()) < 1e-7
+    assert errors["ball"] < 3 * errors["mass"] + 1e-9
+    assert work["ball"] < 3 * work["mass"]

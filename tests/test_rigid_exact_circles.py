@@ -29,7 +29,7 @@ def slope(angle, around):
     return np.sin(a) * np.cos(b), -np.cos(a), np.sin(a) * np.sin(b)
 
 
-@pytest.mark.parametrize("around", [0, 17, 45])
+@pytest.mark.parametrize("around", [0, 17, 45, 73])
 @pytest.mark.parametrize(
     "shape", ["cylinder: {radius: 0.1 m, height: 0.4 m, ", "torus: {radius: 0.08 m, tube: 0.06 m, "]
 )

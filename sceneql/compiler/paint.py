@@ -24,6 +24,7 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _HEX = re.compile(r"0[xX]([0-9a-fA-F]{6})")
 _DIGITS = re.compile(r"\d+\.?\d*|\.\d+")
 ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
+UNTURNED = "`1 0 0 0` turns nothing, and `{about: z, angle: 30 deg}` by an angle"
 
 
 def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
@@ -115,7 +116,11 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
         if expr is None:
             return None
         if expr.type.shape in (QUATERNION.shape, (None,)):
-            return read_value(node, Quantity(PLAIN, QUATERNION.shape), "rotation", names, found)
+            value = read_value(node, Quantity(PLAIN, QUATERNION.shape), "rotation", names, found)
+            if value is not None and value.constant and not any(value.number()):
+                found.error("invalid", "a rotation is a quaternion that is not zero", node.span, help=UNTURNED)
+                return None
+            return value
     found.error(
         "rotation-shape",
         "a rotation names its axis or its order",

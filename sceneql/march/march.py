@@ -75,7 +75,7 @@ class March:
         """``stiff``, ``otherwise``: methods that may replace ``stepper`` (kinds.Methods).
 
         ``with_jacobian``: lays the island out again, with its Jacobian, for one of them that needs it. ``before``: a
-        march of the same state that stops where this begins; its first ``kept`` floats are this one's, too.
+        march that stops where this begins; its first entries and its first ``kept`` floats are this one's, too.
         """
         self.system, self.stepper, self.end = system, stepper, end
         self._otherwise, self._with_jacobian = otherwise, with_jacobian
@@ -84,7 +84,7 @@ class March:
         self.driver = driver(system.structure)
         n = len(system.y)
         self._y0, self._rate0, self._rate1, self._sample = (np.zeros(n) for _ in range(4))
-        self._y1: Floats = system.y.copy() if before is None else before.stopped().y.copy()
+        self._y1: Floats = system.y.copy() if before is None else before.stopped().y[:n].copy()
         self._gaps = np.zeros(3 * system.pairs)
         self._leaving = np.zeros(system.pairs, dtype=np.int64)
         self._clock = np.zeros(kernels.CLOCKS)

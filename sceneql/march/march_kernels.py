@@ -337,13 +337,13 @@ def march(
             counts[HELD] = floats[channels.HOLDS] != 0.0
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
-            floats[channels.CHANGED] = 0.0
+            floats[channels.CHANGED] = channels.DUE if counts[PENDING] >= 0 else 0.0
             impact(t1, y1, -1, floats, ints)
             if floats[channels.CHANGED] <= channels.UNSEEN:
                 copy(y0, y1)
                 copy(rate0, rate1)
                 return UNSEEN if floats[channels.CHANGED] == channels.UNSEEN else COSTLY
-            if floats[channels.CHANGED] != 0.0:
+            if floats[channels.CHANGED] == 1.0:
                 rate(t1, y1, rate1, floats, ints)
         if counts[SETTLES] > 0:
             floats[channels.SETTLED] = counts[LOCAL] == 0 and counts[ALTERED] == 0 and counts[PENDING] < 0

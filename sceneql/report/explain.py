@@ -107,6 +107,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "force_remarks": _remarks(graph, run),
         "ties": sorted({force for force, _ in island.forces if isinstance(graph.tasks[force].kind, Tie)}),
         "redundant": _redundant(run),
+        "singular": _singular(run),
         "contacts": sorted({contact for contact, _, _ in island.contacts}),
         "contact_mode": run.assembly.contact_mode,
         "contact_why": _contact_why(graph, run),
@@ -179,6 +180,15 @@ def _redundant(run: IslandRun) -> list[int]:
     return list(redundant(run.assembly.ties, run.march.floats))
 
 
+def _singular(run: IslandRun) -> list[str]:
+    """The ties that are singular at the start."""
+    if not run.assembly.ties:
+        return []
+    from sceneql.bodies.rigid.singular import singular
+
+    return [tie.name for tie in singular(run.assembly)]
+
+
 def _contact_remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
     """Remarks of contacts at the start."""
     from sceneql.system import ModelState
@@ -227,6 +237,8 @@ def text(plan: dict[str, Any]) -> str:
             rows, more = island["redundant"]
             twice = f", of which the others imply {more}: these share the least forces" if more else ""
             lines.append(f"  ties: {', '.join(island['ties'])}, {rows} conditions{twice}")
+        if island["singular"]:
+            lines.append(f"    {', '.join(island['singular'])}: singular at the start, as a chain that is taut")
         if island["forces"]:
             lines.append(f"  forces: {', '.join(island['forces'])}")
         lines += [f"    {force}: {remark}" for force, remark in island["force_remarks"].items()]

@@ -144,8 +144,8 @@ class IslandRun:
         ties = (name for name, _ in island.forces if isinstance(graph.tasks[name].kind, Tie))
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts), *ties}
         self._now: tuple[float, Floats, Floats] | None = None
-        self.notes: list[str] = []
-        """What has become of it on its way, for the account of a run."""
+        self.notes: list[Diagnostic] = []
+        """What has become of it on its way: warnings of the run."""
         self._make({})
 
     def _make(self, went_on: Mapping[str, ModelState], before: March | None = None, kept: int = 0) -> None:
@@ -187,10 +187,13 @@ class IslandRun:
         }
         kept = assembly.before_contacts
         self._make(states, march, kept)
-        if self.assembly.before_contacts != kept or len(self.march.system.y) != len(at.y):
+        if self.assembly.before_contacts != kept or len(self.march.system.y) > len(at.y):
             raise why
+        name = why.part if why.part in states else next(iter(states))
         mode = self.assembly.contact_mode
-        self.notes.append(f"{why.part}: contacts are {mode} from {at.time:.6g} s on: {why.message}")
+        message = f"at {at.time:.6g} s, {name}: contacts go on in mode `{mode}`: {why.message}"
+        help = "it is of order 1 in the step; `mode: local` has it from the start on, `mode: exact` ends the run there"
+        self.notes.append(Diagnostic("gave-way", message, self.graph.tasks[name].span, help, severity="warning"))
 
     def _compiled(self, stepper: Stepper) -> System:
         """The island laid out for a method, when the kernels of both are compiled."""

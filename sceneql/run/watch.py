@@ -131,14 +131,16 @@ class Watch:
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings: energy gained, springs overstretched, fields ringing or overshooting, breakpoints, halved steps."""
-        found = list(self._ringing)
+        """Warnings: contacts that gave way, energy gained, springs overstretched, fields ringing or overshooting,
+        breakpoints, halved steps."""
+        found = [*self._ringing, *(note for island in self._islands for note in island.notes)]
         for span in self._turning:
             message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"
             help = "choose a solver of given steps, or bound its `largest_step`"
             found.append(Diagnostic("many-turns", message, span, help, severity="warning"))
         found += [warning for island in self._islands if (warning := _halved(island)) is not None]
         found += [warning for island in self._islands if (warning := _forbidden(island)) is not None]
+        found += [warning for island in self._islands if (warning := _singular(island)) is not None]
         found += [warning for island in self._islands for warning in _troubled(island)]
         for island, fields in self._fields:
             for extremes in fields:
@@ -170,10 +172,8 @@ class Watch:
         return tuple(found)
 
     def account(self) -> list[str]:
-        """A line for what became of islands, and for each invariant and each island with an energy: its drift, and a
-        conserved momentum's."""
-        lines = [note for island in self._islands for note in island.notes]
-        lines += [one.account() for one in self.invariants if one.times]
+        """A line for each invariant and each island with an energy: its drift, and a conserved momentum's."""
+        lines = [one.account() for one in self.invariants if one.times]
         for balance in self.balances:
             drifts = balance.drifts
             if not drifts:
@@ -274,6 +274,21 @@ def _forbidden(island: IslandRun) -> Diagnostic | None:
             help = "give all bodies that ties hold the velocity and the spin that they have together"
             return Diagnostic("forbidden-start", text, tasks[name].span, help, severity="warning")
     return None
+
+
+def _singular(island: IslandRun) -> Diagnostic | None:
+    """A warning for ties that hold each other in a position that they cannot leave, or leave in more than one way."""
+    if not island.assembly.ties:
+        return None
+    from sceneql.bodies.rigid.singular import singular
+
+    ties = singular(island.assembly)
+    if not ties:
+        return None
+    names = ", ".join(f"'{tie.name}'" for tie in ties)
+    text = f"singular at the start, as a chain that is taut: {names} let bodies begin to move, and not go on"
+    help = "forces without bound would hold them there: give the chain some slack, or let one end slide"
+    return Diagnostic("singular-ties", text, ties[0].span, help, severity="warning")
 
 
 def _troubled(island: IslandRun) -> Iterator[Diagnostic]:

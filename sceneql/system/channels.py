@@ -53,6 +53,9 @@ RESTING, PLACING = 1.0, 2.0
 
 NO_WAY_ON, UNSEEN, COSTLY = -1.0, -2.0, -3.0
 """Values of CHANGED with which an impact stops the march."""
+DUE = 2.0
+"""Value of CHANGED that an impact finds at the end of a step at which one is due: what it leaves alone then is still as
+it was within the step, whose dense output may be asked for."""
 
 ARRAYS = BASE, BEFORE, AFTER = 3, 2, 1
 """The arrays at the end begin at ``floats.size - channels.BASE * n``. BASE: the base of a stage; BEFORE and AFTER: the

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from sceneql.system.state import Place
 
 if TYPE_CHECKING:
+    from sceneql.kinds.values import Value
     from sceneql.quantities.span import Span
 
 Triple = tuple[float, float, float]
@@ -55,8 +56,9 @@ class Drive:
     """The least and the greatest that the motion goes [m or rad]."""
     restitution_at: int
     follows: Literal["nothing", "speed", "place"]
-    target_at: int
+    target: Value | None
     """What the motor follows."""
+    target_at: int
     most_at: int
     """Its largest force or torque."""
     settling_at: int
@@ -66,7 +68,8 @@ class Drive:
     friction_at: int
     """Largest force or torque of the friction."""
     effort_at: int
-    """What all of these do along the motion, on the first body; then the steps in which that was not found exactly."""
+    """What all of these do along the motion, on the first body; the steps in which that was not found exactly; the
+    energy that the motor gave; whether they are found with exact contacts (1), or by steps of velocities."""
 
     @property
     def always(self) -> bool:

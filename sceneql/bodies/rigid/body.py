@@ -88,11 +88,6 @@ class Body(Record):
         if self.fixed and (any(self.velocity) or any(self.spin)):
             moving = "velocity" if any(self.velocity) else "spin"
             yield Problem(f"a fixed body has no {moving}", (moving,))
-
-        for name in ("rotation", "axes"):
-            turn = getattr(self, name)
-            if turn is not None and turn.constant and not any(turn.number()):
-                yield Problem("a rotation is a quaternion that is not zero", (name,))
         for name in self.points:
             if not name.isidentifier():
                 yield Problem(

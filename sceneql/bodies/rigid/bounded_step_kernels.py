@@ -4,6 +4,7 @@
 import numpy as np
 
 import sceneql.system.channels as channels
+from sceneql.bodies.rigid.drive_kernels import EFFORT_AT
 from sceneql.bodies.rigid.groups_kernels import MASS, solve_groups
 from sceneql.bodies.rigid.moved_bodies_kernels import (
     DRIVES,
@@ -12,7 +13,7 @@ from sceneql.bodies.rigid.moved_bodies_kernels import (
     move_all,
     place_all,
 )
-from sceneql.bodies.rigid.tied_rows_kernels import EFFORT_AT, begin_ties, drive_of, first_stop, write_ties
+from sceneql.bodies.rigid.tied_rows_kernels import begin_ties, drive_of, first_stop, write_ties
 from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, strike, tell_work, tied_to
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel

@@ -73,7 +73,7 @@ class Driven(Joint):
         given = -1 if force is None else assembly.state([0.0])
         acting = (values[0], values[1], assembly.floats([self.rest]), values[2])
         law = (*acting, held.bodies.work_at, given, assembly.floats([0.0]))
-        effort = assembly.floats([0.0, 0.0, 0.0])
+        effort = assembly.floats([0.0, 0.0, 0.0, 0.0])
         ints = (*integers(first.mover), *integers(second.mover), *row, scratch, *law)
         if kind == "turn":
             assembly.after_step("sceneql.bodies.rigid.drive_kernels:follow", ints, samples=True)
@@ -99,6 +99,7 @@ class Driven(Joint):
             limits_at=-1 if limits is None else assembly.floats(limits),
             restitution_at=-1 if limits is None else assembly.value(self.restitution),
             follows=follows,
+            target=None if motor is None else motor.target,
             target_at=target,
             most_at=most,
             settling_at=settling,
@@ -119,7 +120,9 @@ class Driven(Joint):
         return fast if output == "speed" else far
 
     def remark(self, state: ModelState) -> str:
-        """That stops, motor and friction make steps of order 1."""
+        """Whether stops, motor and friction make steps of order 1."""
+        from sceneql.bodies.rigid.drive_kernels import LAST_AT
+
         motor = self.driver()
         parts = [
             *(["stops"] if self.limits is not None else []),
@@ -128,6 +131,8 @@ class Driven(Joint):
         ]
         acts = "acts" if parts in (["friction"], ["its motor"]) else "act"
         told = "on the velocities at the end of a step (mode local), of order 1 in the step where they do"
+        if parts and state.floats[state.ints[-(LAST_AT + 2)] + 3] == 1.0:
+            told = "with the contacts (mode exact): their changes are located, forces have the solver's order"
         return f"{' and '.join(parts)} {acts} {told}" if parts else ""
 
     def trouble(self, state: ModelState) -> str:

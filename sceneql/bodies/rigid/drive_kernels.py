@@ -36,6 +36,14 @@ FORCE_AT, STIFFNESS_AT, REST_AT, DAMPING_AT, WORK_AT, GIVEN_AT, LAST_AT = range(
 rest and damping; of the work in y, and there of the energy that the force gave (-1: none); of how far it was at the
 end of the last step, by which turns are counted. A row of kind POINT is a shift along n_b; any other a turn about
 n_b, its numbers directions across that axis, one of a and one of b, and n_b."""
+(LIMITS_AT, REBOUND_AT, MOTOR, TARGET_AT, MOST_AT, SETTLING_AT, REACHED_AT, FRICTION_AT, EFFORT_AT, DRIVE_INTS) = range(
+    LAST_AT + 1, LAST_AT + 11
+)
+"""Behind these, of what acts in bounds: offsets of both limits and of the restitution (-1: none); what its motor
+follows, offsets of that, of the largest force, of the time in which a motor takes errors of an angle away, and of the
+angle that it followed last; of the friction (-1: none); of what all of these do along the motion."""
+NO_MOTOR, SPEED, ANGLE = range(3)
+"""What a motor follows."""
 
 
 @lean(types.UniTuple(F, 2)(A, A, I))

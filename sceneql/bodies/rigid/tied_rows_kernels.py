@@ -14,7 +14,22 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.drive_kernels import LAST_AT, ROW_AT, motion
+from sceneql.bodies.rigid.drive_kernels import (
+    ANGLE,
+    DRIVE_INTS,
+    EFFORT_AT,
+    FRICTION_AT,
+    LIMITS_AT,
+    MOST_AT,
+    MOTOR,
+    NO_MOTOR,
+    REACHED_AT,
+    REBOUND_AT,
+    ROW_AT,
+    SETTLING_AT,
+    TARGET_AT,
+    motion,
+)
 from sceneql.bodies.rigid.moved_bodies_kernels import (
     ACTIVE_AT,
     AWAY,
@@ -53,16 +68,8 @@ from sceneql.system.signatures_kernels import A, F, I, N
 GROUP, FLIPPED, SIDE_INTS = range(3)
 """Integers of a row: its group, and whether the first of its two bodies is the tie's second."""
 
-(LIMITS_AT, REBOUND_AT, MOTOR, TARGET_AT, MOST_AT, SETTLING_AT, REACHED_AT, FRICTION_AT, EFFORT_AT) = range(
-    LAST_AT + 1, LAST_AT + 10
-)
-DRIVE_GROUP, DRIVE_FLIPPED, DRIVE = range(LAST_AT + 10, LAST_AT + 13)
-"""Integers of a drive, behind those of its motion (drive_kernels): offsets of both limits and of the restitution (-1:
-none); what its motor follows, offsets of that, of the largest force, of the time in which a motor takes errors of an
-angle away, and of the angle that it followed last; of the friction (-1: none); of what all of these do along the
-motion; then as of a row."""
-NO_MOTOR, SPEED, ANGLE = range(3)
-"""What a motor follows."""
+DRIVE_GROUP, DRIVE_FLIPPED, DRIVE = range(DRIVE_INTS, DRIVE_INTS + 3)
+"""Integers of a drive, behind those of drive_kernels: as of a row."""
 
 BOUNCES = 2.0
 """A part bounces off a stop that approaches faster than the step's forces make it in so many steps."""

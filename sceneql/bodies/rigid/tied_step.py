@@ -134,7 +134,7 @@ def tied_step(assembly: Assembly, bodies: Sequence[tuple[int, ...]], drives: boo
     for tie in ties:
         pair, (group, flipped) = side(tie)
         if drives and tie.drive is not None and group >= 0:
-            found.append((*_drive(tie.drive), group, flipped))
+            found.append((*drive_integers(tie.drive), group, flipped))
             pairs += [pair] * 4
             always[group] |= int(tie.drive.always)
     joined = [tuple(sorted(integers(mover)[0] for mover in tie.movers)) for tie in ties]
@@ -142,7 +142,8 @@ def tied_step(assembly: Assembly, bodies: Sequence[tuple[int, ...]], drives: boo
     return TiedStep(rows, pairs, both, assembly.tie_ints, sides, groups, body_movers, always, found, drives)
 
 
-def _drive(drive: Drive) -> tuple[int, ...]:
+def drive_integers(drive: Drive) -> tuple[int, ...]:
+    """The integers of stops, motor and friction (drive_kernels)."""
     follows = FOLLOWS.index(drive.follows)
     motor = (follows, drive.target_at, drive.most_at, drive.settling_at, drive.reached_at)
     return (*drive.along, drive.limits_at, drive.restitution_at, *motor, drive.friction_at, drive.effort_at)

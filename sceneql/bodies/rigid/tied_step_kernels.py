@@ -10,7 +10,16 @@ import math
 import numpy as np
 from numba import types
 
-from sceneql.bodies.rigid.drive_kernels import ROW_AT, motion
+from sceneql.bodies.rigid.drive_kernels import (
+    ANGLE,
+    EFFORT_AT,
+    LIMITS_AT,
+    MOTOR,
+    REACHED_AT,
+    ROW_AT,
+    TARGET_AT,
+    motion,
+)
 from sceneql.bodies.rigid.groups_kernels import MASS
 from sceneql.bodies.rigid.moved_bodies_kernels import (
     ACTIVE_AT,
@@ -52,16 +61,10 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     turned,
 )
 from sceneql.bodies.rigid.tied_rows_kernels import (
-    ANGLE,
     DRIVE,
     DRIVE_GROUP,
-    EFFORT_AT,
     GROUP,
-    LIMITS_AT,
-    MOTOR,
-    REACHED_AT,
     SIDE_INTS,
-    TARGET_AT,
     drive_of,
     write_ties,
 )

@@ -15,8 +15,8 @@ import math
 
 from numba import types
 
+from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_MASS, AT_V, AT_W, AT_X, cross, put, turned
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
-from sceneql.bodies.rigid.tie_rows_kernels import AT_V, AT_W, AT_X, cross, put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import A, F, N
 
@@ -27,14 +27,15 @@ SLOW, FAST = 1.0, 2.0
 KIND, OWN_A, OWN_B, LINE_A, LINE_B, RADIUS_A, RADIUS_B, SIGN = 0, 1, 4, 7, 10, 13, 14, 15
 SHAPE_A, SHAPE_B, PAIR, SLIDES, PUSHES, ALONG, FORCE, EXTENT, SLIP = 16, 17, 18, 19, 20, 21, 24, 27, 28
 NORMAL, POINT, GAP, SPEED, SLIDE, BIAS, FIRST, SECOND, ROWS, AIMED = 29, 32, 35, 36, 37, 40, 43, 46, 49, 85
-OF, DRIFT, RECORD = 88, 89, 92
+OF, DRIFT, TURNS, TURN_SLIP, TURN, TURN_ALONG, TURN_AIMED, TORQUE, RECORD = 88, 89, 92, 93, 94, 97, 100, 103, 106
 """Numbers of a contact. Kept: its kind; a point of each body, in its axes; the face's normal or the edge's direction of
 each, in its axes; both radii; the sign of the normal of two edges; the numbers of both shapes, and of their pair;
 whether it slides (0: it sticks) and pushes; the direction of slip then (3); its force along normal and tangents (3);
 how far inside its face it was, and how fast it slid, when these were written. Of a state: normal, point, gap, dgap/dt,
 slip (3); the biases of normal and tangents; two tangents; three rows by velocity and angular velocity of a, then of b;
 the direction of slip now. Kept, too: of what is round on a polyhedron, the number of its face, edge or corner (else
--1); and of a curved one now, which way it drifts over that."""
+-1); and of a curved one now, which way it drifts over that. Where a moment resists rolling, as of the slip, of the spin
+of a against b: whether it turns, how fast it did and which way; it now, the direction of it now, and the moment."""
 
 
 @lean_inlined
@@ -64,6 +65,13 @@ def across(nx, ny, nz):
     return x, y, z, p, q, r
 
 
+@lean_inlined
+def is_mass(floats, m):
+    """Whether the mover whose floats begin at m is a mass without a rotation."""
+    g = m + AT_INVERSE
+    return floats[m + AT_MASS] != 0.0 and floats[g] == 0.0 and floats[g + 4] == 0.0 and floats[g + 8] == 0.0
+
+
 @lean(types.void(A, N, N, N, F, F, F, F, F, F, F, F, F))
 def place(floats, at, a, b, nx, ny, nz, cx, cy, cz, gx, gy, gz):
     """Write the slip and the rows of a contact at (cx, cy, cz) that moves at (gx, gy, gz)."""
@@ -74,6 +82,11 @@ def place(floats, at, a, b, nx, ny, nz, cx, cy, cz, gx, gy, gz):
     wa = three(floats, a + AT_W)
     wb = three(floats, b + AT_W)
     put(floats, at + POINT, cx, cy, cz)
+    put(floats, at + TURN, wa[0] - wb[0], wa[1] - wb[1], wa[2] - wb[2])
+    for m in (a, b):
+        if is_mass(floats, m):  # which nothing turns: friction acts at its middle
+            cx, cy, cz = three(floats, m + AT_X)
+            gx, gy, gz = three(floats, m + AT_V)
     px, py, pz, qx, qy, qz = cx - xa, cy - ya, cz - za, cx - xb, cy - yb, cz - zb
     sx, sy, sz = cross(wa[0], wa[1], wa[2], px, py, pz)
     tx, ty, tz = cross(wb[0], wb[1], wb[2], qx, qy, qz)

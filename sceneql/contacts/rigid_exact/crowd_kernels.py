@@ -21,9 +21,12 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     PAIRS,
     PAIRS_AT,
     SHAPES_AT,
+    driven_at,
     mover_at,
     pull_at,
+    spots,
 )
+from sceneql.contacts.rigid_exact.stop_kernels import FAST, FIRST_MOVER, SIZE
 from sceneql.system.signatures_kernels import A, F, I, N
 
 SPAN = 0.1
@@ -44,6 +47,12 @@ ENDLESS = 3000.0
 def quickness(floats, ints, pair):
     """The inverse of a pair's natural time [1/s]."""
     size = strongest = fastest = 0.0
+    if pair >= ints[PAIRS]:  # a stop
+        own = driven_at(ints, (pair - ints[PAIRS]) // 2)
+        for side in range(2):
+            x, y, z = three(floats, pull_at(ints, int(floats[own + FIRST_MOVER + side])))
+            strongest = max(strongest, math.sqrt(x * x + y * y + z * z))
+        return max(math.sqrt(strongest / floats[own + SIZE]), abs(floats[own + FAST]) / floats[own + SIZE])
     for side in range(2):
         k = ints[ints[PAIRS_AT] + 2 * pair + side]
         shape, mover = ints[SHAPES_AT] + SHAPE * k, mover_at(ints, k)
@@ -61,7 +70,7 @@ def quickness(floats, ints, pair):
 @lean(types.void(F, A, I, N))
 def count_event(t, floats, ints, pair):
     """Count an event of a pair."""
-    at = ints[KEPT_AT] + ints[PAIRS] + 2 * pair
+    at = ints[KEPT_AT] + spots(ints) + 2 * pair
     since = (t - floats[at + 1]) * quickness(floats, ints, pair) / SPAN
     floats[at], floats[at + 1] = 1.0 + floats[at] * math.exp(-since), t
 
@@ -69,7 +78,7 @@ def count_event(t, floats, ints, pair):
 @lean(F(A, I, N))
 def level(floats, ints, pair):
     """How crowded the events of a pair were at its latest."""
-    return floats[ints[KEPT_AT] + ints[PAIRS] + 2 * pair]
+    return floats[ints[KEPT_AT] + spots(ints) + 2 * pair]
 
 
 @lean(F(A, I, N))

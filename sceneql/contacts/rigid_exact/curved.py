@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.contacts.distance.convex import Convex
+from sceneql.contacts.distance.convex import Convex, capsule, mass
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -76,6 +76,15 @@ def ring(radius: float, tube: float) -> Curved:
 def column(radius: float, half: float) -> Curved:
     """A round column along the axis y, of this radius and half height [m]."""
     return Curved(COLUMN, (radius, half), np.zeros(3), np.eye(3))
+
+
+def axis_of(shape: Convex) -> Convex:
+    """What others meet a column by: its axis with its radius; nothing of any other shape."""
+    if shape.kind != CURVED or shape.floats[FORM] != COLUMN:
+        return mass()
+    center, axis = shape.floats[CENTER : CENTER + 3], shape.floats[AXES + 3 : AXES + 6]
+    radius, half = shape.floats[SIZES : SIZES + 2].tolist()
+    return capsule(center - half * axis, center + half * axis, radius)
 
 
 def _right(axes: Floats) -> Floats:

@@ -4,7 +4,7 @@
 from numba import types
 
 from sceneql.bodies.rigid.tie_rows_kernels import AT_X, put
-from sceneql.compiled.kernels import lean
+from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.distance.convex import CORE
 from sceneql.contacts.distance.core_kernels import (
     EDGES,
@@ -21,12 +21,15 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     OF,
     POINT,
     RECORD,
+    SHAPE_A,
+    SHAPE_B,
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved import COLUMN, FORM, RING
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_FACE, follow, speed_at
 from sceneql.contacts.rigid_exact.curved_find_kernels import (
+    COLUMN_B,
     FIRST,
     LEAST,
     MOVER_A,
@@ -38,6 +41,7 @@ from sceneql.contacts.rigid_exact.curved_find_kernels import (
     slope_along,
 )
 from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
+from sceneql.contacts.rigid_exact.exact_rows_kernels import mover_at
 from sceneql.contacts.rigid_exact.features_kernels import AHEAD, LIMIT, extent, is_plain, smaller, way_ahead
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -45,6 +49,13 @@ APART = 1e-4
 """Distance of two contacts, in parts of the smaller body, up to which they are one, on the border of two features."""
 CUT, CUTS = 1e-5, 64
 """Depth, in parts of the smaller body, from which an edge is in a ring or column; places on the edge that are asked."""
+
+
+@lean_inlined
+def follow_own(floats, ints, rec):
+    """Follow a contact with its own movers: of two columns it may be that of the second with the first."""
+    a, b = int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B])
+    follow(floats, ints, rec, mover_at(ints, a), mover_at(ints, b))
 
 
 @lean(N(A, I, N, N, N))
@@ -76,8 +87,7 @@ def stay(floats, ints, who, next, count):
 @lean(N(A, I, N, F, N, N, N, N))
 def roll_ahead(floats, ints, who, margin, next, count, most, k):
     """Of a column or ring at the border of a face, where its contact k is, the contacts to which it moves; how many."""
-    ma, mb = ints[who + MOVER_A], ints[who + MOVER_B]
-    size = smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
+    ma, size = ints[who + MOVER_A], smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
     dx, dy, dz = way_ahead(floats, ints, next + RECORD * k, *three(floats, next + RECORD * k + DRIFT))
     x, y, z = three(floats, ma + AT_X)
     put(floats, ma + AT_X, x + dx, y + dy, z + dz)
@@ -86,7 +96,7 @@ def roll_ahead(floats, ints, who, margin, next, count, most, k):
     if more == 0:
         more = min(count, meet(floats, ints, who, margin, next, most)[0])
     for j in range(more):
-        follow(floats, ints, next + RECORD * j, ma, mb)
+        follow_own(floats, ints, next + RECORD * j)
     return more
 
 
@@ -96,7 +106,7 @@ def is_cut(floats, ints, who):
     sb, ma, mb = ints[who + SHAPE_OF_B], ints[who + MOVER_A], ints[who + MOVER_B]
     fa, fb, ib = ints[ints[who + SHAPE_OF_A] + FLOATS], ints[sb + FLOATS], ints[sb + INTS]
     form = floats[fa + FORM]
-    if (form != RING and form != COLUMN) or ints[sb + KIND] != CORE:
+    if (form != RING and form != COLUMN) or ints[sb + KIND] != CORE or ints[who + COLUMN_B] >= 0:
         return False
     deep = floats[fb + RADIUS] - CUT * smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
     for e in range(ints[ib + EDGES]):
@@ -113,10 +123,10 @@ def is_cut(floats, ints, who):
 @lean(N(A, I, N, F, N, N))
 def meet_ahead(floats, ints, who, margin, next, most):
     """As `meet`, with the contacts followed; of one on the border of two features that to which it moves; how many."""
-    ma, mb, sb = ints[who + MOVER_A], ints[who + MOVER_B], ints[who + SHAPE_OF_B]
+    ma, sb = ints[who + MOVER_A], ints[who + SHAPE_OF_B]
     count = meet(floats, ints, who, margin, next, most)[0]
     for k in range(count):
-        follow(floats, ints, next + RECORD * k, ma, mb)
+        follow_own(floats, ints, next + RECORD * k)
     if count == 0 or ints[sb + KIND] != CORE or ints[ints[sb + INTS] + VERTICES] == 1:
         return count
     size = smaller(floats, ints, ints[who + FIRST], ints[who + SECOND])
@@ -138,5 +148,5 @@ def meet_ahead(floats, ints, who, margin, next, most):
         put(floats, ma + AT_X, x, y, z)
         more = min(1, meet(floats, ints, who, margin, next, most)[0])
     put(floats, ma + AT_X, x, y, z)
-    follow(floats, ints, next, ma, mb)
+    follow_own(floats, ints, next)
     return more

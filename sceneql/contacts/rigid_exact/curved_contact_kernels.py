@@ -38,6 +38,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 from sceneql.contacts.rigid_exact.contact_kernels import follow as follow_flat
 from sceneql.contacts.rigid_exact.curved import ELLIPSOID, FORM
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, bend, farthest, into, out_of, wander
+from sceneql.contacts.rigid_exact.stop_kernels import STOP, follow_stop
 from sceneql.system.signatures_kernels import A, F, I, N
 
 ON_FACE, ON_EDGE, ON_CORNER = 6, 7, 8
@@ -205,5 +206,7 @@ def follow(floats, ints, at, a, b):
         follow_on_face(floats, at, a, b)
     elif kind == ON_EDGE or kind == ON_CORNER:
         follow_on_corner(floats, ints, at, a, b)
+    elif kind == STOP:
+        follow_stop(floats, at, a)
     else:
         follow_flat(floats, at, a, b)

@@ -49,7 +49,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FORM, RING, SIZES
 from sceneql.contacts.rigid_exact.curved_contact_kernels import FLAT, ON_CORNER, ON_EDGE, ON_FACE, own
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, into, slant
-from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT
+from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT, core_at
 from sceneql.contacts.rigid_exact.rim_kernels import on_circle
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -62,9 +62,10 @@ PARALLEL = 1e-7
 PIECES = 8
 """Pieces of an edge that are looked at for places that are nearest."""
 HALVINGS = 60
-PAIR_NAME, FIRST, SECOND, SHAPE_OF_A, SHAPE_OF_B, MOVER_A, MOVER_B, WHO = range(8)
+PAIR_NAME, FIRST, SECOND, SHAPE_OF_A, SHAPE_OF_B, MOVER_A, MOVER_B, COLUMN_B, CORE_OF_A, WHO = range(10)
 """Integers of a question: the pair, numbers of both shapes, where these begin among the integers, and where both movers
-begin among the floats."""
+begin among the floats; where the shape of b begins if it is a column, of which SHAPE_OF_B is the axis (else -1), and
+that of a's axis."""
 
 
 @lean_inlined
@@ -79,7 +80,9 @@ def ask(ints, pair, a, b, ma, mb):
     who = ints[WHO_AT]
     ints[who + PAIR_NAME], ints[who + FIRST], ints[who + SECOND] = pair, a, b
     ints[who + MOVER_A], ints[who + MOVER_B] = ma, mb
-    ints[who + SHAPE_OF_A], ints[who + SHAPE_OF_B] = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b
+    ints[who + SHAPE_OF_A], ints[who + SHAPE_OF_B] = ints[SHAPES_AT] + SHAPE * a, core_at(ints, b)
+    own = ints[SHAPES_AT] + SHAPE * b
+    ints[who + COLUMN_B], ints[who + CORE_OF_A] = (own if is_curved(ints, own) else -1), core_at(ints, a)
     return who
 
 

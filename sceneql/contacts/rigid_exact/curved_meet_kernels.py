@@ -25,11 +25,17 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, FIELD, FORM, SIZES
 from sceneql.contacts.rigid_exact.curved_find_kernels import (
+    COLUMN_B,
+    CORE_OF_A,
+    FIRST,
     FOUND,
     MOVER_A,
     MOVER_B,
+    PAIR_NAME,
+    SECOND,
     SHAPE_OF_A,
     SHAPE_OF_B,
+    WHO,
     along_axis,
     at_corners,
     begin_record,
@@ -39,8 +45,13 @@ from sceneql.contacts.rigid_exact.curved_find_kernels import (
     on_faces,
     separation,
 )
-from sceneql.contacts.rigid_exact.curved_surface_kernels import into, out_of
+from sceneql.contacts.rigid_exact.curved_surface_kernels import SIDEWAYS, away, into, out_of
 from sceneql.contacts.rigid_exact.features_kernels import line_of
+from sceneql.contacts.rigid_exact.rim_kernels import on_circle
+from sceneql.system.signatures_kernels import A, F, I, N
+
+POINTS_OF_RIM, NARROWINGS = 24, 40
+"""Points of a rim whose distance is asked for, and how often the place of the least is narrowed by a third."""
 
 
 @lean(FOUND)
@@ -94,6 +105,89 @@ def along_edges(floats, ints, who, margin, next, most):
     return count, least
 
 
+@lean(N(A, I, N))
+def swapped(floats, ints, who):
+    """Write the question with a and b in each other's place; where it stands."""
+    other = who + WHO
+    ints[other + PAIR_NAME], ints[other + FIRST], ints[other + SECOND] = (
+        ints[who + PAIR_NAME],
+        ints[who + SECOND],
+        ints[who + FIRST],
+    )
+    ints[other + SHAPE_OF_A], ints[other + SHAPE_OF_B] = ints[who + COLUMN_B], ints[who + CORE_OF_A]
+    ints[other + MOVER_A], ints[other + MOVER_B] = ints[who + MOVER_B], ints[who + MOVER_A]
+    ints[other + COLUMN_B], ints[other + CORE_OF_A] = ints[who + SHAPE_OF_A], ints[who + SHAPE_OF_B]
+    return other
+
+
+@lean(F(A, I, N, F, F))
+def rim_gap(floats, ints, who, sign, angle):
+    """How far a point of a rim of the column b is from a."""
+    ma, mb = ints[who + MOVER_A], ints[who + MOVER_B]
+    p, q, r = on_circle(floats, ints[ints[who + COLUMN_B] + FLOATS], sign, math.cos(angle), math.sin(angle))
+    x, y, z = in_axes_of_a(floats, ma, mb, p, q, r)
+    return away(floats, ints, ints[ints[who + SHAPE_OF_A] + FLOATS], x, y, z)[0]
+
+
+@lean(F(A, I, N))
+def rims_gap(floats, ints, who):
+    """How far the rims of the column b are from a, at least."""
+    least = math.inf
+    step = 2.0 * math.pi / POINTS_OF_RIM
+    for side in range(2):
+        sign, best, at = (-1.0 if side == 1 else 1.0), math.inf, 0.0
+        for k in range(POINTS_OF_RIM):
+            gap = rim_gap(floats, ints, who, sign, step * k)
+            if gap < best:
+                best, at = gap, step * k
+        low, high = at - step, at + step
+        for _ in range(NARROWINGS):
+            third = (high - low) / 3.0
+            if rim_gap(floats, ints, who, sign, low + third) < rim_gap(floats, ints, who, sign, high - third):
+                high -= third
+            else:
+                low += third
+        least = min(least, best, rim_gap(floats, ints, who, sign, 0.5 * (low + high)))
+    return least
+
+
+@lean(N(A, I, N, N, N))
+def at_rims(floats, ints, who, next, count):
+    """Drop the contacts of a with b's axis that are not at a rim of a: these are those of b with a's; how many stay."""
+    fa, kept = ints[ints[who + SHAPE_OF_A] + FLOATS], 0
+    for k in range(count):
+        rec, to = next + RECORD * k, next + RECORD * kept
+        s = floats[rec + LINE_A + 1]
+        x, y, z = three(floats, rec + OWN_B)
+        u, v, w = three(floats, rec + LINE_B)
+        ma, mb = ints[who + MOVER_A], ints[who + MOVER_B]
+        x, y, z = in_axes_of_a(floats, ma, mb, x + s * u, y + s * v, z + s * w)
+        nx, ny, nz = away(floats, ints, fa, x, y, z)[1:]
+        if abs(into(floats, fa, nx, ny, nz)[1]) <= SIDEWAYS:
+            continue
+        for c in range(RECORD if to != rec else 0):
+            floats[to + c] = floats[rec + c]
+        kept += 1
+    return kept
+
+
+@lean(FOUND)
+def meet_column(floats, ints, who, margin, next, most):
+    """As `meet`, with a column b: along its round side, and along that of a column a at a rim of b.
+
+    Rims that touch rims, or what is flat, have a gap and no contact.
+    """
+    count, least = on_edges(floats, ints, who, margin, next, most)
+    if floats[ints[ints[who + SHAPE_OF_A] + FLOATS] + FORM] == COLUMN:
+        more, gap = along_edges(floats, ints, who, margin, next + RECORD * count, most - count)
+        count, least = count + more, min(least, gap)
+        other = swapped(floats, ints, who)
+        more, gap = on_edges(floats, ints, other, margin, next + RECORD * count, most - count)
+        count, least = count + at_rims(floats, ints, other, next + RECORD * count, more), min(least, gap)
+        least = min(least, rims_gap(floats, ints, other))
+    return count, min(least, rims_gap(floats, ints, who))
+
+
 @lean(FOUND)
 def meet(floats, ints, who, margin, next, most):
     """The contacts of a curved body a with b within a margin, written to floats[next:], up to ``most`` of them.
@@ -103,6 +197,8 @@ def meet(floats, ints, who, margin, next, most):
     """
     if floats[ints[ints[who + SHAPE_OF_A] + FLOATS] + FORM] == FIELD:  # which balls alone meet
         return at_corners(floats, ints, who, margin, next, most)
+    if ints[who + COLUMN_B] >= 0:
+        return meet_column(floats, ints, who, margin, next, most)
     count, least = on_faces(floats, ints, who, margin, next, most)
     if ints[ints[who + SHAPE_OF_B] + KIND] != CORE:
         return count, least

@@ -18,6 +18,8 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 APART = 1e-5
 """Distance of points for the bend of a field, in parts of its size."""
+SIDEWAYS = 1e-9
+"""Part of its length up to which the normal of a column has no part along its axis, or across: it is at no rim."""
 MOST = 100
 """Steps of Newton's method, of which a few are the rule."""
 THREE = types.UniTuple(F, 3)
@@ -192,6 +194,6 @@ def bend(floats, ints, f, px, py, pz, distance, nx, ny, nz, ex, ey, ez):
         if floats[f + FORM] == RING:
             t = 1.0 / (b + distance)
         else:
-            t = 1.0 / distance if abs(outward) > 0.0 and abs(m) > 0.0 and distance > 0.0 else 0.0
+            t = 1.0 / distance if abs(outward) > SIDEWAYS and abs(m) > SIDEWAYS and distance > 0.0 else 0.0
         u, v, w = t * (u - turning * j) + s * j, t * v, t * (w + turning * i) - s * i
     return out_of(floats, f, u, v, w)

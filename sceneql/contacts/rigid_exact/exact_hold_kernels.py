@@ -27,6 +27,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     AIMED,
     FORCE,
     GAP,
+    KIND,
     NORMAL,
     POINT,
     PUSHES,
@@ -37,6 +38,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SLIDES,
     SLOW,
     SPEED,
+    TURN_AIMED,
     pace,
     three,
 )
@@ -46,8 +48,10 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     AT_FIRST,
     AT_PUSH,
     AT_WEIGHED,
+    BEGUN,
     COUNT_AT,
     COUNTED,
+    DRIVES,
     FORCES,
     FORCES_AT,
     FRICTION_AT,
@@ -63,6 +67,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     POINTS_AT,
     RECORDS_AT,
     SINCE,
+    SPARING,
     SPEEDS,
     TIE_ROWS,
     TIED_AT,
@@ -75,6 +80,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     kick,
     left_at,
     look,
+    look_at_motions,
     mover_at,
     pull_at,
     sizes_at,
@@ -82,7 +88,18 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     write_rows,
 )
 from sceneql.contacts.rigid_exact.exact_solve_kernels import solve_rows, within_reason
+from sceneql.contacts.rigid_exact.extra_rows_kernels import (
+    aim_turning,
+    decide_more,
+    give,
+    more_open,
+    tell_efforts,
+    tell_given,
+    watch_more,
+    write_more,
+)
 from sceneql.contacts.rigid_exact.rim_kernels import any_rim, exchange_all, save
+from sceneql.contacts.rigid_exact.stop_kernels import STOP
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, I, N
 
 STILL = 1e-10
@@ -122,6 +139,7 @@ def aim(floats, ints):
             put(floats, rec + AIMED, 0.0, 0.0, 0.0)
         else:
             put(floats, rec + AIMED, sx / speed, sy / speed, sz / speed)
+        aim_turning(floats, rec, CREEP)
 
 
 @lean(types.boolean(A, I))
@@ -129,9 +147,10 @@ def unaim(floats, ints):
     """Let no contact have a direction of slip; whether one had."""
     some = False
     for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
-        at = ints[RECORDS_AT] + RECORD * k + AIMED
-        some = some or floats[at] != 0.0 or floats[at + 1] != 0.0 or floats[at + 2] != 0.0
-        put(floats, at, 0.0, 0.0, 0.0)
+        for which in (AIMED, TURN_AIMED):
+            at = ints[RECORDS_AT] + RECORD * k + which
+            some = some or floats[at] != 0.0 or floats[at + 1] != 0.0 or floats[at + 2] != 0.0
+            put(floats, at, 0.0, 0.0, 0.0)
     return some
 
 
@@ -139,7 +158,7 @@ def unaim(floats, ints):
 def decide(floats, ints, n):
     """Drop the contacts that leave, let those slide that slip, and keep the forces as a guess; whether some do."""
     memory = ints[MEMORY_AT]
-    kept, row, changes = 0, ints[TIE_ROWS], False
+    kept, row, changes = 0, ints[TIE_ROWS], decide_more(floats, ints, n, LEAVES)
     found, left = solution_at(ints), left_at(ints)
     for k in range(int(floats[memory + KEPT])):
         rec, to = ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * kept
@@ -171,11 +190,14 @@ def decide(floats, ints, n):
 
 @lean(types.void(A, I, N, types.float64))
 def tell(floats, ints, n, friction):
-    """Write points, normals and forces of the contacts for outputs."""
-    row, found = ints[TIE_ROWS], solution_at(ints)
-    count = int(floats[ints[MEMORY_AT] + KEPT])
-    for k in range(count):
+    """Write points, normals and forces of the contacts for outputs, and the efforts of ties."""
+    row, found, count = ints[TIE_ROWS], solution_at(ints), 0
+    tell_efforts(floats, ints, n)
+    for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
         rec = ints[RECORDS_AT] + RECORD * k
+        if floats[rec + KIND] == STOP:
+            row += 1
+            continue
         fx = fy = fz = 0.0
         while row < n and floats[ints[UNITS_AT] + UNIT * row + AT_CONTACT] == k:
             at = ints[UNITS_AT] + UNIT * row + AT_PUSH
@@ -183,9 +205,10 @@ def tell(floats, ints, n, friction):
             fy += floats[found + row] * floats[at + 1]
             fz += floats[found + row] * floats[at + 2]
             row += 1
-        put(floats, ints[POINTS_AT] + 3 * k, *three(floats, rec + POINT))
-        put(floats, ints[NORMALS_AT] + 3 * k, *three(floats, rec + NORMAL))
-        put(floats, ints[FORCES_AT] + 3 * k, fx, fy, fz)
+        put(floats, ints[POINTS_AT] + 3 * count, *three(floats, rec + POINT))
+        put(floats, ints[NORMALS_AT] + 3 * count, *three(floats, rec + NORMAL))
+        put(floats, ints[FORCES_AT] + 3 * count, fx, fy, fz)
+        count += 1
     floats[ints[COUNT_AT]] = count
 
 
@@ -221,11 +244,11 @@ def balance(rate, floats, ints, n):
 def forces(floats, ints, friction):
     """Solve for the forces: rows that were solved for, whether to rounding, and whether no force fitted the slip."""
     aim(floats, ints)
-    n = write_rows(floats, ints, FORCES, friction)
+    n = write_more(floats, ints, write_rows(floats, ints, FORCES, friction), FORCES)
     solved = solve_rows(floats, ints, n, friction, True)
     if not (solved and within_reason(floats, ints, n)) and unaim(floats, ints):
         # No force fits the slip: friction against the pull does, and what sticks by it is stopped at once.
-        n = write_rows(floats, ints, FORCES, friction)
+        n = write_more(floats, ints, write_rows(floats, ints, FORCES, friction), FORCES)
         return n, solve_rows(floats, ints, n, friction, True), True
     return n, solved, False
 
@@ -242,20 +265,28 @@ def hold(t, y, rate, floats, ints):
             floats[pull_at(ints, m) + c] = floats[to + AT_A + c]
             floats[pull_at(ints, m) + 3 + c] = floats[to + AT_TWIST + c]
     floats[ints[COUNT_AT]] = 0.0
-    if floats[memory + KEPT] == 0.0:
+    look_at_motions(y, floats, ints)
+    if floats[memory + KEPT] == 0.0 and ints[DRIVES] == 0:
         floats[memory + UNDECIDED] = 0.0
         return
     friction = floats[ints[FRICTION_AT]]
     follow_all(floats, ints)
     n, solved, jammed = forces(floats, ints, friction)
     turns = 0
-    while turns < MOST_TURNS and any_rim(floats, ints):
-        if turns == 0:
-            save(floats, ints, False)
-        if not exchange_all(floats, ints, n, True):
+    # With as few points of a circle as bear it; where no solution is found so, with more.
+    for way in range(2):
+        floats[memory + SPARING] = 1.0 - way
+        while turns < MOST_TURNS * (1 + way) and any_rim(floats, ints):
+            if turns == 0:
+                save(floats, ints, False)
+            if not exchange_all(floats, ints, n, True):
+                break
+            n, solved, jammed = forces(floats, ints, friction)
+            turns += 1
+        if solved or turns == 0 or way == 1:
             break
+        save(floats, ints, True)
         n, solved, jammed = forces(floats, ints, friction)
-        turns += 1
     if jammed:
         floats[memory + JAMMED] += floats[memory + UNDECIDED]
     if not solved:
@@ -277,6 +308,7 @@ def hold(t, y, rate, floats, ints):
                     power += floats[f + 3 + c] * floats[mover + AT_W + c]
             if i >= ints[TIE_ROWS] and ints[ints[WORKS_AT] + m] >= 0:
                 rate[ints[ints[WORKS_AT] + m]] -= force * power
+            give(rate, floats, ints, unit, force * power)
         if i < ints[TIE_ROWS]:
             floats[ints[ints[TIED_AT] + 3 * i + 2] + AT_FORCE] += force
     balance(rate, floats, ints, n)
@@ -286,6 +318,8 @@ def hold(t, y, rate, floats, ints):
             floats[memory + SINCE] = max(t, floats[memory + SINCE])
     elif turns > 0:  # nothing that is asked at an instant may change what comes after
         save(floats, ints, True)
+    if t > floats[memory + BEGUN]:
+        watch_more(floats, ints, n, LEAVES)
 
 
 @lean_inlined
@@ -303,7 +337,8 @@ def size_of(floats, ints, rec):
 def settle(t0, t1, y0, rate0, y1, floats, ints):
     """Closes the gaps and the speeds of kept contacts, by the least change that ties leave."""
     memory = ints[MEMORY_AT]
-    if floats[memory + KEPT] == 0.0 or t1 < floats[memory + SINCE]:
+    tell_given(y1, floats, ints)
+    if (floats[memory + KEPT] == 0.0 and ints[DRIVES] == 0) or t1 < floats[memory + SINCE]:
         return False
     friction = floats[ints[FRICTION_AT]]
     changed = False
@@ -343,8 +378,8 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
                 worst = max(worst, abs(floats[rec + SLIDE + c]))
         if worst > CLOSED * pace(floats, rec, a, b):
             open = True
-    if open:
-        n = write_rows(floats, ints, SPEEDS, friction)
+    if open or more_open(floats, ints, CLOSED):
+        n = write_more(floats, ints, write_rows(floats, ints, SPEEDS, friction), SPEEDS)
         # Tangents stand as ties here: what sticks has no speed.
         solve_rows(floats, ints, n, 0.0, False)
         jammed = floats[memory + JAMMED] > floats[memory + COUNTED]

@@ -2,7 +2,8 @@
 """Coulomb's law for few contacts, with all ties: a dense complementarity problem, solved to rounding.
 
 s = W x + b, with s the rows' speeds (or accelerations) and x their impulses (or forces). Of a tie s = 0; of a contact
-s_N >= 0, x_N >= 0, s_N x_N = 0, and |x_T| <= mu x_N with x_T against s_T where it slides. A semismooth Newton method on
+s_N >= 0, x_N >= 0, s_N x_N = 0, and |x_T| <= mu x_N with x_T against s_T where it slides; so is a moment of at most a
+length times x_N, and what has bounds of its own, as a motor. A semismooth Newton method on
 the projections (Alart & Curnier 1991), by steps of the proximal method of multipliers (Rockafellar 1976), so that
 redundant rows share what the least change of the guess gives them.
 """
@@ -15,9 +16,10 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.linear.dense_kernels import factor, solve
 from sceneql.system.signatures_kernels import A, F, I, N
 
-BILATERAL, UNILATERAL, NORMAL, ACROSS, ALONG = range(5)
+BILATERAL, UNILATERAL, NORMAL, ACROSS, ALONG, BOUNDED, MOMENT, SECOND, THIRD = range(9)
 """Kinds of rows: a tie; a contact whose friction is known by its normal force; one of three rows of a contact with
-Coulomb's cone."""
+Coulomb's cone; one between bounds of its own; one of three of a moment. Behind the kinds of all rows stands of each
+moment's row that of the normal force which bounds it."""
 STIFF, SOFT = 1e9, 1e3
 """Stiffness of the proximal steps, of the rows' effective masses: the last, and that which finds its way."""
 EASE = 2.0**-7
@@ -36,9 +38,10 @@ HALVINGS = 7
 FEWEST, SWEEPS, LAST = 25, 400, 1_000_000
 """Sweeps of block relaxation before the second try, and the third; those before the last, of a system of one row."""
 
-VECTORS = 7
+VECTORS = 9
 """Vectors of length n of scratch, before the matrix: sizes, projections, the step, points, the best x, the last x, and,
-given by the caller, sizes of the numbers that b is a sum of. Behind the matrix stands what is left, as a sum of squares
+given by the caller, sizes of the numbers that b is a sum of, and the bounds: the lower (of a moment its length over
+the normal force), and the upper. Behind the matrix stands what is left, as a sum of squares
 (in energies), and after it how many operations it took."""
 
 WORST = F(N, A, A, I, F, A, A, A)
@@ -46,8 +49,8 @@ TRY = types.boolean(N, A, A, I, F, A, A, A, I, F, N)
 
 
 @lean_inlined
-def projected(kinds, i, z, mu, to):
-    """Write the projection of a row's z (of three rows of a contact) to ``to``."""
+def projected(n, kinds, i, z, mu, work, to):
+    """Write the projection of a row's z (of three rows of a contact, or of a moment) to ``to``."""
     kind = kinds[i]
     if kind == BILATERAL:
         to[i] = z[i]
@@ -58,6 +61,13 @@ def projected(kinds, i, z, mu, to):
         length, bound = math.sqrt(z[i + 1] * z[i + 1] + z[i + 2] * z[i + 2]), mu * to[i]
         part = 1.0 if length <= bound else bound / length
         to[i + 1], to[i + 2] = part * z[i + 1], part * z[i + 2]
+    elif kind == BOUNDED:
+        to[i] = min(work[8 * n + i], max(work[7 * n + i], z[i]))
+    elif kind == MOMENT:
+        length = math.sqrt(z[i] * z[i] + z[i + 1] * z[i + 1] + z[i + 2] * z[i + 2])
+        bound = work[7 * n + i] * to[kinds[n + i]]
+        part = 1.0 if length <= bound else bound / length
+        to[i], to[i + 1], to[i + 2] = part * z[i], part * z[i + 1], part * z[i + 2]
 
 
 @lean_inlined
@@ -67,6 +77,12 @@ def softness(n, w, kinds, i):
         return 0.5 * (w[i * n + i] + w[(i + 1) * n + i + 1])
     if kinds[i] == ALONG:
         return 0.5 * (w[i * n + i] + w[(i - 1) * n + i - 1])
+    if kinds[i] >= MOMENT:
+        first = i - (kinds[i] - MOMENT)
+        total = 0.0
+        for k in range(first, first + 3):
+            total += w[k * n + k]
+        return total / 3.0
     return abs(w[i * n + i])
 
 
@@ -89,11 +105,12 @@ def left(n, w, b, kinds, mu, x, s, work):
         z[i] = x[i] - s[i] / soft if soft > 0.0 else x[i]
     worst = every = merit = 0.0
     for i in range(n):
-        projected(kinds, i, z, mu, to)
+        projected(n, kinds, i, z, mu, work, to)
     for i in range(n):
         size = max(sizes[i], 1e-6 * largest)
         every += s[i]
         merit += (x[i] - to[i]) ** 2 * softness(n, w, kinds, i)
+        size = size if size > 0.0 else abs(to[i]) * softness(n, w, kinds, i)
         if size > 0.0:
             worst = max(worst, abs(x[i] - to[i]) * softness(n, w, kinds, i) / size)
     work[VECTORS * n + n * n] = merit
@@ -109,19 +126,32 @@ def newton(n, w, kinds, mu, x, s, work, pivots, stiff):
         soft = softness(n, w, kinds, i)
         z[i] = x[i] - stiff * s[i] / soft if soft > 0.0 else x[i]
     for i in range(n):
-        projected(kinds, i, z, mu, to)
+        projected(n, kinds, i, z, mu, work, to)
     for i in range(n):
         row, kind = i * n, kinds[i]
         soft = softness(n, w, kinds, i)
         by = stiff / soft if soft > 0.0 else 0.0
-        own = across = normal = 0.0
+        own = across = normal = length = 0.0
         # The derivative of the projection: by this row's z, the other tangent's, the normal's.
         first = i
+        force = i
         if kind == BILATERAL:
             own = 1.0
         elif kind == UNILATERAL or kind == NORMAL:
             own = 1.0 if z[i] > 0.0 else 0.0
+        elif kind == BOUNDED:
+            own = 1.0 if work[7 * n + i] < z[i] < work[8 * n + i] else 0.0
+        elif kind >= MOMENT:
+            first, force = i - (kind - MOMENT), kinds[n + i]
+            length = math.sqrt(z[first] ** 2 + z[first + 1] ** 2 + z[first + 2] ** 2)
+            reach = work[7 * n + i]
+            bound = reach * max(0.0, z[force])
+            if length <= bound and bound > 0.0:
+                own = 1.0
+            elif bound > 0.0:
+                own, across, normal = bound / length, -bound / length, reach * z[i] / length
         else:
+            force = i - 1 if kind == ACROSS else i - 2
             first = i - 1 if kind == ACROSS else i - 2
             p, q, bound = z[first + 1], z[first + 2], mu * max(0.0, z[first])
             length = math.sqrt(p * p + q * q)
@@ -136,14 +166,19 @@ def newton(n, w, kinds, mu, x, s, work, pivots, stiff):
                 normal = mu * mine
         for j in range(n):
             matrix[row + j] = by * own * w[row + j]
-        if across != 0.0:
+        if across != 0.0 and kind >= MOMENT:
+            for k in range(first, first + 3):
+                part = across * z[i] * z[k] / (length * length)
+                for j in range(n):
+                    matrix[row + j] += by * part * w[k * n + j]
+        elif across != 0.0:
             twin = first + 2 if kind == ACROSS else first + 1
             for j in range(n):
                 matrix[row + j] += by * across * w[twin * n + j]
         if normal != 0.0:
-            stiffer = stiff / softness(n, w, kinds, first)
+            stiffer = stiff / softness(n, w, kinds, force)
             for j in range(n):
-                matrix[row + j] += stiffer * normal * w[first * n + j]
+                matrix[row + j] += stiffer * normal * w[force * n + j]
         matrix[row + i] += 1.0
         step[i] = to[i] - x[i]
         # Rows of one size, so that the largest pivot is one.
@@ -223,14 +258,14 @@ def relax(n, w, b, kinds, mu, x, s, work, sweeps):
     for _ in range(sweeps):
         i = 0
         while i < n:
-            count = 3 if kinds[i] == NORMAL else 1
+            count = 3 if kinds[i] == NORMAL or kinds[i] == MOMENT else 1
             for k in range(i, i + count):
                 total = b[k]
                 for j in range(n):
                     total += w[k * n + j] * x[j]
                 soft = softness(n, w, kinds, k)
                 z[k] = x[k] - total / soft if soft > 0.0 else x[k]
-            projected(kinds, i, z, mu, to)
+            projected(n, kinds, i, z, mu, work, to)
             for k in range(i, i + count):
                 x[k] = to[k]
             i += count
@@ -252,7 +287,7 @@ def solve_law(n, w, b, kinds, mu, x, s, work, pivots, thorough):
 
     Not ``thorough``: what is nearly a solution will do, as where rows contradict each other by rounding.
 
-    ``w`` (n, n) row by row; ``work``: VECTORS n + n n + 2 numbers; ``pivots`` (n,).
+    ``w`` (n, n) row by row; ``kinds`` (2 n,); ``work``: VECTORS n + n n + 2 numbers; ``pivots`` (n,).
     """
     # Where forces are not unique, those near the guess; else nearly those of rows that yield a little.
     if attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST):

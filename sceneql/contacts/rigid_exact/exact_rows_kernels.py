@@ -28,11 +28,15 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     turned,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts.distance.convex import SHAPE
+from sceneql.contacts.distance.core_kernels import KIND as CORE_KIND
 from sceneql.contacts.rigid_exact.contact_kernels import (
     AIMED,
     BIAS,
     FORCE,
     GAP,
+    KIND,
     POINT,
     PUSHES,
     RECORD,
@@ -42,19 +46,25 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SLIDE,
     SLIDES,
     SPEED,
+    TURN_AIMED,
     dot,
     pace,
     three,
 )
+from sceneql.contacts.rigid_exact.curved import CURVED
 from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
-from sceneql.contacts.rigid_exact.exact_law_kernels import ACROSS, ALONG, BILATERAL, UNILATERAL
+from sceneql.contacts.rigid_exact.exact_law_kernels import ACROSS, ALONG, BILATERAL, UNILATERAL, VECTORS
 from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
+from sceneql.contacts.rigid_exact.stop_kernels import DRIVEN, STOP
 from sceneql.system.signatures_kernels import A, F, I, N
+
+see_motion = lazy("sceneql.contacts.rigid_exact.motion_kernels:see_motion", types.void(A, A, I, N))
 
 MOVERS, SHAPES, BODIES, PAIRS, TIE_ROWS, MOST, TIES, ROOM = range(8)
 SHAPES_AT, MOVERS_AT, PAIRS_AT, TIES_AT, TIED_AT, KINDS_AT, WORKS_AT = range(8, 15)
 MOVED_AT, PLACES_AT, BEGUN_AT, ROOM_AT, RECORDS_AT, UNITS_AT, DENSE_AT, KEPT_AT, MEMORY_AT = range(15, 24)
-RESTITUTION_AT, FRICTION_AT, COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, TALLY_AT, WHO_AT, HEAD = range(24, 33)
+RESTITUTION_AT, FRICTION_AT, ROLLING_AT, COUNT_AT, POINTS_AT, NORMALS_AT, FORCES_AT, TALLY_AT, WHO_AT = range(24, 33)
+DRIVES, DRIVES_AT, DRIVEN_AT, ROWS_ROOM, HEAD = range(33, 38)
 """Integers of an island's exact contacts. Numbers of movers (the shapes in order, of which those that move come first,
 then what else is tied), of shapes, of those that move, of pairs, of rows of ties; room for contacts; how many integers
 the ties have; floats of working memory of distances. Where in the integers stand the shapes (convex.SHAPE), the movers
@@ -63,7 +73,9 @@ for kinds of rows, pivots and which contacts are struck, where the energy taken 
 floats: movers, places of shapes, those at the start of the step, working memory, contacts (twice), rows, the dense
 system, how many contacts each pair keeps (then of each pair how crowded its events are, and when it had its latest; how
 deep each may be), memory, coefficients, what outputs read. Where in the integers is room for a question about curved
-shapes (curved_find_kernels)."""
+shapes (curved_find_kernels). How many ties have stops, a motor or friction, where it stands where the integers of each
+begin and end (motion_kernels), their floats (stop_kernels); room for rows. Behind the pairs are counted both stops of
+each of these ties."""
 
 (
     KEPT,
@@ -78,13 +90,16 @@ shapes (curved_find_kernels)."""
     JAMMED,
     COUNTED,
     WORK,
+    PASSED,
+    SPARING,
     BOUNDED,
     MEMORY,
-) = range(14)
+) = range(16)
 """Memory: how many contacts are kept; whether it is open which of them slide or leave; since when they are these [s];
 whether it has begun; when the step began [s]; solutions that were not found to rounding, contacts without room;
 when the latest event was [s], and how many there were at that instant before;
-instants at which slip jammed, and those whose energy is counted; work done, and whether it is bounded."""
+instants at which slip jammed, and those whose energy is counted; work done; whether the end of the step before was
+left alone; whether a circle that lies flat has few points (rim_kernels); whether work is bounded."""
 BEFOREHAND, A_SECOND = 1e9, 2e8
 """Work that is allowed at the start, and by the second: operations, about as many as nanoseconds of one processor. As
 much as a few steps of mode `local` take in each 1/240 s."""
@@ -93,7 +108,9 @@ A_PAIR, A_ROW = 3000.0, 100.0
 PATIENCE, ENDURANCE = 20, 200
 """Events at one instant after which no contact is let go any more; after which there is no way on."""
 
-PLACE = 7
+PLACE, WATCHED = 7, 3
+"""Floats of a place; events that each contact is watched for: it slips no more, it leaves its feature, it turns no
+more."""
 AT_ROW, AT_PUSH, AT_WEIGHED, AT_FIRST, AT_SECOND, AT_CONTACT, UNIT = 0, 12, 24, 36, 37, 38, 39
 """Floats of a row of the system: by velocities of both movers; by forces on both; these over the masses; both movers,
 and the contact (-1: a tie's)."""
@@ -101,6 +118,25 @@ and the contact (-1: a tie's)."""
 FORCES, SPEEDS, GAPS, IMPACTS = range(4)
 """What is solved for: forces by accelerations; what is left of speeds and of gaps; impulses of contacts that are
 marked."""
+
+
+@lean_inlined
+def core_at(ints, b):
+    """Where a shape begins as others meet it: of a column its axis with a radius (curved_meet_kernels)."""
+    shape = ints[SHAPES_AT] + SHAPE * b
+    return shape + SHAPE * ints[SHAPES] if ints[shape + CORE_KIND] == CURVED else shape
+
+
+@lean_inlined
+def spots(ints):
+    """How many pairs and stops there are."""
+    return ints[PAIRS] + 2 * ints[DRIVES]
+
+
+@lean_inlined
+def driven_at(ints, d):
+    """Where the floats of the motion of a tie that has stops, a motor or friction begin."""
+    return ints[DRIVEN_AT] + DRIVEN * d
 
 
 @lean_inlined
@@ -121,11 +157,19 @@ def answer_at(ints, m):
     return ints[MOVED_AT] + (MOVED + 6) * ints[MOVERS] + 6 * m
 
 
+@lean_inlined
+def look_at_motions(y, floats, ints):
+    """Write what a state says of the motions of ties that have stops, a motor or friction."""
+    for d in range(ints[DRIVES]):
+        see_motion(y, floats, ints[ints[ints[DRIVES_AT] + d] : ints[ints[DRIVES_AT] + d + 1]], driven_at(ints, d))
+
+
 @lean(types.void(F, A, A, I))
 def look(t, y, floats, ints):
     """Write movers, and rows of ties, of a state."""
     for m in range(ints[MOVERS]):
         see(y, floats, mover_at(ints, m), ints, ints[MOVERS_AT] + MOVER * m)
+    look_at_motions(y, floats, ints)
     if ints[TIES] > 0:
         survey(t, y, floats, ints[ints[TIES_AT] : ints[TIES_AT] + ints[TIES]])
 
@@ -138,7 +182,8 @@ def put_places(y, floats, ints, to):
         put(floats, to + PLACE * k, *three(floats, mover_at(ints, k) + AT_X))
         x, q = ints[at + POSITION], ints[at + ROTATION]
         for c in range(4):
-            floats[to + PLACE * k + 3 + c] = y[q + c] if x >= 0 else floats[ints[at + TURN] + c]
+            given = floats[ints[at + TURN] + c] if x < 0 else (1.0 if c == 0 else 0.0)
+            floats[to + PLACE * k + 3 + c] = y[q + c] if q >= 0 else given
 
 
 @lean(types.void(A, I, N, N, N, N, N))
@@ -168,7 +213,7 @@ def pressed(floats, ints, row):
 @lean_inlined
 def rooms(ints):
     """Room for rows."""
-    return ints[TIE_ROWS] + 3 * ints[MOST]
+    return ints[ROWS_ROOM]
 
 
 @lean_inlined
@@ -202,9 +247,27 @@ def sizes_at(ints):
 
 
 @lean_inlined
+def bounds_at(ints):
+    """Where the lower bounds of rows begin, and behind them the upper ones (exact_law_kernels)."""
+    return ints[DENSE_AT] + 2 * rooms(ints) * rooms(ints) + (8 + VECTORS) * rooms(ints) + 2
+
+
+@lean_inlined
+def partners_at(ints):
+    """Where of each row of a moment stands that of its normal force."""
+    return ints[KINDS_AT] + 5 * rooms(ints)
+
+
+@lean_inlined
+def labels_at(ints):
+    """Where the integers begin that say of each mover its group."""
+    return ints[KINDS_AT] + 6 * rooms(ints)
+
+
+@lean_inlined
 def marked_at(ints):
     """Where the integers begin that say which contacts are struck."""
-    return ints[KINDS_AT] + 4 * rooms(ints) + ints[MOVERS]
+    return labels_at(ints) + ints[MOVERS]
 
 
 @lean(N(A, I, N, F))
@@ -237,7 +300,8 @@ def write_rows(floats, ints, what, friction):
             continue
         if what == FORCES:
             slides = floats[rec + AIMED] != 0.0 or floats[rec + AIMED + 1] != 0.0 or floats[rec + AIMED + 2] != 0.0
-        rough = friction > 0.0 and what != GAPS and (what == IMPACTS or not slides)
+        stop = floats[rec + KIND] == STOP
+        rough = friction > 0.0 and what != GAPS and (what == IMPACTS or not slides) and not stop
         if what == SPEEDS and not pushes:
             rough = False
         rows = 3 if rough else 1
@@ -258,6 +322,12 @@ def write_rows(floats, ints, what, friction):
                     part = friction * dot(sx, sy, sz, floats[row], floats[row + 1], floats[row + 2])
                     for c in range(12):
                         floats[at + AT_PUSH + c] -= part * floats[row + c]
+            if what == FORCES and j == 0:  # and a moment against the turning
+                rolling = floats[ints[ROLLING_AT]]
+                for c in range(3):
+                    part = rolling * floats[rec + TURN_AIMED + c]
+                    floats[at + AT_PUSH + 3 + c] -= part
+                    floats[at + AT_PUSH + 9 + c] += part
             weigh(floats, ints, n, a, b, AT_PUSH, k)
             floats[sizes + n] = 0.0
             if what == FORCES:

@@ -18,9 +18,10 @@ from sceneql.compiled.numbered_kernels import number_of
 from sceneql.contacts import layout
 from sceneql.contacts.distance import convex
 from sceneql.contacts.distance.convex import Convex
+from sceneql.contacts.distance.core_kernels import REACH
 from sceneql.contacts.distance.led import is_led
 from sceneql.contacts.distance.rigid_contact import DEEP, must_be_apart
-from sceneql.contacts.rigid_exact.curved import CURVED, FIELD, FORM, SIZES, Curved
+from sceneql.contacts.rigid_exact.curved import COLUMN, CURVED, FIELD, FORM, SIZES, Curved, axis_of
 from sceneql.contacts.shape_kernels import SURFACE_TYPE
 from sceneql.contacts.shapes import implicit
 from sceneql.failure import RunFailure
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
     from sceneql.contacts.distance.rigid_shapes import Shapes
     from sceneql.frame import Floats
+    from sceneql.quantities.span import Span
     from sceneql.system import Assembly
 
 HELP = "mode `exact` takes spheres, ellipsoids, cylinders, tori, boxes, planes, convex meshes and implicit surfaces"
@@ -59,6 +61,19 @@ def exact_shape(ref: Ref | None, center: Floats, place: Floats | None, known: Sh
         return field_shape(kind, ref, center, assembly)
     message = f"'{ref.name}' touches by points of its surface, which mode `local` alone can do"
     raise ScriptError([Diagnostic("no-collider", message, ref.span or assembly.line(), HELP)])
+
+
+def point(radius: float, size: float) -> Convex:
+    """The shape of a mass: a ball, or without a radius a point, whose gaps are small against ``size`` [m]."""
+    ball = convex.ball(radius)
+    floats = ball.floats.copy()
+    floats[REACH] = radius or size
+    return Convex(ball.kind, floats, ball.ints)
+
+
+def upright(x: Floats) -> Floats:
+    """The place (7,) of what does not turn."""
+    return np.concatenate([x, [1.0, 0.0, 0.0, 0.0]])
 
 
 def field_shape(kind: Any, ref: Ref, center: Floats, assembly: Assembly) -> Convex:
@@ -100,6 +115,17 @@ def is_field(shape: Convex) -> bool:
     return bool(shape.kind == CURVED and numbers[FORM] == FIELD)
 
 
+def is_column(shape: Convex) -> bool:
+    """Whether a shape is a round column."""
+    numbers = shape.floats
+    return bool(shape.kind == CURVED and numbers[FORM] == COLUMN)
+
+
+def comes_first(one: Convex, other: Convex) -> bool:
+    """Whether a pair is one's with the other: a curved shape comes first, and of two a column last."""
+    return one.kind == CURVED and (other.kind != CURVED or (is_column(other) and not is_column(one)))
+
+
 def is_ball(shape: Convex) -> bool:
     """Whether a shape is a point with a radius."""
     return bool(shape.kind == convex.CORE and shape.ints[0] == 1)
@@ -126,56 +152,94 @@ def apart_exactly(
     shapes: Sequence[Convex],
     places: Sequence[Floats],
     moving: int,
-    names: Sequence[Ref | None],
+    names: Sequence[Ref | str],
     joined: set[tuple[int, int]],
     assembly: Assembly,
 ) -> None:
-    """Raise ScriptError for bodies that start inside one another or inside what stands, and for two curved shapes."""
+    """Raise ScriptError for bodies that start inside one another or inside what stands, and for two curved shapes.
+
+    ``names``: the object of each shape, or what it is said to be.
+    """
     flat = [k for k, shape in enumerate(shapes) if shape.kind != CURVED]
     number = {old: new for new, old in enumerate(flat)}
     both = {(number[a], number[b]) for a, b in joined if a in number and b in number}
     some, there, refs = [shapes[k] for k in flat], [places[k] for k in flat], [names[k] for k in flat]
+    found, count = Diagnostics(), sum(k < moving for k in flat)
     if some:
-        must_be_apart(known, some, there, sum(k < moving for k in flat), refs, both, assembly)
-    found = Diagnostics()
+        objects = [ref if isinstance(ref, Ref) else None for ref in refs]
+        must_be_apart(known, some, there, count, objects, both, assembly)
+        for (a, b), gap in known.gaps(some, there, count) if None in objects else ():
+            mass, body = (a, b) if objects[a] is None else (b, a)
+            if objects[mass] is None and objects[body] is not None and -gap > DEEP * some[mass].reach:
+                message = f"{refs[mass]} starts inside {said(refs[body])}, {-gap:.3g} m deep"
+                found.error("starts-inside", message, assembly.line(), help="move it outside")
     for a, b in combinations(range(len(shapes)), 2):
         if a >= moving or (a, b) in joined or (a in number and b in number):
             continue
         one, other = names[a], names[b]
-        assert one is not None
-        assert other is not None
-        if a not in number and b not in number:
-            message = f"'{one.name}' and '{other.name}' are both curved, which mode `exact` does not know to meet"
+        both_curved = a not in number and b not in number
+        meet = is_column(shapes[a]) or is_column(shapes[b])
+        if both_curved and not (meet and not is_field(shapes[a]) and not is_field(shapes[b])):
+            message = f"{said(one)} and {said(other)} are both curved, which mode `exact` does not know to meet"
             help = "let only those that meet collide, by `between`; mode `local` takes both"
-            found.error("no-collider", message, one.span or assembly.line(), help=help)
+            found.error("no-collider", message, _place(one, assembly), help=help)
             continue
-        first, second = (b, a) if a in number else (a, b)
+        first, second = (b, a) if comes_first(shapes[b], shapes[a]) else (a, b)
         if is_field(shapes[first]) and not is_ball(shapes[second]):
             which, what = (other, one) if first == b else (one, other)
-            message = f"'{which.name}' is met by balls alone in mode `exact`, and '{what.name}' is none"
-            found.error("no-collider", message, what.span or assembly.line(), help="mode `local` takes both")
+            message = f"{said(which)} is met by balls alone in mode `exact`, and {said(what)} is none"
+            found.error("no-collider", message, _place(what, assembly), help="mode `local` takes both")
             continue
-        gap = gap_of(shapes[first], places[first], shapes[second], places[second], assembly.numbers())
+        gap, met = gap_of(shapes[first], places[first], shapes[second], places[second], assembly.numbers())
+        if both_curved and not met and gap < DEEP * min(shapes[a].reach, shapes[b].reach):
+            message = f"{said(one)} and {said(other)} touch by an end, which mode `exact` knows of no two curved bodies"
+            found.error("no-collider", message, _place(one, assembly), help="mode `local` takes both")
+            continue
         if -gap > DEEP * min(shapes[a].reach, shapes[b].reach):
-            message = f"'{one.name}' starts {-gap:.3g} m inside '{other.name}'"
+            who, what = (other, one) if isinstance(other, str) else (one, other)
+            message = f"{said(who)} starts {-gap:.3g} m inside {said(what)}"
             found.error("starts-inside", message, assembly.line(), help="move one of them away")
     found.raise_errors()
 
 
-def gap_of(curved: Convex, place: Floats, other: Convex, there: Floats, numbers: Floats) -> float:
-    """The gap [m] of a curved shape at a place (7,) and one that is not; ``numbers``: those of the island."""
+def said(name: Ref | str) -> str:
+    """What a message says of a shape."""
+    return f"'{name.name}'" if isinstance(name, Ref) else name
+
+
+def _place(name: Ref | str, assembly: Assembly) -> Span | None:
+    """Where it stands in the script."""
+    return (name.span if isinstance(name, Ref) else None) or assembly.line()
+
+
+def gap_of(curved: Convex, place: Floats, other: Convex, there: Floats, numbers: Floats) -> tuple[float, bool]:
+    """The gap [m] of a curved shape at a place (7,) and another, and whether a contact is known there; ``numbers``:
+    those of the island."""
     from sceneql.bodies.rigid.tie_rows_kernels import AT_R, AT_X, MOVED
-    from sceneql.contacts.rigid_exact.curved_find_kernels import MOVER_A, MOVER_B, SHAPE_OF_B, WHO
+    from sceneql.contacts.rigid_exact.contact_kernels import RECORD
+    from sceneql.contacts.rigid_exact.curved_find_kernels import (
+        COLUMN_B,
+        CORE_OF_A,
+        MOVER_A,
+        MOVER_B,
+        SHAPE_OF_A,
+        SHAPE_OF_B,
+        WHO,
+    )
     from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
 
-    floats, ints = joined_fields([curved, other], len(numbers), 0)
+    floats, ints = joined_fields([curved, other, axis_of(curved), axis_of(other)], len(numbers), 0)
     floats = np.concatenate([numbers, floats])
     movers = np.zeros((2, MOVED))
     for mover, at in zip(movers, (place, there), strict=True):
         mover[AT_X : AT_X + 3] = at[:3]
         mover[AT_R : AT_R + 9] = rotation_matrix(at[3:]).ravel()
-    who, asked = len(ints), np.zeros(WHO, dtype=np.int64)
-    asked[SHAPE_OF_B] = convex.SHAPE
+    who, asked = len(ints), np.zeros(2 * WHO, dtype=np.int64)
+    both = other.kind == CURVED
+    asked[SHAPE_OF_A], asked[SHAPE_OF_B] = 0, convex.SHAPE * (3 if both else 1)
+    asked[COLUMN_B], asked[CORE_OF_A] = convex.SHAPE if both else -1, 2 * convex.SHAPE
     asked[MOVER_A], asked[MOVER_B] = len(floats), len(floats) + MOVED
-    _, gap = meet(np.concatenate([floats, movers.ravel()]), np.concatenate([ints, asked]), who, -1e300, 0, 0)
-    return float(gap)
+    room = len(floats) + movers.size
+    floats, ints = np.concatenate([floats, movers.ravel(), np.zeros(RECORD)]), np.concatenate([ints, asked])
+    count, gap = meet(floats, ints, who, DEEP * min(curved.reach, other.reach), room, 1)
+    return float(gap), count > 0

@@ -5,7 +5,7 @@ from numba import types
 
 from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_MASS, MOVER, POSITION
 from sceneql.compiled.kernels import lean
-from sceneql.contacts.rigid_exact.exact_law_kernels import VECTORS, solve_law
+from sceneql.contacts.rigid_exact.exact_law_kernels import MOMENT, VECTORS, solve_law
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     A_ROW,
     AT_FIRST,
@@ -20,9 +20,12 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     UNIT,
     UNITS_AT,
     WORK,
+    bounds_at,
     diagonal_at,
+    labels_at,
     left_at,
     mover_at,
+    partners_at,
     right_at,
     rooms,
     sizes_at,
@@ -60,7 +63,7 @@ def root(labels, m):
 @lean(types.void(A, I, N))
 def group(floats, ints, n):
     """Write of each mover the first one that rows join it with, directly or by others."""
-    at = ints[KINDS_AT] + 4 * rooms(ints)
+    at = labels_at(ints)
     labels = ints[at : at + ints[MOVERS]]
     for m in range(ints[MOVERS]):
         labels[m] = m
@@ -75,7 +78,7 @@ def group(floats, ints, n):
 @lean(N(A, I, N))
 def group_of(floats, ints, i):
     """The first mover of a row's group; -1 where nothing moves."""
-    at = ints[KINDS_AT] + 4 * rooms(ints)
+    at = labels_at(ints)
     labels = ints[at : at + ints[MOVERS]]
     for side in range(2):
         m = int(floats[ints[UNITS_AT] + UNIT * i + AT_FIRST + side])
@@ -114,9 +117,15 @@ def solve_some(floats, ints, n, friction, thorough):
     work = floats[at : at + VECTORS * n + n * n + 2]
     work[VECTORS * n + n * n + 1] = A_ROW * n
     for i in range(n):
-        work[6 * n + i] = floats[sizes_at(ints) + ints[rows + i]]
+        row = ints[rows + i]
+        work[6 * n + i] = floats[sizes_at(ints) + row]
+        work[7 * n + i], work[8 * n + i] = floats[bounds_at(ints) + row], floats[bounds_at(ints) + room + row]
+        ints[own + n + i] = i
+        for j in range(i if ints[kinds + row] >= MOMENT else 0):
+            if ints[rows + j] == ints[partners_at(ints) + row]:
+                ints[own + n + i] = j
     solved = solve_law(
-        n, w, b, ints[own : own + n], friction, x, s, work, ints[kinds + room : kinds + room + n], thorough
+        n, w, b, ints[own : own + 2 * n], friction, x, s, work, ints[kinds + room : kinds + room + n], thorough
     )
     floats[ints[MEMORY_AT] + WORK] += work[VECTORS * n + n * n + 1]
     largest = 0.0

@@ -56,7 +56,8 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved import CURVED, ELLIPSOID, FORM
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, follow, own, speed_at
-from sceneql.contacts.rigid_exact.exact_rows_kernels import PLACE, PLACES_AT, SHAPES_AT, mover_at
+from sceneql.contacts.rigid_exact.exact_rows_kernels import PLACE, PLACES_AT, SHAPES_AT, core_at, mover_at
+from sceneql.contacts.rigid_exact.stop_kernels import SIZE, STOP
 from sceneql.system.signatures_kernels import A, F, I, N
 
 FEATURE = 1e-7
@@ -95,6 +96,14 @@ def smaller(floats, ints, a, b):
     """The reach of the smaller of two shapes."""
     fa, fb = ints[ints[SHAPES_AT] + SHAPE * a + FLOATS], ints[ints[SHAPES_AT] + SHAPE * b + FLOATS]
     return min(floats[fa + REACH], floats[fb + REACH])
+
+
+@lean_inlined
+def size_at(floats, ints, rec):
+    """The size against which the gap of a contact is small: of a stop that of its tie's motion."""
+    if floats[rec + WHICH] == STOP:
+        return floats[int(floats[rec + OWN_A]) + SIZE]
+    return smaller(floats, ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
 
 
 @lean(types.boolean(A, I, N))
@@ -321,7 +330,7 @@ def extent(floats, ints, rec):
     if kind == CORNERS:
         side = solid_side(ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
     m = int(floats[rec + SHAPE_A + side])
-    shape, mover = ints[SHAPES_AT] + SHAPE * m, mover_at(ints, m)
+    shape, mover = core_at(ints, m), mover_at(ints, m)
     if ints[shape + KIND] != CORE:
         return math.inf
     x, y, z = three(floats, rec + POINT)

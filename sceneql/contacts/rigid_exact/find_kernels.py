@@ -24,23 +24,24 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     POINT,
     PUSHES,
     RECORD,
-    SHAPE_A,
-    SHAPE_B,
     SIGN,
     SLIDE,
     SLIDES,
     SLIP,
     SLOW,
+    TORQUE,
     three,
 )
+from sceneql.contacts.rigid_exact.contact_kernels import KIND as KIND_OF
 from sceneql.contacts.rigid_exact.curved_ahead_kernels import meet_ahead
 from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved
-from sceneql.contacts.rigid_exact.exact_hold_kernels import CREEP, still
+from sceneql.contacts.rigid_exact.exact_hold_kernels import CREEP, STILL, still
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
     BEGUN_AT,
     CROWDED,
+    DRIVES,
     KEPT,
     KEPT_AT,
     MEMORY_AT,
@@ -55,11 +56,14 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     SHAPES_AT,
     SINCE,
     UNDECIDED,
+    driven_at,
     follow_all,
     look,
     mover_at,
     put_places,
+    spots,
 )
+from sceneql.contacts.rigid_exact.extra_rows_kernels import begin_turning
 from sceneql.contacts.rigid_exact.features_kernels import (
     AHEAD,
     LIMIT,
@@ -67,12 +71,24 @@ from sceneql.contacts.rigid_exact.features_kernels import (
     go_ahead,
     is_plain,
     meet_ball,
+    size_at,
     smaller,
     solid_side,
     until_it_leaves,
 )
 from sceneql.contacts.rigid_exact.naming_kernels import name
 from sceneql.contacts.rigid_exact.rim_kernels import begin_tilt, lies
+from sceneql.contacts.rigid_exact.stop_kernels import (
+    FAR,
+    FIRST_MOVER,
+    GREATEST,
+    LEAST,
+    SECOND_MOVER,
+    SIZE,
+    STOP,
+    begin_slips,
+    write_stop,
+)
 from sceneql.system.signatures_kernels import A, F, I, N
 
 TOUCHES = 1e-10
@@ -161,6 +177,26 @@ def leave(t, y, h, floats, ints, pair, a, b, margin, next, count, most, points, 
     return kept
 
 
+@lean(N(A, I, N, N, N))
+def at_stop(floats, ints, stop, rec, room):
+    """Write the contact with a stop, of which the lower one of each tie is even, if it touches; whether it does."""
+    own, sign = driven_at(ints, stop // 2), 1.0 if stop % 2 == 0 else -1.0
+    there, size = floats[own + (LEAST if stop % 2 == 0 else GREATEST)], floats[own + SIZE]
+    if abs(there) == math.inf or room == 0:
+        return 0
+    gap, spot, open = sign * (floats[own + FAR] - there), ints[PAIRS] + stop, 0.0
+    for j in range(int(floats[ints[MEMORY_AT] + KEPT])):
+        old = ints[RECORDS_AT] + RECORD * j
+        if floats[old + PAIR] == spot and floats[old + PUSHES] > 0.0:
+            open = min(floats[old + GAP], SLACK * size)
+    margin = TOUCHES * size + max(0.0, open) + 1e-14 * (abs(there) + abs(floats[own + FAR]))
+    if not -DEEP * size - margin <= gap <= margin:
+        return 0
+    first, second = int(floats[own + FIRST_MOVER]), int(floats[own + SECOND_MOVER])
+    write_stop(floats, rec, own, first, second, sign, spot, mover_at(ints, first))
+    return 1
+
+
 @lean(types.boolean(F, A, A, I, A, I, types.boolean))
 def find(t, y, floats, ints, points, names, goes_on):
     """Write the contacts of all pairs that touch, as kept; whether they are those of before.
@@ -214,6 +250,10 @@ def find(t, y, floats, ints, points, names, goes_on):
                     t, y, h, floats, ints, pair, a, b, margin, next + RECORD * count, more, most - count, points, names
                 )
         count += more
+    for stop in range(2 * ints[DRIVES]):
+        found = at_stop(floats, ints, stop, next + RECORD * count, most - count)
+        same += found if goes_on and floats[ints[KEPT_AT] + ints[PAIRS] + stop] > 0.0 else 0
+        count += found
     for k in range(count):
         rec = next + RECORD * k
         for j in range(before):
@@ -223,13 +263,18 @@ def find(t, y, floats, ints, points, names, goes_on):
             away = 0.0
             for c in range(3):
                 away = max(away, abs(floats[old + POINT + c] - floats[rec + POINT + c]))
-            reach = smaller(floats, ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
+            reach = size_at(floats, ints, rec)
             # What is round may roll far in a step.
             rolled = floats[rec + OF] >= 0.0 and floats[old + OF] >= 0.0
-            if away <= 1e-3 * reach or (rolled and floats[old + SIGN] == floats[rec + SIGN]):
+            if (
+                away <= 1e-3 * reach
+                or floats[rec + KIND_OF] == STOP
+                or (rolled and floats[old + SIGN] == floats[rec + SIGN])
+            ):
                 for c in range(3):
                     floats[rec + FORCE + c] = floats[old + FORCE + c]
                     floats[rec + ALONG + c] = floats[old + ALONG + c]
+                    floats[rec + TORQUE + c] = floats[old + TORQUE + c]
                 floats[rec + PUSHES] = floats[old + PUSHES]
     for c in range(RECORD * count):
         floats[ints[RECORDS_AT] + c] = floats[next + c]
@@ -241,7 +286,7 @@ def find(t, y, floats, ints, points, names, goes_on):
 def begin(t, y, floats, ints, same):
     """Mark the contacts that are kept from a time on, open as to which slide or leave; ``same``: as before."""
     memory = ints[MEMORY_AT]
-    for pair in range(ints[PAIRS]):
+    for pair in range(spots(ints)):
         floats[ints[KEPT_AT] + pair] = 0.0
     for k in range(int(floats[memory + KEPT])):
         rec = ints[RECORDS_AT] + RECORD * k
@@ -254,10 +299,13 @@ def begin(t, y, floats, ints, same):
         floats[rec + SLIP] = slip if slides else 0.0
         if slides:
             put(floats, rec + ALONG, sx / slip, sy / slip, sz / slip)
+        same = begin_turning(floats, ints, rec, STILL, CREEP) and same
         begin_tilt(floats, ints, rec)
         inside = extent(floats, ints, rec)
         # (From where it began, so that what creeps over a border is told.)
         floats[rec + EXTENT] = max(inside, floats[rec + EXTENT]) if floats[rec + OF] >= 0.0 else inside
+    for d in range(ints[DRIVES]):
+        same = begin_slips(floats, driven_at(ints, d), STILL) and same
     floats[memory + UNDECIDED] = 1.0
     if not same:
         floats[memory + SINCE] = t

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.contacts.distance.rigid_contact import place_of
 from sceneql.kinds import Ref
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.system import Place
 
 if TYPE_CHECKING:
     from sceneql.contacts.distance.convex import Convex
+    from sceneql.contacts.distance.rigid_masses import Masses
     from sceneql.frame import Floats
     from sceneql.kinds import Value
     from sceneql.system import Assembly, Bodies, Led
@@ -35,10 +36,12 @@ def assemble(
     others: Sequence[Ref],
     restitution: Value,
     friction: Value,
+    rolling: Value,
+    masses: Masses | None = None,
     *,
     gives_way: bool = False,
 ) -> tuple[int, ...]:
-    """Add the exact contacts of rigid bodies: what outputs read (Collision).
+    """Add the exact contacts of rigid bodies and of masses with them: what outputs read (Collision).
 
     ``gives_way``: whether another mode goes on where this one finds no way, or has taken more work than it may.
 
@@ -52,14 +55,15 @@ def assemble(
     from sceneql.contacts.distance import convex
     from sceneql.contacts.rigid_exact import contact_kernels, curved_find_kernels, exact_law_kernels
     from sceneql.contacts.rigid_exact import exact_rows_kernels as rows
-    from sceneql.contacts.rigid_exact.curved import CURVED
-    from sceneql.contacts.rigid_exact.exact_shapes import joined_fields
+    from sceneql.contacts.rigid_exact.curved import axis_of
+    from sceneql.contacts.rigid_exact.drives import drives_of
+    from sceneql.contacts.rigid_exact.exact_shapes import comes_first, joined_fields
+    from sceneql.contacts.rigid_exact.stop_kernels import DRIVEN
 
-    _must_be_free(assembly)
     if assembly.ints_of(HOLD):
         message = "bodies in mode `exact` collide by one `collision` an island: its contacts are solved together"
         raise ScriptError([Diagnostic("invalid", message, assembly.line(), "name all that collide in one `between`")])
-    found = _shapes(assembly, everyone, others)
+    found = _shapes(assembly, everyone, others, masses)
     n = len(found.moving)
     if n > MOST:
         message = f"{n} rigid bodies are too many for contacts in mode `exact`: at most {MOST}"
@@ -67,11 +71,7 @@ def assemble(
     movers: list[tuple[int, ...]] = []
     works: list[int] = []
     for bodies, k in found.moving:
-        turning = bodies.turning
-        assert turning is not None
-        turns = (turning.rotation_at + 4 * k, turning.momentum_at + 3 * k, turning.inverse_at + 6 * k)
-        center = (bodies.position_at + 3 * k, bodies.velocity_at + 3 * k, bodies.inverse_at + k)
-        movers.append((*center, *turns, *(6 * (-1,))))
+        movers.append(integers(Place(bodies, k)))
         works.append(bodies.work_at)
     for place, led in found.standing:
         if led is not None:
@@ -82,16 +82,18 @@ def assemble(
         movers.append((*(6 * (-1,)), at, at + 3, at + 7, at + 10, at + 13, at + 16))
         works.append(-1)
     tied, ties = _tied(assembly, movers, works, TIE_ROW, integers, POSITION)
+    drives, drive_ints = drives_of(assembly, movers, works)
     count = len(found.shapes)
-    # Of a pair with a curved shape, this first.
     pairs = [
-        (b, a) if found.shapes[b].kind == CURVED else (a, b)
+        (b, a) if comes_first(found.shapes[b], found.shapes[a]) else (a, b)
         for a in range(n)
         for b in range(a + 1, count)
-        if (a, b) not in found.joined
+        if (a, b) not in found.joined and not (found.is_mass(a) and found.is_mass(b))
     ]
     most = FEW * n + FEW
-    room = len(tied) + 3 * most
+    never = rolling.constant and rolling.number() == 0.0
+    room = len(tied) + (3 if never else 6) * most + 2 * len(drives)
+    spots = len(pairs) + 2 * len(drives)
     length = convex.room_length(found.shapes)
     moved, places, begun = (
         assembly.floats(np.zeros(size)) for size in ((MOVED + 12) * len(movers), 7 * count, 7 * count)
@@ -99,15 +101,17 @@ def assemble(
     working = assembly.floats(np.zeros(length + 12))
     records = assembly.floats(np.zeros((2 * most + 1) * contact_kernels.RECORD + 1))
     units = assembly.floats(np.zeros(rows.UNIT * room))
-    dense = assembly.floats(np.zeros(2 * room * room + (8 + exact_law_kernels.VECTORS) * room + 2))
-    kept = assembly.floats(np.zeros(4 * len(pairs)))
+    dense = assembly.floats(np.zeros(2 * room * room + (10 + exact_law_kernels.VECTORS) * room + 2))
+    kept = assembly.floats(np.zeros(4 * spots))
+    driven = assembly.floats(np.reshape(drives, len(drives) * DRIVEN))
     memory = assembly.floats([0.0] * rows.BOUNDED + [float(gives_way)])
     assembly.gives_way = assembly.gives_way or gives_way
     outputs = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
     nan = float("nan")
     tally = assembly.floats([0.0, nan, nan, 0.0, nan])
-    data = assembly.floats(convex.joined(found.shapes, 0, 0)[0])
-    numbers, shapes = joined_fields(found.shapes, data, rows.HEAD)
+    whole = [*found.shapes, *map(axis_of, found.shapes)]
+    data = assembly.floats(convex.joined(whole, 0, 0)[0])
+    numbers, shapes = joined_fields(whole, data, rows.HEAD)
     assembly.write(data, numbers)
     lists = [
         shapes.tolist(),
@@ -115,16 +119,21 @@ def assemble(
         list(chain(*pairs)),
         list(ties),
         list(chain(*tied)),
-        [0] * (4 * room + len(movers) + most),
+        [0] * (6 * room + len(movers) + most),
         works,
-        [0] * curved_find_kernels.WHO,
+        [0] * (2 * curved_find_kernels.WHO),
+        [0] * (len(drives) + 1),
     ]
-    *begins, who_at, _ = np.cumsum([rows.HEAD, *(len(some) for some in lists)]).tolist()
+    *begins, who_at, drives_at, at = np.cumsum([rows.HEAD, *(len(some) for some in lists)]).tolist()
+    lists[-1][:] = np.cumsum([at, *(len(each) for each in drive_ints)]).tolist()
+    lists += drive_ints
     head = [len(movers), count, n, len(pairs), len(tied), most, len(ties), length, *begins]
     head += [moved, places, begun, working, records, units, dense, kept, memory]
-    head += [assembly.value(restitution), assembly.value(friction), *outputs, tally, who_at]
+    head += [assembly.value(restitution), assembly.value(friction), assembly.value(rolling), *outputs, tally, who_at]
+    head += [len(drives), drives_at, driven, room]
     ints = [int(number) for number in chain(head, *lists)]
-    assembly.contact("exact", CONTACTS, ints, len(pairs) + 2 * most, help=ADVICE)
+    watched = spots + rows.WATCHED * most + 2 * len(drives)
+    assembly.contact("exact", CONTACTS, ints, watched, help=ADVICE)
     assembly.term("tie", HOLD, ints)
     assembly.after_step(SETTLE, ints, samples=True)
     return (
@@ -136,16 +145,6 @@ def assemble(
         -2,
         memory + rows.JAMMED,
     )
-
-
-def _must_be_free(assembly: Assembly) -> None:
-    """Raise ScriptError for stops, motors and friction of ties: a step in velocities finds them, which this is not."""
-    found = Diagnostics()
-    for tie in assembly.ties:
-        if tie.drive is not None:
-            message = f"'{tie.name}' has stops, a motor or friction, which contacts in mode `exact` do not go with"
-            found.error("refuses-ties", message, tie.span, help="mode: local takes both")
-    found.raise_errors()
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,18 +160,24 @@ class Touching:
     joined: set[tuple[int, int]]
     """Pairs of bodies that a tie joins: they do not touch."""
 
+    def is_mass(self, number: int) -> bool:
+        """Whether a shape is a mass: these are left to `mutual_collision` among themselves."""
+        return number < len(self.moving) and self.moving[number][0].turning is None
 
-def _shapes(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref]) -> Touching:
+
+def _shapes(
+    assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref], masses: Masses | None = None
+) -> Touching:
     """The shapes of a contact. Raises ScriptError for one that is not covered, or inside another at the start."""
     import numpy as np
 
     from sceneql.contacts.distance.rigid_shapes import Shapes
-    from sceneql.contacts.rigid_exact.exact_shapes import apart_exactly, exact_shape, led_by
+    from sceneql.contacts.rigid_exact.exact_shapes import apart_exactly, exact_shape, led_by, point, upright
 
     numbers, start, known = assembly.numbers(), assembly.start(), Shapes(assembly)
     moving: list[tuple[Bodies, int]] = []
-    solid: list[tuple[Convex, Floats, Ref | None]] = []
-    fixed: list[tuple[Convex, Floats, Ref | None]] = []
+    solid: list[tuple[Convex, Floats, Ref | str]] = []
+    fixed: list[tuple[Convex, Floats, Ref | str]] = []
     for bodies in everyone:
         assert bodies.turning is not None
         model: Any = assembly.object(Ref(bodies.model))
@@ -189,6 +194,14 @@ def _shapes(assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref
                 moving.append((bodies, k))
                 solid.append(one)
     leds: list[Led | None] = [None] * len(fixed)
+    smallest = min((shape.reach for shape, *_ in solid), default=1.0)
+    thickness = 0.0 if masses is None else masses.thickness
+    for bodies in () if masses is None else masses.everyone:
+        for k in range(bodies.count):
+            x = start[bodies.position_at + 3 * k :][:3]
+            moving.append((bodies, k))
+            ball = point(float(numbers[bodies.radius_at + k]) + thickness, smallest)
+            solid.append((ball, upright(x), f"mass {k} of '{bodies.model}'"))
     for ref in others:
         place = place_of(ref, assembly)
         fixed.append((exact_shape(ref, np.zeros(3), place, known, assembly), place, ref))

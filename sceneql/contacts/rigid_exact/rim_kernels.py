@@ -47,6 +47,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     MOST,
     MOVERS,
     RECORDS_AT,
+    SPARING,
     UNIT,
     UNITS_AT,
     answer_at,
@@ -173,6 +174,55 @@ def row_of(floats, ints, n, k):
     return -1
 
 
+@lean_inlined
+def area(floats, f, a, b, c):
+    """Twice the area of the triangle of three points of a circle, as seen along its axis."""
+    ax, _, az = into(floats, f, *three(floats, a + OWN_A))
+    bx, _, bz = into(floats, f, *three(floats, b + OWN_A))
+    cx, _, cz = into(floats, f, *three(floats, c + OWN_A))
+    return (bx - ax) * (cz - az) - (bz - az) * (cx - ax)
+
+
+@lean(N(A, I, N, N, N))
+def spare(floats, ints, n, k, to):
+    """One of four points of the circle of contact k that push, without which the other three can push as much and with
+    the same moment (Caratheodory 1911); -1 where not four push. Of two such points the farther from that at ``to``."""
+    rec, memory = ints[RECORDS_AT] + RECORD * k, ints[MEMORY_AT]
+    f, found, four = int(floats[rec + LINE_A]), solution_at(ints), 0
+    a0 = a1 = a2 = a3 = 0
+    for j in range(int(floats[memory + KEPT])):
+        other = ints[RECORDS_AT] + RECORD * j
+        same = floats[other + PAIR] == floats[rec + PAIR] and floats[other + SIGN] == floats[rec + SIGN]
+        if not is_rim(floats, other) or not same or not floats[found + row_of(floats, ints, n, j)] > 0.0:
+            continue
+        a0, a1, a2, a3 = a1, a2, a3, j
+        four += 1
+    if four < 4:
+        return -1
+    those = (a0, a1, a2, a3)
+    # What can be added to their forces without force and moment: of each the area of the other three's triangle.
+    best, most = -1, -1.0
+    for way in range(2):
+        least, which = math.inf, -1
+        for i in range(4):
+            q, r, u = those[(i + 1) % 4], those[(i + 2) % 4], those[(i + 3) % 4]
+            first = ints[RECORDS_AT]
+            change = area(floats, f, first + RECORD * q, first + RECORD * r, first + RECORD * u)
+            change *= 1.0 if i % 2 == way else -1.0
+            if change < 0.0:
+                ratio = floats[found + row_of(floats, ints, n, those[i])] / -change
+                if ratio < least:
+                    least, which = ratio, those[i]
+        if which < 0:
+            continue
+        at, away = ints[RECORDS_AT] + RECORD * which + OWN_A, 0.0
+        for c in range(3):
+            away += (floats[at + c] - floats[to + OWN_A + c]) ** 2
+        if away > most:
+            best, most = which, away
+    return best
+
+
 @lean(types.boolean(A, I, N, N, types.boolean))
 def exchange(floats, ints, n, k, pressed):
     """Put a point of the circle of contact k where it would sink in; whether it did.
@@ -215,6 +265,8 @@ def exchange(floats, ints, n, k, pressed):
         opens = floats[left_at(ints) + row] if pressed else floats[other + SPEED]
         if opens > most and not (pressed and floats[solution_at(ints) + row] > 0.0):
             slot, most = j, opens
+    if slot < 0 and pressed and floats[memory + SPARING] > 0.0:
+        slot = spare(floats, ints, n, k, to)
     if slot < 0:
         if count >= FEW or floats[memory + KEPT] >= ints[MOST]:
             return False

@@ -12,7 +12,7 @@ import numpy as np
 from numba import types
 
 import sceneql.system.channels as channels
-from sceneql.compiled.kernels import kernel, lean
+from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts import layout
 from sceneql.contacts.distance.manifold_kernels import MOST as MOST_CORNERS
 from sceneql.contacts.distance.manifold_kernels import NAME
@@ -20,6 +20,8 @@ from sceneql.contacts.distance.manifold_kernels import POINT as CORNER
 from sceneql.contacts.impact_kernels import count_hit
 from sceneql.contacts.rigid_exact.contact_kernels import (
     BIAS,
+    KIND,
+    OWN_A,
     PAIR,
     PUSHES,
     RECORD,
@@ -36,8 +38,10 @@ from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     A_SECOND,
     AGAIN,
+    AT_CONTACT,
     BEFOREHAND,
     BOUNDED,
+    DRIVES,
     ENDURANCE,
     FRICTION_AT,
     IMPACTS,
@@ -47,13 +51,18 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     LATEST,
     LOOSE,
     MEMORY_AT,
+    MOST,
     MOVERS,
     PAIRS,
+    PASSED,
     RECORDS_AT,
     RESTITUTION_AT,
     STARTED,
     TALLY_AT,
     TIE_ROWS,
+    UNIT,
+    UNITS_AT,
+    WATCHED,
     WORK,
     count_energy,
     energy,
@@ -65,12 +74,15 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     pull_at,
     right_at,
     solution_at,
+    spots,
     write_rows,
 )
 from sceneql.contacts.rigid_exact.exact_solve_kernels import solve_rows
-from sceneql.contacts.rigid_exact.features_kernels import smaller
+from sceneql.contacts.rigid_exact.extra_rows_kernels import write_more
+from sceneql.contacts.rigid_exact.features_kernels import size_at
 from sceneql.contacts.rigid_exact.find_kernels import begin, find, start_step
 from sceneql.contacts.rigid_exact.rim_kernels import any_rim, exchange_all
+from sceneql.contacts.rigid_exact.stop_kernels import REBOUND, STOP
 from sceneql.contacts.rigid_exact.true_gap_kernels import unseen
 from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
 
@@ -93,19 +105,31 @@ def energies(y, floats, ints):
     return total
 
 
+@lean_inlined
+def rebound(floats, ints, rec):
+    """The restitution of a contact; that of a stop is its tie's."""
+    if floats[rec + KIND] == STOP:
+        return floats[int(floats[rec + OWN_A]) + REBOUND]
+    return floats[ints[RESTITUTION_AT]]
+
+
 @lean(types.Tuple((N, types.boolean))(F, A, A, I, F, F))
 def reflect(t, y, floats, ints, restitution, friction):
     """Impulses on the contacts that are marked, so that none of them approaches; rows that were solved for, and
     whether to rounding.
 
-    With a restitution below 0, and no friction, none of them goes apart, either.
+    ``restitution``: the part that is had of each one's own. With one below 0, and no friction, none of them goes apart,
+    either.
     """
     n = write_rows(floats, ints, IMPACTS, friction)
+    if friction == floats[ints[FRICTION_AT]] and restitution >= 0.0:
+        n = write_more(floats, ints, n, IMPACTS)
     right = right_at(ints)
     for i in range(ints[TIE_ROWS], n):
         kind = ints[ints[KINDS_AT] + i]
         if (kind == UNILATERAL or kind == CONE) and floats[right + i] < 0.0:
-            floats[right + i] *= 1.0 + max(0.0, restitution)
+            rec = ints[RECORDS_AT] + RECORD * int(floats[ints[UNITS_AT] + UNIT * i + AT_CONTACT])
+            floats[right + i] *= 1.0 + max(0.0, restitution) * rebound(floats, ints, rec)
         elif kind == UNILATERAL and restitution < 0.0:
             ints[ints[KINDS_AT] + i] = BILATERAL
     solved = solve_rows(floats, ints, n, friction, restitution >= 0.0)
@@ -151,9 +175,12 @@ def tired(floats, ints):
 def strike(t, y, floats, ints):
     """End the approach of all kept contacts; whether there was one. They, the ties and the movers are of this state."""
     memory, marked = ints[MEMORY_AT], marked_at(ints)
-    restitution, friction = floats[ints[RESTITUTION_AT]], floats[ints[FRICTION_AT]]
+    friction, most = floats[ints[FRICTION_AT]], 0.0
+    for k in range(int(floats[memory + KEPT])):
+        most = max(most, rebound(floats, ints, ints[RECORDS_AT] + RECORD * k))
+    restitution = 1.0 if most > 0.0 else 0.0  # the part that is had of each one's own
     # (Without friction nothing ends what bounces with a restitution of 1.)
-    if (restitution < 1.0 or friction > 0.0) and tired(floats, ints):
+    if (most < 1.0 or friction > 0.0) and tired(floats, ints):
         restitution = 0.0
     if any_rim(floats, ints):
         exchange_all(floats, ints, 0, False)
@@ -178,7 +205,7 @@ def strike(t, y, floats, ints):
             look(t, y, floats, ints)
             follow_all(floats, ints)
             mark_approaching(floats, ints)
-            part = 0.5 * part if part > 0.05 else 0.0
+            part = 0.5 * part if part * most > 0.05 else 0.0
             n, solved = reflect(t, y, floats, ints, part, friction)
         rounds += 1
     # What approaches still, or would bounce lower than it is seen, stays together.
@@ -193,14 +220,15 @@ def strike(t, y, floats, ints):
                 pull += floats[rec + ROWS + 6 * side + c] * floats[pull_at(ints, b if side == 1 else a) + c]
         # What holds the lower body is not known here: it may fall as fast as the upper one, and not draw away.
         pull = max(-pull, weight(floats, ints, a), weight(floats, ints, b))
-        low = speed * speed < 2.0 * pull * lowest(floats, ints, int(floats[rec + PAIR])) * smaller(floats, ints, a, b)
+        own = restitution * rebound(floats, ints, rec)
+        low = speed * speed < 2.0 * pull * lowest(floats, ints, int(floats[rec + PAIR])) * size_at(floats, ints, rec)
         near = speed <= STILL + PARTS * pace(floats, rec, ma, mb)
-        stays = near or (low and restitution < 1.0)
+        stays = near or (low and own < 1.0)
         ints[marked + k] = 1 if stays else 0
-        if stays and ((low and not near) or speed < 0.0 or restitution == 0.0):
+        if stays and ((low and not near) or speed < 0.0 or own == 0.0):
             caught += 1
-        if low and speed > 0.0 and restitution < 1.0:
-            later = max(later, 2.0 * speed / (pull * (1.0 - restitution)))
+        if low and speed > 0.0 and own < 1.0:
+            later = max(later, 2.0 * speed / (pull * (1.0 - own)))
     if caught > 0:
         _, solved = reflect(t, y, floats, ints, 0.0, friction)
         if not solved:
@@ -245,10 +273,12 @@ def impact(t, y, pair, floats, ints):
     wrong = pair < 0 and floats[memory + STARTED] > 0.0 and unseen(t, y, floats, ints, False)
     if pair >= 0:
         again = floats[memory + AGAIN] + 1.0 if t == floats[memory + LATEST] else 0.0
-        floats[memory + LATEST], floats[memory + AGAIN] = t, again
+        floats[memory + LATEST], floats[memory + AGAIN], floats[memory + PASSED] = t, again, 0.0
         of = pair
-        if pair >= ints[PAIRS]:
-            of = int(floats[ints[RECORDS_AT] + RECORD * ((pair - ints[PAIRS]) // 2) + PAIR])
+        if pair >= spots(ints) + WATCHED * ints[MOST]:
+            of = ints[PAIRS] + pair - spots(ints) - WATCHED * ints[MOST]
+        elif pair >= spots(ints):
+            of = int(floats[ints[RECORDS_AT] + RECORD * ((pair - spots(ints)) // WATCHED) + PAIR])
         look(t, y, floats, ints)
         count_event(t, floats, ints, of)
         if again > ENDURANCE or level(floats, ints, of) > ENDLESS:
@@ -264,8 +294,11 @@ def impact(t, y, pair, floats, ints):
         keep(floats, ints, False)
         begin(t, y, floats, ints, False)
         floats[channels.CHANGED] = 1.0
-    elif floats[memory + KEPT] > 0.0:
-        floats[memory + AGAIN] = 0.0
+    elif floats[channels.CHANGED] == channels.DUE and floats[memory + PASSED] == 0.0:
+        # All is found anew at the impact; where that is another contact's, a step later.
+        floats[memory + PASSED] = 1.0
+    elif floats[memory + KEPT] > 0.0 or ints[DRIVES] > 0:
+        floats[memory + AGAIN] = floats[memory + PASSED] = 0.0
         before = floats[memory + KEPT]
         same = find(t, y, floats, ints, points, names, True)
         keep(floats, ints, True)

@@ -28,6 +28,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     look,
     mover_at,
     put_places,
+    spots,
 )
 from sceneql.contacts.rigid_exact.features_kernels import smaller
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -69,7 +70,7 @@ def unseen(t, y, floats, ints, first):
     follow_all(floats, ints)
     found = False
     for pair in range(ints[PAIRS]):
-        allowed = ints[KEPT_AT] + 3 * ints[PAIRS] + pair
+        allowed = ints[KEPT_AT] + 3 * spots(ints) + pair
         now = true_gap(floats, ints, pair)
         if first:
             floats[allowed] = min(0.0, now)

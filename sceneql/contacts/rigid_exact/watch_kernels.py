@@ -20,9 +20,13 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SHAPE_A,
     SLIDE,
     SLIP,
+    TURN,
+    TURN_ALONG,
+    TURN_SLIP,
     dot,
     three,
 )
+from sceneql.contacts.rigid_exact.contact_kernels import KIND as KIND_OF
 from sceneql.contacts.rigid_exact.curved import FIELD, FORM
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, beyond_face, is_curved
 from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
@@ -30,6 +34,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     A_PAIR,
     BEGUN,
     BEGUN_AT,
+    DRIVES,
     KEPT,
     KEPT_AT,
     MEMORY_AT,
@@ -39,18 +44,24 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     PLACE,
     PLACES_AT,
     RECORDS_AT,
+    ROLLING_AT,
     ROOM,
     ROOM_AT,
     SHAPES_AT,
+    WATCHED,
     WORK,
+    core_at,
+    driven_at,
     follow_all,
     look,
     mover_at,
     put_places,
+    spots,
 )
 from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, is_plain, own, smaller
 from sceneql.contacts.rigid_exact.find_kernels import TOUCHES
 from sceneql.contacts.rigid_exact.rim_kernels import lying
+from sceneql.contacts.rigid_exact.stop_kernels import FAR, GREATEST, LEAST, SIGNS, SLIPS, STOP, slip
 from sceneql.contacts.rigid_exact.true_gap_kernels import kept_gap, true_gap
 from sceneql.system.signatures_kernels import GAP as SIGNATURE
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -90,7 +101,7 @@ def motion(floats, begun, now, h, motions, to):
 def stays_beyond(floats, ints, a, b, ma, mb, motions, h):
     """Whether a curved body is beyond the same face of what does not turn where movers are ma and mb and h [s] later,
     now, and between: how far it is, less the way of a straight line, bends by its spin's square at most."""
-    sa, sb = ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b
+    sa, sb = ints[SHAPES_AT] + SHAPE * a, core_at(ints, b)
     if floats[ints[sa + FLOATS] + FORM] == FIELD or motions[9] != 0.0 or motions[10] != 0.0 or motions[11] != 0.0:
         return False
     square = motions[3] ** 2 + motions[4] ** 2 + motions[5] ** 2
@@ -142,7 +153,7 @@ def passed(floats, ints, a, b, h, gap, motions, room):
     dx, dy, dz = motions[0] - motions[6], motions[1] - motions[7], motions[2] - motions[8]
     far += h * math.sqrt(dx * dx + dy * dy + dz * dz)
     size = smaller(floats, ints, a, b)
-    if far <= max(gap, LITTLE * size) or ints[ints[SHAPES_AT] + SHAPE * b + KIND] != CORE:
+    if far <= max(gap, LITTLE * size) or ints[core_at(ints, b) + KIND] != CORE:
         return gap
     if is_curved(ints, ints[SHAPES_AT] + SHAPE * a):
         touch = curved_touch(
@@ -205,8 +216,9 @@ def clear(floats, ints, a, b, h):
 
 @lean(SIGNATURE, inner=True)
 def gap(t, y, gaps, floats, ints):
-    """Write the gap of each pair [m], and of each kept contact its slip [m/s] and how far it is inside its face [m]."""
-    memory, pairs, most = ints[MEMORY_AT], ints[PAIRS], ints[MOST]
+    """Write the gap of each pair [m] and stop, of each kept contact its slip [m/s], how far it is inside its face [m]
+    and how fast it turns [rad/s], and of each motor and friction of a tie its slip."""
+    memory, pairs, most, first = ints[MEMORY_AT], ints[PAIRS], ints[MOST], spots(ints)
     look(t, y, floats, ints)
     follow_all(floats, ints)
     put_places(y, floats, ints, ints[PLACES_AT])
@@ -226,10 +238,22 @@ def gap(t, y, gaps, floats, ints):
         elif h > 0.0 and now > 0.0:
             now = passed(floats, ints, a, b, h, now, motions, room)
         gaps[pair] = now
-    for k in range(most):
-        gaps[pairs + 2 * k] = gaps[pairs + 2 * k + 1] = NEVER
+    for k in range(pairs, first + WATCHED * most + 2 * ints[DRIVES]):
+        gaps[k] = NEVER
+    for stop in range(2 * ints[DRIVES]):
+        own, sign = driven_at(ints, stop // 2), 1.0 if stop % 2 == 0 else -1.0
+        there = floats[own + (LEAST if stop % 2 == 0 else GREATEST)]
+        if abs(there) < math.inf and floats[ints[KEPT_AT] + pairs + stop] == 0.0:
+            gaps[pairs + stop] = sign * (floats[own + FAR] - there)
+        j = stop % 2
+        if floats[own + SIGNS + j] != 0.0 and floats[own + SLIPS + j] > SURE:
+            gaps[first + WATCHED * most + stop] = floats[own + SIGNS + j] * slip(floats, own, j)
     for k in range(count):
-        rec, at = ints[RECORDS_AT] + RECORD * k, pairs + 2 * k
+        rec, at = ints[RECORDS_AT] + RECORD * k, first + WATCHED * k
+        if floats[rec + TURN_SLIP] > SURE and floats[ints[ROLLING_AT]] > 0.0:
+            gaps[at + 2] = dot(*three(floats, rec + TURN), *three(floats, rec + TURN_ALONG))
+        if floats[rec + KIND_OF] == STOP:
+            continue
         if floats[rec + SLIP] > SURE:
             gaps[at] = dot(*three(floats, rec + SLIDE), *three(floats, rec + ALONG))
         size = smaller(

@@ -58,32 +58,33 @@ class Collision(Contact):
     Rigid bodies collide with one another and with objects, which may move by keys or formulas and so carry and push
     them. `auto` is mode `exact` for up to 8 bodies, where that takes all their shapes, ties and the solver (explicit,
     with steps that a tolerance chooses), and `explain` tells why if not; where it then finds no way on, or has taken
-    more work than some steps of `local` in each 1/240 s, the run goes on from that instant in mode `local`, which
-    `render --report` tells. In mode `local` the velocities at the end of a step, of all contacts together, obey
-    Coulomb's law to rounding (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are
-    of order 1 in the step. Spheres, boxes, planes and convex meshes touch exactly. Any other shape with an inside
-    (cylinders, rings, meshes, solids cut out of one another, implicit surfaces) touches by points of its surface, those
-    of its edges and those of its smooth parts slid to where the two face each other, 20 cells along it and more where
-    it is thin: details smaller than a cell on both are not seen, all else to a millionth of the size. Where a step
-    would take such a shape farther than half its thickness it is cut; a pair has at most 12 points. Bodies may be held
-    by ties, which are found with the contacts; those that a tie joins do not touch each other. `points`, `normals` and
-    `forces` tell of it, hits and rest do not; those of mode `exact` stay as they were where `local` goes on.
+    more work than some steps of `local` in each 1/240 s, the run goes on from that instant in mode `local` and warns of
+    it. In mode `local` the velocities at the end of a step, of all contacts together, obey Coulomb's law to rounding
+    (Moreau 1988), so that what rests stays and nothing sinks, whatever the masses; places are of order 1 in the step.
+    Spheres, boxes, planes and convex meshes touch exactly. Any other shape with an inside (cylinders, rings, meshes,
+    solids cut out of one another, implicit surfaces) touches by points of its surface, those of its edges and those of
+    its smooth parts slid to where the two face each other, 20 cells along it and more where it is thin: details smaller
+    than a cell on both are not seen, all else to a millionth of the size. Where a step would take such a shape farther
+    than half its thickness it is cut; a pair has at most 12 points. Bodies may be held by ties, which are found with
+    the contacts; those that a tie joins do not touch each other. `points`, `normals` and `forces` tell of it, hits and
+    rest do not; those of mode `exact` stay as they were where `local` goes on.
 
     `rolling` is a length: the normal force makes, at that arm, the largest moment that resists rolling and spinning. A
     ball of radius r that rolls at v comes to rest after (7/10) v^2 r / (g rolling), what stands on a slope flatter than
     rolling / r stays. Masses do not turn, and have none.
 
-    Mode `exact` is for few rigid bodies and what stands or moves by keys and formulas, ties included. Spheres, boxes,
-    planes and convex meshes touch one another, and are touched by ellipsoids (a sphere alone in a group with a scale),
-    cylinders and tori, and balls by implicit and blobby surfaces: what rolls over these is exact. Two curved ones do
-    not meet each other. A cylinder or torus that lies flat stands and tips as if its whole circle were there, and has
-    the friction of the points of it that are told; over an edge it stops the run, or `local` goes on, but for a column
-    that lies along it. All contacts that approach are reflected together until none approaches (Smith et al. 2012), and
-    what rests, rolls or slides has the forces of Coulomb's law at every stage of the solver, whose order it keeps.
-    Bounces that are lower than a billionth of the body's size end at once, and those of a pair whose impacts crowd
-    sooner: from a thousandth of it, or with no restitution left, so that what tips from corner to corner comes to rest.
-    Impacts without end stop the run of a contact whose mode is named `exact` at its line. Many faces on one another, as
-    in a pile or an arch that falls, take long.
+    Mode `exact` is for few rigid bodies and what stands or moves by keys and formulas, for masses that strike them, and
+    for ties with their stops, motors and friction. Spheres, boxes, planes and convex meshes touch one another, and are
+    touched by ellipsoids (a sphere alone in a group with a scale), cylinders and tori, and balls by implicit and blobby
+    surfaces: what rolls over these is exact. Of two curved ones one has to be a cylinder, which others meet by its
+    round side, cylinders by their rims, too. A cylinder or torus that lies flat stands and tips as if its whole circle
+    were there, and has the friction of the points of it that are told; over an edge it stops the run, or `local` goes
+    on, but for a column that lies along it. All contacts that approach are reflected together until none approaches
+    (Smith et al. 2012), and what rests, rolls or slides has the forces of Coulomb's law, and the moments of `rolling`,
+    at every stage of the solver, whose order it keeps. Bounces that are lower than a billionth of the body's size end
+    at once, and those of a pair whose impacts crowd sooner: from a thousandth of it, or with no restitution left, so
+    that what tips from corner to corner comes to rest. Impacts without end stop the run of a contact whose mode is
+    named `exact` at its line. Many faces on one another, as in a pile or an arch that falls, take long.
 
     Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
     no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There
@@ -231,8 +232,10 @@ class Collision(Contact):
         """A restitution where there is none, and a gap that nothing has."""
         if self.mode == "barrier" and self.restitution.span is not None:
             yield Problem(NO_RESTITUTION, ("restitution",), at_key=True)
-        if self.mode in ("exact", "barrier") and self.rolling.span is not None:
-            yield Problem(f"mode {self.mode} has no moment against rolling: mode local has", ("rolling",), at_key=True)
+        if self.mode == "barrier" and self.rolling.span is not None:
+            yield Problem(
+                "mode barrier has no moment against rolling: modes exact and local have", ("rolling",), at_key=True
+            )
         if self.mode in ("exact", "local") and self.gap is not None:
             yield Problem(f"mode {self.mode} has no gap: the mode barrier of elastic solids has", ("gap",), at_key=True)
 
@@ -281,7 +284,7 @@ class Collision(Contact):
         """
         from sceneql.contacts.colliders import OFTEN
         from sceneql.contacts.distance.rigid_contact import assemble
-        from sceneql.contacts.distance.rigid_masses import masses_of
+        from sceneql.contacts.distance.rigid_masses import Masses, masses_of
         from sceneql.contacts.rigid_exact import group
         from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
@@ -292,13 +295,11 @@ class Collision(Contact):
         touched = [written.get(ref.name, ref) for ref in others]
         rigid = [bodies for bodies in everyone if bodies.turning is not None]
         points = [bodies for bodies in everyone if bodies.turning is None]
-        if self.mode == "exact" and points:
-            message = f"mode `exact` has no contacts of masses, as of '{points[0].model}', with rigid bodies"
-            help = "mode: local has; or give the masses a `collision` of their own with the objects they may touch"
-            raise ScriptError([Diagnostic("invalid", message, assembly.line(), help)])
         assembly.contact_why = "asked for by the script"
         if self.mode == "exact":
-            assembly.remember(*group.assemble(assembly, rigid, touched, self.restitution, self.friction))
+            masses = Masses(points, self.thickness, -1, -1) if points else None
+            law = (self.restitution, self.friction, self.rolling)
+            assembly.remember(*group.assemble(assembly, rigid, touched, *law, masses))
             return
         if self.mode == "auto" and self._exactly(name, assembly, rigid, points, touched):
             return
@@ -317,24 +318,23 @@ class Collision(Contact):
         self, name: str, assembly: Assembly, rigid: list[Bodies], points: list[Bodies], touched: list[Ref]
     ) -> bool:
         """Add the contacts of few rigid bodies in mode `exact`, if that takes them; whether it does, and why."""
+        from sceneql.contacts.distance.rigid_masses import Masses
         from sceneql.contacts.rigid_exact import group
         from sceneql.quantities.diagnostic import ScriptError
 
-        count = sum(bodies.count for bodies in rigid)
+        count = sum(bodies.count for bodies in (*rigid, *points))
         why = ""
         if name in assembly.went_on:
             why = f"what is left of the run from {assembly.went_on[name].t:.6g} s on, where `exact` found no way"
         elif count > MOST_EXACT:
             why = f"more than {MOST_EXACT} bodies"
-        elif points:
-            why = f"masses collide with them, as those of '{points[0].model}'"
-        elif self.rolling.span is not None:
-            why = "`exact` has no moment against rolling"
         elif not assembly.by_tolerance:
             why = "`exact` locates events in steps that a tolerance chooses, of an explicit method"
         else:
             try:
-                told = group.assemble(assembly, rigid, touched, self.restitution, self.friction, gives_way=True)
+                masses = Masses(points, self.thickness, -1, -1) if points else None
+                law = (self.restitution, self.friction, self.rolling)
+                told = group.assemble(assembly, rigid, touched, *law, masses, gives_way=True)
             except ScriptError as refused:
                 why = refused.diagnostics[0].message
             else:

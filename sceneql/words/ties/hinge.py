@@ -59,9 +59,10 @@ class Hinge(Driven):
     The angle is that of the first body against the second, 0 at the start, over full turns too. About the axis it may
     have a spring and a damping, - stiffness (angle - rest) - damping speed, a motor, stops at `limits`, and dry
     friction. Stops, friction, and motors that follow something, act on the velocities at the end of a step, with all
-    contacts at once (mode `local`): a step in which one acts is of order 1, others are the solver's own. A motor that
-    follows an angle goes by the angle's own speed and (angle - what it is)/settling; a stop at which the body is as
-    slow as its forces make it in two steps holds it.
+    contacts at once (mode `local`): a step in which one acts is of order 1, others are the solver's own. Where rigid
+    bodies of the same island collide in mode `exact`, stops are impacts with their own restitution, located as all
+    others, and motors and friction have the solver's order. A motor that follows an angle goes by the angle's own speed
+    and (angle - what it is)/settling; a stop at which the body is as slow as its forces make it in two steps holds it.
     """
 
     said_by: ClassVar[Mapping[str, str]] = {"drive": "that is a motor: `motor: {torque: 3 N*m}`"}

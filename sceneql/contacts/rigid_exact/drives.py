@@ -1,0 +1,71 @@
+"""Stops, motors and dry friction of ties among exact contacts of rigid bodies: their integers and floats."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from sceneql.bodies.rigid.tie_system import integers
+from sceneql.bodies.rigid.tied_step import drive_integers, moves
+from sceneql.bodies.time_shift import exact_rate, rate_of_change
+from sceneql.kinds import Value
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from sceneql.quantities.expression import Expr
+    from sceneql.system import Assembly, Drive, Tied
+
+
+def drives_of(
+    assembly: Assembly, movers: list[tuple[int, ...]], works: list[int]
+) -> tuple[list[list[float]], list[list[int]]]:
+    """The floats (stop_kernels) and the integers (motion_kernels) of the ties that have stops, a motor or friction.
+
+    From now on no step of velocities moves these. What they hold is added to the movers. Raises ScriptError for a motor
+    that follows what has no known rate.
+    """
+    from sceneql.bodies.rigid.drive_kernels import ROW_AT
+    from sceneql.bodies.rigid.tie_rows_kernels import AT_J, SCRATCH
+    from sceneql.contacts.rigid_exact.stop_kernels import DRIVEN, EFFORT_AT, FIRST_MOVER, GIVEN_AT, SIZE
+    from sceneql.contacts.rigid_exact.stop_kernels import ROW_AT as OWN_ROW_AT
+
+    found: list[list[float]] = []
+    ints: list[list[int]] = []
+    numbers = assembly.numbers()
+    for tie in assembly.ties:
+        drive = tie.drive
+        if drive is None or not any(moves(mover, assembly) for mover in tie.movers):
+            continue
+        own = [0.0] * DRIVEN
+        for side, mover in enumerate(tie.movers):
+            one = integers(mover)
+            if one not in movers:
+                movers.append(one)
+                works.append(-1)
+            own[FIRST_MOVER + side] = movers.index(one)
+        low, high = numbers[drive.limits_at : drive.limits_at + 2] if drive.limits_at >= 0 else (0.0, 0.0)
+        own[SIZE] = float(high - low) if 0.0 < high - low < math.inf else 1.0
+        own[OWN_ROW_AT] = drive.along[ROW_AT + SCRATCH] + AT_J
+        own[EFFORT_AT], own[GIVEN_AT] = drive.effort_at, assembly.state([0.0])
+        assembly.write(drive.effort_at + 3, [1.0])
+        found.append(own)
+        ints.append([*drive_integers(drive), *_rates(tie, drive, assembly)])
+    assembly.driven = True
+    return found, ints
+
+
+def _rates(tie: Tied, drive: Drive, assembly: Assembly) -> tuple[int, int]:
+    """Offsets of the first and the second derivative of what a motor follows; -1 where that is constant."""
+    target = drive.target
+    if target is None or target.constant:
+        return -1, -1
+
+    def rate(expr: Expr) -> Expr:
+        return exact_rate(expr, assembly.formula) or rate_of_change(expr, assembly.formula)
+
+    try:
+        first = rate(target.expr)
+        return assembly.value(Value(first, target.span)), assembly.value(Value(rate(first), target.span))
+    except ValueError as error:
+        message = f"it cannot be told how what the motor of '{tie.name}' follows changes: {error}"
+        raise ScriptError([Diagnostic("no-velocity", message, target.span, "mode: local takes it")]) from None
