@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import prod
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.element_mesh import ElementMesh, Onto, meshed
+from sceneql.bodies.elements.finer import Finer, wanted
+from sceneql.bodies.filling.bisection import bisected
 from sceneql.bodies.filling.fill import Inside
 from sceneql.bodies.filling.kept_creases import creases_kept, onto_crease
 from sceneql.bodies.filling.split_creases import creases_split
@@ -26,8 +29,9 @@ if TYPE_CHECKING:
 
     from sceneql.bodies.elements.block import Block
     from sceneql.bodies.elements.element import Element
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Ints
     from sceneql.kinds import Ref
+    from sceneql.quantities.span import Span
     from sceneql.system import Assembly
 
 BYTES = {4: 4000, 10: 25000}
@@ -36,6 +40,7 @@ PARTS = 10
 """Spacings along the longest side of an object's box where the script tells none."""
 A_PLACE = 6
 """Tetrahedra for each corner and middle of the lattice."""
+TOO_FINE = "take larger spacings under `finer`"
 THIN = 1.0
 """What lies in the object farther than so many spacings from all nodes is lost."""
 FINE, MOST_LOOKED_AT = 0.25, 3e6
@@ -51,7 +56,7 @@ def bounded_by(spacing: float) -> Callable[[Floats, Floats], None]:
     return check
 
 
-def laid(block: Block, element: type[Element], assembly: Assembly) -> ElementMesh:
+def laid(block: Block, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly) -> ElementMesh:
     """The mesh of a block. Raises ScriptError for one that is inside out, LimitRefused for too many elements."""
     from sceneql.bodies.elements.block import CUT
 
@@ -66,13 +71,45 @@ def laid(block: Block, element: type[Element], assembly: Assembly) -> ElementMes
         told = ", ".join(f"{c:.4g}" for c in where)
         message = f"the block is inside out, or flat, at ({told}) m: look at the order of its corners"
         raise ScriptError([Diagnostic("not-filled", message, assembly.line())])
-    return meshed(element, points, tetrahedra)
+    try:
+        return _fitted(element, points, tetrahedra, finer, None, assembly.line())
+    except Exceeds as error:
+        raise LimitRefused(str(error), assembly.line(), TOO_FINE) from None
 
 
-def filled(ref: Ref, spacing: float | None, element: type[Element], assembly: Assembly) -> ElementMesh:
+def _fitted(
+    element: type[Element],
+    points: Floats,
+    tetrahedra: Ints,
+    finer: Mapping[str, Finer],
+    onto: Onto | None,
+    line: Span | None,
+) -> ElementMesh:
+    """The mesh, finer in places. Raises Exceeds for too many elements, ScriptError for a place that has none."""
+    if finer:
+
+        def middles(points: Floats, tetrahedra: Ints) -> Floats:
+            return meshed(elements()["p2"], points, tetrahedra, onto).points[len(points) :]
+
+        def check(count: float) -> None:
+            bounded(count, "elements", BYTES[element.nodes()])
+
+        points, tetrahedra = bisected(points, tetrahedra, wanted(finer), middles, check)
+    mesh = meshed(element, points, tetrahedra, onto)
+    for name, one in finer.items():
+        if not one.reaches(mesh.points):
+            message = f"'{name}' is near no element"
+            help = "its place is one of the material, before the solid is moved or turned"
+            raise ScriptError([Diagnostic("no-mass", message, line, help)])
+    return mesh
+
+
+def filled(
+    ref: Ref, spacing: float | None, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly
+) -> ElementMesh:
     """The mesh of an object. Raises ScriptError where it cannot be filled, LimitRefused for too many elements."""
     with doing(f"filling {ref.name}"):
-        return _filled(Inside(ref, assembly), spacing_of(ref, spacing, assembly), element)
+        return _filled(Inside(ref, assembly), spacing_of(ref, spacing, assembly), element, finer, assembly.line())
 
 
 def spacing_of(ref: Ref, spacing: float | None, assembly: Assembly) -> float:
@@ -83,7 +120,9 @@ def spacing_of(ref: Ref, spacing: float | None, assembly: Assembly) -> float:
     return float((box.high - box.low).max()) / PARTS
 
 
-def _filled(inside: Inside, spacing: float, element: type[Element]) -> ElementMesh:
+def _filled(
+    inside: Inside, spacing: float, element: type[Element], finer: Mapping[str, Finer], line: Span | None
+) -> ElementMesh:
     inside.bounded(bounded_by(spacing), inside.low, inside.high)
 
     def holds(places: Floats) -> NDArray[bool_]:
@@ -114,7 +153,10 @@ def _filled(inside: Inside, spacing: float, element: type[Element]) -> ElementMe
     def onto_edge(places: Floats, normals: Floats, sides: Floats) -> Floats:
         return onto_crease(places, normals, sides, spacing, inside.holds, inside.crossing)
 
-    return meshed(element, points, tetrahedra, Onto(onto, onto_edge))
+    try:
+        return _fitted(element, points, tetrahedra, finer, Onto(onto, onto_edge), line)
+    except Exceeds as error:
+        raise LimitRefused(str(error), inside.span, TOO_FINE) from None
 
 
 def _whole(inside: Inside, spacing: float, points: Floats) -> None:

@@ -15,6 +15,7 @@ from sceneql.bodies import solid_modes
 from sceneql.bodies.elements import strain_outputs
 from sceneql.bodies.elements.block import Block
 from sceneql.bodies.elements.element import elements
+from sceneql.bodies.elements.finer import Finer
 from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
 from sceneql.bodies.elements.load import Load
@@ -82,6 +83,7 @@ class Elastic(Model):
         above=0,
     )
     block: Block | None = field("A brick in place of an object.", None)
+    finer: dict[str, Finer] = field("Places near which its elements are smaller, by name.", {})
     element: str | None = field(
         "Its elements, p1, p2 or p2_mean: of 4 or 10 nodes; the last, of one dilatation each, do not lock. By default "
         f"p2_mean above a Poisson ratio of {LOCKS}, else p2.",
@@ -126,6 +128,10 @@ class Elastic(Model):
             near = suggestion(self.element, elements())
             known = f"; {near}" if near else f"; there are {', '.join(elements())}"
             yield Problem(f"no element is called '{self.element}'{known}", ("element",), code="unknown-choice")
+        for name, one in self.finer.items():
+            if self.spacing is not None and one.spacing >= self.spacing:
+                text = f"elements are no finer with {one.spacing:g} m than with the spacing of {self.spacing:g} m"
+                yield Problem(text, ("finer", name, "spacing"))
         for name in self.probes:
             if name in self.hold:
                 yield Problem(
@@ -186,9 +192,9 @@ class Elastic(Model):
 
         element = self.chosen_element()
         if self.block is not None:
-            return laid(self.block, element, assembly)
+            return laid(self.block, element, self.finer, assembly)
         assert self.of is not None
-        return filled(self.of, self.spacing, element, assembly)
+        return filled(self.of, self.spacing, element, self.finer, assembly)
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the nodes as masses; add the forces of strain, of loads, of damping, and what holds it."""
