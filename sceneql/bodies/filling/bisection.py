@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.bodies.filling.tetrahedra import edges, volumes
+from sceneql.bodies.filling.tetrahedra import edges
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -17,32 +17,27 @@ if TYPE_CHECKING:
 
 ALIKE = 1e-9
 """Relative difference of the lengths of edges that counts as none: their numbers decide then."""
-FLAT = 0.1
-"""A half that is below this part of a straight half has the straight middle of its edge."""
 
 
 def bisected(
-    points: Floats,
-    tetrahedra: Ints,
-    wanted: Callable[[Floats], Floats],
-    middles: Callable[[Floats, Ints], Floats],
-    bounded: Callable[[float], None],
-) -> tuple[Floats, Ints]:
-    """Points (n, 3) [m] and tetrahedra (t, 4) none of whose edges is longer than wanted in its middle.
+    points: Floats, tetrahedra: Ints, wanted: Callable[[Floats], Floats], bounded: Callable[[float], None]
+) -> tuple[Floats, Ints, NDArray[int64]]:
+    """Points (n, 3) [m] and tetrahedra (t, 4) none of whose longest edges exceeds what is wanted at their middle; the
+    tetrahedron (t,) that each is a part of.
 
-    ``wanted``: lengths [m] at places (k, 3); ``middles``: the places of new points in the middles of all edges, in the
-    order of `edges`; ``bounded`` raises where there are too many tetrahedra. An edge is halved when it is the longest
-    of all tetrahedra around it, these others first (Rivara 1984, 1991).
+    ``wanted``: lengths [m] at places (k, 3); ``bounded`` raises where there are too many tetrahedra. An edge is halved
+    when it is the longest of all tetrahedra around it, these others first (Rivara 1984, 1991).
     """
+    parents = np.arange(len(tetrahedra))
     while True:
         ends, which = edges(tetrahedra)
-        longest, own = _longest(points, ends, which)
+        longest = _longest(points, ends, which)
         of = ends[longest]
         length = np.linalg.norm(points[of[:, 0]] - points[of[:, 1]], axis=1)
         asked = wanted(points[tetrahedra].mean(axis=1))
         coarse = length > (1.0 + ALIKE) * asked
         if not coarse.any():
-            return points, tetrahedra
+            return points, tetrahedra, parents
         bounded(len(tetrahedra) + float(((length[coarse] / asked[coarse]) ** 3).sum()))
         marked = np.zeros(len(ends), dtype=bool)
         marked[longest[coarse]] = True
@@ -51,39 +46,21 @@ def bisected(
             marked[longest[marked[which].any(axis=1)]] = True
         around = np.bincount(which.ravel(), minlength=len(ends))
         marked &= np.bincount(longest, minlength=len(ends)) == around
-        points, tetrahedra = _halved(points, tetrahedra, ends, longest, own, marked, middles)
+        some = np.flatnonzero(marked[longest])
+        number = np.cumsum(marked) - 1 + len(points)
+        points = np.concatenate([points, points[ends[marked]].mean(axis=1)])
+        halves = [tetrahedra]
+        for side in (0, 1):
+            gone = ends[longest[some], side][:, None]
+            new = number[longest[some]][:, None]
+            halves.append(np.where(tetrahedra[some] == gone, new, tetrahedra[some]).astype(np.int32))
+        tetrahedra = np.delete(np.concatenate(halves), some, axis=0)
+        parents = np.delete(np.concatenate([parents, parents[some], parents[some]]), some)
 
 
-def _longest(points: Floats, ends: NDArray[int64], which: NDArray[int64]) -> tuple[NDArray[int64], Any]:
-    """(t,) the longest edge of each tetrahedron, and its place among the tetrahedron's own."""
+def _longest(points: Floats, ends: NDArray[int64], which: NDArray[int64]) -> Any:
+    """(t,) the longest edge of each tetrahedron."""
     length = np.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1)
-    alike = np.round(np.log(length) / ALIKE)
     rank = np.empty(len(ends), dtype=np.int64)
-    rank[np.lexsort((np.arange(len(ends)), alike))] = np.arange(len(ends))
-    own = np.argmax(rank[which], axis=1)
-    return which[np.arange(len(which)), own], own
-
-
-def _halved(
-    points: Floats, tetrahedra: Ints, ends: Any, longest: Any, own: Any, marked: Any, middles: Any
-) -> tuple[Floats, Ints]:
-    """With the marked edges halved, each the longest of all tetrahedra around it."""
-    some = np.flatnonzero(marked[longest])
-    edge = longest[some]
-    number = np.cumsum(marked) - 1 + len(points)
-    straight = 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])
-    found = np.where(marked[:, None], middles(points, tetrahedra), straight)
-    halves = []
-    for side in (0, 1):
-        half = tetrahedra[some].astype(np.int64)
-        halves.append(np.where(half == ends[edge, side][:, None], number[edge][:, None], half))
-    least = FLAT * 0.5 * volumes(points, tetrahedra[some])
-    while True:
-        placed = np.concatenate([points, found[marked]])
-        turned = edge[np.any([volumes(placed, half) < least for half in halves], axis=0)]
-        turned = turned[(found[turned] != straight[turned]).any(axis=1)]
-        if not len(turned):
-            break
-        found[turned] = straight[turned]
-    kept = np.delete(tetrahedra, some, axis=0)
-    return placed, np.concatenate([kept, *halves]).astype(np.int32)
+    rank[np.lexsort((np.arange(len(ends)), np.round(np.log(length) / ALIKE)))] = np.arange(len(ends))
+    return which[np.arange(len(which)), np.argmax(rank[which], axis=1)]

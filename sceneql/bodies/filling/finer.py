@@ -22,7 +22,9 @@ class Finer(Record):
     within: kinds.FixedLength = field(
         "The distance from there up to which elements have the spacing.", "0 m", at_least=0
     )
-    spacing: kinds.FixedLength = field("The longest edge of elements there.", above=0)
+    spacing: kinds.FixedLength = field(
+        "The longest edge of elements there, before outer ones are bent onto the object.", above=0
+    )
 
     def reaches(self, places: Floats) -> bool:
         """Whether any of places (n, 3) is so near that it is of smaller elements."""
