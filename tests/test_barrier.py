@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from numpy.random import Generator, Philox
 
+from friction_kernels import derivative, direction_after, direction_at
 from sceneql.contacts.barrier import barrier_kernels
 from sceneql.contacts.barrier.distance_kernels import edge_edge, point_triangle
 from sceneql.failure import RunFailure
+from sceneql.linear import newton_kernels
 from sceneql.march.driver import energy, limit
 from sceneql.pipeline import load
 from sceneql.run.run import Run
@@ -220,6 +222,49 @@ def test_friction_is_the_same_by_implicit_and_explicit_methods(tmp_path):
     assert ends[1] == pytest.approx(ends[0], abs=2e-4)
     assert ends[2] == pytest.approx(ends[0], abs=2e-4)
     assert ends[0][0] > 0.01  # it lands on a corner and is thrown aside
+
+
+@pytest.mark.parametrize("fields", ["modulus: 20 kPa, poisson: 0.4", "modulus: 500 kPa, poisson: 0.3"])
+def test_friction_that_sticks_and_slips_at_an_impact_takes_few_updates(tmp_path, fields):
+    island = run_of(
+        tmp_path,
+        "clock: {end: 0.04 s}\nsolvers: {main: {bdf2: {step: 4 ms}}}\nobjects: {table: {box: {size: 2 0.2 2 m, "
+        "position: 0 -0.1 0 m}}}\nmodels:\n  body: {elastic: {block: {size: 0.2 0.2 0.2 m, cells: [2, 2, 2]}, "
+        f"element: p2, law: {{neo_hookean: {{{fields}}}}}, position: 0 0.16 0 m, velocity: 1 -2 0 m/s, "
+        "rotation: {xyz: 15 0 25 deg}}}\nforces: [gravity]\n"
+        "contacts: {touch: {collision: {between: [body, table], friction: 0.4}}}\n",
+    )
+    island.advance(0.04)
+    assert island.march._settings[newton_kernels.ITERATIONS] <= 30 * island.march.statistics.steps
+    assert island.march.statistics.steps == 10
+
+
+def matrix(normal, u, p, slip):
+    xx, xy, xz, yy, yz, zz = derivative(normal, u, p, slip)
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def test_slopes_of_friction_are_its_derivative_where_its_direction_is_known_and_positive_else():
+    draw = Generator(Philox(5))
+    for k in range(60):
+        normal = draw.standard_normal(3)
+        normal /= np.linalg.norm(normal)
+        across = np.eye(3) - np.outer(normal, normal)
+        slip = 0.3 * 4.0 ** (k % 5 - 2)
+        u = across @ draw.standard_normal(3)
+
+        def friction(u, slip=slip):
+            return mobilized(np.linalg.norm(u), slip) * u
+
+        known = np.array(direction_at(u, slip))
+        assert known == pytest.approx(friction(u), rel=1e-12)
+        way, h = across @ draw.standard_normal(3), 1e-6 * slip
+        change = (friction(u + h * way) - friction(u - h * way)) / (2 * h)
+        assert matrix(normal, u, known, slip) @ way == pytest.approx(change, rel=1e-5, abs=1e-6 / slip)
+        p = across @ draw.standard_normal(3)
+        there = np.array(direction_after(p / max(1.0, np.linalg.norm(p)), u, across @ draw.standard_normal(3), slip))
+        assert np.linalg.norm(there) <= 1.0 + 1e-12
+        assert np.linalg.eigvalsh(matrix(normal, u, there, slip))[0] > -1e-12 / slip
 
 
 def test_pairs_that_come_near_get_places_once(tmp_path):

@@ -46,8 +46,9 @@ UNSEEN = 0.05
 """Least contraction that is assumed before two updates measure it."""
 TINY = 0.01
 """Update, in units of the tolerance, below which a single one may end the iteration."""
-ENOUGH = 1e-3
-"""Part by which loads of friction may differ from those that the stage was solved with."""
+LOADED = 1e-3
+"""Part by which loads of friction may differ from those that the stage was solved with; above it, solutions of the
+stage may be loose (newton_search_kernels.LOOSE), for one with other loads follows."""
 MOST_TURNS = 8
 """Largest number of solutions of a stage, each with the loads of the one before (Li et al. 2020, 5.5)."""
 NOISE = 1e-4
@@ -256,16 +257,16 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     tell_stage(a, base, floats)
     foresee(y0, y0, floats)
     found = False
-    for _ in range(MOST_TURNS):
+    for turn in range(MOST_TURNS):
+        if turn == MOST_TURNS - 1:
+            floats[channels.STALE] = 0.0
         found = converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints)
-        if not found or floats[channels.STALE] == 0.0:
+        if not found or floats[channels.STALE] <= LOADED:
             break
         foresee(y, y, floats)
         floats[channels.LAGS] += 1.0
         floats[channels.STALE] = 0.0
         rate_at(functions[AT_RATE])(t, y, scratch[: y.size], floats, ints)
-        if floats[channels.STALE] <= ENOUGH:
-            break
     end_stage(floats)
     if not found:
         fail(scratch[: y.size], y)

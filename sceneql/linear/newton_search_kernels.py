@@ -5,7 +5,8 @@ Where an island has a potential E, the stage's solution is a stationary point of
 x = base + a v; elsewhere what falls is the residual, in the same norm of the masses M. A stiff spring that turns first
 stretches, and the next update repairs it: so whole updates are taken as long as one of a few brings less than the least
 so far (watchdog: Chamberlain, Powell, Lemarechal & Pedersen 1982). Where none does, the search goes back to the least
-and goes from there along an update by Armijo's rule (Nocedal & Wright, Numerical Optimization, 2006, ch. 3).
+and goes from there along an update by Armijo's rule (Nocedal & Wright, Numerical Optimization, 2006, ch. 3); where
+surfaces are kept apart it does so along each update.
 
 Slopes are the positive ones (Slopes.positive); where these converge slowly, the true ones, as long as their matrix is
 positive definite, as the signs of its pivots tell.
@@ -32,6 +33,7 @@ from sceneql.linear.newton_kernels import (
     FACTORED,
     FACTORIZATIONS,
     ITERATIONS,
+    LOADED,
     NEWTON,
     NOISE,
     POSITIVE,
@@ -60,9 +62,9 @@ MOST, MOST_APART = 120, 400
 """Largest number of updates; of such where surfaces are kept apart, whose friction sticks and slips pair by pair."""
 WATCHED = 20
 """Whole updates that need not bring less; none where surfaces are kept apart."""
-SLOWED = 0.5
-"""Contraction from which on positive slopes are slow."""
-TRUE_AFTER = 3
+SLOWED, SLOWED_APART = 0.5, 0.1
+"""Contraction from which on positive slopes are slow; where surfaces are kept apart."""
+TRUE_AFTER, TRUE_AFTER_APART = 3, 1
 """Slow updates after which true slopes are tried; twice as many after each time that these fail, RARELY at most."""
 RARELY = 8
 ENOUGH = 1e-4
@@ -74,6 +76,8 @@ ROUNDING = 1e-13
 NOISY = 1e5
 """Fall of a potential that the slope predicts, in rounding errors, from which on its value tells nothing: energies of
 stiff solids are small differences."""
+LOOSE = 3e-2
+"""Last update, over the largest, with which a solution ends whose loads of friction are taken anew behind it."""
 UNMOVED = 1e-12
 """Part of an update that a limit allows, below which nothing can move."""
 
@@ -147,11 +151,12 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     lowest, rounding = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
     for k in range(n):
         best[k] = y[k]
-    positive, searching = True, False
+    positive, searching = True, has_limit
     stale = regular = True
     slow = failing = since = 0
-    patience = TRUE_AFTER
-    before = before_mean = 0.0
+    patience, slowed = (TRUE_AFTER_APART, SLOWED_APART) if has_limit else (TRUE_AFTER, SLOWED)
+    before = before_mean = first = 0.0
+    loads_change = floats[channels.STALE] > LOADED
     for _ in range(MOST_APART if has_limit else MOST):
         while stale:
             floats[channels.NEWTON] = a * a
@@ -186,6 +191,13 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         go(y, change, part, floats)
         leave(rate, t, a, base, y, residual, plan, floats, ints)
         value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
+        noisy = noisy and value <= lowest + NOISY * rounding
+        if has_limit and not noisy and not value <= lowest + ENOUGH * part * slope + rounding:
+            # Friction learns where the whole update led (friction_slopes_kernels), though only a part of it is taken.
+            floats[channels.NEWTON] = a * a
+            floats[channels.POSITIVE] = 1.0
+            slopes(functions, t, y, jacobian, floats, ints)
+            floats[channels.NEWTON] = floats[channels.POSITIVE] = floats[channels.GROWS] = 0.0
         while (
             searching
             and not noisy
@@ -197,12 +209,20 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             leave(rate, t, a, base, y, residual, plan, floats, ints)
             value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
         if part <= SHORTEST * longest:
-            break
-        searching = False
+            if positive:
+                break
+            go(y, change, 0.0, floats)
+            leave(rate, t, a, base, y, residual, plan, floats, ints)
+            positive = stale = True
+            since = slow = 0
+            patience = min(2 * patience, RARELY)
+            continue
+        searching = has_limit
         for k in range(n):
             change[k] *= part
         # The tests of convergence are those of newton_kernels.newton.
         size = largest(change, y0, y, memory)
+        first = max(first, size) if size < math.inf else first
         mean = norm(change, y0, y, memory) if size < math.inf else math.inf
         contraction = max(UNSEEN, memory[CONTRACTION])
         if part < 1.0 or not size < math.inf:
@@ -215,6 +235,8 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
             done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
             done = done or (since > 0 and max(size, before) <= NOISE)
+            if since > 0 and loads_change:
+                done = done or (contraction < 1.0 and size * contraction <= LOOSE * first * (1.0 - contraction))
             if since > 0 and size <= memory[SHARE]:
                 done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
             if done:
@@ -238,8 +260,8 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 positive = searching = stale = True
                 failing = since = slow = 0
                 continue
-        stale = positive or (since > 1 and contraction > SLOW)
-        slow = slow + 1 if contraction > SLOWED and since > 1 else 0
+        stale = positive or part < 1.0 or (since > 1 and contraction > SLOW)
+        slow = slow + 1 if contraction > slowed and since > 1 else 0
         if positive and slow >= patience:
             positive, slow, stale = False, 0, True
         elif not positive and slow > 0 and contraction >= 1.0:

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import prod
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.element_mesh import ElementMesh, Onto, meshed
+from sceneql.bodies.filling.bisection import bisected
 from sceneql.bodies.filling.fill import Inside
+from sceneql.bodies.filling.finer import Finer, wanted
 from sceneql.bodies.filling.kept_creases import creases_kept, onto_crease
+from sceneql.bodies.filling.msh import Read, read_msh
 from sceneql.bodies.filling.split_creases import creases_split
 from sceneql.bodies.filling.stuffing import lattice_counts, stuffed
-from sceneql.bodies.filling.tetrahedra import volumes
+from sceneql.bodies.filling.tetrahedra import ENDS, volumes
 from sceneql.doing import doing
 from sceneql.failure import LimitRefused
 from sceneql.island.memory import PLACE, bounded
@@ -21,13 +26,14 @@ from sceneql.kinds import Exceeds
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
-    from numpy import bool_
+    from numpy import bool_, int64
     from numpy.typing import NDArray
 
     from sceneql.bodies.elements.block import Block
     from sceneql.bodies.elements.element import Element
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Ints
     from sceneql.kinds import Ref
+    from sceneql.quantities.span import Span
     from sceneql.system import Assembly
 
 BYTES = {4: 4000, 10: 25000}
@@ -36,6 +42,7 @@ PARTS = 10
 """Spacings along the longest side of an object's box where the script tells none."""
 A_PLACE = 6
 """Tetrahedra for each corner and middle of the lattice."""
+TOO_FINE = "take larger spacings under `finer`"
 THIN = 1.0
 """What lies in the object farther than so many spacings from all nodes is lost."""
 FINE, MOST_LOOKED_AT = 0.25, 3e6
@@ -51,7 +58,7 @@ def bounded_by(spacing: float) -> Callable[[Floats, Floats], None]:
     return check
 
 
-def laid(block: Block, element: type[Element], assembly: Assembly) -> ElementMesh:
+def laid(block: Block, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly) -> ElementMesh:
     """The mesh of a block. Raises ScriptError for one that is inside out, LimitRefused for too many elements."""
     from sceneql.bodies.elements.block import CUT
 
@@ -66,13 +73,120 @@ def laid(block: Block, element: type[Element], assembly: Assembly) -> ElementMes
         told = ", ".join(f"{c:.4g}" for c in where)
         message = f"the block is inside out, or flat, at ({told}) m: look at the order of its corners"
         raise ScriptError([Diagnostic("not-filled", message, assembly.line())])
-    return meshed(element, points, tetrahedra)
+    try:
+        return _fitted(element, points, tetrahedra, finer, None, assembly.line())
+    except Exceeds as error:
+        raise LimitRefused(str(error), assembly.line(), TOO_FINE) from None
 
 
-def filled(ref: Ref, spacing: float | None, element: type[Element], assembly: Assembly) -> ElementMesh:
+def _fitted(
+    element: type[Element],
+    points: Floats,
+    tetrahedra: Ints,
+    finer: Mapping[str, Finer],
+    onto: Onto | None,
+    line: Span | None,
+) -> ElementMesh:
+    """The mesh, finer in places. Raises Exceeds for too many elements, ScriptError for a place that has none."""
+    if finer:
+
+        def check(count: float) -> None:
+            bounded(count, "elements", BYTES[element.nodes()])
+
+        coarse = meshed(elements()["p2"], points, tetrahedra, onto)
+        mesh = _within(coarse, element, *bisected(points, tetrahedra, wanted(finer), check))
+    else:
+        mesh = meshed(element, points, tetrahedra, onto)
+    for name, one in finer.items():
+        if not one.reaches(mesh.points):
+            message = f"'{name}' is near no element"
+            help = "its place is one of the material, before the solid is moved or turned"
+            raise ScriptError([Diagnostic("no-mass", message, line, help)])
+    return mesh
+
+
+def _within(
+    coarse: ElementMesh, element: type[Element], points: Floats, tetrahedra: Ints, parents: NDArray[int64]
+) -> ElementMesh:
+    """The mesh of parts (t, 4) of elements p2, whose numbers are ``parents`` (t,), bent as these are.
+
+    ``points`` (n, 3): where the corners stand in elements with straight edges.
+    """
+    straight = meshed(element, points, tetrahedra)
+    nodes, first = np.unique(straight.cells, return_index=True)
+    own = parents[first // straight.cells.shape[1]]
+    corners = coarse.points[coarse.cells[own, :4]]
+    sides = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
+    local = np.linalg.solve(sides, (straight.points[nodes] - corners[:, 0])[..., None])[..., 0]
+    shares = coarse.element.functions(np.concatenate([1.0 - local.sum(axis=1, keepdims=True), local], axis=1))
+    bent = straight.points.copy()
+    bent[nodes] += np.einsum("nk,nkj->nj", shares, coarse.points[coarse.cells[own]] - _straight(coarse)[own])
+    return ElementMesh(element, bent, straight.cells, straight.corners)
+
+
+def _straight(mesh: ElementMesh) -> Floats:
+    """(e, nodes, 3) where the nodes of elements stood if their edges were straight."""
+    corners = mesh.points[mesh.cells[:, :4]]
+    a, b = np.array(ENDS).T
+    found: Floats = np.concatenate([corners, 0.5 * (corners[:, a] + corners[:, b])], axis=1)
+    return found
+
+
+def of_file(file: str, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly) -> ElementMesh:
+    """The mesh of a .msh file. Raises ScriptError for one that cannot be read, LimitRefused for too many elements."""
+    line, path = assembly.line(), Path(file)
+    try:
+        with doing(f"reading {path.name}"):
+            read = read_msh(path)
+        bounded(float(len(read.cells)), "elements", BYTES[element.nodes()])
+    except Exceeds as error:
+        raise LimitRefused(str(error), line, "take fewer elements") from None
+    except (ValueError, OSError) as error:
+        raise ScriptError([Diagnostic("not-filled", str(error), line)]) from None
+    if read.cells.shape[1] == 4 or finer or not element.edges:
+        used, which = np.unique(read.cells[:, :4], return_inverse=True)
+        points, tetrahedra = read.points[used], which.reshape(-1, 4).astype(np.int32)
+        _upright(points, tetrahedra, read, path.name, line)
+        try:
+            return _fitted(element, points, tetrahedra, finer, None, line)
+        except Exceeds as error:
+            raise LimitRefused(str(error), line, TOO_FINE) from None
+    corners = np.unique(read.cells[:, :4])
+    order = np.concatenate([corners, np.setdiff1d(np.arange(len(read.points)), corners)])
+    number = np.empty(len(order), dtype=np.int32)
+    number[order] = np.arange(len(order))
+    mesh = ElementMesh(element, read.points[order], number[read.cells], len(corners))
+    _upright(mesh.points, mesh.cells, read, path.name, line)
+    places = np.concatenate([np.eye(4), np.asarray(element.rule[0])])
+    _told(mesh.sizes(places).min(axis=1), mesh.points[mesh.cells[:, :4]], read, path.name, line)
+    return mesh
+
+
+def _upright(points: Floats, cells: Ints, read: Read, name: str, line: Span | None) -> None:
+    """Raise ScriptError where elements of a file are turned inside out, or flat."""
+    _told(volumes(points, cells[:, :4]), points[cells[:, :4]], read, name, line)
+
+
+def _told(held: Floats, corners: Floats, read: Read, name: str, line: Span | None) -> None:
+    """Raise ScriptError where numbers (e,) of elements with corners (e, 4, 3) are not above 0."""
+    turned = np.flatnonzero(~(held > 0.0))
+    if not len(turned):
+        return
+    where = ", ".join(f"{c:.4g}" for c in corners[turned[0]].mean(axis=0))
+    many = "one element" if len(turned) == 1 else f"{len(turned)} elements"
+    message = (
+        f"{many} of {name} turned inside out, or flat: the first is number {read.numbers[turned[0]]}, at ({where}) m"
+    )
+    help = "swap two corners of each that is turned; one that is flat needs another mesh"
+    raise ScriptError([Diagnostic("not-filled", message, line, help)])
+
+
+def filled(
+    ref: Ref, spacing: float | None, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly
+) -> ElementMesh:
     """The mesh of an object. Raises ScriptError where it cannot be filled, LimitRefused for too many elements."""
     with doing(f"filling {ref.name}"):
-        return _filled(Inside(ref, assembly), spacing_of(ref, spacing, assembly), element)
+        return _filled(Inside(ref, assembly), spacing_of(ref, spacing, assembly), element, finer, assembly.line())
 
 
 def spacing_of(ref: Ref, spacing: float | None, assembly: Assembly) -> float:
@@ -83,7 +197,9 @@ def spacing_of(ref: Ref, spacing: float | None, assembly: Assembly) -> float:
     return float((box.high - box.low).max()) / PARTS
 
 
-def _filled(inside: Inside, spacing: float, element: type[Element]) -> ElementMesh:
+def _filled(
+    inside: Inside, spacing: float, element: type[Element], finer: Mapping[str, Finer], line: Span | None
+) -> ElementMesh:
     inside.bounded(bounded_by(spacing), inside.low, inside.high)
 
     def holds(places: Floats) -> NDArray[bool_]:
@@ -114,7 +230,10 @@ def _filled(inside: Inside, spacing: float, element: type[Element]) -> ElementMe
     def onto_edge(places: Floats, normals: Floats, sides: Floats) -> Floats:
         return onto_crease(places, normals, sides, spacing, inside.holds, inside.crossing)
 
-    return meshed(element, points, tetrahedra, Onto(onto, onto_edge))
+    try:
+        return _fitted(element, points, tetrahedra, finer, Onto(onto, onto_edge), line)
+    except Exceeds as error:
+        raise LimitRefused(str(error), inside.span, TOO_FINE) from None
 
 
 def _whole(inside: Inside, spacing: float, points: Floats) -> None:

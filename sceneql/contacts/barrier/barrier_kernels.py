@@ -54,12 +54,6 @@ def slowed(speed, most, slip):
 
 
 @lean_inlined
-def mobilized_rate(speed, slip):
-    """The derivative of that part by the speed [s/m]."""
-    return 0.0 if speed >= slip else 2.0 * (1.0 - speed / slip) / slip
-
-
-@lean_inlined
 def friction_potential(speed, slip):
     """The integral of that part over the speed [m/s]."""
     if speed >= slip:

@@ -8,6 +8,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout as surfaces
 from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import mobilized, push
+from sceneql.contacts.barrier.friction_slopes_kernels import direction
 from sceneql.contacts.shape_kernels import facing, surface, velocity
 from sceneql.system.signatures_kernels import TERM
 
@@ -88,6 +89,7 @@ def stale(floats, stage, changed, total):
 def lag(n, floats, ints):
     """Within implicit stages friction has the loads and normals of the state that newton_kernels.newton left."""
     first, gap = ints[layout.LAGGED], floats[ints[layout.NUMBERS] + layout.GAP]
+    slip = floats[ints[layout.NUMBERS] + layout.SLIP]
     if floats[first] == floats[channels.LAGS]:
         return
     floats[first] = floats[channels.LAGS]
@@ -102,6 +104,10 @@ def lag(n, floats, ints):
             total, changed = total + pressed, changed + abs(pressed - floats[at])
             floats[at] = pressed
             floats[at + 1], floats[at + 2], floats[at + 3] = a, b, c
+            if pressed > 0.0:
+                u, v, w = sliding(start, floats, ints, p, j, a, b, c)
+                k = at + layout.HELD
+                floats[k], floats[k + 1], floats[k + 2] = direction(u, v, w, slip)
     stale(floats, first, changed, total)
 
 

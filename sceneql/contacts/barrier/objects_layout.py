@@ -17,8 +17,8 @@ STIFFNESS, GAP, SLIP = range(3)
 LOAD, NORMAL, HELD, MEAN, LAG = 0, 1, 4, 7, 8
 LOADS = 2
 """LAGGED: channels.LAGS and channels.STAGES for which it holds; from LOADS on for each point and object its load [N]
-and normal (3), and the friction [N] (3) that explicit methods hold through a step, with the mean load of the
-latest (objects_friction_kernels.py)."""
+and normal (3), and as HELD (3) the friction [N] that explicit methods hold through a step, with the mean load of the
+latest (objects_friction_kernels.py), or in implicit stages the direction of friction (friction_slopes_kernels.py)."""
 
 PLACE, DISTANCE, KNOW = 0, 3, 4
 """KNOWN: for each point and object a place, and a bound of the distance there [m]."""

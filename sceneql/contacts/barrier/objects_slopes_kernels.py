@@ -5,41 +5,40 @@ Blocks by positions: one for each node, then two for each edge, of its first nod
 the same by velocities.
 """
 
-import math
-
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import objects_layout as layout
-from sceneql.contacts.barrier.barrier_kernels import mobilized, mobilized_rate, steepness
+from sceneql.contacts.barrier.barrier_kernels import steepness
+from sceneql.contacts.barrier.friction_slopes_kernels import direction, foreseen, resistance
 from sceneql.contacts.barrier.objects_kernels import distance, ends, load, place, sliding
 from sceneql.system.signatures_kernels import TERM
 
 
 @lean_inlined
-def add_product(entries, at, weight, x, y, z):
-    """Add weight * (x, y, z) (x, y, z) to a block."""
-    entries[at] += weight * x * x
-    entries[at + 1] += weight * x * y
-    entries[at + 2] += weight * x * z
-    entries[at + 3] += weight * y * x
-    entries[at + 4] += weight * y * y
-    entries[at + 5] += weight * y * z
-    entries[at + 6] += weight * z * x
-    entries[at + 7] += weight * z * y
-    entries[at + 8] += weight * z * z
+def add_block(entries, at, weight, xx, xy, xz, yy, yz, zz):
+    """Add a symmetric 3x3 to a block."""
+    entries[at] += weight * xx
+    entries[at + 1] += weight * xy
+    entries[at + 2] += weight * xz
+    entries[at + 3] += weight * xy
+    entries[at + 4] += weight * yy
+    entries[at + 5] += weight * yz
+    entries[at + 6] += weight * xz
+    entries[at + 7] += weight * yz
+    entries[at + 8] += weight * zz
 
 
 @lean_inlined
-def spread(entries, ints, first, p, weight, x, y, z):
-    """Add such a product to all blocks of a point's nodes."""
+def spread(entries, ints, first, p, weight, xx, xy, xz, yy, yz, zz):
+    """Add such a 3x3 to all blocks of a point's nodes."""
     nodes = ints[layout.NODES]
     i, j = ends(ints, p)
     if i == j:
-        add_product(entries, 9 * (first + i), weight, x, y, z)
+        add_block(entries, 9 * (first + i), weight, xx, xy, xz, yy, yz, zz)
         return
     across = first + nodes + 2 * (p - nodes)
     for block in (first + i, first + j, across, across + 1):
-        add_product(entries, 9 * block, 0.25 * weight, x, y, z)
+        add_block(entries, 9 * block, 0.25 * weight, xx, xy, xz, yy, yz, zz)
 
 
 @lean(TERM, inner=True)
@@ -50,6 +49,10 @@ def slopes(t, y, entries, floats, ints):
     friction, slip = floats[ints[layout.FRICTION]], floats[numbers + layout.SLIP]
     lagged = friction > 0.0 and floats[channels.STAGE] > 0.0
     blocks = nodes + 2 * ints[layout.EDGES]
+    before, after = floats.size - channels.BEFORE * y.size, floats.size - channels.AFTER * y.size
+    if not lagged:
+        before = after = 0
+    old, new = floats[before : before + y.size], floats[after : after + y.size]
     for p in range(nodes + ints[layout.EDGES]):
         px, py, pz = place(y, ints, ints[layout.POSITION], p)
         for j in range(objects):
@@ -58,30 +61,25 @@ def slopes(t, y, entries, floats, ints):
             if d < gap:
                 pressed = load(floats, ints, p, d)
                 steep = floats[ints[layout.AREAS] + p] * stiffness / gap * steepness(d / gap)
-                spread(entries, ints, 0, p, -steep, a, b, c)
+                spread(entries, ints, 0, p, -steep, a * a, a * b, a * c, b * b, b * c, c * c)
             if friction == 0.0:
                 continue
+            at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j)
             if lagged:
-                at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j)
                 pressed, a, b, c = floats[at], floats[at + 1], floats[at + 2], floats[at + 3]
             if not pressed > 0.0:
                 continue
             u, v, w = sliding(y, floats, ints, p, j, a, b, c)
-            speed = math.sqrt(u * u + v * v + w * w)
-            across = -friction * pressed * mobilized(speed, slip)
-            along = across
-            if speed > 0.0:
-                if floats[channels.POSITIVE] == 0.0:
-                    along = -friction * pressed * mobilized_rate(speed, slip)
-                u, v, w = u / speed, v / speed, w / speed
-            elif abs(a) < 0.8:
-                size = math.sqrt(b * b + c * c)
-                u, v, w = 0.0, c / size, -b / size
+            if lagged:
+                k = at + layout.HELD
+                ou, ov, ow = sliding(old, floats, ints, p, j, a, b, c)
+                nu, nv, nw = sliding(new, floats, ints, p, j, a, b, c)
+                q, r, s = foreseen(floats[k], floats[k + 1], floats[k + 2], ou, ov, ow, nu, nv, nw, slip)
+                floats[k], floats[k + 1], floats[k + 2] = q, r, s
             else:
-                size = math.sqrt(a * a + c * c)
-                u, v, w = -c / size, 0.0, a / size
-            spread(entries, ints, blocks, p, along, u, v, w)
-            spread(entries, ints, blocks, p, across, b * w - c * v, c * u - a * w, a * v - b * u)
+                q, r, s = direction(u, v, w, slip)
+            xx, xy, xz, yy, yz, zz = resistance(a, b, c, u, v, w, q, r, s, slip)
+            spread(entries, ints, blocks, p, -friction * pressed, xx, xy, xz, yy, yz, zz)
     held = ints[layout.LIST] + blocks
     for k in range(2 * blocks):
         row = k % blocks

@@ -43,5 +43,6 @@ then the places (3) of the vertices when pairs were looked for."""
 NODES, WEIGHTS, NORMAL, LOAD, FRICTION_OF, KEY, MEAN, LAG = 0, 4, 8, 11, 12, 15, 16, 17
 BEFORE = 5
 """A lagged pair: four vertices, their weights, the normal, the load [N], the friction [N] (3) that explicit methods
-hold through a step (held_friction_kernels.py), a number that grows along the list, the mean load of the latest step.
+hold through a step (held_friction_kernels.py) or in implicit stages its direction (friction_slopes_kernels.py), a
+number that grows along the list, the mean load of the latest step.
 BEFORE: that number, the friction and the load of the pairs of the step before."""

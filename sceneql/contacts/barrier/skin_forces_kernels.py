@@ -7,6 +7,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import barrier, mobilized, push
+from sceneql.contacts.barrier.friction_slopes_kernels import direction
 from sceneql.contacts.barrier.objects_kernels import stale
 from sceneql.contacts.barrier.pair_weights_kernels import listed, node, product, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
@@ -25,7 +26,19 @@ def add(rate, y, ints, k, x, y_, z):
 
 
 @lean_inlined
-def keep(floats, ints, m, edges, found):
+def sliding(y, floats, ints, at):
+    """The velocity of a lagged pair across its normal."""
+    u = v = w = 0.0
+    for k in range(4):
+        p, weight = ints[vertex(ints, int(floats[at + k])) + layout.VELOCITY], floats[at + layout.WEIGHTS + k]
+        u, v, w = u + weight * y[p], v + weight * y[p + 1], w + weight * y[p + 2]
+    a, b, c = floats[at + layout.NORMAL], floats[at + layout.NORMAL + 1], floats[at + layout.NORMAL + 2]
+    along = a * u + b * v + c * w
+    return u - along * a, v - along * b, w - along * c
+
+
+@lean_inlined
+def keep(y, floats, ints, m, edges, found):
     """Note a pair that presses for friction, where there is room."""
     memory = ints[layout.MEMORY]
     count = int(floats[memory + layout.LAGGED])
@@ -39,6 +52,10 @@ def keep(floats, ints, m, edges, found):
     for k in range(3):
         floats[at + layout.NORMAL + k] = found[1 + k]
         floats[at + layout.FRICTION_OF + k] = 0.0
+    if floats[channels.STAGE] > 0.0:
+        u, v, w = sliding(y, floats, ints, at)
+        f, slip = at + layout.FRICTION_OF, floats[ints[layout.NUMBERS] + layout.SLIP]
+        floats[f], floats[f + 1], floats[f + 2] = direction(u, v, w, slip)
     listed_at = (ints[layout.EDGES_AT] if edges else ints[layout.POINTS_AT]) + 2 * m
     first = (ints[layout.TRIANGLES] if edges else 0) + floats[listed_at]
     floats[at + layout.KEY] = first * (ints[layout.VERTICES] + ints[layout.EDGES]) + floats[listed_at + 1]
@@ -62,23 +79,11 @@ def keep_all(y, floats, ints):
         for m in range(listed(floats, ints, edges)):
             found = stencil(y, floats, ints, m, edges)
             if 0.0 < found[0] < math.inf:
-                keep(floats, ints, m, edges, found)
+                keep(y, floats, ints, m, edges, found)
     total = changed = 0.0
     for k in range(loads, loads + count):
         total, changed = total + floats[k], changed + abs(floats[k] - floats[count + k])
     stale(floats, memory + layout.LAGS, changed, total)
-
-
-@lean_inlined
-def sliding(y, floats, ints, at):
-    """The velocity of a lagged pair across its normal."""
-    u = v = w = 0.0
-    for k in range(4):
-        p, weight = ints[vertex(ints, int(floats[at + k])) + layout.VELOCITY], floats[at + layout.WEIGHTS + k]
-        u, v, w = u + weight * y[p], v + weight * y[p + 1], w + weight * y[p + 2]
-    a, b, c = floats[at + layout.NORMAL], floats[at + layout.NORMAL + 1], floats[at + layout.NORMAL + 2]
-    along = a * u + b * v + c * w
-    return u - along * a, v - along * b, w - along * c
 
 
 @lean_inlined

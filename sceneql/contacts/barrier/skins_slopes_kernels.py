@@ -9,7 +9,9 @@ import math
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
-from sceneql.contacts.barrier.barrier_kernels import mobilized, mobilized_rate, steepness
+from sceneql.contacts.barrier.barrier_kernels import steepness
+from sceneql.contacts.barrier.friction_slopes_kernels import direction, foreseen, resistance
+from sceneql.contacts.barrier.objects_slopes_kernels import add_block
 from sceneql.contacts.barrier.pair_weights_kernels import listed, node, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
 from sceneql.contacts.barrier.skin_forces_kernels import sliding
@@ -32,22 +34,13 @@ def place(ints, i, j):
 
 
 @lean_inlined
-def add(entries, floats, ints, first, i, j, weight, x, y, z):
-    """Add weight * (x, y, z) (x, y, z) to the block of two vertices; ask for it where there is none."""
+def add(entries, floats, ints, first, i, j, weight, xx, xy, xz, yy, yz, zz):
+    """Add a symmetric 3x3 to the block of two vertices; ask for it where there is none."""
     at = place(ints, i, j)
     if at < 0:
         floats[channels.GROWS] = 1.0
         return
-    e = 9 * (first + at)
-    entries[e] += weight * x * x
-    entries[e + 1] += weight * x * y
-    entries[e + 2] += weight * x * z
-    entries[e + 3] += weight * y * x
-    entries[e + 4] += weight * y * y
-    entries[e + 5] += weight * y * z
-    entries[e + 6] += weight * z * x
-    entries[e + 7] += weight * z * y
-    entries[e + 8] += weight * z * z
+    add_block(entries, 9 * (first + at), weight, xx, xy, xz, yy, yz, zz)
 
 
 @lean(TERM, inner=True)
@@ -63,40 +56,41 @@ def slopes(t, y, entries, floats, ints):
             found = stencil(y, floats, ints, m, edges)
             if found[0] == math.inf:
                 continue
+            a, b, c = found[1], found[2], found[3]
             steep = -found[9] * found[10] / found[8] * steepness(found[0] / found[8])
             for k in range(4):
                 for n in range(4):
                     i, j = node(floats, ints, m, edges, k), node(floats, ints, m, edges, n)
                     weight = steep * found[4 + k] * found[4 + n]
                     if weight != 0.0:
-                        add(entries, floats, ints, 0, i, j, weight, found[1], found[2], found[3])
+                        add(entries, floats, ints, 0, i, j, weight, a * a, a * b, a * c, b * b, b * c, c * c)
     friction, slip = floats[ints[layout.FRICTION]], floats[ints[layout.NUMBERS] + layout.SLIP]
     if friction > 0.0:
+        lagged = floats[channels.STAGE] > 0.0
+        before, after = floats.size - channels.BEFORE * y.size, floats.size - channels.AFTER * y.size
+        if not lagged:
+            before = after = 0
+        old, new = floats[before : before + y.size], floats[after : after + y.size]
         for m in range(int(floats[ints[layout.MEMORY] + layout.LAGGED])):
             at = ints[layout.LAG_AT] + layout.LAG * m
             u, v, w = sliding(y, floats, ints, at)
             a, b, c = floats[at + layout.NORMAL], floats[at + layout.NORMAL + 1], floats[at + layout.NORMAL + 2]
-            speed = math.sqrt(u * u + v * v + w * w)
-            across = -friction * floats[at + layout.LOAD] * mobilized(speed, slip)
-            along = across
-            if speed > 0.0:
-                if floats[channels.POSITIVE] == 0.0:
-                    along = -friction * floats[at + layout.LOAD] * mobilized_rate(speed, slip)
-                u, v, w = u / speed, v / speed, w / speed
-            elif abs(a) < 0.8:
-                size = math.sqrt(b * b + c * c)
-                u, v, w = 0.0, c / size, -b / size
+            if lagged:
+                f = at + layout.FRICTION_OF
+                ou, ov, ow = sliding(old, floats, ints, at)
+                nu, nv, nw = sliding(new, floats, ints, at)
+                p, q, r = foreseen(floats[f], floats[f + 1], floats[f + 2], ou, ov, ow, nu, nv, nw, slip)
+                floats[f], floats[f + 1], floats[f + 2] = p, q, r
             else:
-                size = math.sqrt(a * a + c * c)
-                u, v, w = -c / size, 0.0, a / size
-            p, q, r = b * w - c * v, c * u - a * w, a * v - b * u
+                p, q, r = direction(u, v, w, slip)
+            load = -friction * floats[at + layout.LOAD]
+            xx, xy, xz, yy, yz, zz = resistance(a, b, c, u, v, w, p, q, r, slip)
             for k in range(4):
                 for n in range(4):
                     i, j = int(floats[at + k]), int(floats[at + n])
                     weight = floats[at + layout.WEIGHTS + k] * floats[at + layout.WEIGHTS + n]
                     if weight != 0.0:
-                        add(entries, floats, ints, blocks, i, j, weight * along, u, v, w)
-                        add(entries, floats, ints, blocks, i, j, weight * across, p, q, r)
+                        add(entries, floats, ints, blocks, i, j, load * weight, xx, xy, xz, yy, yz, zz)
     for i in range(count):
         for c in range(3):
             if ints[vertex(ints, i) + layout.HELD + c] == 1:

@@ -19,6 +19,7 @@ from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
 from sceneql.bodies.elements.load import Load
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
+from sceneql.bodies.filling.finer import Finer
 from sceneql.bodies.solid_modes import Bent
 from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
 from sceneql.quantities import dimension as dim
@@ -64,8 +65,9 @@ class Made:
 class Elastic(Model):
     """A solid of finite elements: density x'' = div P + forces, P the stress of its strain by its law (Cauchy 1827).
 
-    It is an object filled with tetrahedra, or a `block`. Its nodes are masses, on which forces and contacts act. Places
-    in `hold`, `loads`, `probes` and formulas are those of the material, before the solid is moved or turned.
+    It is an object filled with tetrahedra, a `block`, or of a `file`. Its nodes are masses, on which forces and
+    contacts act. Places in `hold`, `loads`, `probes` and formulas are those of the material, before the solid is moved
+    or turned.
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS, **solid_modes.OUTPUTS}
@@ -82,6 +84,12 @@ class Elastic(Model):
         above=0,
     )
     block: Block | None = field("A brick in place of an object.", None)
+    file: kinds.File | None = field(
+        "In place of an object the tetrahedra of a .msh of Gmsh, saved as text of version 2 or 4; in meters.", None
+    )
+    finer: dict[str, Finer] = field(
+        "Places near which its elements are smaller, by name; elements of a file have straight edges then.", {}
+    )
     element: str | None = field(
         "Its elements, p1, p2 or p2_mean: of 4 or 10 nodes; the last, of one dilatation each, do not lock. By default "
         f"p2_mean above a Poisson ratio of {LOCKS}, else p2.",
@@ -117,15 +125,21 @@ class Elastic(Model):
     _made: Made | None = PrivateAttr(None)
 
     def problems(self) -> Iterator[Problem]:
-        """An object and a block or none; elements that are none; names that two parts have."""
-        if (self.of is None) == (self.block is None):
-            yield Problem("an elastic solid is either `of` an object or a `block`", ("block",) if self.of else ())
-        if self.of is None and self.spacing is not None:
-            yield Problem("a block has `cells`, not a spacing", ("spacing",), at_key=True)
+        """Several of an object, a block and a file or none; elements that are none; names that two parts have."""
+        given = [name for name in ("of", "block", "file") if getattr(self, name) is not None]
+        if len(given) != 1:
+            yield Problem("an elastic solid is either `of` an object, a `block` or of a `file`", tuple(given[1:2]))
+        elif self.of is None and self.spacing is not None:
+            text = "a block has `cells`, not a spacing" if self.block else "a file has its elements, and no spacing"
+            yield Problem(text, ("spacing",), at_key=True)
         if self.element is not None and self.element not in elements():
             near = suggestion(self.element, elements())
             known = f"; {near}" if near else f"; there are {', '.join(elements())}"
             yield Problem(f"no element is called '{self.element}'{known}", ("element",), code="unknown-choice")
+        for name, one in self.finer.items():
+            if self.spacing is not None and one.spacing >= self.spacing:
+                text = f"elements are no finer with {one.spacing:g} m than with the spacing of {self.spacing:g} m"
+                yield Problem(text, ("finer", name, "spacing"))
         for name in self.probes:
             if name in self.hold:
                 yield Problem(
@@ -182,13 +196,15 @@ class Elastic(Model):
 
     def mesh(self, assembly: Assembly) -> ElementMesh:
         """Its mesh. Raises ScriptError for an object that cannot be filled, LimitRefused for too many elements."""
-        from sceneql.bodies.elements.filled import filled, laid
+        from sceneql.bodies.elements.filled import filled, laid, of_file
 
         element = self.chosen_element()
         if self.block is not None:
-            return laid(self.block, element, assembly)
+            return laid(self.block, element, self.finer, assembly)
+        if self.file is not None:
+            return of_file(self.file, element, self.finer, assembly)
         assert self.of is not None
-        return filled(self.of, self.spacing, element, assembly)
+        return filled(self.of, self.spacing, element, self.finer, assembly)
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the nodes as masses; add the forces of strain, of loads, of damping, and what holds it."""

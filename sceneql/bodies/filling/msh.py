@@ -1,0 +1,167 @@
+"""Tetrahedra of Gmsh's text files, .msh of version 2 or 4 (Geuzaine & Remacle 2009). Imports numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+
+MOST = 2**28
+"""Largest file [bytes]."""
+TETRAHEDRON, QUADRATIC = 4, 11
+"""Gmsh's numbers of tetrahedra of 4 and of 10 nodes."""
+CORNERS = {TETRAHEDRON: 4, QUADRATIC: 10}
+ORDER = (0, 1, 2, 3, 4, 6, 7, 5, 9, 8)
+"""Places among Gmsh's ten nodes of ours, whose edges are tetrahedra.ENDS."""
+OTHERS = (5, 6, 7, 12, 13, 14, 17, 18, 19, 29, 30, 31)
+"""Solids that are no tetrahedra of 4 or 10 nodes."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Read:
+    """What a file holds."""
+
+    points: Floats
+    """(n, 3)."""
+    cells: NDArray[int64]
+    """(e, 4 or 10) of the points, those on edges behind the corners."""
+    numbers: NDArray[int64]
+    """(e,) the elements' numbers in the file."""
+
+
+def read_msh(path: Path) -> Read:
+    """The nodes and tetrahedra of a file. Raises ValueError that says what is wrong and in which line, OSError."""
+    if path.stat().st_size > MOST:
+        raise ValueError(f"{path.name} has more than {MOST // 2**20} MiB")
+    lines = _Lines(path.read_bytes())
+    version = 0.0
+    points: dict[str, Any] = {}
+    cells: list[tuple[int, Any, Any]] = []
+    for name in lines.sections():
+        if name == "$MeshFormat":
+            version, kind, _ = lines.row(3)
+            if kind != 0:
+                raise ValueError(f"{path.name} is a binary .msh: save it as text (ASCII)")
+            if int(version) not in (2, 4):
+                raise ValueError(f"{path.name} is a .msh of version {version:g}: versions 2 and 4 are read")
+        elif name == "$Nodes":
+            points = dict(zip(("numbers", "places"), _nodes(lines, version), strict=True))
+        elif name == "$Elements":
+            cells += _elements(lines, version)
+    if version == 0.0:
+        raise ValueError(f"{path.name} is no .msh: it does not begin with $MeshFormat")
+    if not points or not cells:
+        raise ValueError(f"{path.name} has no {'tetrahedra' if points else '$Nodes'}")
+    kinds = {kind for kind, _, _ in cells}
+    if kinds - CORNERS.keys():
+        raise ValueError(f"{path.name} has solids that are no tetrahedra of 4 or 10 nodes")
+    if len(kinds) > 1:
+        raise ValueError(f"{path.name} has tetrahedra of 4 and of 10 nodes: save it in one order")
+    numbers, named = (np.concatenate([one[k] for one in cells]) for k in (1, 2))
+    order = np.argsort(points["numbers"], kind="stable")
+    known = points["numbers"][order]
+    at = np.minimum(np.searchsorted(known, named), len(known) - 1)
+    if (known[at] != named).any():
+        missing = int(named[known[at] != named][0])
+        raise ValueError(f"{path.name}: an element names node {missing}, which is not there")
+    used, which = np.unique(order[at], return_inverse=True)
+    which = which.reshape(named.shape)
+    return Read(points["places"][used], which[:, ORDER] if named.shape[1] == 10 else which, numbers)
+
+
+class _Lines:
+    """Lines of a file, with their numbers."""
+
+    def __init__(self, text: bytes) -> None:
+        self._lines = text.decode("utf-8", errors="replace").splitlines()
+        self._at = 0
+
+    def sections(self) -> Iterator[str]:
+        """The names of the sections, each where its content begins."""
+        while self._at < len(self._lines):
+            name = self._lines[self._at].strip()
+            self._at += 1
+            if name.startswith("$") and not name.startswith("$End"):
+                yield name
+
+    def row(self, least: int = 1) -> list[float]:
+        """The numbers of the next line. Raises ValueError where there are fewer, or none."""
+        return [float(one) for one in self.rows(1, least)[0]]
+
+    def rows(self, count: int, least: int) -> Any:
+        """(count, k) the numbers of the next lines, which have as many, at least so many."""
+        some = self._lines[self._at : self._at + count]
+        if count < 0 or len(some) < count or not count:
+            raise ValueError(f"line {len(self._lines)}: the file ends too soon")
+        try:
+            found = np.array([line.split() for line in some], dtype=float)
+        except ValueError:
+            found = np.empty((0, 0))
+        if found.ndim != 2 or found.shape[1] < least or not np.isfinite(found).all():
+            raise ValueError(f"line {self._at + self._wrong(some, least)}: it should have {least} numbers or more")
+        self._at += count
+        return found
+
+    def ragged(self, count: int) -> Iterator[list[int]]:
+        """The whole numbers of the next lines, however many each has."""
+        for _ in range(count):
+            yield [int(one) for one in self.row(3)]
+
+    def _wrong(self, some: list[str], least: int) -> int:
+        """The number, from 1, of the first of some lines that is not like the first."""
+        wide = max(least, len(some[0].split()))
+        for k, line in enumerate(some):
+            try:
+                if len([one for one in map(float, line.split()) if np.isfinite(one)]) != wide:
+                    return k + 1
+            except ValueError:
+                return k + 1
+        return 1
+
+
+def _nodes(lines: _Lines, version: float) -> tuple[Any, Floats]:
+    """Their numbers (n,) and places (n, 3)."""
+    if version < 4:
+        rows = lines.rows(int(lines.row()[0]), 4)
+        return rows[:, 0].astype(np.int64), rows[:, 1:4]
+    blocks, *_ = lines.row(4)
+    numbers, places = [], []
+    for _ in range(int(blocks)):
+        count = int(lines.row(4)[3])
+        if count:
+            numbers.append(lines.rows(count, 1)[:, 0].astype(np.int64))
+            places.append(lines.rows(count, 3)[:, :3])
+    return np.concatenate(numbers), np.concatenate(places)
+
+
+def _elements(lines: _Lines, version: float) -> Iterator[tuple[int, Any, Any]]:
+    """The kind of solids, their numbers (e,) and their nodes (e, k)."""
+    if version >= 4:
+        blocks, *_ = lines.row(4)
+        for _ in range(int(blocks)):
+            _, _, kind, count = (int(one) for one in lines.row(4))
+            if count and (kind in CORNERS or kind in OTHERS):
+                rows = lines.rows(count, 1 + CORNERS.get(kind, 0)).astype(np.int64)
+                yield kind, rows[:, 0], rows[:, 1:]
+            elif count:
+                lines.rows(count, 2)
+        return
+    found: dict[int, list[list[int]]] = {}
+    for row in lines.ragged(int(lines.row()[0])):
+        kind, tags = row[1], row[2]
+        if kind in CORNERS or kind in OTHERS:
+            found.setdefault(kind, []).append([row[0], *row[3 + tags :]])
+    for kind, some in found.items():
+        if kind in CORNERS and any(len(one) != 1 + CORNERS[kind] for one in some):
+            raise ValueError(f"element {some[0][0]} and others of kind {kind} should have {CORNERS[kind]} nodes")
+        rows = np.array(some if kind in CORNERS else [one[:1] for one in some], dtype=np.int64)
+        yield kind, rows[:, 0], rows[:, 1:]

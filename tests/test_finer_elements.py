@@ -1,0 +1,72 @@
+"""Elements that are smaller near places: meshes stay whole, conforming, on the object, and no worse than told."""
+
+import numpy as np
+import pytest
+
+from runs import complaint, watch
+from sceneql.bodies.elements.element_mesh import worst_angle
+from sceneql.bodies.filling.tetrahedra import boundary, edges, volumes
+from sceneql.failure import LimitRefused
+from sceneql.quantities.diagnostic import ScriptError
+from solids import Solid
+
+LAW = "law: {linear: {modulus: 1 MPa}}"
+BALL = "objects: {shape: {sphere: {radius: 0.5 m, hidden: yes}}}\n"
+
+
+def longest(mesh):
+    corners = mesh.cells[:, :4]
+    ends, which = edges(corners)
+    length = np.linalg.norm(mesh.points[ends[:, 0]] - mesh.points[ends[:, 1]], axis=1)
+    return length[which].max(axis=1), mesh.points[corners].mean(axis=1)
+
+
+@pytest.mark.parametrize(("element", "fine", "place"), [("p1", 0.03, "0 -0.5 0"), ("p2", 0.08, "0.2 0.1 -0.3")])
+def test_a_ball_has_smaller_elements_near_a_place(tmp_path, element, fine, place):
+    fields = f"of: shape, spacing: 0.25 m, element: {element}, {LAW}"
+    finer = f"finer: {{tip: {{near: {place} m, within: 6 cm, spacing: {fine} m}}}}"
+    coarse, mesh = (Solid(tmp_path, f"{{{fields}{more}}}", BALL).mesh for more in ("", f", {finer}"))
+    length, middle = longest(mesh)
+    away = np.linalg.norm(middle - [float(c) for c in place.split()], axis=1)
+    assert length[away < 0.06].max() <= 1.1 * fine  # outer edges are bent
+    assert len(mesh.cells) < 12 * len(coarse.cells)
+    assert length[away > 0.6].min() > 0.1
+    assert (volumes(mesh.points, mesh.cells[:, :4]) > 0).all()
+    outer = np.unique(mesh.faces)
+    # As near as the curved elements are that they are parts of.
+    assert np.linalg.norm(mesh.points[outer], axis=1) == pytest.approx(np.full(len(outer), 0.5), abs=2e-4)
+    # Each edge of the outer faces has two of them: there is no gap.
+    sides = np.sort(boundary(mesh.cells[:, :4])[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert (np.unique(sides, axis=0, return_counts=True)[1] == 2).all()
+    least, largest = np.degrees(worst_angle(mesh.points, mesh.cells[:, :4]))
+    assert least > 12
+    assert largest < 158
+    exact = 4 / 3 * np.pi * 0.125
+    missing = [exact - one.tables()[1].sum() for one in (coarse, mesh)]
+    assert 0 < missing[1] < 1.02 * missing[0]
+
+
+def test_a_block_of_finer_cells_keeps_its_volume_and_its_stress(tmp_path):
+    """A patch test: uniform strain is exact whatever the sizes are."""
+    finer = (
+        "finer: {one: {near: 0.5 0.5 0.5 m, spacing: 6 cm}, other: {near: -0.5 0 0 m, within: 0.1 m, spacing: 0.1 m}}"
+    )
+    fields = f"{{block: {{size: 1 1 1 m, cells: [2, 2, 2]}}, element: p1, {LAW}, {finer}}}"
+    solid = Solid(tmp_path, fields)
+    assert solid.mesh.tables()[1].sum() == pytest.approx(1.0, rel=1e-12)
+    assert len(solid.mesh.cells) > 500
+    places = solid.places @ (np.array([[1.01, 0.02, 0.0], [0.0, 0.99, 0.0], [0.0, 0.0, 1.005]]))
+    inner = np.abs(solid.places).max(axis=1) < 0.49
+    forces = solid.forces(places)
+    assert np.abs(forces[inner]).max() < 1e-12 * np.abs(forces).max()
+
+
+def test_what_makes_nothing_finer_is_told(tmp_path):
+    start = f"{BALL}models: {{body: {{elastic: {{of: shape, spacing: 0.2 m, element: p1, {LAW}, finer: "
+    end = "}}}\noutputs: {film: {image: {size: 32 18}}}\n"
+    told = complaint(tmp_path, f"{start}{{tip: {{near: 0 0 0 m, spacing: 30 cm}}}}{end}")
+    assert "no finer with 0.3 m than with the spacing of 0.2 m" in told
+    with pytest.raises(ScriptError, match="'tip' is near no element"):
+        watch(tmp_path, f"{start}{{tip: {{near: 3 0 0 m, spacing: 5 cm}}}}{end}", [0.0], "body.energy")
+    with pytest.raises(LimitRefused, match="elements need about"):
+        watch(tmp_path, f"{start}{{tip: {{near: 0 0 0 m, within: 1 m, spacing: 0.1 mm}}}}{end}", [0.0], "body.energy")
