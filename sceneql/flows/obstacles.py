@@ -1,11 +1,13 @@
-"""Solids that stand in a flow: open fractions of faces and of each velocity's own cell, and the walls within these.
+"""Solids that stand in a flow: open parts of faces and of cells, and where these parts are.
 
-In each box around a point the surface is a plane by the level's value and gradient there (grids/domain/cut.py). What is
-between two velocities, and between a velocity and the wall, crosses the open part of the sides of its own cell.
+Near the surface each of the few parts of a box is cut by the plane of the level's value and gradient in its middle
+(grids/domain/cut.py).
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -25,10 +27,26 @@ if TYPE_CHECKING:
 
 SLIVER = 0.02
 """Open part of a face below which it is closed: what little flows there would need a large pressure behind it."""
-NEAREST = 0.05
-"""Least distance from a wall, in parts of a cell's side."""
 LEAST = 0.3
 """Least volume of a velocity's own cell, of a whole one: smaller ones have this inertia, for the sake of the step."""
+SPLITS = 4
+"""Parts along each axis of a box that the surface may cut."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Opened:
+    """How solids cut boxes (k,)."""
+
+    parts: Floats
+    """The open part of each."""
+    depths: Floats
+    """The mean distance of the open part from the surface [m]."""
+    centers: Floats
+    """(k, 3) the middle of the open part [m]."""
+    levels: Floats
+    """The distance of the box's own middle, below 0 in solids [m]."""
+    normals: Floats
+    """(k, 3) away from the surface."""
 
 
 class Solids:
@@ -45,9 +63,16 @@ class Solids:
             except (TypeError, ValueError) as error:
                 message = f"'{ref.name}' cannot stand in a flow: {error}"
                 raise ScriptError([Diagnostic("no-domain", message, ref.span)]) from error
-        centers = self._centers()
-        self.cells = self._values(centers) > 0.0 if staircase else self.open(centers, range(faces.axes)) > 0.0
-        if not self.cells.any():
+        axes, centers = list(range(faces.axes)), self._centers()
+        self.opened = []
+        if staircase:
+            self.parts = np.where(self.values(centers) > 0.0, 1.0, 0.0)
+        else:
+            self.parts = self.cut(centers, axes).parts
+            for component in axes:
+                self.opened.append(self.cut(faces.points(component), [k for k in axes if k != component]))
+                self.opened[-1].parts[self.opened[-1].parts < SLIVER] = 0.0
+        if not (self.parts > 0.0).any():
             text = "the solids fill the whole box: no cell is left to flow through"
             raise ScriptError([Diagnostic("no-cell", text, refs[0].span, "take smaller ones, or a larger `size`")])
 
@@ -57,29 +82,32 @@ class Solids:
             found[:, 2] = 0.0
         return found
 
-    def _values(self, points: Floats) -> Floats:
+    def values(self, points: Floats) -> Floats:
         """The level of the union (k,): above 0 in the fluid."""
         found: Floats = np.min([level.values(points) for level in self.levels], axis=0)
         return found
 
     def fractions(self, areas: Floats) -> Floats:
         """The open part of each cell, at least LEAST of those with an open face, by the open ``areas`` of faces."""
-        found = self.cells.astype(float) if self.staircase else self.open(self._centers(), range(self.faces.axes))
-        alive = np.zeros(len(found), dtype=bool)
+        alive = np.zeros(len(self.parts), dtype=bool)
         for axis in range(self.faces.axes):
             own = areas[self.faces.index(axis)] > 0.0
             count, line = self.faces.cells.shape[axis], 2 - axis
             alive |= (
                 own.take(range(count), axis=line) | np.roll(own, -1, axis=line).take(range(count), axis=line)
             ).ravel()
-        parts: Floats = np.where(alive, np.maximum(found, LEAST), 0.0)
+        parts: Floats = np.where(alive, np.maximum(self.parts, LEAST), 0.0)
         return parts
 
     def owners(self) -> Any:
         """By face, then by cell: the number of the nearest solid."""
-        faces = self.faces
-        points = [*map(faces.points, range(faces.axes)), self._centers()]
-        return np.concatenate([np.argmin([level.values(one) for level in self.levels], axis=0) for one in points])
+        return np.concatenate(
+            [*(self.nearest(self.faces.points(axis)) for axis in range(self.faces.axes)), self.nearest(self._centers())]
+        )
+
+    def nearest(self, points: Floats) -> Any:
+        """(k,) the number of the solid nearest to each point."""
+        return np.argmin([level.values(points) for level in self.levels], axis=0)
 
     def planes(self, points: Floats) -> tuple[Floats, Floats]:
         """The level (k,) and its gradient (k, 3)."""
@@ -87,34 +115,53 @@ class Solids:
         for axis in range(self.faces.axes):
             step = np.zeros(3)
             step[axis] = 0.5 * self.spacing[axis]
-            slopes[:, axis] = (self._values(points + step) - self._values(points - step)) / self.spacing[axis]
-        return self._values(points), slopes
+            slopes[:, axis] = (self.values(points + step) - self.values(points - step)) / self.spacing[axis]
+        return self.values(points), slopes
 
-    def open(self, points: Floats, axes: Any) -> Floats:
-        """The open part (k,) of boxes of a cell's sides along these axes, of no extent along others."""
+    def cut(self, points: Floats, axes: Sequence[int]) -> Opened:
+        """How solids cut boxes of a cell's sides along these axes, of no extent along others."""
         phi, slopes = self.planes(points)
-        chosen = list(axes)
-        found: Floats = np.where(phi > 0.0, 1.0, 0.0)
-        near = np.abs(phi) <= np.abs(slopes[:, chosen]) @ self.spacing[chosen]
-        found[near] = below(-phi[near], -slopes[near][:, chosen], self.spacing[chosen])
-        return found
+        steep = np.maximum(np.linalg.norm(slopes, axis=1), 1e-9)
+        levels = phi / steep
+        parts, depths, centers = np.where(phi > 0.0, 1.0, 0.0), np.maximum(levels, 0.0), points.copy()
+        near = np.flatnonzero(np.abs(phi) <= np.abs(slopes[:, axes]) @ self.spacing[axes])
+        open_, deep, moments = np.zeros(len(near)), np.zeros(len(near)), np.zeros((len(near), 3))
+        sides = self.spacing[axes] / SPLITS
+        for place in product(range(SPLITS), repeat=len(axes)):
+            shift = np.zeros(3)
+            shift[axes] = (np.array(place) - 0.5 * (SPLITS - 1)) * sides
+            own, slope = self.planes(points[near] + shift)
+            part = below(-own, -slope[:, axes], sides)
+            depth = below(-own, -slope[:, axes], sides, depth=True)
+            across = (slope[:, axes] ** 2).sum(axis=1)
+            leans = (part > 0.0) & (part < 1.0) & (across > 0.0)
+            off = np.where(leans, (depth - part * own) / np.where(leans, across, 1.0), 0.0)
+            moments += part[:, None] * shift
+            moments[:, axes] += off[:, None] * slope[:, axes]
+            open_ += part
+            deep += depth / np.maximum(np.linalg.norm(slope, axis=1), 1e-9)
+        some = np.where(open_ > 0.0, open_, 1.0)
+        parts[near], depths[near] = open_ / SPLITS ** len(axes), deep / some
+        centers[near] += moments / some[:, None]
+        return Opened(parts, depths, centers, levels, slopes / steep[:, None])
 
     def face_parts(self) -> Floats:
         """By face: its open part."""
-        faces = self.faces
         if self.staircase:
-            return np.concatenate([self._between(component) for component in range(faces.axes)])
-        parts = [
-            self.open(faces.points(component), [k for k in range(faces.axes) if k != component])
-            for component in range(faces.axes)
-        ]
-        found = np.concatenate(parts)
-        found[found < SLIVER] = 0.0
-        return found
+            return np.concatenate([self._between(component) for component in range(self.faces.axes)])
+        return np.concatenate([one.parts for one in self.opened])
+
+    def middles(self) -> tuple[Any, Floats]:
+        """The numbers of faces that are cut, and the middles of what is open of them (k, 3)."""
+        if self.staircase:
+            return np.zeros(0, dtype=int), np.zeros((0, 3))
+        parts = self.face_parts()
+        cut = np.flatnonzero((parts > 0.0) & (parts < 1.0))
+        return cut, np.concatenate([one.centers for one in self.opened])[cut]
 
     def _between(self, component: int) -> Floats:
         """Of a component's faces: 1 where the cells on both sides are open."""
-        cells = self.cells.reshape(self.faces.cells.shape[::-1])
+        cells = (self.parts > 0.0).reshape(self.faces.cells.shape[::-1])
         line = 2 - component
         if self.faces.periodic[component]:
             both: Floats = (cells & np.roll(cells, 1, axis=line)).ravel().astype(float)
@@ -124,62 +171,9 @@ class Solids:
         found: Floats = (low & high).ravel().astype(float)
         return found
 
-    def ties(self, component: int, axis: int, closed: Any, shifts: Floats) -> Floats:
-        """Of a component's faces: the open part of what is between them and the one before along an axis, over their
-        distance in cells.
-
-        ``closed`` (m,) bool: faces that are shut. A staircase has its walls halfway to these, across a component.
-        """
-        shape = self.faces.shapes[component]
-        shut = closed.reshape(shape)
-        before = np.roll(shut, 1, axis=2 - axis)
-        if not self.staircase:
-            own = self.faces.points(component, (axis, -0.5))
-            shift = np.where(closed, 0.0, shifts[:, axis]).reshape(shape)
-            apart = 1.0 + (shift - np.roll(shift, 1, axis=2 - axis)) / self.spacing[axis]
-            apart = np.where(shut != before, self._to_wall(component, axis, shut, shifts), apart).ravel()
-            whole = self.open(own, [k for k in range(self.faces.axes) if k != axis])
-            found: Floats = whole / np.clip(apart, 0.25, 2.0)
-            return found
-        factor = np.where(shut != before, 1.0 if axis == component else 2.0, np.where(shut, 0.0, 1.0))
-        steps: Floats = factor.ravel()
-        return steps
-
-    def _to_wall(self, component: int, axis: int, shut: Any, shifts: Floats) -> Floats:
-        """Of a component's faces, where one of it and the one before along an axis is shut: how far the wall between
-        them is from the middle of the other one's fluid, in cells."""
-        points = self.faces.points(component)
-        level = self._values(points).reshape(shut.shape)
-        middle = self._values(points + shifts).reshape(shut.shape)
-        before = np.roll(level, 1, axis=2 - axis), np.roll(middle, 1, axis=2 - axis)
-        steps = np.where(shut, before[0] - level, level - before[0])
-        above = np.where(shut, before[1], middle)
-        found: Floats = np.where(steps > 0.0, above / np.where(steps > 0.0, steps, 1.0), 1.0)
+    def steps(self, component: int, axis: int, closed: Any) -> Floats:
+        """Of a component's faces (nz, ny, nx) in a staircase: viscous ties to the ones before along an axis, of one
+        in the open. Walls are halfway to ``closed`` faces, which are shut, across a component."""
+        before = np.roll(closed, 1, axis=2 - axis)
+        found: Floats = np.where(closed != before, 1.0 if axis == component else 2.0, np.where(closed, 0.0, 1.0))
         return found
-
-    def walls(self, component: int) -> tuple[Floats, Floats, Floats]:
-        """Of a component's faces: the volume of the own cell in parts, (wall's area)/(distance) in it [m], and how far
-        from the face's middle (m, 3) the middle of the fluid is that is nearer to a wall [m]."""
-        faces = self.faces
-        points = faces.points(component)
-        if self.staircase:
-            return np.ones(len(points)), np.zeros(len(points)), np.zeros_like(points)
-        volumes = self.open(points, range(faces.axes))
-        vector = np.zeros(len(points))
-        for axis in range(faces.axes):
-            across = [k for k in range(faces.axes) if k != axis]
-            ends = []
-            for side in (-0.5, 0.5):
-                shift = np.zeros(3)
-                shift[axis] = side * self.spacing[axis]
-                ends.append(self.open(points + shift, across))
-            vector += ((ends[1] - ends[0]) * faces.areas[axis]) ** 2
-        area = np.sqrt(vector)
-        some = area > 1e-9 * max(faces.areas)
-        middle = 0.5 * volumes * faces.volume / np.where(some, area, 1.0)
-        phi, slopes = self.planes(points)
-        steep = np.maximum(np.linalg.norm(slopes, axis=1), 1e-9)
-        distance = phi / steep
-        away = np.maximum(np.maximum(distance, middle), NEAREST * self.spacing[: faces.axes].min())
-        shifts = np.where(some, (away - distance) / steep, 0.0)[:, None] * slopes
-        return volumes, np.where(some, area / away, 0.0), shifts

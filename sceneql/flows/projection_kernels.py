@@ -26,6 +26,7 @@ from sceneql.flows.layout import (
     PLANS,
     PRESSURE,
     SCALES,
+    SEEPING,
     SINGULAR,
     SINK,
     SKIP,
@@ -70,13 +71,16 @@ def centered(x, sink, ints):
 
 
 @lean_inlined
-def through_faces(x, floats, ints):
-    """The root of the sum of squares of what flows through all faces [m^3/s]."""
+def through_faces(x, moving, floats, ints):
+    """The root of the sum of squares of what flows through all faces, and through cells from walls [m^3/s]."""
     faces = ints[FACES]
     u, areas = x[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
     total = 0.0
     for k in range(faces):
         total += (areas[k] * u[k]) ** 2
+    if moving and ints[SEEPING] >= 0:
+        for c in range(ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2]):
+            total += floats[ints[SEEPING] + c] ** 2
     return math.sqrt(total)
 
 
@@ -138,9 +142,12 @@ def first_face(axis, j, k, ints):
     return ints[STARTS + axis] + nx * (j + ny * k), -place * stride if around else stride
 
 
-@lean(types.void(A, A, A, I))
-def outflow(x, out, floats, ints):
-    """Net outflow of each cell (cells,) of velocities x, at ints[AT] and on [m^3/s]."""
+@lean(types.void(A, A, types.boolean, A, I))
+def outflow(x, out, moving, floats, ints):
+    """Net outflow of each cell (cells,) of velocities x, at ints[AT] and on [m^3/s].
+
+    ``moving``: less what walls that move push through it, which their rates, as they move steadily, have no part of.
+    """
     nx, ny, nz, faces = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2], ints[FACES]
     u, areas = x[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
     around = ints[PERIODIC] == 1
@@ -158,6 +165,9 @@ def outflow(x, out, floats, ints):
                 v, w, a, b = u[low:], u[low + up :], areas[low:], areas[low + up :]
                 for i in range(nx):
                     own[i] += b[i] * w[i] - a[i] * v[i]
+    if moving and ints[SEEPING] >= 0:
+        for c in range(nx * ny * nz):
+            out[c] -= floats[ints[SEEPING] + c]
 
 
 @lean_inlined
@@ -198,17 +208,20 @@ def less_gradient(x, q, factor, floats, ints):
                     lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, nx)
 
 
-@lean(types.boolean(A, A, I))
-def project(x, floats, ints):
-    """Make x free of divergence; floats[ints[PRESSURE]:] is then what its gradient takes away. Whether it is."""
+@lean(types.boolean(A, types.boolean, A, I))
+def project(x, moving, floats, ints):
+    """Make x free of divergence; floats[ints[PRESSURE]:] is then what its gradient takes away. Whether it is.
+
+    ``moving``: x are velocities, not rates (outflow).
+    """
     n = ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2]
     q = floats[ints[PRESSURE] : ints[PRESSURE] + n]
-    outflow(x, q, floats, ints)
+    outflow(x, q, moving, floats, ints)
     for c in range(n):
         q[c] = -q[c]
     solved = True
     if ints[ITERATES] == 1:
-        solved = by_iterations(q, SMALL * through_faces(x, floats, ints), floats, ints)
+        solved = by_iterations(q, SMALL * through_faces(x, moving, floats, ints), floats, ints)
     else:
         by_transform(q, floats, ints)
     less_gradient(x, q, 1.0, floats, ints)
@@ -222,5 +235,5 @@ def constrain(t, y, rate, floats, ints):
     for k in range(ints[FACES]):
         if floats[ints[INVERSES] + k] == 0.0:
             rate[at + k] = floats[ints[MOVES] + k]
-    if floats[ints[SKIP]] == 0.0 and not project(rate, floats, ints):
+    if floats[ints[SKIP]] == 0.0 and not project(rate, False, floats, ints):
         rate[at] = math.nan

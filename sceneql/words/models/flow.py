@@ -176,7 +176,5 @@ class Flow(Model):
             from sceneql.flows.solid_forces import on_solid
 
             number = [ref.name for ref in self.around].index(name)
-            fluid, part = (self.density, self.viscosity), self.boundary.get(name)
-            wall = None if part is None else part.velocity
-            return on_solid(what, number, self.layout(state, output), state.ints[5:], fluid, wall, state)
+            return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)
         return measure(output, self.layout(state, output), state.ints[5:], self.density, state)
