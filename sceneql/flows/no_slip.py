@@ -17,8 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from sceneql.flows.obstacles import Opened, Solids
-    from sceneql.flows.staggered import Faces
+    from sceneql.flows.obstacles import Solids
     from sceneql.frame import Floats
 
 BESIDE = 0.1
@@ -84,7 +83,8 @@ class _Component:
         found = np.zeros(base.shape)
         for way in (-1, 1):
             tie = base if way < 0 else np.roll(base, -1, axis=line)
-            free, scale, fixed = (np.roll(one, -way, axis=line) for one in (self.free, self.scale, self.fixed))
+            free = np.roll(self.free, -way, axis=line)
+            scale, fixed = (np.roll(one, -way, axis=line) for one in (self.scale, self.fixed))
             pair = np.where(self.free & free, tie, 0.0)
             self.friction += self.scale * (self.scale - scale) * pair
             self.gains += self.scale * (fixed - self.fixed) * pair

@@ -29,8 +29,10 @@ SLIVER = 0.02
 """Open part of a face below which it is closed: what little flows there would need a large pressure behind it."""
 LEAST = 0.3
 """Least volume of a velocity's own cell, of a whole one: smaller ones have this inertia, for the sake of the step."""
-SPLITS = 4
-"""Parts along each axis of a box that the surface may cut."""
+SPLITS = (4, 4, 2)
+"""Parts along each axis of a box of one, two and three axes that the surface may cut."""
+ROUND = 2.5
+"""How many cells off the surface its distance is known."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,9 +46,9 @@ class Opened:
     centers: Floats
     """(k, 3) the middle of the open part [m]."""
     levels: Floats
-    """The distance of the box's own middle, below 0 in solids [m]."""
+    """The distance of the box's own middle, below 0 in solids [m]; endless but beside the surface."""
     normals: Floats
-    """(k, 3) away from the surface."""
+    """(k, 3) away from the surface; 0 but beside it."""
 
 
 class Solids:
@@ -68,9 +70,10 @@ class Solids:
         if staircase:
             self.parts = np.where(self.values(centers) > 0.0, 1.0, 0.0)
         else:
-            self.parts = self.cut(centers, axes).parts
+            self.parts = self.cut(centers, faces.cells.shape[::-1], axes).parts
             for component in axes:
-                self.opened.append(self.cut(faces.points(component), [k for k in axes if k != component]))
+                others = [k for k in axes if k != component]
+                self.opened.append(self.cut(faces.points(component), faces.shapes[component], others))
                 self.opened[-1].parts[self.opened[-1].parts < SLIVER] = 0.0
         if not (self.parts > 0.0).any():
             text = "the solids fill the whole box: no cell is left to flow through"
@@ -109,41 +112,59 @@ class Solids:
         """(k,) the number of the solid nearest to each point."""
         return np.argmin([level.values(points) for level in self.levels], axis=0)
 
-    def planes(self, points: Floats) -> tuple[Floats, Floats]:
-        """The level (k,) and its gradient (k, 3)."""
+    def planes(self, points: Floats, reach: float = 0.5) -> tuple[Floats, Floats]:
+        """The level (k,) and its gradient (k, 3), by differences over twice the ``reach`` in cells."""
         slopes = np.zeros((len(points), 3))
         for axis in range(self.faces.axes):
             step = np.zeros(3)
-            step[axis] = 0.5 * self.spacing[axis]
-            slopes[:, axis] = (self.values(points + step) - self.values(points - step)) / self.spacing[axis]
+            step[axis] = reach * self.spacing[axis]
+            slopes[:, axis] = (self.values(points + step) - self.values(points - step)) / (2.0 * step[axis])
         return self.values(points), slopes
 
-    def cut(self, points: Floats, axes: Sequence[int]) -> Opened:
-        """How solids cut boxes of a cell's sides along these axes, of no extent along others."""
-        phi, slopes = self.planes(points)
-        steep = np.maximum(np.linalg.norm(slopes, axis=1), 1e-9)
+    def cut(self, points: Floats, shape: tuple[int, ...], axes: Sequence[int]) -> Opened:
+        """How solids cut boxes of a cell's sides along these axes, of no extent along others, around points that are
+        (nz, ny, nx) next to each other."""
+        phi = self.values(points)
+        beside = np.flatnonzero(np.abs(phi) <= ROUND * _steps(phi.reshape(shape)).ravel())
+        slopes, steep = np.zeros((len(phi), 3)), np.full(len(phi), 1e-300)
+        slopes[beside] = self.planes(points[beside])[1]
+        steep[beside] = np.maximum(np.linalg.norm(slopes[beside], axis=1), 1e-9)
         levels = phi / steep
         parts, depths, centers = np.where(phi > 0.0, 1.0, 0.0), np.maximum(levels, 0.0), points.copy()
-        near = np.flatnonzero(np.abs(phi) <= np.abs(slopes[:, axes]) @ self.spacing[axes])
+        near = beside[np.abs(phi[beside]) <= np.abs(slopes[beside][:, axes]) @ self.spacing[axes]]
         open_, deep, moments = np.zeros(len(near)), np.zeros(len(near)), np.zeros((len(near), 3))
-        sides = self.spacing[axes] / SPLITS
-        for place in product(range(SPLITS), repeat=len(axes)):
-            shift = np.zeros(3)
-            shift[axes] = (np.array(place) - 0.5 * (SPLITS - 1)) * sides
-            own, slope = self.planes(points[near] + shift)
-            part = below(-own, -slope[:, axes], sides)
-            depth = below(-own, -slope[:, axes], sides, depth=True)
-            across = (slope[:, axes] ** 2).sum(axis=1)
+        splits = SPLITS[len(axes) - 1]
+        sides = self.spacing[axes] / splits
+        values = self._around(points[near], axes, splits)
+        slope, steepness = slopes[near][:, axes].copy(), steep[near]
+        off_plane = steepness**2 - (slope**2).sum(axis=1)
+        for place in product(range(1, splits + 1), repeat=len(axes)):
+            for k in range(len(axes)):
+                ahead, behind = (tuple(n + way * (j == k) for j, n in enumerate(place)) for way in (1, -1))
+                slope[:, k] = (values[ahead] - values[behind]) / (2.0 * sides[k])
+            own = values[place]
+            part = below(-own, -slope, sides)
+            depth = below(-own, -slope, sides, depth=True)
+            across = (slope**2).sum(axis=1)
             leans = (part > 0.0) & (part < 1.0) & (across > 0.0)
             off = np.where(leans, (depth - part * own) / np.where(leans, across, 1.0), 0.0)
-            moments += part[:, None] * shift
-            moments[:, axes] += off[:, None] * slope[:, axes]
+            moments[:, axes] += part[:, None] * (np.array(place) - 0.5 * (splits + 1)) * sides + off[:, None] * slope
             open_ += part
-            deep += depth / np.maximum(np.linalg.norm(slope, axis=1), 1e-9)
+            deep += depth / np.sqrt(np.maximum(off_plane + across, 1e-18))
         some = np.where(open_ > 0.0, open_, 1.0)
-        parts[near], depths[near] = open_ / SPLITS ** len(axes), deep / some
+        parts[near], depths[near] = open_ / splits ** len(axes), deep / some
         centers[near] += moments / some[:, None]
         return Opened(parts, depths, centers, levels, slopes / steep[:, None])
+
+    def _around(self, points: Floats, axes: Sequence[int], splits: int) -> dict[tuple[int, ...], Floats]:
+        """The level in the middles of parts of boxes around points (k,), from 1 on, and one further on both sides."""
+        found = {}
+        for place in product(range(splits + 2), repeat=len(axes)):
+            if sum(not 0 < one <= splits for one in place) <= 1:
+                shift = np.zeros(3)
+                shift[axes] = (np.array(place) - 0.5 * (splits + 1)) * self.spacing[axes] / splits
+                found[place] = self.values(points + shift)
+        return found
 
     def face_parts(self) -> Floats:
         """By face: its open part."""
@@ -177,3 +198,13 @@ class Solids:
         before = np.roll(closed, 1, axis=2 - axis)
         found: Floats = np.where(closed != before, 1.0 if axis == component else 2.0, np.where(closed, 0.0, 1.0))
         return found
+
+
+def _steps(phi: Floats) -> Floats:
+    """The largest differences from the values before and behind along each axis (nz, ny, nx), their sum."""
+    total = np.zeros(phi.shape)
+    for line in range(3):
+        step = np.abs(np.diff(phi, axis=line))
+        none = np.zeros([1 if k == line else n for k, n in enumerate(phi.shape)])
+        total += np.maximum(np.concatenate([none, step], axis=line), np.concatenate([step, none], axis=line))
+    return total

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 THROUGH = 0.05
 """Velocity across a wall, in parts of the largest on it, from which on it counts as one through it."""
 
+NEAR = 0.05
+"""Reach of the differences that feet of walls are found by, in cells."""
+
 
 class SkinVelocities:
     """By parts of a boundary that are named like solids."""
@@ -50,7 +53,7 @@ class SkinVelocities:
 
     def _feet(self, points: Floats) -> tuple[Floats, Floats, Floats]:
         """Points of walls nearest to those that are beside them, else these; normals (k, 3); which are beside."""
-        level, slopes = self.solids.planes(points)
+        level, slopes = self.solids.planes(points, NEAR)
         steep = np.maximum(np.linalg.norm(slopes, axis=1), 1e-9)
         spacing = self.solids.spacing[: self.solids.faces.axes]
         beside = np.abs(level) < 1.5 * steep * spacing.max()
