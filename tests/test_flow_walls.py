@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from flows import Air
+from sceneql.failure import RunFailure
 from sceneql.flows import layout
 from sceneql.grids.domain.cut import below
 
@@ -173,3 +174,23 @@ def test_the_mean_depth_below_a_plane_is_that_of_many_points(axes):
     points = np.stack(np.meshgrid(*(line * side for side in sides), indexing="ij"), axis=-1).reshape(-1, axes)
     depths = np.maximum(-(phi[:, None] + slopes @ points.T), 0.0).mean(axis=1)
     assert below(phi, slopes, sides, depth=True) == pytest.approx(depths, abs=2e-4)
+
+
+@pytest.mark.parametrize("solver", ["{chorin: {step: 20 ms}}", "{sbdf2: {step: 20 ms}}", "{ark3: {step: 20 ms}}"])
+@pytest.mark.parametrize("what", ["pressure", "viscosity"])
+def test_a_run_whose_iterations_lead_nowhere_fails_at_its_flow(tmp_path, solver, what):
+    """By numbers that no fluid has: a guess of the pressure that is always 0; walls that drive instead of hold."""
+    stone = "objects: {stone: {sphere: {position: 0.5 0.45 0 m, radius: 0.2 m}}}\n"
+    air = Air(
+        tmp_path, solver, 1.0, before=stone, around="[stone]", cell="1/24 m", viscosity="1 Pa*s",
+        boundary='{left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}',
+    ).at(0.1)  # fmt: skip
+    floats, count = air.run.march.floats, 24 * 24
+    if what == "pressure":
+        at = air.run.state("air").ints[5 + layout.SPECTRUM]
+        floats[at : at + count] = 0.0
+    else:
+        at = air.run.march.system.fields.flow.components[0].sink_at
+        floats[at : at + count] -= np.random.default_rng(0).uniform(0.0, 1e2, count)
+    with pytest.raises(RunFailure, match=r"at 0.1 s, air: .* the pressure and viscosity of a step are not solved for"):
+        air.at(0.5)

@@ -72,8 +72,9 @@ def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
     before = 0.0
     for count in range(MOST + 1):
         enough = exact if count < MOST else LEAST * exact
-        if not product(axes, r, r, floats, numbers) > enough * enough * whole:
-            return solved
+        left = product(axes, r, r, floats, numbers)
+        if not left > enough * enough * whole:
+            return solved and left <= enough * enough * whole
         if count == MOST:
             break
         for k in range(first, last):

@@ -204,7 +204,7 @@ def solve(op, a, wanted, y, small, floats, tables, scratch, room):
                 z[c] = own[c] * r[c]
         now = dot(r, z)
         if not now > small * small * target:
-            return True
+            return 0.0 <= now <= small * small * target
         part = now / before if count > 0 else 0.0
         for c in range(n):
             p[c] = z[c] + part * p[c]

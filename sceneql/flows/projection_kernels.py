@@ -104,8 +104,9 @@ def by_iterations(b, small, floats, ints):
         r[c], b[c], volume[c] = b[c], 0.0, 0.0
     before = 0.0
     for count in range(MOST):
-        if not math.sqrt(dot(r, r)) > small:
-            return True
+        left = math.sqrt(dot(r, r))
+        if not left > small:
+            return left <= small
         for c in range(n):
             z[c] = cut[c] * r[c]
         multiply(nx, ny, nz, 0.0, volume, sink, gx, gy, gz, z, q)
@@ -127,7 +128,7 @@ def by_iterations(b, small, floats, ints):
             b[c] += length * p[c]
             r[c] -= length * q[c]
         before = now
-    return not math.sqrt(dot(r, r)) > small
+    return math.sqrt(dot(r, r)) <= small
 
 
 @lean_inlined
