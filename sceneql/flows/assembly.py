@@ -70,6 +70,10 @@ class Model(Protocol):
         """How cells meet these."""
 
     @property
+    def pressure(self) -> str:
+        """How it is solved for."""
+
+    @property
     def force(self) -> Formula | None:
         """On each cubic meter [N/m^3]."""
 
@@ -146,7 +150,9 @@ class _Builder:
         ints[layout.EDGE_FIRST : layout.EDGE_FACES] = edges[2:]
         ints[layout.EDGE_FACES :] = edge_faces
         ints[layout.SCHEME], ints[layout.SKIP] = SCHEMES[self.model.advection], assembly.floats([0.0])
-        write_pressure(faces, self.opened, self.solids is not None, areas, areas * inverses, assembly, ints)
+        walled, solver = self.solids is not None, self.model.pressure
+        plan, text = write_pressure(faces, self.opened, walled, areas, areas * inverses, solver, assembly, ints)
+        ints = np.concatenate([ints, plan])
         numbers = tuple(ints.tolist())
         assembly.term("close", "sceneql.flows.advection_kernels:advect", numbers)
         assembly.term("close", "sceneql.flows.advection_kernels:rub", numbers)
@@ -162,6 +168,7 @@ class _Builder:
             fractions=None if self.solids is None else self.solids.fractions(areas),
             density=self.model.density,
             viscosity=self.model.viscosity,
+            pressure=text,
         )
         assembly.flow(flow)
         return flow

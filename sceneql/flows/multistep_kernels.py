@@ -311,7 +311,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         gathered = room[:cells]
         outflow(y1, gathered, True, floats, one)
     latest_q = pressure[2 * cells : 3 * cells]  # iterations begin with what the step before took away
-    guessed = has_before and one[ITERATES] == 1
+    guessed = has_before and one[ITERATES] > 0
     if guessed:
         less_gradient(y1, latest_q, 1.0, floats, one)
     solved &= project(y1, True, floats, one)

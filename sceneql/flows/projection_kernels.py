@@ -30,10 +30,15 @@ from sceneql.flows.layout import (
     SINGULAR,
     SINK,
     SKIP,
+    SOLVER_AT,
     SPECTRUM,
     STARTS,
+    STORE,
+    STORE_SIZE,
     WORK,
 )
+from sceneql.grids.multigrid.layout import SOLVER
+from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
 from sceneql.system.signatures_kernels import TERM, A, F, I
 
@@ -132,6 +137,19 @@ def by_iterations(b, small, floats, ints):
 
 
 @lean_inlined
+def by_name(b, small, floats, ints):
+    """Solve the pressure's equation in place by the linear solver that the script names; whether it was reached."""
+    n, at = b.size, ints[STORE]
+    plan, found = ints[ints[SOLVER_AT] :], floats[at : at + n]
+    centered(b, floats[ints[SINK] : ints[SINK] + n], ints)
+    store = floats[at + n : at + n + ints[STORE_SIZE]]
+    solved = solver_at(plan[SOLVER])(plan, 1.0, small, floats, b, found, store)
+    for c in range(n):
+        b[c] = found[c]
+    return solved
+
+
+@lean_inlined
 def first_face(axis, j, k, ints):
     """The face across an axis on the low side of the first cell of row (j, k), and how far on that on the high side of
     the row is (along x: of its first cell), of all faces."""
@@ -221,8 +239,11 @@ def project(x, moving, floats, ints):
     for c in range(n):
         q[c] = -q[c]
     solved = True
+    small = SMALL * through_faces(x, moving, floats, ints) if ints[ITERATES] > 0 else 0.0
     if ints[ITERATES] == 1:
-        solved = by_iterations(q, SMALL * through_faces(x, moving, floats, ints), floats, ints)
+        solved = by_iterations(q, small, floats, ints)
+    elif ints[ITERATES] == 2:
+        solved = by_name(q, small, floats, ints)
     else:
         by_transform(q, floats, ints)
     less_gradient(x, q, 1.0, floats, ints)
