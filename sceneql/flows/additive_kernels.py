@@ -60,20 +60,21 @@ def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
             return False
     if axes == 0:
         return True
-    solved = project(y, floats, one)
+    solved = project(y, True, floats, one)
     r, z, p, q = more[:n], more[n : 2 * n], more[2 * n : 3 * n], more[3 * n : 4 * n]
     for k in range(first, last):
         q[k] = 0.0
     spread(y, q, 0, axes, floats, numbers[SPREAD:])
-    solved &= project(q, floats, one)
+    solved &= project(q, False, floats, one)
     for k in range(first, last):
         r[k] = wanted[k] - y[k] + a * q[k]
     whole = product(axes, y, y, floats, numbers)
     before = 0.0
     for count in range(MOST + 1):
         enough = exact if count < MOST else LEAST * exact
-        if not product(axes, r, r, floats, numbers) > enough * enough * whole:
-            return solved
+        left = product(axes, r, r, floats, numbers)
+        if not left > enough * enough * whole:
+            return solved and left <= enough * enough * whole
         if count == MOST:
             break
         for k in range(first, last):
@@ -81,13 +82,13 @@ def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
         for number in range(axes):
             op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
             solve(op, a, r, z, COARSE, floats, tables, floats[one[WORK] :], room)
-        solved &= project(z, floats, one)
+        solved &= project(z, False, floats, one)
         now = product(axes, r, z, floats, numbers)
         part = now / before if count > 0 else 0.0
         for k in range(first, last):
             p[k] = z[k] + part * p[k]
         spread(p, q, 0, axes, floats, numbers[SPREAD:])
-        solved &= project(q, floats, one)
+        solved &= project(q, False, floats, one)
         for k in range(first, last):
             q[k] = p[k] - a * q[k]
         length = now / product(axes, p, q, floats, numbers)
@@ -124,7 +125,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
                 for j in range(i):
                     total += e[i * s + j] * explicit[j * n + k] + d[i * s + j] * damped[j * n + k]
                 wanted[k] = y0[k] + h * total
-            solved &= project(wanted, floats, one)
+            solved &= project(wanted, True, floats, one)
             for k in range(n):
                 y1[k] = wanted[k]
             a, exact = h * d[i * s + i], max(EXACT, SHARE * tolerance)
@@ -148,7 +149,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             error += wrong[j] * both
         y1[k] = y0[k] + h * total
         wanted[k] = h * error
-    solved &= project(y1, floats, one) and project(wanted, floats, one)
+    solved &= project(y1, True, floats, one) and project(wanted, False, floats, one)
     for number in range(numbers[OPERATORS]):
         tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     rate(t + h, y1, end_rate, floats, ints)
@@ -159,7 +160,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for k in range(n):
         rate1[k] = end_rate[k] + spreading[k]
     settings[latest] = t + h
-    if not (project(rate1, floats, one) and solved):
+    if not (project(rate1, False, floats, one) and solved):
         y1[one[AT]] = math.nan
     worst = 0.0
     for block in range(numbers[BLOCKS]):

@@ -9,7 +9,6 @@ side, it brings no momentum: so what comes back in there cannot grow (Bruneau & 
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.lanes_kernels import load, store
 from sceneql.flows.layout import (
     AREAS,
     AT,
@@ -34,7 +33,7 @@ from sceneql.flows.layout import (
     WORK,
 )
 from sceneql.grids.drift_kernels import koren
-from sceneql.grids.multigrid.stencil_kernels import LANE, flow, flow_of_lanes
+from sceneql.grids.multigrid.stencil_kernels import multiply
 from sceneql.system.signatures_kernels import TERM, A, I
 
 
@@ -248,34 +247,20 @@ def advected(y, rate, floats, ints):
 
 @lean_inlined
 def viscous(component, y, rate, floats, ints):
-    """Add the sum over faces of g (neighbor - u) to the rates of a component."""
-    at, start = ints[AT], ints[STARTS + component]
+    """Add the sum over faces of g (neighbor - u), less friction at solids, to the rates of a component."""
+    start = ints[STARTS + component]
     nx, ny, nz = sides(component, ints)
     n = nx * ny * nz
-    x, own = y[at + start : at + start + n], rate[at + start : at + start + n]
+    x, own = y[ints[AT] + start : ints[AT] + start + n], rate[ints[AT] + start : ints[AT] + start + n]
     gx = floats[ints[VISCOUS] + start : ints[VISCOUS] + start + n]
     gy = floats[ints[VISCOUS + 1] + start : ints[VISCOUS + 1] + start + n]
     gz = floats[ints[VISCOUS + 2] + start : ints[VISCOUS + 2] + start + (n if nz > 1 else 0)]
+    friction = floats[ints[FRICTION] + start : ints[FRICTION] + start + n]
     inverse = floats[ints[INVERSES] + start : ints[INVERSES] + start + n]
-    deep, plane = nz > 1, nx * ny
-    for k in range(nz):
-        down, up = ((k - 1) % nz - k) * plane, ((k + 1) % nz - k) * plane
-        for j in range(ny):
-            row = nx * j + plane * k
-            last = row + nx - 1
-            low, high = ((j - 1) % ny - j) * nx, ((j + 1) % ny - j) * nx
-            rest = row + 1
-            for c in range(row + 1, last - LANE + 1, LANE):
-                total = flow_of_lanes(x, gx, gy, gz, c, c + low, c + high, c + down, c + up, deep)
-                store(own, c, load(own, c) + total * load(inverse, c))
-                rest = c + LANE
-            for c in range(rest, last):
-                total = flow(x, gx, gy, gz, c, c - 1, c + 1, c + low, c + high, c + down, c + up, deep)
-                own[c] += total * inverse[c]
-            for c in range(row, last + 1, max(1, nx - 1)):
-                left, right = (last if c == row else c - 1), (row if c == last else c + 1)
-                total = flow(x, gx, gy, gz, c, left, right, c + low, c + high, c + down, c + up, deep)
-                own[c] += total * inverse[c]
+    lost = floats[ints[WORK] : ints[WORK] + n]
+    multiply(nx, ny, nz, 0.0, friction, friction, gx, gy, gz, x, lost)
+    for c in range(n):
+        own[c] -= lost[c] * inverse[c]
 
 
 @lean(TERM, inner=True)
@@ -291,9 +276,6 @@ def rub(t, y, rate, floats, ints):
     if whole:
         for component in range(ints[AXES]):
             viscous(component, y, rate, floats, ints)
-        friction, u = floats[ints[FRICTION] : ints[FRICTION] + faces], y[at : at + faces]
-        for k in range(faces):
-            own[k] -= friction[k] * u[k] * inverses[k]
     for k in range(faces):
         own[k] += pushes[k] if inverses[k] != 0.0 else 0.0
     for e in range(ints[EDGES]):

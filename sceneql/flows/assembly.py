@@ -9,9 +9,10 @@ import numpy as np
 
 from sceneql.flows import layout
 from sceneql.flows.edges import BEGIN, component_at, edges_of, timed
-from sceneql.flows.obstacles import LEAST, Solids
+from sceneql.flows.obstacles import Solids
+from sceneql.flows.obstructed import obstructed, whole
 from sceneql.flows.pressure import write_pressure
-from sceneql.flows.skin_velocities import wall_velocities
+from sceneql.flows.skin_velocities import SkinVelocities
 from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces
@@ -69,6 +70,10 @@ class Model(Protocol):
         """How cells meet these."""
 
     @property
+    def pressure(self) -> str:
+        """How it is solved for."""
+
+    @property
     def force(self) -> Formula | None:
         """On each cubic meter [N/m^3]."""
 
@@ -116,26 +121,38 @@ class _Builder:
         ints[layout.PERIODIC : layout.PERIODIC + 3] = self.periodic
         ints[layout.AXES], ints[layout.AT], ints[layout.FACES] = faces.axes, at, faces.count
         ints[layout.STARTS : layout.STARTS + faces.axes] = faces.starts
-        friction, fills = np.zeros(faces.count), np.ones(faces.count)
+        passage = whole(faces, areas, volumes, self.viscosity)
         if self.solids is not None:
-            areas, volumes, given, friction, fills = self._around(self.solids, areas, volumes, given)
-            walls = wall_velocities(self.solids, self.model.boundary, faces)
-            x[areas == 0.0] = walls[areas == 0.0]
-            pushes = pushes + friction * walls / volumes
-            ints[layout.WALLS] = assembly.floats(walls)
+            skins = SkinVelocities(self.solids, self.model.boundary)
+            passage = obstructed(self.solids, skins, passage, self.viscosity)
+            areas, volumes = passage.areas, passage.volumes
+            shut = areas == 0.0
+            given = given | shut
+            x[shut] = passage.walls[shut]
+            pushes = pushes * passage.fills + passage.gains / volumes
+            weights = assembly.numbers()[edges[1] : edges[1] + len(edge_faces)]
+            assembly.write(edges[1], weights * passage.edges[edge_faces])
+        friction = np.where(given, 0.0, passage.friction)
         inverses = np.where(given, 0.0, 1.0 / volumes)
         ints[layout.OWNERS] = assembly.floats([] if self.solids is None else self.solids.owners())
-        ints[layout.FILLS] = assembly.floats(fills)
-        ints[layout.FRICTION] = assembly.floats(friction)
+        ints[layout.FILLS], ints[layout.FRICTION] = assembly.floats(passage.fills), assembly.floats(friction)
+        cut, middles = (np.zeros(0), np.zeros((0, 3))) if self.solids is None else self.solids.middles()
+        ints[layout.MIDDLES], ints[layout.CUT_FACES] = assembly.floats(np.vstack([cut, middles.T])), len(cut)
+        ints[layout.GAINS] = assembly.floats(passage.gains)
+        ints[layout.SEEPING] = -1 if passage.seeping is None else assembly.floats(passage.seeping)
         ints[layout.AREAS], ints[layout.INVERSES] = assembly.floats(areas), assembly.floats(inverses)
         ints[layout.SCALES] = assembly.floats(areas * inverses)
-        ints[layout.MOVES], ints[layout.PUSHES] = self._moving(at), self._push(at, pushes, fills)
-        ints[layout.VISCOUS : layout.VISCOUS + 3] = viscous = self._viscous(areas == 0.0)
+        ints[layout.MOVES], ints[layout.PUSHES] = self._moving(at), self._push(at, pushes, passage.fills)
+        viscous = [assembly.floats(tie) for tie in passage.ties]
+        viscous = (viscous + viscous[:1])[:3]
+        ints[layout.VISCOUS : layout.VISCOUS + 3] = viscous
         ints[layout.EDGES : layout.EDGES + 3] = (len(edge_faces), *edges[:2])
         ints[layout.EDGE_FIRST : layout.EDGE_FACES] = edges[2:]
         ints[layout.EDGE_FACES :] = edge_faces
         ints[layout.SCHEME], ints[layout.SKIP] = SCHEMES[self.model.advection], assembly.floats([0.0])
-        write_pressure(faces, self.opened, self.solids is not None, areas, areas * inverses, assembly, ints)
+        walled, solver = self.solids is not None, self.model.pressure
+        plan, text = write_pressure(faces, self.opened, walled, areas, areas * inverses, solver, assembly, ints)
+        ints = np.concatenate([ints, plan])
         numbers = tuple(ints.tolist())
         assembly.term("close", "sceneql.flows.advection_kernels:advect", numbers)
         assembly.term("close", "sceneql.flows.advection_kernels:rub", numbers)
@@ -151,6 +168,7 @@ class _Builder:
             fractions=None if self.solids is None else self.solids.fractions(areas),
             density=self.model.density,
             viscosity=self.model.viscosity,
+            pressure=text,
         )
         assembly.flow(flow)
         return flow
@@ -205,9 +223,15 @@ class _Builder:
             for axis, mine in chosen.items():
                 if part.inflow is None or part.velocity is None:
                     continue
-                points = faces.points(axis)[mine - faces.starts[axis]]
+                points = self._open_points(axis)[mine - faces.starts[axis]]
                 found[mine] = component_at(part.velocity, axis, points, time)
         return found
+
+    def _open_points(self, axis: int) -> Floats:
+        """(m, 3) the middles of what is open of a component's faces [m]."""
+        if self.solids is None or self.solids.staircase:
+            return self.faces.points(axis)
+        return self.solids.opened[axis].centers
 
     def _normal(self) -> list[tuple[Side, dict[int, Any]]]:
         """Each part with the faces that lie on it, by axis."""
@@ -275,7 +299,7 @@ class _Builder:
 
         own = ints.copy()
         own[layout.AT] = 0
-        if not project(x, self.assembly.numbers(), own):
+        if not project(x, True, self.assembly.numbers(), own):
             text = "the iterations for the pressure of the start do not end"
             raise ScriptError([Diagnostic("invalid", text, self.assembly.line())])
         return x
@@ -301,7 +325,7 @@ class _Builder:
             except TypeError as error:
                 text = "how fast this inflow changes is not known: it has an operation without a derivative"
                 raise ScriptError([Diagnostic("invalid", text, part.velocity.span)]) from error
-            points = assembly.floats(self.faces.points(axis)[mine - self.faces.starts[axis]])
+            points = assembly.floats(self._open_points(axis)[mine - self.faces.starts[axis]])
             ones = assembly.floats(np.ones(len(mine)))
             for rate in rates:
                 if rate != Number(0.0):
@@ -326,42 +350,6 @@ class _Builder:
             kernel, ints = over_cells(assembly, components(force.expr)[axis], at + start, arrays, sizes, box)
             assembly.term("internal", kernel, ints)
         return pushing
-
-    def _around(
-        self, solids: Solids, areas: Floats, volumes: Floats, given: Any
-    ) -> tuple[Floats, Floats, Any, Floats, Floats]:
-        """Open areas of faces, volumes of their own cells, what is given, friction at the walls, and FILLS."""
-        parts = [solids.walls(component) for component in range(self.faces.axes)]
-        opened = areas * solids.face_parts()
-        whole = np.concatenate([volume for volume, _, _ in parts])
-        inner = np.maximum(whole, LEAST)
-        friction = self.viscosity * np.concatenate([wall for _, wall, _ in parts])
-        self.shifts = [shift for _, _, shift in parts]
-        return opened, volumes * inner, given | (opened == 0.0), np.where(opened > 0.0, friction, 0.0), whole / inner
-
-    def _viscous(self, closed: Any) -> tuple[int, int, int]:
-        """Offsets of the conductances of viscosity along x, y, z, by face."""
-        faces, spacing = self.faces, self.cells.spacing
-        found = []
-        for axis in range(faces.axes):
-            own = []
-            for component in range(faces.axes):
-                shape = faces.shapes[component]
-                area = faces.own_widths(component) * (faces.volume / spacing[axis])
-                tie = np.broadcast_to(area * (self.viscosity / spacing[axis]), shape).copy()
-                if not self.periodic[axis]:
-                    tie[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = 0.0
-                elif axis == component:
-                    tie[...] = faces.volume / spacing[axis] ** 2 * self.viscosity
-                if axis == component:
-                    inner = faces.volume / spacing[axis] ** 2 * self.viscosity
-                    tie = np.where(tie > 0.0, inner, 0.0)
-                if self.solids is not None:
-                    shut = closed[faces.index(component).ravel()]
-                    tie = tie * self.solids.ties(component, axis, shut, self.shifts[component]).reshape(tie.shape)
-                own.append(tie.ravel())
-            found.append(self.assembly.floats(np.concatenate(own)))
-        return (found[0], found[1], found[2] if len(found) == 3 else found[0])
 
     def _grids(
         self,

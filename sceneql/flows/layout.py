@@ -19,7 +19,8 @@ SCHEME, SKIP, PRESSURE, WORK = 22, 23, 24, 25
 CONDUCTANCES, SINK = 26, 29
 """By cell along x, y, z: of the pressure's equation, with the face on the low side; where the pressure is 0."""
 ITERATES, SINGULAR, SPECTRUM = 30, 31, 32
-"""1: iterations, with the transform and CUT as preconditioner; 1: pressure up to a constant; by cell: 1/eigenvalue."""
+"""1: iterations, with the transform and CUT as preconditioner, 2: a linear solver by name; 1: pressure up to a
+constant; by cell: 1/eigenvalue."""
 PUSHES = 33
 """By face: acceleration by given forces and pressures."""
 FRICTION = 34
@@ -30,9 +31,16 @@ FILLS = 36
 """By face: how far a force moves its own cell, whose inertia is that of more fluid where a solid leaves it little."""
 CUT = 37
 """By cell that solids or half open sides cut: 1/(2 its own entry of the pressure's equation); else 0."""
-WALLS = 38
-"""By face: the velocity of the wall of the nearest solid along its axis [m/s]."""
-PLANS, PLAN = 39, 24
+GAINS = 38
+"""By face: what the walls of solids add by their own velocity [m^4/s^2]."""
+SEEPING = 39
+"""By cell: what walls that move push through its open faces [m^3/s]; -1: none moves."""
+MIDDLES, CUT_FACES = 40, 41
+"""Faces that solids cut, then x, y, z of the middles of what is open of them [m]; their number."""
+SOLVER_AT, STORE, STORE_SIZE = 42, 43, 44
+"""Where in these integers the plan of a linear solver by name begins (grids/multigrid/linear_kernels); its store, after
+one number a cell; floats of the store."""
+PLANS, PLAN = 45, 24
 """Of each axis PLAN integers."""
 KIND, LENGTH, TWIDDLES, TWISTS, FACTORS = 0, 1, 2, 3, 4
 """Of a plan: the modes; length of the Fourier transform; cosines and sines of 2 pi k/length, then of pi k/(2 length);

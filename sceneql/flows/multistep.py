@@ -146,6 +146,7 @@ def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, st
     found = [operator(grid, system.floats, tables, grid not in velocities) for grid in fields]
     left = len(grids) - len(fixed)
     text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
+    text += flow.pressure
     return (
         flow,
         found,

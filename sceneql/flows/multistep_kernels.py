@@ -204,7 +204,7 @@ def solve(op, a, wanted, y, small, floats, tables, scratch, room):
                 z[c] = own[c] * r[c]
         now = dot(r, z)
         if not now > small * small * target:
-            return True
+            return 0.0 <= now <= small * small * target
         part = now / before if count > 0 else 0.0
         for c in range(n):
             p[c] = z[c] + part * p[c]
@@ -309,12 +309,12 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         )
     if scheme != CHORIN:
         gathered = room[:cells]
-        outflow(y1, gathered, floats, one)
+        outflow(y1, gathered, True, floats, one)
     latest_q = pressure[2 * cells : 3 * cells]  # iterations begin with what the step before took away
-    guessed = has_before and one[ITERATES] == 1
+    guessed = has_before and one[ITERATES] > 0
     if guessed:
         less_gradient(y1, latest_q, 1.0, floats, one)
-    solved &= project(y1, floats, one)
+    solved &= project(y1, True, floats, one)
     if guessed:
         for c in range(cells):
             q[c] += latest_q[c]

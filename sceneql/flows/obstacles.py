@@ -1,11 +1,13 @@
-"""Solids that stand in a flow: open fractions of faces and of each velocity's own cell, and the walls within these.
+"""Solids that stand in a flow: open parts of faces and of cells, and where these parts are.
 
-In each box around a point the surface is a plane by the level's value and gradient there (grids/domain/cut.py). What is
-between two velocities, and between a velocity and the wall, crosses the open part of the sides of its own cell.
+Near the surface each of the few parts of a box is cut by the plane of the level's value and gradient in its middle
+(grids/domain/cut.py).
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -25,10 +27,28 @@ if TYPE_CHECKING:
 
 SLIVER = 0.02
 """Open part of a face below which it is closed: what little flows there would need a large pressure behind it."""
-NEAREST = 0.05
-"""Least distance from a wall, in parts of a cell's side."""
 LEAST = 0.3
 """Least volume of a velocity's own cell, of a whole one: smaller ones have this inertia, for the sake of the step."""
+SPLITS = (4, 4, 2)
+"""Parts along each axis of a box of one, two and three axes that the surface may cut."""
+ROUND = 2.5
+"""How many cells off the surface its distance is known."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Opened:
+    """How solids cut boxes (k,)."""
+
+    parts: Floats
+    """The open part of each."""
+    depths: Floats
+    """The mean distance of the open part from the surface [m]."""
+    centers: Floats
+    """(k, 3) the middle of the open part [m]."""
+    levels: Floats
+    """The distance of the box's own middle, below 0 in solids [m]; endless but beside the surface."""
+    normals: Floats
+    """(k, 3) away from the surface; 0 but beside it."""
 
 
 class Solids:
@@ -45,9 +65,17 @@ class Solids:
             except (TypeError, ValueError) as error:
                 message = f"'{ref.name}' cannot stand in a flow: {error}"
                 raise ScriptError([Diagnostic("no-domain", message, ref.span)]) from error
-        centers = self._centers()
-        self.cells = self._values(centers) > 0.0 if staircase else self.open(centers, range(faces.axes)) > 0.0
-        if not self.cells.any():
+        axes, centers = list(range(faces.axes)), self._centers()
+        self.opened = []
+        if staircase:
+            self.parts = np.where(self.values(centers) > 0.0, 1.0, 0.0)
+        else:
+            self.parts = self.cut(centers, faces.cells.shape[::-1], axes).parts
+            for component in axes:
+                others = [k for k in axes if k != component]
+                self.opened.append(self.cut(faces.points(component), faces.shapes[component], others))
+                self.opened[-1].parts[self.opened[-1].parts < SLIVER] = 0.0
+        if not (self.parts > 0.0).any():
             text = "the solids fill the whole box: no cell is left to flow through"
             raise ScriptError([Diagnostic("no-cell", text, refs[0].span, "take smaller ones, or a larger `size`")])
 
@@ -57,64 +85,104 @@ class Solids:
             found[:, 2] = 0.0
         return found
 
-    def _values(self, points: Floats) -> Floats:
+    def values(self, points: Floats) -> Floats:
         """The level of the union (k,): above 0 in the fluid."""
         found: Floats = np.min([level.values(points) for level in self.levels], axis=0)
         return found
 
     def fractions(self, areas: Floats) -> Floats:
         """The open part of each cell, at least LEAST of those with an open face, by the open ``areas`` of faces."""
-        found = self.cells.astype(float) if self.staircase else self.open(self._centers(), range(self.faces.axes))
-        alive = np.zeros(len(found), dtype=bool)
+        alive = np.zeros(len(self.parts), dtype=bool)
         for axis in range(self.faces.axes):
             own = areas[self.faces.index(axis)] > 0.0
             count, line = self.faces.cells.shape[axis], 2 - axis
             alive |= (
                 own.take(range(count), axis=line) | np.roll(own, -1, axis=line).take(range(count), axis=line)
             ).ravel()
-        parts: Floats = np.where(alive, np.maximum(found, LEAST), 0.0)
+        parts: Floats = np.where(alive, np.maximum(self.parts, LEAST), 0.0)
         return parts
 
     def owners(self) -> Any:
         """By face, then by cell: the number of the nearest solid."""
-        faces = self.faces
-        points = [*map(faces.points, range(faces.axes)), self._centers()]
-        return np.concatenate([np.argmin([level.values(one) for level in self.levels], axis=0) for one in points])
+        return np.concatenate(
+            [*(self.nearest(self.faces.points(axis)) for axis in range(self.faces.axes)), self.nearest(self._centers())]
+        )
 
-    def planes(self, points: Floats) -> tuple[Floats, Floats]:
-        """The level (k,) and its gradient (k, 3)."""
+    def nearest(self, points: Floats) -> Any:
+        """(k,) the number of the solid nearest to each point."""
+        return np.argmin([level.values(points) for level in self.levels], axis=0)
+
+    def planes(self, points: Floats, reach: float = 0.5) -> tuple[Floats, Floats]:
+        """The level (k,) and its gradient (k, 3), by differences over twice the ``reach`` in cells."""
         slopes = np.zeros((len(points), 3))
         for axis in range(self.faces.axes):
             step = np.zeros(3)
-            step[axis] = 0.5 * self.spacing[axis]
-            slopes[:, axis] = (self._values(points + step) - self._values(points - step)) / self.spacing[axis]
-        return self._values(points), slopes
+            step[axis] = reach * self.spacing[axis]
+            slopes[:, axis] = (self.values(points + step) - self.values(points - step)) / (2.0 * step[axis])
+        return self.values(points), slopes
 
-    def open(self, points: Floats, axes: Any) -> Floats:
-        """The open part (k,) of boxes of a cell's sides along these axes, of no extent along others."""
-        phi, slopes = self.planes(points)
-        chosen = list(axes)
-        found: Floats = np.where(phi > 0.0, 1.0, 0.0)
-        near = np.abs(phi) <= np.abs(slopes[:, chosen]) @ self.spacing[chosen]
-        found[near] = below(-phi[near], -slopes[near][:, chosen], self.spacing[chosen])
+    def cut(self, points: Floats, shape: tuple[int, ...], axes: Sequence[int]) -> Opened:
+        """How solids cut boxes of a cell's sides along these axes, of no extent along others, around points that are
+        (nz, ny, nx) next to each other."""
+        phi = self.values(points)
+        beside = np.flatnonzero(np.abs(phi) <= ROUND * _steps(phi.reshape(shape)).ravel())
+        slopes, steep = np.zeros((len(phi), 3)), np.full(len(phi), 1e-300)
+        slopes[beside] = self.planes(points[beside])[1]
+        steep[beside] = np.maximum(np.linalg.norm(slopes[beside], axis=1), 1e-9)
+        levels = phi / steep
+        parts, depths, centers = np.where(phi > 0.0, 1.0, 0.0), np.maximum(levels, 0.0), points.copy()
+        near = beside[np.abs(phi[beside]) <= np.abs(slopes[beside][:, axes]) @ self.spacing[axes]]
+        open_, deep, moments = np.zeros(len(near)), np.zeros(len(near)), np.zeros((len(near), 3))
+        splits = SPLITS[len(axes) - 1]
+        sides = self.spacing[axes] / splits
+        values = self._around(points[near], axes, splits)
+        slope, steepness = slopes[near][:, axes].copy(), steep[near]
+        off_plane = steepness**2 - (slope**2).sum(axis=1)
+        for place in product(range(1, splits + 1), repeat=len(axes)):
+            for k in range(len(axes)):
+                ahead, behind = (tuple(n + way * (j == k) for j, n in enumerate(place)) for way in (1, -1))
+                slope[:, k] = (values[ahead] - values[behind]) / (2.0 * sides[k])
+            own = values[place]
+            part = below(-own, -slope, sides)
+            depth = below(-own, -slope, sides, depth=True)
+            across = (slope**2).sum(axis=1)
+            leans = (part > 0.0) & (part < 1.0) & (across > 0.0)
+            off = np.where(leans, (depth - part * own) / np.where(leans, across, 1.0), 0.0)
+            moments[:, axes] += part[:, None] * (np.array(place) - 0.5 * (splits + 1)) * sides + off[:, None] * slope
+            open_ += part
+            deep += depth / np.sqrt(np.maximum(off_plane + across, 1e-18))
+        some = np.where(open_ > 0.0, open_, 1.0)
+        parts[near], depths[near] = open_ / splits ** len(axes), deep / some
+        centers[near] += moments / some[:, None]
+        return Opened(parts, depths, centers, levels, slopes / steep[:, None])
+
+    def _around(self, points: Floats, axes: Sequence[int], splits: int) -> dict[tuple[int, ...], Floats]:
+        """The level in the middles of parts of boxes around points (k,), from 1 on, and one further on both sides."""
+        found = {}
+        for place in product(range(splits + 2), repeat=len(axes)):
+            if sum(not 0 < one <= splits for one in place) <= 1:
+                shift = np.zeros(3)
+                shift[axes] = (np.array(place) - 0.5 * (splits + 1)) * self.spacing[axes] / splits
+                found[place] = self.values(points + shift)
         return found
 
     def face_parts(self) -> Floats:
         """By face: its open part."""
-        faces = self.faces
         if self.staircase:
-            return np.concatenate([self._between(component) for component in range(faces.axes)])
-        parts = [
-            self.open(faces.points(component), [k for k in range(faces.axes) if k != component])
-            for component in range(faces.axes)
-        ]
-        found = np.concatenate(parts)
-        found[found < SLIVER] = 0.0
-        return found
+            return np.concatenate([self._between(component) for component in range(self.faces.axes)])
+        return np.concatenate([one.parts for one in self.opened])
+
+    def middles(self) -> tuple[Any, Floats]:
+        """The numbers of faces that are cut, and the middles of what is open of them (k, 3)."""
+        if self.staircase:
+            return np.zeros(0, dtype=int), np.zeros((0, 3))
+        parts = self.face_parts()
+        cut = np.flatnonzero((parts > 0.0) & (parts < 1.0))
+        return cut, np.concatenate([one.centers for one in self.opened])[cut]
 
     def _between(self, component: int) -> Floats:
         """Of a component's faces: 1 where the cells on both sides are open."""
-        cells = self.cells.reshape(self.faces.cells.shape[::-1])
+        cells = (self.parts > 0.0).reshape(self.faces.cells.shape[::-1])
         line = 2 - component
         if self.faces.periodic[component]:
             both: Floats = (cells & np.roll(cells, 1, axis=line)).ravel().astype(float)
@@ -124,62 +192,19 @@ class Solids:
         found: Floats = (low & high).ravel().astype(float)
         return found
 
-    def ties(self, component: int, axis: int, closed: Any, shifts: Floats) -> Floats:
-        """Of a component's faces: the open part of what is between them and the one before along an axis, over their
-        distance in cells.
-
-        ``closed`` (m,) bool: faces that are shut. A staircase has its walls halfway to these, across a component.
-        """
-        shape = self.faces.shapes[component]
-        shut = closed.reshape(shape)
-        before = np.roll(shut, 1, axis=2 - axis)
-        if not self.staircase:
-            own = self.faces.points(component, (axis, -0.5))
-            shift = np.where(closed, 0.0, shifts[:, axis]).reshape(shape)
-            apart = 1.0 + (shift - np.roll(shift, 1, axis=2 - axis)) / self.spacing[axis]
-            apart = np.where(shut != before, self._to_wall(component, axis, shut, shifts), apart).ravel()
-            whole = self.open(own, [k for k in range(self.faces.axes) if k != axis])
-            found: Floats = whole / np.clip(apart, 0.25, 2.0)
-            return found
-        factor = np.where(shut != before, 1.0 if axis == component else 2.0, np.where(shut, 0.0, 1.0))
-        steps: Floats = factor.ravel()
-        return steps
-
-    def _to_wall(self, component: int, axis: int, shut: Any, shifts: Floats) -> Floats:
-        """Of a component's faces, where one of it and the one before along an axis is shut: how far the wall between
-        them is from the middle of the other one's fluid, in cells."""
-        points = self.faces.points(component)
-        level = self._values(points).reshape(shut.shape)
-        middle = self._values(points + shifts).reshape(shut.shape)
-        before = np.roll(level, 1, axis=2 - axis), np.roll(middle, 1, axis=2 - axis)
-        steps = np.where(shut, before[0] - level, level - before[0])
-        above = np.where(shut, before[1], middle)
-        found: Floats = np.where(steps > 0.0, above / np.where(steps > 0.0, steps, 1.0), 1.0)
+    def steps(self, component: int, axis: int, closed: Any) -> Floats:
+        """Of a component's faces (nz, ny, nx) in a staircase: viscous ties to the ones before along an axis, of one
+        in the open. Walls are halfway to ``closed`` faces, which are shut, across a component."""
+        before = np.roll(closed, 1, axis=2 - axis)
+        found: Floats = np.where(closed != before, 1.0 if axis == component else 2.0, np.where(closed, 0.0, 1.0))
         return found
 
-    def walls(self, component: int) -> tuple[Floats, Floats, Floats]:
-        """Of a component's faces: the volume of the own cell in parts, (wall's area)/(distance) in it [m], and how far
-        from the face's middle (m, 3) the middle of the fluid is that is nearer to a wall [m]."""
-        faces = self.faces
-        points = faces.points(component)
-        if self.staircase:
-            return np.ones(len(points)), np.zeros(len(points)), np.zeros_like(points)
-        volumes = self.open(points, range(faces.axes))
-        vector = np.zeros(len(points))
-        for axis in range(faces.axes):
-            across = [k for k in range(faces.axes) if k != axis]
-            ends = []
-            for side in (-0.5, 0.5):
-                shift = np.zeros(3)
-                shift[axis] = side * self.spacing[axis]
-                ends.append(self.open(points + shift, across))
-            vector += ((ends[1] - ends[0]) * faces.areas[axis]) ** 2
-        area = np.sqrt(vector)
-        some = area > 1e-9 * max(faces.areas)
-        middle = 0.5 * volumes * faces.volume / np.where(some, area, 1.0)
-        phi, slopes = self.planes(points)
-        steep = np.maximum(np.linalg.norm(slopes, axis=1), 1e-9)
-        distance = phi / steep
-        away = np.maximum(np.maximum(distance, middle), NEAREST * self.spacing[: faces.axes].min())
-        shifts = np.where(some, (away - distance) / steep, 0.0)[:, None] * slopes
-        return volumes, np.where(some, area / away, 0.0), shifts
+
+def _steps(phi: Floats) -> Floats:
+    """The largest differences from the values before and behind along each axis (nz, ny, nx), their sum."""
+    total = np.zeros(phi.shape)
+    for line in range(3):
+        step = np.abs(np.diff(phi, axis=line))
+        none = np.zeros([1 if k == line else n for k, n in enumerate(phi.shape)])
+        total += np.maximum(np.concatenate([none, step], axis=line), np.concatenate([step, none], axis=line))
+    return total

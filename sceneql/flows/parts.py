@@ -24,6 +24,10 @@ STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_sta
 FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME)]
 
 
+MOST_FACTORED = {2: 40_000, 3: 4_000}
+"""Cells of a flat or deep flow whose equation of the pressure is factored: the numbers stand in each of its terms."""
+
+
 class Wall(Record):
     """A wall, which fluid sticks to or slips along."""
 

@@ -8,19 +8,29 @@ import numpy as np
 
 from sceneql.flows import layout
 from sceneql.flows.transforms import plans
+from sceneql.grids.prepare_stages import laid_out
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.system import Cells, Grid
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.flows.staggered import Faces
     from sceneql.frame import Floats
     from sceneql.system import Assembly
 
 
 def write_pressure(
-    faces: Faces, opened: Any, solid: bool, areas: Floats, scales: Floats, assembly: Assembly, ints: Any
-) -> None:
-    """Write the integers of the pressure's equation, by the open ``areas`` of faces and those over volumes.
+    faces: Faces, opened: Any, solid: bool, areas: Floats, scales: Floats, solver: str, assembly: Assembly, ints: Any
+) -> tuple[NDArray[int64], str]:
+    """Write the integers of the pressure's equation, by the open ``areas`` of faces and those over volumes; the plan of
+    the linear solver that is named, empty for `auto` and `fast_transform`, and a text for `explain`.
 
-    ``opened``: by boundary face, whether fluid leaves there; ``solid``: whether solids stand in the flow.
+    ``opened``: by boundary face, whether fluid leaves there; ``solid``: whether solids stand in the flow. Raises
+    ScriptError where the solver cannot take the grid.
     """
     cells = faces.cells
     n = len(cells.volumes)
@@ -60,9 +70,51 @@ def write_pressure(
     ints[layout.PLANS : layout.EDGE_FIRST] = tables
     ints[layout.SPECTRUM] = assembly.floats(spectrum)
     ints[layout.PRESSURE] = assembly.floats(np.zeros(n))
+    if solver == "fast_transform" and not uniform:
+        text = "a fast transform needs a box each side of which is a way out as a whole or not at all"
+        raise ScriptError([Diagnostic("invalid", text, assembly.line(), "take `pressure: auto`")])
     rows = (cells.shape[0] + 9) * 8 + (cells.shape[0] + 1) * (cells.shape[1] + 1)
     room = max(room, faces.count + rows)
     ints[layout.WORK] = assembly.floats(np.zeros(room + (0 if uniform else 5 * n))) + (0 if uniform else 5 * n)
+    if solver in ("auto", "fast_transform"):
+        return np.zeros(0, dtype=np.int64), "" if uniform else " by conjugate gradients"
+    return _by_name(solver, faces, sink, assembly, ints)
+
+
+def _by_name(solver: str, faces: Faces, sink: Floats, assembly: Assembly, ints: Any) -> tuple[NDArray[int64], str]:
+    """The plan of a linear solver (grids/multigrid/linear_kernels), and a text for `explain`."""
+    cells, axes = faces.cells, faces.axes
+    n, shape = len(sink), cells.shape
+    numbers = assembly.numbers()
+    ties = [numbers[at : at + n] for at in ints[layout.CONDUCTANCES : layout.CONDUCTANCES + axes].tolist()]
+    around = sum(tie + np.roll(tie.reshape(shape[::-1]), -1, axis=2 - axis).ravel() for axis, tie in enumerate(ties))
+    held = np.where(sink < 0.0, 1.0, sink)
+    if solver == "direct":  # of each part of the flow without a way out, one cell stands still
+        alone = _parts(faces, ties)
+        firsts = np.unique(alone, return_index=True)[1]
+        closed = np.bincount(alone, weights=held) == 0.0
+        held[firsts[closed]] = np.maximum(around[firsts[closed]], 1e-300)
+    volumes, sinks = assembly.floats(np.zeros(n)), assembly.floats(held)
+    gx, gy, *gz = ints[layout.CONDUCTANCES : layout.CONDUCTANCES + axes].tolist()
+    described = Cells(shape, faces.periodic, np.zeros(n, dtype=bool), 0, 0)
+    plan, room, text = laid_out(solver, Grid(described, 0, volumes, sinks, (gx, gy, *gz, gx)[:3], False, -1, True))
+    ints[layout.ITERATES], ints[layout.SOLVER_AT] = 2, len(ints)
+    ints[layout.STORE], ints[layout.STORE_SIZE] = assembly.floats(np.zeros(n + room)), room
+    return plan, f" by {solver}, {text}, as the script says"
+
+
+def _parts(faces: Faces, ties: Sequence[Floats]) -> NDArray[int64]:
+    """By cell: the number of the part of the flow that it is of, which no open face leads out of."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    index = np.arange(len(ties[0])).reshape(faces.cells.shape[::-1])
+    tied = [tie > 0.0 for tie in ties]
+    rows = np.concatenate([index.ravel()[one] for one in tied])
+    columns = np.concatenate([np.roll(index, 1, axis=2 - axis).ravel()[one] for axis, one in enumerate(tied)])
+    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(index.size, index.size))
+    found: NDArray[int64] = connected_components(graph, directed=False)[1]
+    return found
 
 
 def _around_cell(faces: Faces, areas: Floats, axis: int) -> Floats:

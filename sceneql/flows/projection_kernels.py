@@ -26,13 +26,19 @@ from sceneql.flows.layout import (
     PLANS,
     PRESSURE,
     SCALES,
+    SEEPING,
     SINGULAR,
     SINK,
     SKIP,
+    SOLVER_AT,
     SPECTRUM,
     STARTS,
+    STORE,
+    STORE_SIZE,
     WORK,
 )
+from sceneql.grids.multigrid.layout import SOLVER
+from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
 from sceneql.system.signatures_kernels import TERM, A, F, I
 
@@ -70,13 +76,16 @@ def centered(x, sink, ints):
 
 
 @lean_inlined
-def through_faces(x, floats, ints):
-    """The root of the sum of squares of what flows through all faces [m^3/s]."""
+def through_faces(x, moving, floats, ints):
+    """The root of the sum of squares of what flows through all faces, and through cells from walls [m^3/s]."""
     faces = ints[FACES]
     u, areas = x[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
     total = 0.0
     for k in range(faces):
         total += (areas[k] * u[k]) ** 2
+    if moving and ints[SEEPING] >= 0:
+        for c in range(ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2]):
+            total += floats[ints[SEEPING] + c] ** 2
     return math.sqrt(total)
 
 
@@ -100,8 +109,9 @@ def by_iterations(b, small, floats, ints):
         r[c], b[c], volume[c] = b[c], 0.0, 0.0
     before = 0.0
     for count in range(MOST):
-        if not math.sqrt(dot(r, r)) > small:
-            return True
+        left = math.sqrt(dot(r, r))
+        if not left > small:
+            return left <= small
         for c in range(n):
             z[c] = cut[c] * r[c]
         multiply(nx, ny, nz, 0.0, volume, sink, gx, gy, gz, z, q)
@@ -123,7 +133,20 @@ def by_iterations(b, small, floats, ints):
             b[c] += length * p[c]
             r[c] -= length * q[c]
         before = now
-    return not math.sqrt(dot(r, r)) > small
+    return math.sqrt(dot(r, r)) <= small
+
+
+@lean_inlined
+def by_name(b, small, floats, ints):
+    """Solve the pressure's equation in place by the linear solver that the script names; whether it was reached."""
+    n, at = b.size, ints[STORE]
+    plan, found = ints[ints[SOLVER_AT] :], floats[at : at + n]
+    centered(b, floats[ints[SINK] : ints[SINK] + n], ints)
+    store = floats[at + n : at + n + ints[STORE_SIZE]]
+    solved = solver_at(plan[SOLVER])(plan, 1.0, small, floats, b, found, store)
+    for c in range(n):
+        b[c] = found[c]
+    return solved
 
 
 @lean_inlined
@@ -138,9 +161,12 @@ def first_face(axis, j, k, ints):
     return ints[STARTS + axis] + nx * (j + ny * k), -place * stride if around else stride
 
 
-@lean(types.void(A, A, A, I))
-def outflow(x, out, floats, ints):
-    """Net outflow of each cell (cells,) of velocities x, at ints[AT] and on [m^3/s]."""
+@lean(types.void(A, A, types.boolean, A, I))
+def outflow(x, out, moving, floats, ints):
+    """Net outflow of each cell (cells,) of velocities x, at ints[AT] and on [m^3/s].
+
+    ``moving``: less what walls that move push through it, which their rates, as they move steadily, have no part of.
+    """
     nx, ny, nz, faces = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2], ints[FACES]
     u, areas = x[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
     around = ints[PERIODIC] == 1
@@ -158,6 +184,9 @@ def outflow(x, out, floats, ints):
                 v, w, a, b = u[low:], u[low + up :], areas[low:], areas[low + up :]
                 for i in range(nx):
                     own[i] += b[i] * w[i] - a[i] * v[i]
+    if moving and ints[SEEPING] >= 0:
+        for c in range(nx * ny * nz):
+            out[c] -= floats[ints[SEEPING] + c]
 
 
 @lean_inlined
@@ -198,17 +227,23 @@ def less_gradient(x, q, factor, floats, ints):
                     lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, nx)
 
 
-@lean(types.boolean(A, A, I))
-def project(x, floats, ints):
-    """Make x free of divergence; floats[ints[PRESSURE]:] is then what its gradient takes away. Whether it is."""
+@lean(types.boolean(A, types.boolean, A, I))
+def project(x, moving, floats, ints):
+    """Make x free of divergence; floats[ints[PRESSURE]:] is then what its gradient takes away. Whether it is.
+
+    ``moving``: x are velocities, not rates (outflow).
+    """
     n = ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2]
     q = floats[ints[PRESSURE] : ints[PRESSURE] + n]
-    outflow(x, q, floats, ints)
+    outflow(x, q, moving, floats, ints)
     for c in range(n):
         q[c] = -q[c]
     solved = True
+    small = SMALL * through_faces(x, moving, floats, ints) if ints[ITERATES] > 0 else 0.0
     if ints[ITERATES] == 1:
-        solved = by_iterations(q, SMALL * through_faces(x, floats, ints), floats, ints)
+        solved = by_iterations(q, small, floats, ints)
+    elif ints[ITERATES] == 2:
+        solved = by_name(q, small, floats, ints)
     else:
         by_transform(q, floats, ints)
     less_gradient(x, q, 1.0, floats, ints)
@@ -222,5 +257,5 @@ def constrain(t, y, rate, floats, ints):
     for k in range(ints[FACES]):
         if floats[ints[INVERSES] + k] == 0.0:
             rate[at + k] = floats[ints[MOVES] + k]
-    if floats[ints[SKIP]] == 0.0 and not project(rate, floats, ints):
+    if floats[ints[SKIP]] == 0.0 and not project(rate, False, floats, ints):
         rate[at] = math.nan

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.flows import layout
+from sceneql.grids.multigrid.layout import HISTORY, RECORD
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def measure(what: str, cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState) -> Any:
-    """An output of the word `flow`: (cells,), (cells, 3), (3,) or float."""
+    """An output of the word `flow`: (cells,), (cells, 3), (3,), (iterations,) or float."""
     match what:
         case "centers":
             return cells.centers()
@@ -31,11 +32,15 @@ def measure(what: str, cells: FieldLayout, ints: tuple[int, ...], density: float
             at = ints[layout.PRESSURE]
             pressure = density * state.floats[at : at + cells.count]
             return pressure - pressure.mean() if ints[layout.SINGULAR] else pressure
+        case "residuals":
+            end = ints[layout.STORE] + cells.count + ints[layout.STORE_SIZE]
+            history = state.floats[end - RECORD + HISTORY : end]
+            return history[history >= 0.0]
         case "divergence":
             from sceneql.flows.projection_kernels import outflow
 
             out = np.zeros(cells.count)
-            outflow(state.y, out, state.floats, np.array(ints))
+            outflow(state.y, out, True, state.floats, np.array(ints))
             return float(np.abs(out).max() / np.prod(cells.spacing))
     sums = [_own(ints, state.floats, cells, axis) for axis in range(ints[layout.AXES])]
     velocities = components(ints, state.y)

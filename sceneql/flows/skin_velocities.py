@@ -14,47 +14,60 @@ if TYPE_CHECKING:
 
     from sceneql.flows.obstacles import Solids
     from sceneql.flows.parts import Side
-    from sceneql.flows.staggered import Faces
     from sceneql.frame import Floats
 
 THROUGH = 0.05
 """Velocity across a wall, in parts of the largest on it, from which on it counts as one through it."""
 
+NEAR = 0.05
+"""Reach of the differences that feet of walls are found by, in cells."""
 
-def wall_velocities(solids: Solids, boundary: Mapping[str, Side], faces: Faces) -> Floats:
-    """By face: the velocity along its axis of the wall of the nearest solid [m/s], by parts named like solids; beside
-    a wall that of its nearest point.
 
-    Raises ScriptError where a velocity varies in time, has other components than the box sides, or leads through.
-    """
-    found = np.zeros(faces.count)
-    owners = solids.owners()[: faces.count]
-    for number, ref in enumerate(solids.refs):
-        part = boundary.get(ref.name)
-        if part is None or part.velocity is None:
-            continue
-        formula = part.velocity
-        if timed(formula.expr):
-            text = "the velocity of a solid's wall does not vary in time"
-            raise ScriptError([Diagnostic("invalid", text, formula.span)])
-        if formula.expr.type.shape != (faces.axes,):
-            text = f"this velocity needs {faces.axes} components, one for each side of the box"
-            raise ScriptError([Diagnostic("wrong-shape", text, formula.span)])
-        points = np.concatenate([faces.points(axis) for axis in range(faces.axes)])
-        across, speed = np.zeros(len(points)), np.zeros(len(points))
-        level, slopes = solids.planes(points)
+class SkinVelocities:
+    """By parts of a boundary that are named like solids."""
+
+    def __init__(self, solids: Solids, boundary: Mapping[str, Side]) -> None:
+        """Raises ScriptError where a velocity varies in time, has other components than the box sides, or leads
+        through its wall."""
+        self.solids = solids
+        named = ((number, boundary.get(ref.name)) for number, ref in enumerate(solids.refs))
+        self.formulas = [(number, part.velocity) for number, part in named if part is not None and part.velocity]
+        axes = solids.faces.axes
+        for number, formula in self.formulas:
+            if timed(formula.expr):
+                text = "the velocity of a solid's wall does not vary in time"
+                raise ScriptError([Diagnostic("invalid", text, formula.span)])
+            if formula.expr.type.shape != (axes,):
+                text = f"this velocity needs {axes} components, one for each side of the box"
+                raise ScriptError([Diagnostic("wrong-shape", text, formula.span)])
+            points = np.concatenate([solids.faces.points(axis) for axis in range(axes)])
+            feet, normals, beside = self._feet(points)
+            mine = beside & (solids.nearest(points) == number)
+            if not mine.any():
+                continue
+            there = np.stack([component_at(formula, axis, feet[mine], 0.0) for axis in range(axes)], axis=1)
+            across = (there * normals[mine][:, :axes]).sum(axis=1)
+            if np.abs(across).max() > THROUGH * np.sqrt((there**2).sum(axis=1).max()):
+                text = "a wall moves along itself: this velocity leads through that of the solid"
+                raise ScriptError([Diagnostic("invalid", text, formula.span, "turn it about its own axis: `[-y, x]`")])
+
+    def _feet(self, points: Floats) -> tuple[Floats, Floats, Floats]:
+        """Points of walls nearest to those that are beside them, else these; normals (k, 3); which are beside."""
+        level, slopes = self.solids.planes(points, NEAR)
         steep = np.maximum(np.linalg.norm(slopes, axis=1), 1e-9)
-        beside = np.abs(level) < 1.5 * steep * faces.cells.spacing[: faces.axes].max()
+        spacing = self.solids.spacing[: self.solids.faces.axes]
+        beside = np.abs(level) < 1.5 * steep * spacing.max()
         feet = points - np.where(beside, level / steep**2, 0.0)[:, None] * slopes
-        near = (owners == number) & beside
-        for axis in range(faces.axes):
-            there = component_at(formula, axis, feet, 0.0)
-            across += there * slopes[:, axis] / steep
-            speed += there**2
-            mine = slice(faces.starts[axis], faces.starts[axis] + int(np.prod(faces.shapes[axis])))
-            own = owners[mine] == number
-            found[mine] = np.where(own, component_at(formula, axis, feet[mine], 0.0), found[mine])
-        if near.any() and np.abs(across[near]).max() > THROUGH * np.sqrt(speed[near].max()):
-            text = "a wall moves along itself: this velocity leads through that of the solid"
-            raise ScriptError([Diagnostic("invalid", text, formula.span, "turn it about its own axis: `[-y, x]`")])
-    return found
+        return feet, slopes / steep[:, None], beside
+
+    def at(self, points: Floats, component: int) -> Floats:
+        """A component (k,) of the velocity of the wall nearest to points (k, 3) [m/s]."""
+        found = np.zeros(len(points))
+        if not self.formulas or not len(points):
+            return found
+        feet, _, _ = self._feet(points)
+        owners = self.solids.nearest(points)
+        for number, formula in self.formulas:
+            mine = owners == number
+            found[mine] = component_at(formula, component, feet[mine], 0.0)
+        return found

@@ -67,10 +67,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """The arrays of grid_stage_kernels.step. Raises LimitRefused where a named linear solver cannot take the grid."""
     import numpy as np
 
-    from sceneql.compiled.generated import function
-    from sceneql.compiled.numbered_kernels import number_of
     from sceneql.grids.grid_stage_kernels import SHARE
-    from sceneql.grids.multigrid import linear_kernels as linear
     from sceneql.linear.newton_kernels import ABSOLUTE, MEMORY, RELATIVE
 
     grid = system.fields.single
@@ -83,20 +80,38 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     absolute *= largest if stepper.control.by_scale else 1.0
     separated = separate(grid, system.floats) if _may_separate(grid, stepper.needs.linear) else None
     name, why = _choice(grid, stepper.needs.linear, separated is not None)
-    cells = grid.cells.shape[0] * grid.cells.shape[1] * grid.cells.shape[2]
     plan = _PLANS[name](grid) if separated is None or name != "fast_transform" else _transform(grid, separated)
-    solver = number_of(function(KERNELS[name]), linear.SOLVE)
-    exact = int(MOST[name] == 1)
-    offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at)
-    head = [solver, exact, *grid.cells.shape, grid.at, *offsets, int(grid.varying), MOST[name], grid.fed_at]
-    assert len(head) == layout.PLAN
-    store = 2 * cells + plan.room + layout.RECORD
+    numbers, store = _laid_out(name, grid, plan)
     return Prepared(
         settings=np.array([share * relative, share * absolute if stepper.control.adaptive else 0.0, *tableau]),
-        numbers=np.concatenate([[stages, explicit_first, embedded, error_order], head, plan.numbers]).astype(np.int64),
+        numbers=np.concatenate([[stages, explicit_first, embedded, error_order], numbers]),
         work=(3 + stages) * len(system.y) + store,
         text=f"linear systems by {name}, {plan.text}, {why}",
     )
+
+
+def laid_out(name: str, grid: Grid) -> tuple[NDArray[int64], int, str]:
+    """Of a linear solver by name, but `fast_transform`: its plan (linear_kernels), the floats of its store, a text.
+
+    Raises LimitRefused where factors would not fit.
+    """
+    plan = _PLANS[name](grid)
+    return (*_laid_out(name, grid, plan), plan.text)
+
+
+def _laid_out(name: str, grid: Grid, plan: _Plan) -> tuple[NDArray[int64], int]:
+    import numpy as np
+
+    from sceneql.compiled.generated import function
+    from sceneql.compiled.numbered_kernels import number_of
+    from sceneql.grids.multigrid.linear_kernels import SOLVE
+
+    solver, exact = number_of(function(KERNELS[name]), SOLVE), int(MOST[name] == 1)
+    offsets = (grid.volumes_at, grid.sink_at, *grid.faces_at)
+    head = [solver, exact, *grid.cells.shape, grid.at, *offsets, int(grid.varying), MOST[name], grid.fed_at]
+    assert len(head) == layout.PLAN
+    cells = grid.cells.shape[0] * grid.cells.shape[1] * grid.cells.shape[2]
+    return np.concatenate([head, plan.numbers]).astype(np.int64), 2 * cells + plan.room + layout.RECORD
 
 
 def likely_kernels(grid: Grid, linear: str) -> tuple[str, ...]:

@@ -72,6 +72,8 @@ class Flow:
     """[kg/m^3]"""
     viscosity: float
     """[Pa s]"""
+    pressure: str
+    """How it is solved for, for `explain`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -295,11 +295,11 @@ def spheres(cells: str, part: str) -> None:
     radius = (3 * fraction / (4 * math.pi)) ** (1 / 3)
     ball = f"objects: {{ball: {{sphere: {{position: 0.5 0.5 0.5 m, radius: {radius!r} m}}}}}}\n"
     air = Air(
-        "{sbdf2: {step: 2 ms}}", 2.0, ball, size="1 1 1 m", cell=f"{1 / n!r} m", density="1 kg/m^3",
+        "{sbdf2: {step: 5 ms}}", 2.0, ball, size="1 1 1 m", cell=f"{1 / n!r} m", density="1 kg/m^3",
         viscosity="1 Pa*s", around="[ball]", force='"[1e-3, 0, 0]"',
         boundary=f"{{{WAVES}, back: {{periodic: yes}}}}",
     )  # fmt: skip
-    for now in (0.2, 0.4):
+    for now in (0.5, 1.0):
         air.run.advance(now)
         mean = float(air.read("momentum")[0])
         found = 1e-3 / (6 * math.pi * radius * mean)

@@ -99,9 +99,13 @@ def frame(low: Floats, high: Floats, cell: float, depth: float, flat: bool) -> F
     return Frame((int(counts[0]), int(counts[1]), int(counts[2])), middle - 0.5 * counts * spacing, spacing)
 
 
-def below(phi: Floats, slopes: Floats, sides: Floats) -> Floats:
-    """Part of boxes (m,) in which phi + slopes . x < 0, x from -sides/2 to sides/2: (m,); slopes (m, k), sides (k,)."""
+def below(phi: Floats, slopes: Floats, sides: Floats, depth: bool = False) -> Floats:
+    """Part of boxes (m,) in which phi + slopes . x < 0, x from -sides/2 to sides/2: (m,); slopes (m, k), sides (k,).
+
+    ``depth``: instead the mean over the whole box of -(phi + slopes . x) there, and of 0 elsewhere.
+    """
     k = slopes.shape[1]
+    power = k + 1 if depth else k
     rise = np.abs(slopes) * sides
     largest = np.maximum(rise.max(axis=1), np.abs(phi))
     largest = np.where(largest > 0.0, largest, 1.0)
@@ -115,8 +119,12 @@ def below(phi: Floats, slopes: Floats, sides: Floats) -> Floats:
     part = np.zeros(len(phi))
     for size in range(k + 1):
         for chosen in combinations(range(k), size):
-            part += (-1.0) ** size * np.maximum(0.0, room - rise[:, list(chosen)].sum(axis=1)) ** k
-    part /= factorial(k) * rise.prod(axis=1)
+            part += (-1.0) ** size * np.maximum(0.0, room - rise[:, list(chosen)].sum(axis=1)) ** power
+    part /= factorial(power) * rise.prod(axis=1)
+    if depth:
+        part = np.where(room <= 0.0, 0.0, np.where(room >= whole, room - 0.5 * whole, np.maximum(part, 0.0)))
+        deep: Floats = np.where(some, part * total, np.maximum(-phi, 0.0)) * largest
+        return deep
     found: Floats = np.clip(np.where(room <= 0.0, 0.0, np.where(room >= whole, 1.0, part)), 0.0, 1.0)
     return found
 

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sceneql import kinds
-from sceneql.flows.parts import FORCE, Buoyancy, Side, Start, fastest_turn
+from sceneql.flows.parts import FORCE, MOST_FACTORED, Buoyancy, Side, Start, fastest_turn
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
 from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of
+from sceneql.grids.multigrid.linear_solvers import Linear
 from sceneql.kinds import Gives, Model, Problem, Quantity, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, ModelState
 
 FIELDS = ("speed", "vorticity", "pressure")
+AT_ONCE = ("auto", "fast_transform", "direct")
+"""Solvers of the pressure without a history of residuals."""
 
 
 class Flow(Model):
@@ -62,6 +65,11 @@ class Flow(Model):
         "How cells meet these solids: cut by them, or whole where their centers lie outside.", "cut_cell"
     )
     advection: Literal["koren", "central", "upwind"] = field("How velocities are carried.", "koren")
+    pressure: Linear = field(
+        "How its equation is solved: `auto` by fast transforms, in a box alone, or else with these as preconditioner; "
+        "the others compare, and give the output `residuals`.",
+        "auto",
+    )
     force: FORCE | None = field("A force on each cubic meter, by place and time: a component for each side.", None)
     buoyancy: Buoyancy | None = field("What a temperature or concentration does to it.", None)
 
@@ -91,6 +99,12 @@ class Flow(Model):
         around = written.get("around", ())
         names = [around] if isinstance(around, str) else around
         found = dict(cls.gives)
+        if written.get("pressure", "auto") not in AT_ONCE:
+            rate = quantity_type(dim.VOLUME * dim.FREQUENCY, (None,))
+            text = (
+                "What the latest solution for the pressure left, by iterations: of `gauss_seidel`, `sor` every fourth."
+            )
+            found["residuals"] = Gives(rate, text, computed=True)
         for name in names if isinstance(names, list | tuple) else ():
             found[f"{name}.force"] = Gives(quantity_type(dim.FORCE, (3,)), "What the fluid does to it.", computed=True)
             found[f"{name}.torque"] = Gives(
@@ -121,6 +135,12 @@ class Flow(Model):
             yield Problem(text, ("cell",), code="limit-refused")
         if min(shape[: len(self.size)]) < 2:
             yield Problem("a flow has two cells or more along each side", ("cell",))
+        most = MOST_FACTORED[len(self.size)]
+        if self.pressure == "direct" and most < cells <= MOST_CELLS:
+            text = f"factors of {cells:,} cells would not fit: at most {most:,} in {len(self.size)} dimensions"
+            yield Problem(f"{text}; take `multigrid`", ("pressure",), code="limit-refused")
+        if self.pressure == "fast_transform" and self.around:
+            yield Problem("a fast transform needs a box without solids: take `auto`", ("pressure",))
         solids = {ref.name for ref in self.around}
         for name, part in self.boundary.items():
             if name in solids and (part.wall is None or part.velocity is None or part.chosen or part.slip > 0.0):
@@ -176,7 +196,5 @@ class Flow(Model):
             from sceneql.flows.solid_forces import on_solid
 
             number = [ref.name for ref in self.around].index(name)
-            fluid, part = (self.density, self.viscosity), self.boundary.get(name)
-            wall = None if part is None else part.velocity
-            return on_solid(what, number, self.layout(state, output), state.ints[5:], fluid, wall, state)
+            return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)
         return measure(output, self.layout(state, output), state.ints[5:], self.density, state)
