@@ -375,6 +375,8 @@ class _Checker:
         hint = instead("part", name) or suggestion(name, [*choices, *words])
         if section in self.script.sections and inside in self.entries:
             hint = f"a part is named without its section: write `{inside}`"
+        elif "models" in (mark.family, mark.also) and (model := self.names.model_of(name)):
+            hint = f"'{name}' is one of the bodies or masses of '{model}': write `{model}`, which means all of them"
         elif hint is None and words:
             hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
         self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)

@@ -228,7 +228,8 @@ class Reader:
             wanted = None if self.solved is None else self.solved * wanted
         # A plain field stands for anything, a number of rabbits or of moles: so do the defines in its formulas.
         of_any = mark.of_field and self.solved is not None and self.solved.plain
-        of = Wanted(wanted, of_any, mark.at_start)
+        by_of = mark.of_field and self.solved is not None and not self.solved.plain
+        of = Wanted(wanted, of_any, mark.at_start, by_of)
         return kinds.Formula(self._some(read_formula(node, symbols, of, what, self.names, self.found)), node.span)
 
     def _union(self, node: Node, arms: tuple[Any, ...], what: str) -> Any:
