@@ -148,8 +148,10 @@ class Watch:
         for island, fields in self._fields:
             for extremes in fields:
                 found += extremes.warnings(island)
-        for one in (*self.invariants, *self._painted):
+        for one in self.invariants:
             found += one.warnings()
+        for color in self._painted:
+            found += color.warnings()
         for balance in self.balances:
             tasks, title = balance.island.graph.tasks, ", ".join(balance.models)
             span = tasks[balance.models[0]].span
