@@ -166,9 +166,9 @@ def cut(level: Level, grid: Frame, held: Callable[[Floats, Any], Any] | None = N
     volumes[volumes < LEAST_VOLUME * whole] = 0.0
     stiff = np.zeros(len(phi), dtype=bool)
     if held is not None:
-        steepness = np.maximum(np.linalg.norm(slopes, axis=1), 1e-300)
+        squares = (slopes**2).sum(axis=1)  # zero where a plate is thinner than a cell: its faces are the nearest
         foot = centers[near]
-        foot[:, list(axes)] -= (phi[near] / steepness**2)[:, None] * slopes
+        foot[:, list(axes)] -= (phi[near] / np.where(squares > 0.0, squares, np.inf))[:, None] * slopes
         stiff[near] = held(foot, level.pieces(foot))
         volumes[stiff] = np.where(phi[stiff] < 0.0, whole, 0.0)
     areas = [_areas(level, grid, axis, volumes > 0.0, near, stiff) for axis in range(3)]
