@@ -15,6 +15,7 @@ from sceneql.grids.domain import svg
 from sceneql.grids.domain.mesh import MeshLevel
 from sceneql.grids.domain.polygon import Polygon
 from sceneql.grids.domain.svg_path import curves
+from sceneql.pipeline import load, simulate
 from sceneql.quantities.diagnostic import ScriptError
 from test_grids import Basin
 
@@ -231,3 +232,24 @@ def test_a_polygon_knows_its_nearest_side(count, seed):
     # A ring around the origin: how often it winds around a point is the sum of its angles.
     turns = np.angle((b - points[:, None, :2]) @ [1, 1j] / ((a - points[:, None, :2]) @ [1, 1j])).sum(axis=1)
     np.testing.assert_allclose(found, np.where(np.abs(turns) > np.pi, -away, away), atol=1e-12)
+
+
+def test_a_plate_thinner_than_a_cell_is_a_flat_domain_with_values_on_its_sides(tmp_path):
+    """Across its faces alone its field has a slope there."""
+    (tmp_path / "scene.yaml").write_text("""
+objects: {sheet: {box: {size: 1 0.6 0.02 m}}}
+models:
+  plate:
+    diffusion:
+      domain: sheet
+      flat: yes
+      cell: 5 cm
+      coefficient: 1 m^2/s
+      boundary: {left: {value: 3, where: x < -0.49}, right: {value: 1, where: x > 0.49}}
+clock: {end: 9 s}
+outputs: {data: {record: {of: [plate.concentration, plate.centers]}}}
+""")
+    with np.errstate(divide="raise", invalid="raise"):
+        *_, end = simulate(load(tmp_path / "scene.yaml"), [0.0, 9.0])
+    x = end.read("plate", "centers")[:, 0]
+    assert end.read("plate", "concentration") == pytest.approx(2 - 2 * x, abs=1e-6)

@@ -435,3 +435,15 @@ expect: {start: {of: initial(plate.max), value: 293.15, tolerance: 1e-9, because
     path.write_text(script.replace("plate.NAME", "plate.concentration"))  # its name before
     (link,) = load(path).tasks["map"].kind.of.links
     assert (link.output, link.type.dimension) == ("concentration", TEMPERATURE)
+
+
+def test_a_field_that_draws_itself_is_seen_in_place_of_its_domain(tmp_path):
+    (tmp_path / "scene.yaml").write_text("""
+objects:
+  sheet: {box: {size: 1 0.6 0.02 m}}
+  hole: {sphere: {radius: 0.12 m}}
+  holed: {difference: {of: [sheet, hole]}}
+models: {plate: {diffusion: {domain: holed, flat: yes, cell: 2 cm, coefficient: 1e-4 m^2/s, initial: x}}}
+outputs: {still: {image: {size: 64 36, time: 0 s}}}
+""")
+    assert load(tmp_path / "scene.yaml").drawn["still"] == ("plate_map",)

@@ -8,7 +8,9 @@ import pytest
 import stage
 from renderers.trace import Trace
 from renderers.tracing.light.albedo_kernels import REFLECTED
+from sceneql.compiler.catalogue import Catalogue
 from sceneql.frame import Sky, Surface
+from sceneql.pipeline import load, simulate
 from stage import frame, sun, view
 
 UNIFORM = Sky((1.0, 1.0, 1.0), (1.0, 1.0, 1.0), (1.0, 1.0, 1.0))
@@ -68,3 +70,20 @@ def test_rough_white_metal_gives_the_light_of_many_suns_back(roughness):
     for eye in ((0.0, 5.0, 0.1), (4.0, 4.0, 0.0), (5.0, 2.0, 0.0)):
         seen = view(eye, size=(4, 4), half_height=0.1)
         assert Trace().draw(frame(stage.floor(metal), lights=suns, seen=seen)).linear == pytest.approx(1.0, abs=0.03)
+
+
+@pytest.mark.parametrize("word", sorted(set(Catalogue().words("materials")) - {"glow"}))
+def test_white_materials_of_every_word_in_a_furnace_are_not_to_be_seen(word, tmp_path):
+    fields = Catalogue().load("materials", word).model_fields
+    white = ", ".join(f"{name}: 1 1 1" for name in ("color", "other") if name in fields)
+    for roughness in np.linspace(0.0, 1.0, 6) if "roughness" in fields else [None]:
+        rough = "" if roughness is None else f", roughness: {roughness}"
+        script = (
+            f"materials: {{paint: {{{word}: {{{white}{rough}}}}}}}\nobjects: {{ball: {{sphere: {{material: paint}}}}}}"
+        )
+        (tmp_path / "scene.yaml").write_text(script + "\noutputs: {still: {image: {time: 0 s}}}")
+        graph = load(tmp_path / "scene.yaml")
+        (moment,) = simulate(graph, [0.0])
+        surface = moment.surface("ball", graph.tasks["ball"].kind.material, None)
+        picture = Trace().draw(frame(stage.sphere(surface), lights=[UNIFORM], seen=view(size=(48, 48)))).linear
+        assert np.abs(picture - 1).max() < 0.01

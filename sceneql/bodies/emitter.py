@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql import kinds
 from sceneql.bodies.filling.fill import Fill, chance_key, draws, filled
@@ -35,6 +35,8 @@ def _aged(value: Value, age: float) -> Any:
 
 class Aging(Record):
     """How a particle changes with its age: here `time` counts from its birth, in values and keyframes alike."""
+
+    own_time: ClassVar[bool] = True
 
     color: kinds.Color | None = field("Its color, in place of the model's.", None)
     radius: kinds.Length | None = field("Its radius in the picture, in place of the model's.", None)

@@ -12,22 +12,22 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel
-
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
 from sceneql.compiler.read import Reader, Unreadable
 from sceneql.compiler.unknown import report_unknown
 from sceneql.compiler.values import read_expr
+from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
-from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, Text, Value, written_name
+from sceneql.kinds import Gives, Kind, Object, Quantity, Ref, Refers, Settings, Value, written_name
 from sceneql.language.scope import Entry, Scope
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure, whole, written
+from sceneql.language.tree import Sequence as SequenceNode
 from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
-from sceneql.quantities.expression import Link, Type, walk
+from sceneql.quantities.expression import Type
 from sceneql.quantities.other_words import instead
 
 SETTINGS = tuple(Settings.model_fields)
@@ -332,7 +332,9 @@ class _Checker:
         if unsure(node):
             return None
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
-        self.found.error("entry-shape", message, node.span)
+        together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
+        help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
+        self.found.error("entry-shape", message, node.span, help=help)
         return None
 
     def _body(self, node: Scalar, model: str, body: str) -> Ref | None:
@@ -375,24 +377,8 @@ class _Checker:
         hint = instead("part", name) or suggestion(name, [*choices, *words])
         if section in self.script.sections and inside in self.entries:
             hint = f"a part is named without its section: write `{inside}`"
+        elif "models" in (mark.family, mark.also) and (model := self.names.model_of(name)):
+            hint = f"'{name}' is one of the bodies or masses of '{model}': write `{model}`, which means all of them"
         elif hint is None and words:
             hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
         self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)
-
-
-def values_of(part: Any) -> list[Value]:
-    """All values in time below a kind, record, list or dict."""
-    if isinstance(part, Value):
-        return [part]
-    if isinstance(part, Text):
-        return part.values
-    if isinstance(part, BaseModel):
-        return [value for name in type(part).model_fields for value in values_of(getattr(part, name))]
-    if isinstance(part, dict):
-        return [value for item in part.values() for value in values_of(item)]
-    if isinstance(part, list | tuple):
-        return [value for item in part for value in values_of(item)]
-    expr = getattr(part, "expr", None)
-    if expr is not None and any(isinstance(node, Link) for node in walk(expr)):
-        return [Value(expr)]
-    return []

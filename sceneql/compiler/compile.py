@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.compiler.check import KEYS, check, values_of
+from sceneql.compiler.check import KEYS, check
 from sceneql.compiler.names import Parsed
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
@@ -25,6 +25,7 @@ from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.compiler.passes.unmoved import report_moving
 from sceneql.compiler.studies import check_studies
+from sceneql.compiler.values_below import values_of
 from sceneql.graph import Origin, SimulationGraph, Task, Variants
 from sceneql.kinds import Camera, Clock, Exceeds, Model, Object, Output, Picture
 from sceneql.language.script import Script

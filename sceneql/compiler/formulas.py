@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
 from sceneql.compiler.values import origin, parsed_text
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
-from sceneql.quantities.bind import SECONDS, bind
+from sceneql.quantities.bind import SECONDS, Lookup, bind
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, suggestion
-from sceneql.quantities.dimension import ANGLE, PERCENTAGE, PLAIN, Dimension
-from sceneql.quantities.expression import Expr, Link, Symbol, Type, Vector, walk
+from sceneql.quantities.dimension import ANGLE, PERCENTAGE, PLAIN, TEMPERATURE, Dimension
+from sceneql.quantities.expression import Expr, Link, Name, Number, Symbol, Type, Vector, walk
 from sceneql.quantities.operations import CONSTANTS
 from sceneql.quantities.parser import parse_expression
 from sceneql.quantities.span import Span
@@ -22,11 +23,12 @@ from sceneql.quantities.units import describe, in_words
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """The dimension of a formula's values. ``of_any``: what a define or an output was is not asked; ``at_start``: it is
-    evaluated before the run, when no part has a value."""
+    evaluated before the run, when no part has a value; ``by_of``: the model's `of` gives the dimension."""
 
     dimension: Dimension | None
     of_any: bool = False
     at_start: bool = False
+    by_of: bool = False
 
     def suits(self, has: Dimension | None) -> bool:
         """Whether a formula may be of a dimension: of this one, or a plain number in SI.
@@ -74,12 +76,15 @@ def read_formula(
         expr = names.lookup(parts, span)
         return expr if expr is None or isinstance(expr, Diagnostic) else names.plain(expr)
 
+    own = Diagnostics()
     try:
-        expr = bind(parse_expression(parsed_text(node), node.content), lookup, found)
+        parsed = parse_expression(parsed_text(node), node.content)
+        expr = bind(parsed, lookup, own)
+        better = _without_units(parsed, node, free, lookup, own) if own.found else None
     except ScriptError as error:
-        for diagnostic in error.diagnostics:
-            found.add(diagnostic)
+        found.extend(error.diagnostics)
         return None
+    found.extend(own.found if better is None else [replace(own.found[0], help=better, notes=())])
     if expr is None or not momentary(expr, node.span, found):
         return None
     link = next((part for part in walk(expr) if isinstance(part, Link)), None) if wanted.at_start else None
@@ -88,6 +93,32 @@ def read_formula(
         return None
     if not wanted.suits(expr.type.dimension):
         message = f"{what} is {describe(wanted.dimension)}, but this is {in_words(expr.type.dimension)}"
-        found.error("dimension-mismatch", message, node.span, notes=origin(expr, node.span))
+        warm = wanted.by_of and expr.type.dimension == TEMPERATURE
+        help = "what the model solves is a temperature where it says `of: temperature`" if warm else None
+        found.error("dimension-mismatch", message, node.span, help=help, notes=origin(expr, node.span))
         return None
     return expr
+
+
+def _without_units(parsed: Expr, node: Scalar, free: set[str], lookup: Lookup, found: Diagnostics) -> str | None:
+    """The help where units alone are wrong, because the free symbols are plain numbers: the formula without units."""
+    symbols = {n.parts[0] for n in walk(parsed) if isinstance(n, Name) and n.parts[0] in free}
+    if not symbols or any(one.code != "dimension-mismatch" or one.help == SECONDS for one in found.found):
+        return None
+    text, start = node.content.text, node.content.start
+    if parsed_text(node) != text:
+        return None
+    quantities = {n.span: n.value for n in walk(parsed) if isinstance(n, Number) and not n.bare and n.span is not None}
+    for span in sorted(quantities, key=lambda span: -span.start):
+        first, last = span.start - start, span.end - start
+        if re.search(r"\(\s*$", text[:first]) and re.match(r"\s*\)", text[last:]) and quantities[span] >= 0:
+            first, last = text.rindex("(", 0, first), text.index(")", last) + 1
+        lost = re.search(r"[*/]\s*$", text[:first]) if quantities[span] == 1 else None
+        number = "" if lost else f"{quantities[span]:.12g}"
+        text = text[: lost.start() if lost else first] + number + text[last:]
+    trial = Diagnostics()
+    if bind(parse_expression(text, node.content), lookup, trial) is None or trial.found:
+        return None
+    names = sorted(symbols)
+    these = f"`{names[0]}` is a plain number" if len(names) == 1 else f"`{'`, `'.join(names)}` are plain numbers"
+    return f"{these} here: write all others without units too, `{' '.join(text.split())}`"

@@ -165,6 +165,13 @@ class Names:
             part = part.rpartition(".")[0]
         return (part, name[len(part) + 1 :]) if part else (name, "")
 
+    def model_of(self, body: str) -> str | None:
+        """The model that has a body or mass of this name, written with or without the model's own before it."""
+        for part in self.parts:
+            if f"{body.removeprefix(f'{part}.')}.position" in (self.outputs_of(part) or ()):
+                return part
+        return None
+
     def _is_reported(self, parts: tuple[str, ...]) -> bool:
         """Whether the definition of the name, or of the part that would have it, was reported as unreadable."""
         wanted = ".".join(parts)
@@ -222,6 +229,9 @@ class Names:
         else:
             hint = instead("name", wanted)
             hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])
+            model = None if hint else self.model_of(parts[0])
+            if model is not None:
+                hint = f"it is one of the bodies or masses of '{model}': write `{model}.{wanted}`"
             if hint is None and len(parts) > 1:
                 hint = self._meant(parts, parts_known)
             if hint is None and wanted in UNITS:

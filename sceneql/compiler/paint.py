@@ -23,6 +23,9 @@ QUATERNION = Type((4,), PLAIN)
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _HEX = re.compile(r"0[xX]([0-9a-fA-F]{6})")
 _DIGITS = re.compile(r"\d+\.?\d*|\.\d+")
+DARK = 16
+"""Numbers that are all up to this are no bytes, of which a color of these would be black to the eye."""
+BRIGHTER = "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
 ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
 UNTURNED = "`1 0 0 0` turns nothing, and `{about: z, angle: 30 deg}` by an angle"
 
@@ -49,7 +52,8 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
     numbers = evaluate(value.expr, {}) if value is not None and value.constant else (0.0,)
     if not all(0 <= number <= 1 for number in numbers):  # nor are they NaN
-        help = _of_bytes(numbers) if all(0 <= number < inf for number in numbers) else None
+        told = all(0 <= number < inf for number in numbers)
+        help = (BRIGHTER if max(numbers) <= DARK else _of_bytes(numbers)) if told else None
         found.error("out-of-range", "the numbers of a color are from 0 to 1", node.span, help=help)
         return None
     return value
@@ -79,7 +83,7 @@ def _meant(text: str) -> str:
 def _of_bytes(numbers: Sequence[float]) -> str:
     """The help for a color whose numbers go from 0 to 255."""
     if max(numbers) > 255:
-        return "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
+        return BRIGHTER
     share = [number / 255 if max(numbers) > 1 else number for number in numbers]
     digits = "".join(f"{round(255 * number):02x}" for number in share)
     return f'write `{" ".join(f"{number:.3g}" for number in share)}`, or `"#{digits}"`'

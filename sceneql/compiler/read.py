@@ -7,7 +7,8 @@ these. An error is reported where it stands, and reading goes on, so that all er
 from __future__ import annotations
 
 import types
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -16,6 +17,7 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler import limits, paint, values
+from sceneql.compiler.annotations import could_be, is_fixed, marks_of, quantities, unwrap
 from sceneql.compiler.corners import by_corners
 from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.names import Names
@@ -118,14 +120,16 @@ class Reader:
         if name in map(kinds.written_name, cls.model_fields):
             rest = rest.strip().removeprefix("=").strip()
             return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {{...}}}}`"
-        found = list(self._fitting(node, cls.model_fields))
+        if list(cls.model_fields) == [only := next(iter(cls.model_fields), "")]:
+            return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
+        found = list(self._fitting(node, cls.model_fields)) or list(self._formulas(node, cls))
         return f"write `{{{kinds.written_name(found[0])}: {node.span.text}}}`" if len(found) == 1 else None
 
     def _elsewhere(self, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
         """The help for several numbers where another count is wanted: the one other field that takes them."""
         found = {name: mark for name, mark in self._fitting(node, others).items() if mark.shape}
         if len(found) > 1:
-            own = [mark.dimension for mark in _quantities(info)]
+            own = [mark.dimension for mark in quantities(info)]
             found = {name: mark for name, mark in found.items() if mark.dimension in own}
         if len(found) != 1:
             return None
@@ -135,8 +139,19 @@ class Reader:
         """The fields of quantities that take a value."""
         nothing = Diagnostics()
         names = replace(self.names, found=nothing)
-        marked = [(name, mark) for name, info in fields.items() for mark in _quantities(info)]
+        marked = [(name, mark) for name, info in fields.items() for mark in quantities(info)]
         return {name: mark for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None}
+
+    def _formulas(self, node: Node, cls: type[BaseModel]) -> Iterator[str]:
+        """The fields of formulas that take a value."""
+        nothing = Diagnostics()
+        trial = replace(self, found=nothing, names=replace(self.names, found=nothing))
+        for name, info in cls.model_fields.items():
+            for mark in marks_of(info):
+                if isinstance(mark, kinds.Symbols) and mark.dimension is not None:
+                    with suppress(Unreadable):
+                        trial._formula(node, mark, name)
+                        yield name
 
     def field(self, node: Node, info: Any, name: str) -> Any:
         """The value of a field, within its range. Raises Unreadable after reporting."""
@@ -160,7 +175,7 @@ class Reader:
                 if isinstance(node, Scalar) and node.kind == "null":
                     raise Unreadable  # a template's field that was not given: reported at the instance
                 return replace(self, names=outer).read(node, annotation, what)
-        base, marks = _unwrap(annotation)
+        base, marks = unwrap(annotation)
         if isinstance(node, MappingNode) and node.index and not any(isinstance(mark, kinds.Refers) for mark in marks):
             names = replace(self.names, scope=Scope({}, dict([node.index]), self.names.scope))
             return replace(self, names=names).read(replace(node, index=None), annotation, what)
@@ -228,13 +243,14 @@ class Reader:
             wanted = None if self.solved is None else self.solved * wanted
         # A plain field stands for anything, a number of rabbits or of moles: so do the defines in its formulas.
         of_any = mark.of_field and self.solved is not None and self.solved.plain
-        of = Wanted(wanted, of_any, mark.at_start)
+        by_of = mark.of_field and self.solved is not None and not self.solved.plain
+        of = Wanted(wanted, of_any, mark.at_start, by_of)
         return kinds.Formula(self._some(read_formula(node, symbols, of, what, self.names, self.found)), node.span)
 
     def _union(self, node: Node, arms: tuple[Any, ...], what: str) -> Any:
         if type(None) in arms and isinstance(node, Scalar) and node.kind == "null":
             return None
-        fitting = [arm for arm in arms if arm is not type(None) and _could_be(arm, node)]
+        fitting = [arm for arm in arms if arm is not type(None) and could_be(arm, node)]
         fitting = fitting or [arm for arm in arms if arm is not type(None)]
         if len(fitting) > 1 and not whole(node):
             raise Unreadable  # which arm was meant is not known
@@ -248,7 +264,7 @@ class Reader:
             if not attempt.found.errors:
                 return value
         *others, last = fitting
-        if get_origin(last) is Literal and (several := [len(get_args(arm)) for arm in others if _is_fixed(arm)]):
+        if get_origin(last) is Literal and (several := [len(get_args(arm)) for arm in others if is_fixed(arm)]):
             return self._choice(node, get_args(last), what, f"{several[0]} values")
         return self.read(node, last, what)
 
@@ -288,14 +304,14 @@ class Reader:
         return tuple(result) if origin is tuple else result
 
     def _miscounted(self, node: Node, arms: tuple[Any, ...], what: str, count: int) -> Unreadable:
-        marks = [mark for arm in arms for mark in _unwrap(arm)[1] if isinstance(mark, kinds.Quantity)]
+        marks = [mark for arm in arms for mark in unwrap(arm)[1] if isinstance(mark, kinds.Quantity)]
         vectors = [mark.shape[0] for mark in marks if mark.shape and mark.shape[0]]
         help = by_corners(node, what, vectors[0]) if len(vectors) == 2 == len(arms) else None
         return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
 
     def _copies(self, node: Node, annotation: Any) -> list[Node]:
         """In a list of parts the name of a repeated part, or of an instance, means each part that it stands for."""
-        marks = [mark for mark in _unwrap(annotation)[1] if isinstance(mark, kinds.Refers)]
+        marks = [mark for mark in unwrap(annotation)[1] if isinstance(mark, kinds.Refers)]
         if not marks or not isinstance(node, Scalar):
             return [node]
         copies = self.copies(node, marks[0])
@@ -319,7 +335,7 @@ class Reader:
             first = node.items[0].span.text if isinstance(node, Sequence) and node.items else "name"
             help = f"write `{{{first}: ...}}`, each entry under a name of its own" if first.isidentifier() else None
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, help)
-        named, result, ok = _unwrap(arms[0])[1], {}, True  # names of parts are references
+        named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():
             if (help := numbered(name)) is not None:
                 self.found.error("part-name", f"'{name}' cannot be a name", node.keys[name].span, help=help)
@@ -360,38 +376,3 @@ class Reader:
     def _fail(self, code: str, message: str, span: Span, help: str | None = None) -> Unreadable:
         self.found.error(code, message, span, help=help)
         return Unreadable()
-
-
-def _unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
-    if get_origin(annotation) is Annotated:
-        base, *marks = get_args(annotation)
-        inner, more = _unwrap(base)
-        return inner, (*marks, *more)
-    return annotation, ()
-
-
-def _quantities(info: Any) -> list[kinds.Quantity]:
-    """The quantities that a field's annotation tells of."""
-    arms = [info.annotation, *get_args(info.annotation)]
-    marks = [*info.metadata, *(mark for arm in arms for mark in _unwrap(arm)[1])]
-    return [mark for mark in marks if isinstance(mark, kinds.Quantity)]
-
-
-def _is_fixed(annotation: Any) -> bool:
-    """Whether a type is a tuple of a certain length."""
-    return get_origin(annotation) is tuple and get_args(annotation)[-1] is not Ellipsis
-
-
-def _could_be(annotation: Any, node: Node) -> bool:
-    """Whether a node's shape suits a type, to choose among the arms of a union."""
-    base, marks = _unwrap(annotation)
-    origin = get_origin(base)
-    if any(isinstance(mark, kinds.Quantity | kinds.Paint | kinds.Turn | kinds.Refers) for mark in marks):
-        return True
-    if origin is dict or (isinstance(base, type) and issubclass(base, BaseModel)):
-        return isinstance(node, MappingNode)
-    if origin in (list, tuple):
-        return isinstance(node, Sequence)
-    if origin is Literal:
-        return isinstance(node, Scalar) and node.text in [str(c) for c in get_args(base)]
-    return isinstance(node, Scalar)

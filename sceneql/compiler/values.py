@@ -174,9 +174,9 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
     if quantity.shape is not None and not _shape_fits(expr.type.shape, quantity.shape):
         found.error(
             "wrong-shape",
-            f"{what} is {_shape_text(quantity.shape)}, not {_shape_text(expr.type.shape)}",
+            f"{what} is {_shape_text(quantity.shape)}, not {_shape_text(expr.type.shape, expr.type.dimension)}",
             span,
-            help=_repeated(expr, quantity),
+            help=_repeated(expr, quantity) or _sized(expr, quantity),
             notes=origin(expr, span),
         )
         return False
@@ -213,6 +213,14 @@ def _repeated(expr: Expr, wanted: Quantity) -> str | None:
         items[0] = items[2] = re.sub(r"^[-+.\d]+(e[-+]?\d+)?", "0", text)
     vector = vector_meant(", ".join(items))
     return None if vector is None else f"write `{vector}`, a number for each axis"
+
+
+def _sized(expr: Expr, wanted: Quantity) -> str | None:
+    """The help where vectors stand for numbers: their size, or a component."""
+    if not isinstance(expr, Link) or expr.type.shape != (*(wanted.shape or ()), 3):
+        return None
+    name = f"{expr.task}.{expr.output}"
+    return f"write `length({name})` for its size, or a component, `{name}.x`"
 
 
 def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
@@ -266,11 +274,12 @@ def _shape_fits(has: Shape, wanted: Shape) -> bool:
     return all(b is None or a is None or a == b for a, b in zip(has, wanted, strict=True))
 
 
-def _shape_text(shape: Shape) -> str:
+def _shape_text(shape: Shape, dimension: Dimension | None = LENGTH) -> str:
     if not shape:
         return "a single value"
     if len(shape) == 1:
         return "a list of values" if shape[0] is None else f"a vector of {shape[0]}"
     if len(shape) == 2:
-        return "a list of points" if shape[1] in (3, None) else f"a list of vectors of {shape[1]}"
+        points = shape[1] in (3, None) and dimension in (LENGTH, None)
+        return "a list of points" if points else f"a list of vectors of {shape[1] or 3}"
     return "a list of pairs of points" if shape[1] in (2, None) else f"a list of lists of {shape[1]} vectors"

@@ -173,6 +173,10 @@ class Medium(Model):
         """Its domain."""
         return () if self.domain is None else (self.domain,)
 
+    def shown_in_place_of(self) -> Iterable[kinds.Ref]:
+        """Its domain."""
+        return self.insides()
+
     def boundaries(self) -> Iterable[Boundary]:
         """The boundary conditions of every field."""
         raise NotImplementedError

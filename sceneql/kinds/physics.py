@@ -171,6 +171,10 @@ class Model(Kind):
         """The field that a `field_map` draws where no object of the script shows any of it."""
         return None
 
+    def shown_in_place_of(self) -> Iterable[Ref]:
+        """Objects that would hide that map: it is drawn in their place."""
+        return ()
+
     def drives(self) -> Mapping[str, Mapping[str, str]]:
         """Fields of objects that it sets: ``{object name: {field: output}}``."""
         return {}

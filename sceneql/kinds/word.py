@@ -155,6 +155,8 @@ class Record(BaseModel):
 
     said_by: ClassVar[Mapping[str, str]] = {}
     """What says it instead, for fields that it has not and that are likely to be tried: the help of the message."""
+    own_time: ClassVar[bool] = False
+    """Whether `time` in its values is another one than the film's: an age."""
 
     # Schemas are built when a word is first used: most words of the vocabulary never are.
     model_config = ConfigDict(frozen=True, strict=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)

@@ -78,8 +78,8 @@ _LISTS = (
     ("children", "of parts objects members items"),
     ("of", "body object objects target source model particles"),
     # words
-    ("sphere", "ball orb"),
-    ("box", "cube cuboid block brick"),
+    ("sphere", "ball orb circle"),
+    ("box", "cube cuboid block brick rectangle rect square"),
     ("tube", "rope pipe wire line curve path spline capsule polyline"),
     ("coil", "helix spiral"),
     ("torus", "donut doughnut ring"),
@@ -261,6 +261,11 @@ _SENTENCES = (
         "section",
         "joints hinges constraints constraint",
         "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
+    ),
+    (
+        "field",
+        "hole holes cutout",
+        "cut it out of the object, `{difference: {of: [plate, hole]}}`: `sceneql words difference`",
     ),
     ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
     ("section", "collision contact", "write `forces: [gravity, collision]`"),

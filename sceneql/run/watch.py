@@ -1,4 +1,4 @@
-"""A watch over energy, momentum and stretch between frames: what is conserved, and what diverges."""
+"""A watch over energy, momentum, stretch and colors between frames: what is conserved, and what diverges."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from sceneql.kinds import Contact, Interaction, Model, Tie
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.run.extremes import watched
 from sceneql.run.invariants import invariants_of
+from sceneql.run.paints import painted
 from sceneql.run.ringing import ringing
 
 if TYPE_CHECKING:
@@ -102,7 +103,7 @@ class Watch:
         self.invariants = [one for island in islands for one in invariants_of(island)]
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
-        self._islands = run.islands
+        self._islands, self._painted = run.islands, painted(run.graph)
         self._turning = [
             span for island in run.islands if _adaptive(island) for span in island.assembly.breakpoints.beyond
         ]
@@ -128,6 +129,8 @@ class Watch:
         for island, fields in self._fields if free else ():
             for extremes in fields:
                 extremes.look(moment.time, island.y)
+        for color in self._painted:
+            color.look(moment)
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
@@ -147,6 +150,8 @@ class Watch:
                 found += extremes.warnings(island)
         for one in self.invariants:
             found += one.warnings()
+        for color in self._painted:
+            found += color.warnings()
         for balance in self.balances:
             tasks, title = balance.island.graph.tasks, ", ".join(balance.models)
             span = tasks[balance.models[0]].span

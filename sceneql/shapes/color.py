@@ -11,25 +11,20 @@ if TYPE_CHECKING:
 
 PALETTE = ("#e4572e", "#2978b5", "#f2a71b", "#3a9d6b", "#8c55a8", "#14a3a8", "#d6457f", "#7f9c2c")
 """sRGB colors of parts that have none of their own, by their order."""
-BRIGHTEST = 1e6
-"""Component of a color: expressions may go beyond 1, but not so far that pictures overflow."""
 
 
 def linear(color: Iterable[float]) -> RGB:
-    """Linear RGB of an sRGB color, components from 0 to 1 (IEC 61966-2-1:1999); what is negative becomes 0.
+    """Linear RGB of an sRGB color, components from 0 to 1 (IEC 61966-2-1:1999); what is less becomes 0, what is more 1.
 
-    Raises ValueError for components that no light has.
+    A surface that gave back more light than it gets would brighten all around it without end.
     """
-    given = [float(c) for c in color]
-    if not max(given) <= BRIGHTEST:
-        raise ValueError(f"a color has components from 0 to 1, not {max(given):.3g}")
-    r, g, b = map(_decode, given)
+    r, g, b = (_decode(min(max(float(c), 0.0), 1.0)) for c in color)
     return r, g, b
 
 
 def _decode(c: float) -> float:
     if c <= 0.04045:
-        return max(c, 0.0) / 12.92
+        return c / 12.92
     return float(((c + 0.055) / 1.055) ** 2.4)
 
 

@@ -55,8 +55,8 @@ class Drawn:
         (buffers,) = tracer._kept
         self.linear = picture.linear
         self.pixels = develop(picture.linear).astype(np.int64)
-        self.records = buffers.records.reshape(2, height, width, -1).copy()
-        self.shares = buffers.visibility.reshape(2, height, width, -1)[..., FIRST_LIGHT::2].copy()
+        self.records = _layers(buffers.records, height, width)
+        self.shares = _layers(buffers.visibility, height, width)[..., FIRST_LIGHT::2]
 
     def finer(self) -> Drawn:
         """The same of FINER times as many pixels along each side."""
@@ -67,6 +67,13 @@ class Drawn:
     def averaged(self) -> NDArray[Any]:
         """(h / FINER, w / FINER, 3): means of FINER x FINER pixels."""
         return develop(_blocks(self.linear).mean(axis=(1, 3))).astype(np.int64)
+
+
+def _layers(values: NDArray[Any], height: int, width: int) -> NDArray[Any]:
+    """(2, h, w, columns): a copy; the second layer is zero where nothing mirrors or refracts and there is one alone."""
+    both = np.zeros((2, height, width, values.shape[-1]), dtype=values.dtype)
+    both[: len(values)] = values.reshape(len(values), height, width, -1)
+    return both
 
 
 def _blocks(pixels: NDArray[Any]) -> NDArray[Any]:

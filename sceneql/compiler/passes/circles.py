@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from sceneql.compiler.check import values_of
+from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
 from sceneql.kinds import Model, Object
 from sceneql.quantities.diagnostic import Diagnostics

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.passes.own_shapes import own_shapes
@@ -82,7 +82,7 @@ def _staged(tasks: Mapping[str, Task]) -> bool:
 
 
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
-    """A map of each field that no object reads, in the name of its model."""
+    """A map of each field that no object reads, in the name of its model, and in place of what would hide it."""
     read = {need for task in tasks.values() if isinstance(task.kind, Object) for need in task.needs}
     for model in [task for task in tasks.values() if task.name not in read]:
         of = model.kind.shows(model.name) if isinstance(model.kind, Model) else None
@@ -92,6 +92,10 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
             while name in tasks:
                 name += "_"
             tasks[name] = Task(name, "field_map", cls.model_validate({"of": of}), model.span, (model.name,))
+            for ref in cast(Model, model.kind).shown_in_place_of():
+                tasks[ref.name] = replace(
+                    tasks[ref.name], kind=tasks[ref.name].kind.model_copy(update={"hidden": True})
+                )
     return tasks
 
 

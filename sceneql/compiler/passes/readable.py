@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from sceneql.compiler.check import values_of
+from sceneql.compiler.values_below import values_of
 from sceneql.graph import Island, Task
 from sceneql.kinds import Model, Paint, Quantity, Value, grammar_of
 from sceneql.kinds.values import unreadable

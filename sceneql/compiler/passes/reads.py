@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from sceneql.compiler.check import values_of
+from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
 from sceneql.kinds import Interaction, Model, Object
 

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 LEAST_SLOPE = 1e-4
 """Relative slope of a plane along an axis, below which differences of cubes in the closed form would be rounding."""
+BISECTIONS = 40
+"""Halvings of a spacing to the side of a thin plate."""
 LEAST_VOLUME = 1e-6
 """Volume of a cell, relative to a whole one, below which it is left out. Its neighbor's open face is then closed, which
 loses second order where that face is no sliver too."""
@@ -139,6 +141,27 @@ def _slopes(level: Level, points: Floats, grid: Frame, axes: tuple[int, ...]) ->
     return np.column_stack(columns)
 
 
+def _find_sides(level: Level, grid: Frame, centers: Floats, near: Any, phi: Floats, slopes: Floats) -> None:
+    """Set phi and slopes of cells where phi does not change: the faces of a thin plate are nearer there than its sides.
+
+    They become those of the side that is nearest along an axis, by bisection to the next center.
+    """
+    even = np.flatnonzero(~slopes.any(axis=1) & (phi[near] < 0.0))
+    at, best = centers[near[even]], np.full(len(even), np.inf)
+    for column, axis in enumerate(grid.axes):
+        for way in (-1.0, 1.0):
+            low, high = np.zeros(len(even)), np.full(len(even), grid.spacing[axis])
+            step = way * np.eye(3)[axis]
+            leaves = level.values(at + grid.spacing[axis] * step) >= 0.0
+            for _ in range(BISECTIONS):
+                middle = (low + high) / 2
+                out = level.values(at + middle[:, None] * step) >= 0.0
+                low, high = np.where(out, low, middle), np.where(out, middle, high)
+            nearer = leaves & (high < best)
+            best[nearer], phi[near[even[nearer]]] = high[nearer], -high[nearer]
+            slopes[even[nearer]] = way * (np.arange(len(grid.axes)) == column)
+
+
 def _near(phi: Floats, grid: Frame) -> Any:
     """(cells,) whether a cell or one beside it (corners too) has another sign."""
     inside = (phi < 0.0).reshape(grid.shape[::-1])
@@ -169,14 +192,15 @@ def cut(level: Level, grid: Frame, held: Callable[[Floats, Any], Any] | None = N
     phi = level.values(centers)
     near = np.flatnonzero(_near(phi, grid))
     slopes = _slopes(level, centers[near], grid, axes)
+    _find_sides(level, grid, centers, near, phi, slopes)
     volumes = np.where(phi < 0.0, whole, 0.0)
     volumes[near] = whole * below(phi[near], slopes, grid.spacing[list(axes)])
     volumes[volumes < LEAST_VOLUME * whole] = 0.0
     stiff = np.zeros(len(phi), dtype=bool)
     if held is not None:
-        steepness = np.maximum(np.linalg.norm(slopes, axis=1), 1e-300)
+        squares = (slopes**2).sum(axis=1)  # zero where a plate is thinner than a cell: its faces are the nearest
         foot = centers[near]
-        foot[:, list(axes)] -= (phi[near] / steepness**2)[:, None] * slopes
+        foot[:, list(axes)] -= (phi[near] / np.where(squares > 0.0, squares, np.inf))[:, None] * slopes
         stiff[near] = held(foot, level.pieces(foot))
         volumes[stiff] = np.where(phi[stiff] < 0.0, whole, 0.0)
     areas = [_areas(level, grid, axis, volumes > 0.0, near, stiff) for axis in range(3)]
