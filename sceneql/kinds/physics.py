@@ -172,7 +172,7 @@ class Model(Kind):
         return None
 
     def shown_in_place_of(self) -> Iterable[Ref]:
-        """Objects that would hide that map: it is drawn in their place."""
+        """Objects that would hide it, or that map: it is drawn in their place."""
         return ()
 
     def drives(self) -> Mapping[str, Mapping[str, str]]:

@@ -8,6 +8,7 @@ from typing import Any, cast
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.passes.own_shapes import own_shapes
+from sceneql.compiler.passes.stand_ins import stand_ins
 from sceneql.graph import Task
 from sceneql.kinds import Camera, Contact, Interaction, Kind, Light, Model, Object, Output, Picture, Solver, Value
 from sceneql.quantities.dimension import LENGTH
@@ -49,7 +50,7 @@ def expand(
         not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
     ):
         add("solver", "solvers", "auto")
-    driven = _drive(own_shapes(result))
+    driven = _drive(own_shapes(stand_ins(result)))
     draws = any(isinstance(task.kind, Output) and task.kind.draws for task in driven.values())
     return _show(driven, catalogue) if draws else driven
 

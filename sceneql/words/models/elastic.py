@@ -77,7 +77,9 @@ class Elastic(Model):
     )
     has_skin: ClassVar[bool] = True
 
-    of: kinds.ObjectRef | None = field("The object that it fills; usually a hidden one.", None)
+    of: kinds.ObjectRef | None = field(
+        "The object that it fills, which is seen and hit no more, unless other parts name it.", None
+    )
     spacing: kinds.FixedLength | None = field(
         "Of an object: side of the cubes of the lattice that its tetrahedra are of; by default a tenth of its size.",
         None,
@@ -164,6 +166,10 @@ class Elastic(Model):
             for name in names if isinstance(names, Mapping) else ():
                 found |= {f"{name}.{output}": one for output, one in gives.items()}
         return found
+
+    def shown_in_place_of(self) -> Iterable[Ref]:
+        """The object that it fills."""
+        return () if self.of is None else (self.of,)
 
     def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
         """The object."""

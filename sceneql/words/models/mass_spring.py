@@ -116,6 +116,10 @@ class MassSpring(SpringModel):
         """The object of a solid."""
         return () if self.solid is None else (self.solid.object,)
 
+    def shown_in_place_of(self) -> Iterable[Ref]:
+        """The object of a solid."""
+        return self.insides()
+
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
         """Those of all masses; named masses and springs add theirs: ``bob.position``, ``tether.tension``."""
