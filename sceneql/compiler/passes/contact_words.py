@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Model, Tie
@@ -19,7 +20,8 @@ def report_contacts(tasks: Mapping[str, Task], groups: Iterable[Island], found: 
             kind = tasks[contact].kind
             assert isinstance(kind, Contact)
             kinds = {name: one for name in models if (one := _model(tasks[name])) is not None}
-            found.extend(kind.refusals(kinds))
+            span = tasks[contact].span
+            found.extend(replace(one, span=one.span or span) for one in kind.refusals(kinds))
         alone = [name for name in acting if not getattr(tasks[name].kind, "mutual", False)]
         _report_shared({name: acting[name] for name in alone}, island, tasks, found)
 

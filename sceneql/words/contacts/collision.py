@@ -240,10 +240,16 @@ class Collision(Contact):
             yield Problem(f"mode {self.mode} has no gap: the mode barrier of elastic solids has", ("gap",), at_key=True)
 
     def refusals(self, models: Mapping[str, Model]) -> Iterator[Diagnostic]:
-        """A moment against rolling that nothing would have."""
+        """Masses and rigid bodies beside elastic solids; a moment against rolling that nothing would have."""
+        soft = self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values())
+        hard = next((name for name, model in models.items() if not model.has_skin), None)
+        if soft and hard is not None:
+            message = f"'{hard}' does not collide together with elastic solids yet"
+            written = next((ref.span for ref in self.between or () if ref.name == hard), None)
+            yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
         if self.rolling.span is None or not models or any(model.turns for model in models.values()):
             return
-        if self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values()):
+        if soft:
             why = "elastic solids roll by their own elasticity"
         else:
             why = f"'{next(iter(models))}' has masses, which do not turn"
