@@ -69,3 +69,14 @@ def test_the_listing_ends_with_them_and_a_name_that_is_nearly_one_is_answered():
     assert [line.split()[0] for line in listing(Catalogue()).partition("topics:\n")[2].splitlines()] == TOPICS
     with pytest.raises(Unsuitable, match="'functions'"):
         manual(Catalogue(), "function")
+
+
+@pytest.mark.parametrize("name", ["where", "hue", "random"])
+def test_a_function_has_the_page_of_functions(name):
+    assert manual(Catalogue(), name) == manual(Catalogue(), "functions")
+
+
+@pytest.mark.parametrize(("word", "help"), [("if", "where(condition"), ("vec3", "[x, y, z]"), ("lerp", "'mix'")])
+def test_words_of_other_programs_have_ours_in_the_manual_too(word, help):
+    with pytest.raises(Unsuitable, match=re.escape(help)):
+        manual(Catalogue(), word)

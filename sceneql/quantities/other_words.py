@@ -295,3 +295,8 @@ def time_meant(text: str) -> str | None:
 def instead(what: str, word: str) -> str | None:
     """The help for a word of another program that is taken for ``what`` (see `INSTEAD`), if it is known."""
     return INSTEAD.get((what, word)) or INSTEAD.get((what, word.lower()))
+
+
+def anywhere(word: str) -> str | None:
+    """The help for a word of another program, whatever it was meant as."""
+    return next((help for (_, other), help in INSTEAD.items() if other == word.lower()), None)

@@ -13,6 +13,8 @@ from sceneql import kinds
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
 from sceneql.quantities.diagnostic import ScriptError, suggestion
+from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.other_words import anywhere
 from sceneql.quantities.units import unit_of
 from sceneql.report.topics import page, topics
 
@@ -37,15 +39,20 @@ def listing(catalogue: Catalogue) -> str:
 
 
 def manual(catalogue: Catalogue, word: str) -> str:
-    """The manual of a word (of every family that has it), or of a topic. Raises Unsuitable if there is none."""
+    """The manual of a word (of every family that has it), of a topic, or of functions where it is one of these.
+
+    Raises Unsuitable if there is none.
+    """
     families = [family for family in catalogue.families if word in catalogue.words(family)]
     classes = [(family, cls) for family in families if (cls := catalogue.load(family, word)) is not None]
     pages = [_page(family, word, cls) for family, cls in classes]
     if word in topics():
         pages.append(page(word, clock=_fields(kinds.Clock, "  ")))
+    if not pages and word in OPERATIONS:
+        pages.append(page("functions"))
     if not pages:
         every = [w for family in catalogue.families for w in catalogue.words(family)]
-        hint = suggestion(word, [*every, *topics()])
+        hint = anywhere(word) or suggestion(word, [*every, *topics(), *OPERATIONS])
         raise Unsuitable(f"there is no word '{word}'" + (f"; {hint}" if hint else ""))
     return "\n\n".join(pages)
 
