@@ -25,7 +25,7 @@ def test_a_ball_is_squeezed_through_a_ring_of_six_tenths_of_its_width(tmp_path):
         places, triangles = skins(island)
         assert np.hypot(np.hypot(places[:, 0], places[:, 2]) - 0.3, places[:, 1]).min() > 0.12
         assert crossings(places, triangles) == 0
-    assert places[:, 1].min() < -0.1
+    assert places[:, 1].max() < -0.12  # it is all below the ring
     assert island.march.statistics.rejected == 0
 
 

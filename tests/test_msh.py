@@ -40,6 +40,19 @@ def written(mesh, version, nodes, turned=()):
         return "\n".join([*text, *own, "$EndElements", ""])
     half, last = len(points) // 2, len(cells) // 2
     parts = [(0, half), (half, len(points))]
+    if version == 4.0:
+        text = ["$MeshFormat", "4 0 8", "$EndMeshFormat", "$Nodes", f"2 {len(points)}"]
+        for a, b in parts:
+            text += [f"1 3 0 {b - a}", *(f"{n} {p}" for n, p in zip(called[a:b], place[a:b], strict=True))]
+        text += [
+            "$EndNodes",
+            "$Elements",
+            f"2 {len(cells) + 1}",
+            "1 0 15 1",
+            f"1 {called[0]}",
+            f"1 3 {kind} {len(rows)}",
+        ]
+        return "\n".join([*text, *(f"{k + 3} {row}" for k, row in enumerate(rows)), "$EndElements", ""])
     text = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$Entities", "0 0 0 0", "$EndEntities", "$Nodes"]
     text.append(f"3 {len(points)} 7 {called[-1]}")
     for a, b in parts:
@@ -51,7 +64,7 @@ def written(mesh, version, nodes, turned=()):
     return "\n".join([*text, "$EndElements", ""])
 
 
-@pytest.mark.parametrize("version", [2, 4])
+@pytest.mark.parametrize("version", [2, 4.0, 4.1])
 @pytest.mark.parametrize("nodes", [4, 10])
 @pytest.mark.parametrize("element", ["p1", "p2"])
 def test_a_file_gives_the_solid_that_was_written(tmp_path, version, nodes, element):
@@ -82,7 +95,7 @@ def test_nodes_on_edges_are_in_gmshs_order():
 
 @pytest.mark.parametrize("nodes", [4, 10])
 def test_turned_elements_are_told_by_number_and_place(tmp_path, nodes):
-    (tmp_path / "bar.msh").write_text(written(block(tmp_path), 4, nodes, turned=[5, 7]))
+    (tmp_path / "bar.msh").write_text(written(block(tmp_path), 4.1, nodes, turned=[5, 7]))
     script = f"models: {{body: {{elastic: {{file: bar.msh, element: p2, {LAW}}}}}}}\n"
     with pytest.raises(
         ScriptError, match=r"2 elements of bar.msh turned inside out, or flat: .* number 8, at \("
@@ -95,8 +108,10 @@ WRONG = {
     "no mesh\n": "is no .msh",
     "$MeshFormat\n4.1 1 8\n$EndMeshFormat\n": "is a binary .msh: save it as text",
     "$MeshFormat\n1 0 8\n$EndMeshFormat\n": "of version 1: versions 2 and 4 are read",
-    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2\n1 0 0 0\n2 1 zero 0\n$EndNodes\n": "line 7: it should have 4",
-    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n9\n1 0 0 0\n": "the file ends too soon",
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2\n1 0 0 0\n2 1 zero 0\n$EndNodes\n": (
+        "line 7 of bad.msh should have 4 numbers"
+    ),
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n9\n1 0 0 0\n": "bad.msh ends too soon, in line 6",
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 15 2 1 1 1\n$EndElements\n": (
         "has no tetrahedra"
     ),
@@ -104,6 +119,14 @@ WRONG = {
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 5 2 1 1 1 1 1 1 1 1 1 1\n": (
         "solids that are no tetrahedra"
     ),
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\nmany\n": "line 5 of bad.msh should have 1 number\n",
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2\n1 0 0 0\n2 0 0\n": "line 7 of bad.msh should have 4 numbers",
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 4 2 1 1 1 1 1 1e30\n": (
+        "line 10 of bad.msh should have whole numbers"
+    ),
+    "$MeshFormat\n4.1 0 8 1\n$EndMeshFormat\n$Nodes\n0 0 0 0\n$EndNodes\n": "bad.msh has no nodes",
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 1 1 1\n3 1 0 1\n1\n0 0 0\n$EndNodes\n$Elements\n1 1 5 5\n"
+    "3 1 4 1\n5 1 1 1 1 1\n": "element 5 and others of kind 4 should have 4 nodes",
 }
 
 

@@ -180,13 +180,15 @@ def _redundant(run: IslandRun) -> list[int]:
     return list(redundant(run.assembly.ties, run.march.floats))
 
 
-def _singular(run: IslandRun) -> list[str]:
-    """The ties that are singular at the start."""
+def _singular(run: IslandRun) -> dict[str, list[str]]:
+    """The ties that are singular at the start, by what that is like."""
     if not run.assembly.ties:
-        return []
+        return {}
     from sceneql.bodies.rigid.singular import singular
 
-    return [tie.name for tie in singular(run.assembly)]
+    taut, folded = singular(run.assembly)
+    found = {"a chain that is taut": taut, "a linkage folded flat": folded}
+    return {like: [tie.name for tie in ties] for like, ties in found.items() if ties}
 
 
 def _contact_remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
@@ -237,8 +239,8 @@ def text(plan: dict[str, Any]) -> str:
             rows, more = island["redundant"]
             twice = f", of which the others imply {more}: these share the least forces" if more else ""
             lines.append(f"  ties: {', '.join(island['ties'])}, {rows} conditions{twice}")
-        if island["singular"]:
-            lines.append(f"    {', '.join(island['singular'])}: singular at the start, as a chain that is taut")
+        for like, ties in island["singular"].items():
+            lines.append(f"    {', '.join(ties)}: singular at the start, as {like}")
         if island["forces"]:
             lines.append(f"  forces: {', '.join(island['forces'])}")
         lines += [f"    {force}: {remark}" for force, remark in island["force_remarks"].items()]

@@ -143,7 +143,7 @@ class Watch:
             found.append(Diagnostic("many-turns", message, span, help, severity="warning"))
         found += [warning for island in self._islands if (warning := _halved(island)) is not None]
         found += [warning for island in self._islands if (warning := _forbidden(island)) is not None]
-        found += [warning for island in self._islands if (warning := _singular(island)) is not None]
+        found += [warning for island in self._islands for warning in _singular(island)]
         found += [warning for island in self._islands for warning in _troubled(island)]
         for island, fields in self._fields:
             for extremes in fields:
@@ -281,19 +281,28 @@ def _forbidden(island: IslandRun) -> Diagnostic | None:
     return None
 
 
-def _singular(island: IslandRun) -> Diagnostic | None:
-    """A warning for ties that hold each other in a position that they cannot leave, or leave in more than one way."""
+def _singular(island: IslandRun) -> Iterator[Diagnostic]:
+    """Warnings for ties that hold each other in a position that they cannot leave, or leave in more than one way."""
     if not island.assembly.ties:
-        return None
+        return
     from sceneql.bodies.rigid.singular import singular
 
-    ties = singular(island.assembly)
-    if not ties:
-        return None
-    names = ", ".join(f"'{tie.name}'" for tie in ties)
-    text = f"singular at the start, as a chain that is taut: {names} let bodies begin to move, and not go on"
-    help = "forces without bound would hold them there: give the chain some slack, or let one end slide"
-    return Diagnostic("singular-ties", text, ties[0].span, help, severity="warning")
+    found = singular(island.assembly)
+    told = (
+        (
+            "a chain that is taut: {} let bodies begin to move, and not go on",
+            "forces without bound would hold them there: give the chain some slack, or let one end slide",
+        ),
+        (
+            "a linkage folded flat: {} let bodies go on in more than one way",
+            "rounding may decide which way they go: begin a little beside that position",
+        ),
+    )
+    for ties, (text, help) in zip(found, told, strict=True):
+        if ties:
+            names = ", ".join(f"'{tie.name}'" for tie in ties)
+            message = f"singular at the start, as {text.format(names)}"
+            yield Diagnostic("singular-ties", message, ties[0].span, help, severity="warning")
 
 
 def _troubled(island: IslandRun) -> Iterator[Diagnostic]:

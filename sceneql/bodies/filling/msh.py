@@ -22,6 +22,10 @@ TETRAHEDRON, QUADRATIC = 4, 11
 CORNERS = {TETRAHEDRON: 4, QUADRATIC: 10}
 ORDER = (0, 1, 2, 3, 4, 6, 7, 5, 9, 8)
 """Places among Gmsh's ten nodes of ours, whose edges are tetrahedra.ENDS."""
+MOST_NUMBER = 2.0**53
+"""Largest whole number that is read."""
+TAGS_FIRST = 4.05
+"""Versions of 4 above this, 4.1, have the numbers of a block's nodes in lines before their places."""
 OTHERS = (5, 6, 7, 12, 13, 14, 17, 18, 19, 29, 30, 31)
 """Solids that are no tetrahedra of 4 or 10 nodes."""
 
@@ -42,13 +46,13 @@ def read_msh(path: Path) -> Read:
     """The nodes and tetrahedra of a file. Raises ValueError that says what is wrong and in which line, OSError."""
     if path.stat().st_size > MOST:
         raise ValueError(f"{path.name} has more than {MOST // 2**20} MiB")
-    lines = _Lines(path.read_bytes())
+    lines = _Lines(path.name, path.read_bytes())
     version = 0.0
     points: dict[str, Any] = {}
     cells: list[tuple[int, Any, Any]] = []
     for name in lines.sections():
         if name == "$MeshFormat":
-            version, kind, _ = lines.row(3)
+            version, kind, *_ = lines.row(3)
             if kind != 0:
                 raise ValueError(f"{path.name} is a binary .msh: save it as text (ASCII)")
             if int(version) not in (2, 4):
@@ -81,7 +85,8 @@ def read_msh(path: Path) -> Read:
 class _Lines:
     """Lines of a file, with their numbers."""
 
-    def __init__(self, text: bytes) -> None:
+    def __init__(self, name: str, text: bytes) -> None:
+        self.name = name
         self._lines = text.decode("utf-8", errors="replace").splitlines()
         self._at = 0
 
@@ -97,71 +102,99 @@ class _Lines:
         """The numbers of the next line. Raises ValueError where there are fewer, or none."""
         return [float(one) for one in self.rows(1, least)[0]]
 
+    def counts(self, least: int = 1) -> list[int]:
+        """The whole numbers of the next line. Raises ValueError where there are fewer, or others."""
+        return [int(one) for one in self.whole(1, least)[0]]
+
+    def whole(self, count: int, least: int) -> NDArray[int64]:
+        """(count, k) the whole numbers of the next lines. Raises ValueError as `rows`, and for other numbers."""
+        first = self._at
+        found = self.rows(count, least)
+        other = np.flatnonzero(((np.abs(found) > MOST_NUMBER) | (found != np.floor(found))).any(axis=1))
+        if len(other):
+            raise ValueError(f"line {first + other[0] + 1} of {self.name} should have whole numbers below 2^53")
+        return np.asarray(found, dtype=np.int64)
+
     def rows(self, count: int, least: int) -> Any:
         """(count, k) the numbers of the next lines, which have as many, at least so many."""
         some = self._lines[self._at : self._at + count]
         if count < 0 or len(some) < count or not count:
-            raise ValueError(f"line {len(self._lines)}: the file ends too soon")
+            raise ValueError(f"{self.name} ends too soon, in line {len(self._lines)}")
         try:
             found = np.array([line.split() for line in some], dtype=float)
         except ValueError:
             found = np.empty((0, 0))
         if found.ndim != 2 or found.shape[1] < least or not np.isfinite(found).all():
-            raise ValueError(f"line {self._at + self._wrong(some, least)}: it should have {least} numbers or more")
+            line, wide = self._wrong(some, least)
+            raise ValueError(f"line {self._at + line} of {self.name} should have {wide} number{'s' * (wide > 1)}")
         self._at += count
         return found
 
     def ragged(self, count: int) -> Iterator[list[int]]:
         """The whole numbers of the next lines, however many each has."""
         for _ in range(count):
-            yield [int(one) for one in self.row(3)]
+            yield self.counts(3)
 
-    def _wrong(self, some: list[str], least: int) -> int:
-        """The number, from 1, of the first of some lines that is not like the first."""
+    def _wrong(self, some: list[str], least: int) -> tuple[int, int]:
+        """The number, from 1, of the first of some lines that is not like the first; how many numbers that has."""
         wide = max(least, len(some[0].split()))
         for k, line in enumerate(some):
             try:
                 if len([one for one in map(float, line.split()) if np.isfinite(one)]) != wide:
-                    return k + 1
+                    return k + 1, wide
             except ValueError:
-                return k + 1
-        return 1
+                return k + 1, wide
+        return 1, wide
 
 
 def _nodes(lines: _Lines, version: float) -> tuple[Any, Floats]:
     """Their numbers (n,) and places (n, 3)."""
     if version < 4:
-        rows = lines.rows(int(lines.row()[0]), 4)
+        rows = lines.rows(lines.counts()[0], 4)
         return rows[:, 0].astype(np.int64), rows[:, 1:4]
-    blocks, *_ = lines.row(4)
     numbers, places = [], []
-    for _ in range(int(blocks)):
-        count = int(lines.row(4)[3])
-        if count:
-            numbers.append(lines.rows(count, 1)[:, 0].astype(np.int64))
+    for _ in range(lines.counts(2)[0]):
+        count = lines.counts(4)[3]
+        if count and version < TAGS_FIRST:
+            rows = lines.rows(count, 4)
+            numbers.append(rows[:, 0].astype(np.int64))
+            places.append(rows[:, 1:4])
+        elif count:
+            numbers.append(lines.whole(count, 1)[:, 0])
             places.append(lines.rows(count, 3)[:, :3])
+    if not numbers:
+        raise ValueError(f"{lines.name} has no nodes")
     return np.concatenate(numbers), np.concatenate(places)
 
 
 def _elements(lines: _Lines, version: float) -> Iterator[tuple[int, Any, Any]]:
     """The kind of solids, their numbers (e,) and their nodes (e, k)."""
     if version >= 4:
-        blocks, *_ = lines.row(4)
-        for _ in range(int(blocks)):
-            _, _, kind, count = (int(one) for one in lines.row(4))
+        for _ in range(lines.counts(2)[0]):
+            _, _, kind, count = lines.counts(4)[:4]
             if count and (kind in CORNERS or kind in OTHERS):
-                rows = lines.rows(count, 1 + CORNERS.get(kind, 0)).astype(np.int64)
+                rows = lines.whole(count, 1)
+                _have_nodes(lines, kind, int(rows[0, 0]), {rows.shape[1]})
                 yield kind, rows[:, 0], rows[:, 1:]
             elif count:
                 lines.rows(count, 2)
         return
     found: dict[int, list[list[int]]] = {}
-    for row in lines.ragged(int(lines.row()[0])):
+    for row in lines.ragged(lines.counts()[0]):
         kind, tags = row[1], row[2]
         if kind in CORNERS or kind in OTHERS:
-            found.setdefault(kind, []).append([row[0], *row[3 + tags :]])
+            found.setdefault(kind, []).append([row[0], *row[3 + max(tags, 0) :]])
     for kind, some in found.items():
-        if kind in CORNERS and any(len(one) != 1 + CORNERS[kind] for one in some):
-            raise ValueError(f"element {some[0][0]} and others of kind {kind} should have {CORNERS[kind]} nodes")
+        _have_nodes(lines, kind, some[0][0], {len(one) for one in some})
         rows = np.array(some if kind in CORNERS else [one[:1] for one in some], dtype=np.int64)
         yield kind, rows[:, 0], rows[:, 1:]
+
+
+def _have_nodes(lines: _Lines, kind: int, number: int, lengths: set[int]) -> None:
+    """Raise ValueError for tetrahedra, the first of them of this number, that have more or fewer nodes than they may.
+
+    ``lengths``: how many numbers their lines have, each its own and its nodes'.
+    """
+    if kind in CORNERS and lengths != {1 + CORNERS[kind]}:
+        text = f"{lines.name}: element {number} and others of kind {kind} should have {CORNERS[kind]} nodes"
+        raise ValueError(text)
