@@ -107,3 +107,21 @@ RING = "it: {torus: {radius: 0.1 m, tube: 0.03 m, position: 0.3 0.03 0 m}}"
 def test_two_curved_bodies_have_local_contacts_and_explain_tells_why(tmp_path, it, other, told):
     graph = scene(tmp_path, "friction: 0", f"{TABLE}, {it}, other: {{{other}}}")
     assert f"local: chosen for rigid bodies: {told}" in text(explain(graph))
+
+
+def test_a_cylinder_that_another_body_strikes_is_local_by_default_and_makes_no_energy(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text("""
+objects:
+  drum: {cylinder: {radius: 0.3 m, height: 0.4 m, position: 0 0.2 0 m}}
+  ball: {sphere: {radius: 0.1 m, position: 0.05 0.8 0 m}}
+  floor: {plane: {}}
+models: {under: {rigid: {of: drum, mass: 5 kg}}, it: {rigid: {of: ball, mass: 1 kg}}}
+forces: [gravity]
+contacts: {touch: {collision: {restitution: 0.5, friction: 0.3}}}
+clock: {end: 1.5 s}
+""")
+    run = Run(load(path, pruned=False))
+    told = [moment.read("under", "energy") + moment.read("it", "energy") for moment in run.moments([0.0, 0.5, 1.5])]
+    assert run.islands[0].assembly.contact_mode == "local"
+    np.testing.assert_allclose(told, told[0], rtol=1e-12)

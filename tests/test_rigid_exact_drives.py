@@ -146,9 +146,9 @@ def test_motors_and_stops_go_on_in_steps_where_exact_contacts_give_way(tmp_path)
 clock: {end: 0.6 s}
 objects:
   table: {box: {size: 1 0.2 1 m, position: 0 -0.1 0 m}}
-  can: {cylinder: {radius: 0.1 m, height: 0.2 m, position: 0.3 0.1 0 m, rotation: {about: y, angle: 20 deg}}}
+  ring: {torus: {radius: 0.08 m, tube: 0.02 m, position: 0.3 0.02 0 m, rotation: {about: y, angle: 20 deg}}}
   rod: {box: {size: 0.2 0.02 0.02 m, position: 0 1 0 m}}
-models: {it: {rigid: {bodies: {can: {of: can, mass: 1 kg, velocity: 2 0 0 m/s}, rod: {of: rod, mass: 1 kg}}}}}
+models: {it: {rigid: {bodies: {ring: {of: ring, mass: 1 kg, velocity: 2 0 0 m/s}, rod: {of: rod, mass: 1 kg}}}}}
 ties: {h: {hinge: {between: [it.rod, world], at: 0 1 0 m, axis: 0 0 1, motor: {speed: 3 rad/s, torque: 0.05 N*m}}}}
 forces: [gravity]
 contacts: {touch: {collision: {restitution: 0, friction: 0.2}}}

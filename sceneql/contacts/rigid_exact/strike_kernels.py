@@ -294,7 +294,7 @@ def impact(t, y, pair, floats, ints):
         keep(floats, ints, False)
         begin(t, y, floats, ints, False)
         floats[channels.CHANGED] = 1.0
-    elif floats[channels.CHANGED] == channels.DUE and floats[memory + PASSED] == 0.0:
+    elif ints[DRIVES] > 0 and floats[channels.CHANGED] == channels.DUE and floats[memory + PASSED] == 0.0:
         # All is found anew at the impact; where that is another contact's, a step later.
         floats[memory + PASSED] = 1.0
     elif floats[memory + KEPT] > 0.0 or ints[DRIVES] > 0:
