@@ -158,7 +158,7 @@ def _curved(straight: ElementMesh, onto: Onto) -> ElementMesh:
     nodes, flat, sides = _creases(points, faces, across)
     if len(nodes):
         found = onto.crease(points[nodes], flat, sides)
-        met = (found != points[nodes]).any(axis=1)
+        met = ~np.isnan(found).any(axis=1)
         moved[nodes[met]] = found[met]
     places = np.concatenate([fine_rule()[0], np.eye(4), np.asarray(straight.element.rule[0])])
     least = LEAST_BENT * straight.sizes(places[:1])

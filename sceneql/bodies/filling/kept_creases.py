@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -33,13 +34,18 @@ LEAST_SHAPE, LEAST_LEFT = 0.06, 0.4
 """A tetrahedron keeps this shape, volume over that of the regular one of its mean side, or this part of its own."""
 LEAST_CORNER = 0.3
 """Of the volume that three normals span, from which on their planes meet in a corner."""
+FARTHEST_CORNER, MOST_KINDS = 1.0, 5
+"""Spacings that a point may move to a corner, and how many surfaces are looked at around a point."""
 PASSES = 4
-CLOSER = (0.1, 0.02, 4e-3, 1e-3, 2e-4, 4e-5, 1e-5, 1e-5)
-"""Spacings beside a crease at which its surfaces are met, pass by pass: each comes as near as to a tenth of that."""
-WITHIN = 10.0
-"""How many times that far, at most, they are looked for along their normals."""
-STEEP = 0.33
-"""Height over distance of a surface beside a crease in the last pass, from which on it is round there."""
+FIRST, LAST, LAST_MISSED, NEARER, STEPS = 0.2, 1e-5, 0.01, 0.05, 24
+"""Spacings beside a crease at which its surfaces are met, first and last; below which they are not looked for nearer
+when they are missed; the least factor from one step to the next, and the most steps."""
+FARTHEST_STEP = 2.0
+"""A step moves no farther than so many times the distance of the places that it is found by."""
+WITHIN = (0.3, 1.0, 3.0, 10.0)
+"""How many times that far they are looked for along their normals, the nearest first."""
+LEAST_TURNED = 0.8
+"""Cosine of the angle by which a plane turns at most in one step."""
 
 Holds = Callable[["Floats"], "NDArray[bool_]"]
 Crossing = Callable[["Floats", "Floats"], "Floats"]
@@ -67,33 +73,82 @@ def creases_kept(points: Floats, tetrahedra: Ints, spacing: float, holds: Holds,
     planes = np.full((len(points), 3, 3), np.nan)
     planes[:, 0] = normals
     cells, starts = around(tetrahedra, len(points))
-    corners: list[Floats] = []
+    outer = np.unique(faces)
+    corners, turned = _corners(points, sides, normals, spacing, holds, crossing)
+    for vertex, corner in _nearest(points[outer], corners, spacing):
+        own = tetrahedra[cells[starts[outer[vertex]] : starts[outer[vertex] + 1]]]
+        taken = ~np.isnan(planes[:, 2, 0]) & (points == corners[corner]).all(axis=1)
+        if np.isnan(planes[outer[vertex], 2, 0]) and not taken.any() and _bear(points, own, outer[vertex], corners[corner]):
+            points[outer[vertex]], free[outer[vertex]] = corners[corner], False
+            planes[outer[vertex]] = turned[corner]
     for _ in range(PASSES):
         across = sides[free[sides].all(axis=1)]
         across = across[np.einsum("si,si->s", normals[across[:, 0]], normals[across[:, 1]]) < CREASE]
         if not len(across):
             break
-        found = _targets(points, normals, across, spacing)
-        places, ways = np.array([one[2] for one in found]), np.array([one[3] for one in found])
-        there = holds(places - ON * spacing * ways) & ~holds(places + ON * spacing * ways)
-        places = _met(found, points, normals, spacing, holds, crossing)
-        moves = np.linalg.norm(places - points[[one[0] for one in found]], axis=1)
-        ranks = np.array([len(one[1]) for one in found])
+        found = _targets(points, normals, across)
+        places = np.array([one[2] for one in found])
+        pairs = np.array([one[:2] for one in found])
+        flat = normals[pairs]
+        places = onto_crease(places, flat, convex(points[pairs], flat), spacing, holds, crossing)
+        moves = np.linalg.norm(places - points[pairs[:, 0]], axis=1)
+        moves[np.isnan(moves)] = np.inf
         before = int(free.sum())
-        for k in np.lexsort([moves, -ranks]):
-            (vertex, others, _, _), place = found[k], places[k]
-            known = len(others) == 2 and any(np.linalg.norm(place - one) < BESIDE * spacing for one in corners)
-            if not there[k] or not free[vertex] or not free[list(others)].all() or known:
+        for k in np.argsort(moves, kind="stable"):
+            vertex, other = pairs[k]
+            if not moves[k] <= FARTHEST * spacing:
+                break
+            if not free[vertex] or not free[other]:
                 continue
             own = tetrahedra[cells[starts[vertex] : starts[vertex + 1]]]
-            if moves[k] <= FARTHEST * spacing and _bear(points, own, vertex, place):
-                points[vertex], free[vertex] = place, False
-                planes[vertex, : len(others) + 1] = normals[[vertex, *others]]
-                if len(others) == 2:
-                    corners.append(place)
+            if _bear(points, own, vertex, places[k]):
+                points[vertex], free[vertex] = places[k], False
+                planes[vertex, :2] = normals[[vertex, other]]
         if free.sum() == before:
             break
     return Kept(points, planes)
+
+
+def _corners(
+    points: Floats, sides: Any, normals: Floats, spacing: float, holds: Holds, crossing: Crossing
+) -> tuple[Floats, Floats]:
+    """(c, 3) places where three surfaces meet that stand around an outer point, and their normals (c, 3, 3) nearby."""
+    beside: dict[int, set[int]] = {}
+    for a, b in sides.tolist():
+        beside.setdefault(a, set()).add(b)
+        beside.setdefault(b, set()).add(a)
+    threes = []
+    for vertex, ring in beside.items():
+        near = sorted(set().union(ring, *(beside[other] for other in ring)))
+        known = np.array([other for other in near if not np.isnan(normals[other, 0])], dtype=np.int64)
+        known = known[np.argsort(np.linalg.norm(points[known] - points[vertex], axis=1), kind="stable")]
+        kinds: list[int] = []
+        for other in known.tolist():
+            if len(kinds) < MOST_KINDS and (normals[kinds] @ normals[other] < CREASE).all():
+                kinds.append(other)
+        threes += [three for three in combinations(sorted(kinds), 3)]
+    some = np.array(sorted(set(threes)), dtype=np.int64).reshape(-1, 3)
+    some = some[np.abs(np.linalg.det(normals[some])) > LEAST_CORNER]
+    planes, at = normals[some], points[some]
+    heights = np.einsum("mki,mki->mk", planes, at)
+    places = np.linalg.solve(planes, heights[..., None])[..., 0]
+    close = np.linalg.norm(places - at.mean(axis=1), axis=1) < 2.0 * spacing
+    planes, at, places = planes[close], at[close], places[close]
+    places = onto_crease(places, planes, convex(at, planes), spacing, holds, crossing)
+    met = np.linalg.norm(places - at.mean(axis=1), axis=1) < 2.0 * spacing
+    found: list[int] = []
+    for k in np.flatnonzero(met):
+        if all(np.linalg.norm(places[k] - places[other]) > BESIDE * spacing for other in found):
+            found.append(k)
+    return places[found], planes[found]
+
+
+def _nearest(points: Floats, corners: Floats, spacing: float) -> list[tuple[int, int]]:
+    """Which points may move to which corners, the least moves first."""
+    away = np.linalg.norm(points[:, None] - corners[None], axis=2)
+    pairs = np.argwhere(away <= FARTHEST_CORNER * spacing)
+    order = np.argsort(away[tuple(pairs.T)], kind="stable")
+    return [(int(a), int(b)) for a, b in pairs[order]]
 
 
 def _normals(points: Floats, faces: Any, spacing: float, holds: Holds, crossing: Crossing) -> Floats:
@@ -132,8 +187,8 @@ def around(tetrahedra: Ints, count: int) -> tuple[Any, Any]:
     return np.argsort(flat, kind="stable") // 4, starts
 
 
-def _targets(points: Floats, normals: Floats, across: Any, spacing: float) -> list[tuple[int, Any, Floats, Floats]]:
-    """Where points may move: (point, those beyond creases whose planes it takes, place, a way outward there).
+def _targets(points: Floats, normals: Floats, across: Any) -> list[tuple[int, int, Floats]]:
+    """Where points may move: (point, that beyond the crease whose plane it takes, place).
 
     ``across`` (s, 2): outer edges over which the surface turns.
     """
@@ -141,48 +196,12 @@ def _targets(points: Floats, normals: Floats, across: Any, spacing: float) -> li
     for a, b in across.tolist():
         beyond.setdefault(a, []).append(b)
         beyond.setdefault(b, []).append(a)
-    found: list[tuple[int, Any, Floats, Floats]] = []
+    found = []
     for vertex, others in beyond.items():
-        best: tuple[float, Any] = (np.inf, None)
-        for other in others:
-            move = onto_planes(points[vertex], points[[vertex, other]], normals[[vertex, other]])
-            size = float(np.linalg.norm(move))
-            if size < best[0]:
-                best = size, (vertex, (other,), points[vertex] + move, _unit(normals[vertex] + normals[other]))
-        if best[1] is not None:
-            found.append(best[1])
-        most: tuple[float, Any] = (LEAST_CORNER, None)
-        for k, one in enumerate(others):
-            for two in others[:k]:
-                three = normals[[vertex, one, two]]
-                size = abs(float(np.linalg.det(three)))
-                if size > most[0] and normals[one] @ normals[two] < CREASE:
-                    most = size, (one, two)
-        if most[1] is not None:
-            some = [vertex, *most[1]]
-            place = points[vertex] + onto_planes(points[vertex], points[some], normals[some])
-            found.append((vertex, most[1], place, _unit(normals[some].sum(axis=0))))
+        moves = [onto_planes(points[vertex], points[[vertex, other]], normals[[vertex, other]]) for other in others]
+        best = int(np.argmin(np.linalg.norm(moves, axis=1)))
+        found.append((vertex, others[best], points[vertex] + moves[best]))
     return found
-
-
-def _met(
-    found: list[tuple[int, Any, Floats, Floats]],
-    points: Floats,
-    normals: Floats,
-    spacing: float,
-    holds: Holds,
-    crossing: Crossing,
-) -> Floats:
-    """(m, 3) the places of targets, moved to where the surfaces themselves meet that their planes stand for."""
-    places = np.array([one[2] for one in found])
-    for rank in (2, 3):
-        which = [k for k, one in enumerate(found) if len(one[1]) == rank - 1]
-        if not which:
-            continue
-        some = np.array([[found[k][0], *found[k][1]] for k in which])
-        planes, at = normals[some], points[some]
-        places[which] = onto_crease(places[which], planes, convex(at, planes), spacing, holds, crossing)
-    return places
 
 
 def convex(at: Floats, planes: Floats) -> Floats:
@@ -206,27 +225,72 @@ def onto_crease(
 ) -> Floats:
     """(m, 3) places near creases, moved onto these: where surfaces of about the normals (m, k, 3) meet.
 
-    ``sides`` (m, k, 3): unit directions from the crease into each surface. What is not met stays as it is.
+    ``sides`` (m, k, 3): unit directions from the crease into each surface. NaN where none is met. Newton's method on
+    planes through three places of each surface beside the crease, which come nearer as it converges.
     """
-    found = places.copy()
+    found, normals, sides = places.copy(), normals.copy(), sides.copy()
+    beside = np.full(len(places), FIRST)
     whole = np.ones(len(places), dtype=bool)
-    for beside in CLOSER:
-        start = found[:, None] + beside * spacing * sides
-        reach = min(REACH, WITHIN * beside) * spacing
-        inner, outer = start - reach * normals, start + reach * normals
-        flat = inner.reshape(-1, 3), outer.reshape(-1, 3)
-        crosses = np.asarray(holds(flat[0])) & ~np.asarray(holds(flat[1]))
-        whole &= crosses.reshape(normals.shape[:2]).all(axis=1)
-        if not whole.any():
+    for _ in range(STEPS):
+        some = np.flatnonzero(whole & (beside > 0.0))
+        if not len(some):
             break
-        some = np.repeat(whole, normals.shape[1])
-        share = crossing(flat[0][some], flat[1][some]).reshape(-1, normals.shape[1])
-        heights = (2.0 * share - 1.0) * reach
-        steepest = np.abs(heights).max(axis=1) / (beside * spacing)
-        found[whole] += np.einsum("mik,mk->mi", np.linalg.pinv(normals[whole]), heights)
-    if whole.any():
-        whole[np.flatnonzero(whole)[steepest > STEEP]] = False
-    found[~whole] = places[~whole]
+        planes, hits, crosses = _beside(found[some], normals[some], sides[some], beside[some], spacing, holds, crossing)
+        heights = np.einsum("mki,mki->mk", planes, hits - found[some][:, None])
+        move = np.einsum("mik,mk->mi", np.linalg.pinv(planes), heights)
+        far = np.linalg.norm(move, axis=1) / (beside[some] * spacing)
+        # What meets no surface is looked for nearer, and what moves much is looked at from as far again.
+        missed = ~crosses | (far > FARTHEST_STEP)
+        beside[some[missed]] *= 0.5
+        whole[some[missed & (beside[some] < LAST_MISSED)]] = False
+        fine = some[~missed]
+        found[fine] += move[~missed]
+        normals[fine] = planes[~missed]
+        sides[fine] = _tangent(sides[fine], normals[fine])
+        last = beside[fine] <= LAST
+        beside[fine] = np.where(last, 0.0, np.maximum(LAST, beside[fine] * np.clip(far[~missed], NEARER, 1.0)))
+    whole &= beside == 0.0
+    turned = np.einsum("mki,mli->mkl", normals, normals)
+    turned[:, *np.diag_indices(normals.shape[1])] = -1.0
+    whole &= (turned < CREASE).all(axis=(1, 2))
+    found[~whole] = np.nan
+    return found
+
+
+def _beside(
+    places: Floats, normals: Floats, sides: Floats, beside: Floats, spacing: float, holds: Holds, crossing: Crossing
+) -> tuple[Floats, Floats, Any]:
+    """Planes of surfaces beside creases: normals (m, k, 3), places (m, k, 3) on them, and whether all (m,) are met."""
+    apart = (beside * spacing)[:, None, None]
+    across = np.cross(normals, sides)
+    met = []
+    crosses = np.ones(len(places), dtype=bool)
+    for along, aside in ((0.5, 0.0), (1.0, -0.4), (1.0, 0.4)):
+        start = (places[:, None] + apart * (along * sides + aside * across)).reshape(-1, 3)
+        hits, open_ = start.copy(), np.ones(len(start), dtype=bool)
+        for within in WITHIN:
+            reach = (np.minimum(REACH, within * beside)[:, None, None] * spacing * normals).reshape(-1, 3)
+            cuts = open_.copy()
+            cuts[open_] = np.asarray(holds((start - reach)[open_])) & ~np.asarray(holds((start + reach)[open_]))
+            if cuts.any():
+                inner, outer = (start - reach)[cuts], (start + reach)[cuts]
+                hits[cuts] = inner + crossing(inner, outer)[:, None] * (outer - inner)
+            open_ &= ~cuts
+            if not open_.any():
+                break
+        crosses &= ~open_.reshape(normals.shape[:2]).any(axis=1)
+        met.append(hits.reshape(normals.shape))
+    planes = np.cross(met[2] - met[0], met[1] - met[0])
+    planes /= np.maximum(np.linalg.norm(planes, axis=2, keepdims=True), 1e-300)
+    planes *= np.sign(np.einsum("mki,mki->mk", planes, normals))[..., None]
+    crosses &= (np.einsum("mki,mki->mk", planes, normals) > LEAST_TURNED).all(axis=1)
+    return planes, met[0], crosses
+
+
+def _tangent(sides: Floats, normals: Floats) -> Floats:
+    """Directions (..., 3) made tangent to surfaces with normals (..., 3), unit."""
+    found: Floats = sides - np.sum(sides * normals, axis=-1, keepdims=True) * normals
+    found /= np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-300)
     return found
 
 
@@ -235,11 +299,6 @@ def onto_planes(point: Floats, through: Floats, normals: Floats) -> Floats:
     heights = np.einsum("ki,ki->k", through - point, normals)
     move: Floats = np.linalg.lstsq(normals, heights, rcond=None)[0]
     return move
-
-
-def _unit(vector: Floats) -> Floats:
-    found: Floats = vector / max(float(np.linalg.norm(vector)), 1e-300)
-    return found
 
 
 def _bear(points: Floats, own: Ints, vertex: int, place: Floats) -> bool:
