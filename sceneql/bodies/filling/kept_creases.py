@@ -28,8 +28,8 @@ FARTHEST = 0.6
 """Spacings that a corner may move."""
 BESIDE, REACH = 1e-3, 0.25
 """Spacings from a corner at which the surface is met again to know its plane, and from there along its normal."""
-ON = 0.05
-"""A place is on the surface where so many spacings inward lie inside and outward do not."""
+FLAT = 0.02
+"""Part of that distance by which the surface bows there at most: a place that is as near to a crease has no plane."""
 LEAST_SHAPE, LEAST_LEFT = 0.06, 0.4
 """A tetrahedron keeps this shape, volume over that of the regular one of its mean side, or this part of its own."""
 LEAST_CORNER = 0.3
@@ -37,7 +37,7 @@ LEAST_CORNER = 0.3
 FARTHEST_CORNER, MOST_KINDS = 1.0, 5
 """Spacings that a point may move to a corner, and how many surfaces are looked at around a point."""
 PASSES = 4
-FIRST, LAST, LAST_MISSED, NEARER, STEPS = 0.2, 1e-5, 0.01, 0.05, 24
+FIRST, LAST, LAST_MISSED, NEARER, STEPS = (0.2, 0.4, 0.1), 1e-5, 0.01, 0.05, 24
 """Spacings beside a crease at which its surfaces are met, first and last; below which they are not looked for nearer
 when they are missed; the least factor from one step to the next, and the most steps."""
 FARTHEST_STEP = 2.0
@@ -69,7 +69,7 @@ def creases_kept(points: Floats, tetrahedra: Ints, spacing: float, holds: Holds,
     faces = boundary(tetrahedra).astype(np.int64)
     sides = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
     normals = _normals(points, faces, spacing, holds, crossing)
-    points, free = points.copy(), ~np.isnan(normals[:, 0])
+    points, free = points.copy(), np.isin(np.arange(len(points)), faces)
     planes = np.full((len(points), 3, 3), np.nan)
     planes[:, 0] = normals
     cells, starts = around(tetrahedra, len(points))
@@ -82,28 +82,26 @@ def creases_kept(points: Floats, tetrahedra: Ints, spacing: float, holds: Holds,
             points[outer[vertex]], free[outer[vertex]] = corners[corner], False
             planes[outer[vertex]] = turned[corner]
     for _ in range(PASSES):
-        across = sides[free[sides].all(axis=1)]
-        across = across[np.einsum("si,si->s", normals[across[:, 0]], normals[across[:, 1]]) < CREASE]
-        if not len(across):
+        found = _targets(points, normals, sides[free[sides].all(axis=1)])
+        if not len(found):
             break
-        found = _targets(points, normals, across)
-        places = np.array([one[2] for one in found])
-        pairs = np.array([one[:2] for one in found])
-        flat = normals[pairs]
-        places = onto_crease(places, flat, convex(points[pairs], flat), spacing, holds, crossing)
-        moves = np.linalg.norm(places - points[pairs[:, 0]], axis=1)
+        pairs = found[:, 1:]
+        flat, at = normals[pairs], points[pairs]
+        places = points[found[:, 0]] + onto_planes(points[found[:, 0]], at, flat)
+        places = onto_crease(places, flat, convex(at, flat), spacing, holds, crossing)
+        moves = np.linalg.norm(places - points[found[:, 0]], axis=1)
         moves[np.isnan(moves)] = np.inf
         before = int(free.sum())
         for k in np.argsort(moves, kind="stable"):
-            vertex, other = pairs[k]
+            vertex = found[k, 0]
             if not moves[k] <= FARTHEST * spacing:
                 break
-            if not free[vertex] or not free[other]:
+            if not free[found[k]].all():
                 continue
             own = tetrahedra[cells[starts[vertex] : starts[vertex + 1]]]
             if _bear(points, own, vertex, places[k]):
                 points[vertex], free[vertex] = places[k], False
-                planes[vertex, :2] = normals[[vertex, other]]
+                planes[vertex, :2] = flat[k]
         if free.sum() == before:
             break
     return Kept(points, planes)
@@ -164,8 +162,8 @@ def _normals(points: Floats, faces: Any, spacing: float, holds: Holds, crossing:
     one /= np.maximum(np.linalg.norm(one, axis=1, keepdims=True), 1e-300)
     two = np.cross(way, one)
     met, sure = [], np.ones(len(outer), dtype=bool)
-    for turn in (0.0, 2.0 * np.pi / 3.0, 4.0 * np.pi / 3.0):
-        middle = points[outer] + BESIDE * spacing * (np.cos(turn) * one + np.sin(turn) * two)
+    for aside in (one, two, -one, -two):
+        middle = points[outer] + BESIDE * spacing * aside
         inner, beyond = middle - REACH * spacing * way, middle + REACH * spacing * way
         crosses = np.asarray(holds(inner)) & ~np.asarray(holds(beyond))
         share = np.zeros(len(outer))
@@ -173,7 +171,10 @@ def _normals(points: Floats, faces: Any, spacing: float, holds: Holds, crossing:
             share[crosses] = crossing(inner[crosses], beyond[crosses])
         met.append(inner + share[:, None] * (beyond - inner))
         sure &= crosses
-    found = np.cross(met[1] - met[0], met[2] - met[0])
+    for a, b in ((0, 2), (1, 3)):
+        bow = np.einsum("ni,ni->n", met[a] + met[b] - 2.0 * points[outer], way)
+        sure &= np.abs(bow) < FLAT * BESIDE * spacing
+    found = np.cross(met[2] - met[0], met[3] - met[1])
     length = np.linalg.norm(found, axis=1, keepdims=True)
     planes = np.full_like(points, np.nan)
     planes[outer[sure]] = (found / np.maximum(length, 1e-300))[sure]
@@ -187,21 +188,33 @@ def around(tetrahedra: Ints, count: int) -> tuple[Any, Any]:
     return np.argsort(flat, kind="stable") // 4, starts
 
 
-def _targets(points: Floats, normals: Floats, across: Any) -> list[tuple[int, int, Floats]]:
-    """Where points may move: (point, that beyond the crease whose plane it takes, place).
+def _targets(points: Floats, normals: Floats, sides: Any) -> Any:
+    """(m, 3) points that may move onto creases, and the two by whose planes: itself and one beyond, the nearest line.
 
-    ``across`` (s, 2): outer edges over which the surface turns.
+    One that has no plane itself, on a crease but for less than BESIDE, takes those of two around it. ``sides`` (s, 2):
+    outer edges.
     """
-    beyond: dict[int, list[int]] = {}
-    for a, b in across.tolist():
-        beyond.setdefault(a, []).append(b)
-        beyond.setdefault(b, []).append(a)
+    beside: dict[int, list[int]] = {}
+    for a, b in sides.tolist():
+        beside.setdefault(a, []).append(b)
+        beside.setdefault(b, []).append(a)
     found = []
-    for vertex, others in beyond.items():
-        moves = [onto_planes(points[vertex], points[[vertex, other]], normals[[vertex, other]]) for other in others]
-        best = int(np.argmin(np.linalg.norm(moves, axis=1)))
-        found.append((vertex, others[best], points[vertex] + moves[best]))
-    return found
+    for vertex, ring in beside.items():
+        known = [other for other in ring if not np.isnan(normals[other, 0])]
+        pairs = list(combinations(known, 2)) if np.isnan(normals[vertex, 0]) else [(vertex, other) for other in known]
+        some = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+        some = some[np.einsum("si,si->s", normals[some[:, 0]], normals[some[:, 1]]) < CREASE]
+        if len(some):
+            moves = onto_planes(np.repeat(points[vertex][None], len(some), axis=0), points[some], normals[some])
+            found.append((vertex, *some[np.argmin(np.linalg.norm(moves, axis=1))]))
+    return np.array(found, dtype=np.int64).reshape(-1, 3)
+
+
+def onto_planes(points: Floats, through: Floats, normals: Floats) -> Floats:
+    """(m, 3) the shortest moves of points (m, 3) onto planes through places (m, k, 3) with normals (m, k, 3)."""
+    heights = np.einsum("mki,mki->mk", through - points[:, None], normals)
+    moves: Floats = np.einsum("mik,mk->mi", np.linalg.pinv(normals), heights)
+    return moves
 
 
 def convex(at: Floats, planes: Floats) -> Floats:
@@ -228,8 +241,20 @@ def onto_crease(
     ``sides`` (m, k, 3): unit directions from the crease into each surface. NaN where none is met. Newton's method on
     planes through three places of each surface beside the crease, which come nearer as it converges.
     """
+    found = np.full_like(places, np.nan)
+    for first in FIRST:
+        left = np.isnan(found[:, 0])
+        if left.any():
+            found[left] = _by_newton(places[left], normals[left], sides[left], first, spacing, holds, crossing)
+    return found
+
+
+def _by_newton(
+    places: Floats, normals: Floats, sides: Floats, first: float, spacing: float, holds: Holds, crossing: Crossing
+) -> Floats:
+    """As of `onto_crease`, from planes met so many spacings beside the places at first."""
     found, normals, sides = places.copy(), normals.copy(), sides.copy()
-    beside = np.full(len(places), FIRST)
+    beside = np.full(len(places), first)
     whole = np.ones(len(places), dtype=bool)
     for _ in range(STEPS):
         some = np.flatnonzero(whole & (beside > 0.0))
@@ -265,7 +290,7 @@ def _beside(
     across = np.cross(normals, sides)
     met = []
     crosses = np.ones(len(places), dtype=bool)
-    for along, aside in ((0.5, 0.0), (1.0, -0.4), (1.0, 0.4)):
+    for along, aside in ((0.6, 0.0), (1.0, -0.4), (1.0, 0.4)):
         start = (places[:, None] + apart * (along * sides + aside * across)).reshape(-1, 3)
         hits, open_ = start.copy(), np.ones(len(start), dtype=bool)
         for within in WITHIN:
@@ -292,13 +317,6 @@ def _tangent(sides: Floats, normals: Floats) -> Floats:
     found: Floats = sides - np.sum(sides * normals, axis=-1, keepdims=True) * normals
     found /= np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-300)
     return found
-
-
-def onto_planes(point: Floats, through: Floats, normals: Floats) -> Floats:
-    """The shortest move (3,) of a point onto planes through places (k, 3) with normals (k, 3)."""
-    heights = np.einsum("ki,ki->k", through - point, normals)
-    move: Floats = np.linalg.lstsq(normals, heights, rcond=None)[0]
-    return move
 
 
 def _bear(points: Floats, own: Ints, vertex: int, place: Floats) -> bool:

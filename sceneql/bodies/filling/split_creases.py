@@ -14,7 +14,6 @@ import numpy as np
 from sceneql.bodies.filling.kept_creases import (
     CREASE,
     FARTHEST,
-    ON,
     Crossing,
     Holds,
     Kept,
@@ -91,7 +90,7 @@ def _cut_off(points: Floats, planes: Floats, sides: Any) -> tuple[Any, Floats]:
         ends, least = points[sides[side]], np.inf
         for a, b in np.argwhere(known[side]):
             pair = np.stack([planes[sides[side, 0], a], planes[sides[side, 1], b]])
-            move = float(np.linalg.norm(onto_planes(ends.mean(axis=0), ends, pair)))
+            move = float(np.linalg.norm(onto_planes(ends.mean(axis=0)[None], ends[None], pair[None])))
             if move < least:
                 least, chosen[k] = move, pair
     return sides[which], chosen
@@ -100,10 +99,6 @@ def _cut_off(points: Floats, planes: Floats, sides: Any) -> tuple[Any, Floats]:
 def _places(ends: Floats, planes: Floats, spacing: float, holds: Holds, crossing: Crossing) -> tuple[Floats, Any]:
     """Where the creases over outer edges from and to ends (s, 2, 3) are (s, 3), and which of them (s,) are sure."""
     middle = ends.mean(axis=1)
-    flat = middle + np.array([onto_planes(*one) for one in zip(middle, ends, planes, strict=True)])
-    ways = planes.sum(axis=1)
-    ways /= np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-300)
-    there = holds(flat - ON * spacing * ways) & ~holds(flat + ON * spacing * ways)
+    flat = middle + onto_planes(middle, ends, planes)
     places = onto_crease(flat, planes, convex(ends, planes), spacing, holds, crossing)
-    near = np.linalg.norm(places - middle, axis=1) <= FARTHEST * spacing
-    return places, np.asarray(there) & near
+    return places, np.linalg.norm(places - middle, axis=1) <= FARTHEST * spacing
