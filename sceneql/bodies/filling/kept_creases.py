@@ -37,9 +37,11 @@ LEAST_CORNER = 0.3
 FARTHEST_CORNER, MOST_KINDS = 1.0, 5
 """Spacings that a point may move to a corner, and how many surfaces are looked at around a point."""
 PASSES = 4
-FIRST, LAST, LAST_MISSED, NEARER, STEPS = (0.2, 0.4, 0.1), 1e-5, 0.01, 0.05, 24
+FIRST, LAST, LAST_MISSED, NEARER, STEPS = (0.2, 0.4, 0.8, 0.1), 1e-5, 0.01, 0.05, 24
 """Spacings beside a crease at which its surfaces are met, first and last; below which they are not looked for nearer
 when they are missed; the least factor from one step to the next, and the most steps."""
+FARTHEST_MET = 0.5
+"""Spacings along their normals at which surfaces beside a crease are met at most."""
 FARTHEST_STEP = 2.0
 """A step moves no farther than so many times the distance of the places that it is found by."""
 WITHIN = (0.3, 1.0, 3.0, 10.0)
@@ -294,7 +296,7 @@ def _beside(
         start = (places[:, None] + apart * (along * sides + aside * across)).reshape(-1, 3)
         hits, open_ = start.copy(), np.ones(len(start), dtype=bool)
         for within in WITHIN:
-            reach = (np.minimum(REACH, within * beside)[:, None, None] * spacing * normals).reshape(-1, 3)
+            reach = (np.minimum(FARTHEST_MET, within * beside)[:, None, None] * spacing * normals).reshape(-1, 3)
             cuts = open_.copy()
             cuts[open_] = np.asarray(holds((start - reach)[open_])) & ~np.asarray(holds((start + reach)[open_]))
             if cuts.any():

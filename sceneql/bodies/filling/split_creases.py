@@ -13,7 +13,6 @@ import numpy as np
 
 from sceneql.bodies.filling.kept_creases import (
     CREASE,
-    FARTHEST,
     Crossing,
     Holds,
     Kept,
@@ -29,6 +28,8 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 PASSES = 12
+FARTHEST_NEW = 1.0
+"""Spacings from the middle of an edge at most to its new corner."""
 NOWHERE = [np.nan] * 3
 LEAST_SHAPE = 0.06
 """Of each tetrahedron that a split makes: its volume over that of the regular one of its mean side."""
@@ -101,4 +102,4 @@ def _places(ends: Floats, planes: Floats, spacing: float, holds: Holds, crossing
     middle = ends.mean(axis=1)
     flat = middle + onto_planes(middle, ends, planes)
     places = onto_crease(flat, planes, convex(ends, planes), spacing, holds, crossing)
-    return places, np.linalg.norm(places - middle, axis=1) <= FARTHEST * spacing
+    return places, np.linalg.norm(places - middle, axis=1) <= FARTHEST_NEW * spacing
