@@ -37,9 +37,9 @@ LEAST_CORNER = 0.3
 FARTHEST_CORNER, MOST_KINDS = 1.0, 5
 """Spacings that a point may move to a corner, and how many surfaces are looked at around a point."""
 PASSES = 4
-FIRST, LAST, LAST_MISSED, NEARER, STEPS = (0.2, 0.4, 0.8, 0.1), 1e-5, 0.01, 0.05, 24
+FIRST, LAST, LAST_MISSED, NEARER, STEPS = (0.2, 0.4, 0.8, 0.1), 1e-5, 0.01, (0.05, 0.5), 32
 """Spacings beside a crease at which its surfaces are met, first and last; below which they are not looked for nearer
-when they are missed; the least factor from one step to the next, and the most steps."""
+when they are missed; the factors from one step to the next, and the most steps."""
 FARTHEST_MET = 0.5
 """Spacings along their normals at which surfaces beside a crease are met at most."""
 FARTHEST_STEP = 2.0
@@ -134,8 +134,13 @@ def _corners(
     places = np.linalg.solve(planes, heights[..., None])[..., 0]
     close = np.linalg.norm(places - at.mean(axis=1), axis=1) < 2.0 * spacing
     planes, at, places = planes[close], at[close], places[close]
-    places = onto_crease(places, planes, convex(at, planes), spacing, holds, crossing)
-    met = np.linalg.norm(places - at.mean(axis=1), axis=1) < 2.0 * spacing
+    middles, ways = at.mean(axis=1), convex(at, planes)
+    flat, places = places, onto_crease(places, planes, ways, spacing, holds, crossing)
+    # Where round surfaces turn much to there, their planes meet too far out: from halfway to their points.
+    left = np.isnan(places[:, 0])
+    nearer = 0.5 * (flat + middles)[left]
+    places[left] = onto_crease(nearer, planes[left], ways[left], spacing, holds, crossing)
+    met = np.linalg.norm(places - middles, axis=1) < 2.0 * spacing
     found: list[int] = []
     for k in np.flatnonzero(met):
         if all(np.linalg.norm(places[k] - places[other]) > BESIDE * spacing for other in found):
@@ -275,7 +280,7 @@ def _by_newton(
         normals[fine] = planes[~missed]
         sides[fine] = _tangent(sides[fine], normals[fine])
         last = beside[fine] <= LAST
-        beside[fine] = np.where(last, 0.0, np.maximum(LAST, beside[fine] * np.clip(far[~missed], NEARER, 1.0)))
+        beside[fine] = np.where(last, 0.0, np.maximum(LAST, beside[fine] * np.clip(far[~missed], *NEARER)))
     whole &= beside == 0.0
     turned = np.einsum("mki,mli->mkl", normals, normals)
     turned[:, *np.diag_indices(normals.shape[1])] = -1.0
