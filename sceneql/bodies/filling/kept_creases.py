@@ -30,7 +30,7 @@ BESIDE, REACH = 1e-3, 0.25
 """Spacings from a corner at which the surface is met again to know its plane, and from there along its normal."""
 FLAT = 0.02
 """Part of that distance by which the surface bows there at most: a place that is as near to a crease has no plane."""
-LEAST_SHAPE, LEAST_LEFT = 0.06, 0.4
+LEAST_SHAPE, LEAST_LEFT = 0.08, 0.4
 """A tetrahedron keeps this shape, volume over that of the regular one of its mean side, or this part of its own."""
 LEAST_CORNER = 0.3
 """Of the volume that three normals span, from which on their planes meet in a corner."""

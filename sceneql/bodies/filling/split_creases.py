@@ -31,8 +31,8 @@ PASSES = 12
 FARTHEST_NEW = 1.0
 """Spacings from the middle of an edge at most to its new corner."""
 NOWHERE = [np.nan] * 3
-LEAST_SHAPE = 0.06
-"""Of each tetrahedron that a split makes: its volume over that of the regular one of its mean side."""
+LEAST_SHAPES = (0.08, 0.06, 0.04)
+"""Of each tetrahedron that a split makes, the next where no edge is left that can be split with the last: its volume over that of the regular one of its mean side."""
 
 
 def creases_split(
@@ -41,6 +41,7 @@ def creases_split(
     """Points (n, 3) and tetrahedra (t, 4), of which those on creases that are cut off are split."""
     points, planes = kept.points, kept.normals
     cells: Any = tetrahedra.astype(np.int64)
+    level = 0
     for _ in range(PASSES):
         faces = boundary(cells).astype(np.int64)
         sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
@@ -66,7 +67,7 @@ def creases_split(
             one, two = (np.where(cells[own] == end, number, cells[own]) for end in (a, b))
             both = np.concatenate([one, two])
             at = np.where((both == number)[:, :, None], places[k], points[np.minimum(both, len(points) - 1)])
-            if shapes(at).min() < LEAST_SHAPE:
+            if shapes(at).min() < LEAST_SHAPES[level]:
                 continue
             touched[own] = True
             new.append(places[k])
@@ -74,7 +75,10 @@ def creases_split(
             gone.append(own)
             made.append(both)
         if not new:
-            break
+            level += 1
+            if level == len(LEAST_SHAPES):
+                break
+            continue
         points = np.concatenate([points, new])
         planes = np.concatenate([planes, on])
         cells = np.concatenate([np.delete(cells, np.concatenate(gone), axis=0), *made])
