@@ -80,7 +80,11 @@ def creases_kept(points: Floats, tetrahedra: Ints, spacing: float, holds: Holds,
     for vertex, corner in _nearest(points[outer], corners, spacing):
         own = tetrahedra[cells[starts[outer[vertex]] : starts[outer[vertex] + 1]]]
         taken = ~np.isnan(planes[:, 2, 0]) & (points == corners[corner]).all(axis=1)
-        if np.isnan(planes[outer[vertex], 2, 0]) and not taken.any() and _bear(points, own, outer[vertex], corners[corner]):
+        if (
+            np.isnan(planes[outer[vertex], 2, 0])
+            and not taken.any()
+            and _bear(points, own, outer[vertex], corners[corner])
+        ):
             points[outer[vertex]], free[outer[vertex]] = corners[corner], False
             planes[outer[vertex]] = turned[corner]
     for _ in range(PASSES):
