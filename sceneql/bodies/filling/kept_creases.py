@@ -1,8 +1,9 @@
 """Creases and corners of an object kept in the tetrahedra that fill it. Imports numpy.
 
 Stuffing puts the outer corners of tetrahedra on the surface, wherever the lattice cuts that, so an edge of the object
-is cut off between them. Here those next to an edge move onto it: onto the line in which the planes of the surface at
-the two ends of an outer edge meet, or the point of three, as in dual contouring (Ju, Losasso, Schaefer & Warren 2002).
+is cut off between them. Here those next to an edge move onto it: first the nearest to each corner, a place where three
+surfaces meet, then others to where two do. The planes of the surface at the ends of outer edges tell about where, as in
+dual contouring (Ju, Losasso, Schaefer & Warren 2002); Newton's method goes on from there with the surfaces themselves.
 """
 
 from __future__ import annotations
@@ -77,16 +78,13 @@ def creases_kept(points: Floats, tetrahedra: Ints, spacing: float, holds: Holds,
     cells, starts = around(tetrahedra, len(points))
     outer = np.unique(faces)
     corners, turned = _corners(points, sides, normals, spacing, holds, crossing)
-    for vertex, corner in _nearest(points[outer], corners, spacing):
-        own = tetrahedra[cells[starts[outer[vertex]] : starts[outer[vertex] + 1]]]
-        taken = ~np.isnan(planes[:, 2, 0]) & (points == corners[corner]).all(axis=1)
-        if (
-            np.isnan(planes[outer[vertex], 2, 0])
-            and not taken.any()
-            and _bear(points, own, outer[vertex], corners[corner])
-        ):
-            points[outer[vertex]], free[outer[vertex]] = corners[corner], False
-            planes[outer[vertex]] = turned[corner]
+    taken: set[int] = set()
+    for which, corner in _nearest(points[outer], corners, spacing):
+        vertex = outer[which]
+        own = tetrahedra[cells[starts[vertex] : starts[vertex + 1]]]
+        if free[vertex] and corner not in taken and _bear(points, own, vertex, corners[corner]):
+            points[vertex], planes[vertex], free[vertex] = corners[corner], turned[corner], False
+            taken.add(corner)
     for _ in range(PASSES):
         found = _targets(points, normals, sides[free[sides].all(axis=1)])
         if not len(found):
@@ -121,7 +119,7 @@ def _corners(
     for a, b in sides.tolist():
         beside.setdefault(a, set()).add(b)
         beside.setdefault(b, set()).add(a)
-    threes = []
+    threes: list[tuple[int, ...]] = []
     for vertex, ring in beside.items():
         near = sorted(set().union(ring, *(beside[other] for other in ring)))
         known = np.array([other for other in near if not np.isnan(normals[other, 0])], dtype=np.int64)
@@ -130,7 +128,7 @@ def _corners(
         for other in known.tolist():
             if len(kinds) < MOST_KINDS and (normals[kinds] @ normals[other] < CREASE).all():
                 kinds.append(other)
-        threes += [three for three in combinations(sorted(kinds), 3)]
+        threes += combinations(sorted(kinds), 3)
     some = np.array(sorted(set(threes)), dtype=np.int64).reshape(-1, 3)
     some = some[np.abs(np.linalg.det(normals[some])) > LEAST_CORNER]
     planes, at = normals[some], points[some]
@@ -146,7 +144,7 @@ def _corners(
     places[left] = onto_crease(nearer, planes[left], ways[left], spacing, holds, crossing)
     met = np.linalg.norm(places - middles, axis=1) < 2.0 * spacing
     found: list[int] = []
-    for k in np.flatnonzero(met):
+    for k in np.flatnonzero(met).tolist():
         if all(np.linalg.norm(places[k] - places[other]) > BESIDE * spacing for other in found):
             found.append(k)
     return places[found], planes[found]

@@ -32,7 +32,8 @@ FARTHEST_NEW = 1.0
 """Spacings from the middle of an edge at most to its new corner."""
 NOWHERE = [np.nan] * 3
 LEAST_SHAPES = (0.08, 0.06, 0.04)
-"""Of each tetrahedron that a split makes, the next where no edge is left that can be split with the last: its volume over that of the regular one of its mean side."""
+"""Of each tetrahedron that a split makes: its volume over that of the regular one of its mean side. The next holds
+where no edge is left that can be split by the last."""
 
 
 def creases_split(
