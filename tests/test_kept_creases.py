@@ -21,9 +21,9 @@ OBJECTS = {
 }  # fmt: skip
 
 
-def made(folder, text, spacing, element="p1"):
+def made(folder, text, spacing, element="p1", objects=""):
     shape = text[: text.rindex("}")] + ", hidden: yes}"
-    more = f"objects: {{shape: {{{shape}}}}}\n"
+    more = f"objects:\n  shape: {{{shape}}}\n{objects}"
     fields = f"{{of: shape, spacing: {spacing} m, element: {element}, law: {{linear: {{modulus: 1 MPa}}}}}}"
     return Solid(folder, fields, more).mesh
 
@@ -54,6 +54,53 @@ def test_all_corners_of_a_box_are_nodes(tmp_path):
     mesh = made(tmp_path, OBJECTS["box"][0], 0.11)
     for corner in np.array(np.meshgrid([-0.5, 0.5], [-0.35, 0.35], [-0.265, 0.265])).reshape(3, -1).T:
         assert np.linalg.norm(mesh.points - corner, axis=1).min() < 1e-9
+
+
+PLATE = (
+    "difference: {of: [{intersection: {of: [{group: {children: [disk], scale: [3.25, 1, 2.75]}}, "
+    "{box: {size: 4 1 4 m, position: 2 0 2 m}}]}}, {group: {children: [core], scale: [2, 1, 1]}}]}"
+)
+BALL = "intersection: {of: [{sphere: {radius: 1 m}}, {box: {size: 2 2 2 m, position: 1 %s m}}]}"
+HALF = "intersection: {of: [{cylinder: {radius: 1 m, height: 1.3 m}}, {box: {size: 3 3 3 m, position: 1.5 0 0 m}}]}"
+DISKS = "  disk: {cylinder: {radius: 1 m, height: 0.6 m}}\n  core: {cylinder: {radius: 1 m, height: 1 m}}\n"
+
+
+def ellipse(x, z, a, b):
+    return np.hypot(x / a, z / b) - 1
+
+
+# What the surfaces of a solid are zero of, and its corners.
+SOLIDS = {
+    "plate": (PLATE, lambda x, y, z: [ellipse(x, z, 2, 1), ellipse(x, z, 3.25, 2.75), y - 0.3, y + 0.3, x, z],
+              [(x, y, z) for y in (0.3, -0.3) for x, z in ((2, 0), (3.25, 0), (0, 1), (0, 2.75))]),
+    "quarter ball": (BALL % "1 0", lambda x, y, z: [np.hypot(np.hypot(x, y), z) - 1, x, y], [(0, 0, 1), (0, 0, -1)]),
+    "octant": (BALL % "1 1", lambda x, y, z: [np.hypot(np.hypot(x, y), z) - 1, x, y, z],
+               [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]),
+    "half cylinder": (HALF, lambda x, y, z: [np.hypot(x, z) - 1, x, y - 0.65, y + 0.65],
+                      [(0, y, z) for y in (0.65, -0.65) for z in (1, -1)]),
+}  # fmt: skip
+SPACINGS = {
+    "plate": [0.25, 0.28, 0.31, 0.35, 0.4],
+    "quarter ball": [0.3, 0.4],
+    "octant": [0.23, 0.3],
+    "half cylinder": [0.3, 0.37],
+}
+
+
+@pytest.mark.parametrize(("name", "spacing"), [(name, one) for name in SOLIDS for one in SPACINGS[name]])
+def test_corners_are_nodes_and_nodes_of_creases_stand_on_both_surfaces_at_any_spacing(tmp_path, name, spacing):
+    text, surfaces, corners = SOLIDS[name]
+    mesh = made(tmp_path, text, spacing, "p2", DISKS if name == "plate" else "")
+    assert mesh.sizes(np.concatenate([np.eye(4), fine_rule()[0]])).min() > 0.0
+    assert np.degrees(worst_angle(mesh.points, mesh.cells[:, :4])[0]) > 5.0
+    for corner in corners:
+        assert np.linalg.norm(mesh.points[: mesh.corners] - corner, axis=1).min() < 1e-9
+    on = np.abs(surfaces(*mesh.points.T)) < 1e-9
+    assert on[:, mesh.faces[:, :3]].all(axis=2).any(axis=0).all(), "an outer face cuts off a crease"
+    for k, ends in enumerate(((0, 1), (1, 2), (2, 0))):
+        both = on[:, mesh.faces[:, ends]].all(axis=2)
+        crease = both.sum(axis=0) > 1
+        assert (on[:, mesh.faces[crease, 3 + k]] >= both[:, crease]).all()
 
 
 @pytest.mark.parametrize("place", ["0 1.6 0", "0.1 0.3 7", "1e3 0 0"])

@@ -143,7 +143,10 @@ LEAST_BENT = 0.2
 
 
 def _curved(straight: ElementMesh, onto: Onto) -> ElementMesh:
-    """With the nodes on outer edges moved onto the surface, but those that would bend an element too much."""
+    """With the nodes on outer edges moved onto the surface, but those that would bend an element too much.
+
+    Of these the nodes on creases stay there where that is enough.
+    """
     faces, points = straight.faces, straight.points
     normals = np.zeros_like(points)
     a, b, c = (points[faces[:, k]] for k in range(3))
@@ -158,8 +161,9 @@ def _curved(straight: ElementMesh, onto: Onto) -> ElementMesh:
     nodes, flat, sides = _creases(points, faces, across)
     if len(nodes):
         found = onto.crease(points[nodes], flat, sides)
-        met = (found != points[nodes]).any(axis=1)
+        met = ~np.isnan(found).any(axis=1)
         moved[nodes[met]] = found[met]
+    kept = np.isin(np.arange(len(points)), nodes)
     places = np.concatenate([fine_rule()[0], np.eye(4), np.asarray(straight.element.rule[0])])
     least = LEAST_BENT * straight.sizes(places[:1])
     for _ in range(len(outer)):
@@ -168,6 +172,8 @@ def _curved(straight: ElementMesh, onto: Onto) -> ElementMesh:
         if not bad.any():
             return mesh
         back = np.unique(straight.cells[bad, 4:])
+        bent = (moved[back] != points[back]).any(axis=1)
+        back = back[bent & ~kept[back]] if (bent & ~kept[back]).any() else back
         moved[back] = points[back]
     return straight
 

@@ -1,14 +1,16 @@
 """Creases and corners of an object kept in the tetrahedra that fill it. Imports numpy.
 
 Stuffing puts the outer corners of tetrahedra on the surface, wherever the lattice cuts that, so an edge of the object
-is cut off between them. Here those next to an edge move onto it: onto the line in which the planes of the surface at
-the two ends of an outer edge meet, or the point of three, as in dual contouring (Ju, Losasso, Schaefer & Warren 2002).
+is cut off between them. Here those next to an edge move onto it: first the nearest to each corner, a place where three
+surfaces meet, then others to where two do. The planes of the surface at the ends of outer edges tell about where, as in
+dual contouring (Ju, Losasso, Schaefer & Warren 2002); Newton's method goes on from there with the surfaces themselves.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,19 +29,26 @@ FARTHEST = 0.6
 """Spacings that a corner may move."""
 BESIDE, REACH = 1e-3, 0.25
 """Spacings from a corner at which the surface is met again to know its plane, and from there along its normal."""
-ON = 0.05
-"""A place is on the surface where so many spacings inward lie inside and outward do not."""
-LEAST_SHAPE, LEAST_LEFT = 0.06, 0.4
+FLAT = 0.02
+"""Part of that distance by which the surface bows there at most: a place that is as near to a crease has no plane."""
+LEAST_SHAPE, LEAST_LEFT = 0.08, 0.4
 """A tetrahedron keeps this shape, volume over that of the regular one of its mean side, or this part of its own."""
 LEAST_CORNER = 0.3
 """Of the volume that three normals span, from which on their planes meet in a corner."""
+FARTHEST_CORNER, MOST_KINDS = 1.0, 5
+"""Spacings that a point may move to a corner, and how many surfaces are looked at around a point."""
 PASSES = 4
-CLOSER = (0.1, 0.02, 4e-3, 1e-3, 2e-4, 4e-5, 1e-5, 1e-5)
-"""Spacings beside a crease at which its surfaces are met, pass by pass: each comes as near as to a tenth of that."""
-WITHIN = 10.0
-"""How many times that far, at most, they are looked for along their normals."""
-STEEP = 0.33
-"""Height over distance of a surface beside a crease in the last pass, from which on it is round there."""
+FIRST, LAST, LAST_MISSED, NEARER, STEPS = (0.2, 0.4, 0.8, 0.1), 1e-5, 0.01, (0.05, 0.5), 32
+"""Spacings beside a crease at which its surfaces are met, first and last; below which they are not looked for nearer
+when they are missed; the factors from one step to the next, and the most steps."""
+FARTHEST_MET = 0.5
+"""Spacings along their normals at which surfaces beside a crease are met at most."""
+FARTHEST_STEP = 2.0
+"""A step moves no farther than so many times the distance of the places that it is found by."""
+WITHIN = (0.3, 1.0, 3.0, 10.0)
+"""How many times that far they are looked for along their normals, the nearest first."""
+LEAST_TURNED = 0.8
+"""Cosine of the angle by which a plane turns at most in one step."""
 
 Holds = Callable[["Floats"], "NDArray[bool_]"]
 Crossing = Callable[["Floats", "Floats"], "Floats"]
@@ -63,37 +72,90 @@ def creases_kept(points: Floats, tetrahedra: Ints, spacing: float, holds: Holds,
     faces = boundary(tetrahedra).astype(np.int64)
     sides = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1), axis=0)
     normals = _normals(points, faces, spacing, holds, crossing)
-    points, free = points.copy(), ~np.isnan(normals[:, 0])
+    points, free = points.copy(), np.isin(np.arange(len(points)), faces)
     planes = np.full((len(points), 3, 3), np.nan)
     planes[:, 0] = normals
     cells, starts = around(tetrahedra, len(points))
-    corners: list[Floats] = []
+    outer = np.unique(faces)
+    corners, turned = _corners(points, sides, normals, spacing, holds, crossing)
+    taken: set[int] = set()
+    for which, corner in _nearest(points[outer], corners, spacing):
+        vertex = outer[which]
+        own = tetrahedra[cells[starts[vertex] : starts[vertex + 1]]]
+        if free[vertex] and corner not in taken and _bear(points, own, vertex, corners[corner]):
+            points[vertex], planes[vertex], free[vertex] = corners[corner], turned[corner], False
+            taken.add(corner)
     for _ in range(PASSES):
-        across = sides[free[sides].all(axis=1)]
-        across = across[np.einsum("si,si->s", normals[across[:, 0]], normals[across[:, 1]]) < CREASE]
-        if not len(across):
+        found = _targets(points, normals, sides[free[sides].all(axis=1)])
+        if not len(found):
             break
-        found = _targets(points, normals, across, spacing)
-        places, ways = np.array([one[2] for one in found]), np.array([one[3] for one in found])
-        there = holds(places - ON * spacing * ways) & ~holds(places + ON * spacing * ways)
-        places = _met(found, points, normals, spacing, holds, crossing)
-        moves = np.linalg.norm(places - points[[one[0] for one in found]], axis=1)
-        ranks = np.array([len(one[1]) for one in found])
+        pairs = found[:, 1:]
+        flat, at = normals[pairs], points[pairs]
+        places = points[found[:, 0]] + onto_planes(points[found[:, 0]], at, flat)
+        places = onto_crease(places, flat, convex(at, flat), spacing, holds, crossing)
+        moves = np.linalg.norm(places - points[found[:, 0]], axis=1)
+        moves[np.isnan(moves)] = np.inf
         before = int(free.sum())
-        for k in np.lexsort([moves, -ranks]):
-            (vertex, others, _, _), place = found[k], places[k]
-            known = len(others) == 2 and any(np.linalg.norm(place - one) < BESIDE * spacing for one in corners)
-            if not there[k] or not free[vertex] or not free[list(others)].all() or known:
+        for k in np.argsort(moves, kind="stable"):
+            vertex = found[k, 0]
+            if not moves[k] <= FARTHEST * spacing:
+                break
+            if not free[found[k]].all():
                 continue
             own = tetrahedra[cells[starts[vertex] : starts[vertex + 1]]]
-            if moves[k] <= FARTHEST * spacing and _bear(points, own, vertex, place):
-                points[vertex], free[vertex] = place, False
-                planes[vertex, : len(others) + 1] = normals[[vertex, *others]]
-                if len(others) == 2:
-                    corners.append(place)
+            if _bear(points, own, vertex, places[k]):
+                points[vertex], free[vertex] = places[k], False
+                planes[vertex, :2] = flat[k]
         if free.sum() == before:
             break
     return Kept(points, planes)
+
+
+def _corners(
+    points: Floats, sides: Any, normals: Floats, spacing: float, holds: Holds, crossing: Crossing
+) -> tuple[Floats, Floats]:
+    """(c, 3) places where three surfaces meet that stand around an outer point, and their normals (c, 3, 3) nearby."""
+    beside: dict[int, set[int]] = {}
+    for a, b in sides.tolist():
+        beside.setdefault(a, set()).add(b)
+        beside.setdefault(b, set()).add(a)
+    threes: list[tuple[int, ...]] = []
+    for vertex, ring in beside.items():
+        near = sorted(set().union(ring, *(beside[other] for other in ring)))
+        known = np.array([other for other in near if not np.isnan(normals[other, 0])], dtype=np.int64)
+        known = known[np.argsort(np.linalg.norm(points[known] - points[vertex], axis=1), kind="stable")]
+        kinds: list[int] = []
+        for other in known.tolist():
+            if len(kinds) < MOST_KINDS and (normals[kinds] @ normals[other] < CREASE).all():
+                kinds.append(other)
+        threes += combinations(sorted(kinds), 3)
+    some = np.array(sorted(set(threes)), dtype=np.int64).reshape(-1, 3)
+    some = some[np.abs(np.linalg.det(normals[some])) > LEAST_CORNER]
+    planes, at = normals[some], points[some]
+    heights = np.einsum("mki,mki->mk", planes, at)
+    places = np.linalg.solve(planes, heights[..., None])[..., 0]
+    close = np.linalg.norm(places - at.mean(axis=1), axis=1) < 2.0 * spacing
+    planes, at, places = planes[close], at[close], places[close]
+    middles, ways = at.mean(axis=1), convex(at, planes)
+    flat, places = places, onto_crease(places, planes, ways, spacing, holds, crossing)
+    # Where round surfaces turn much to there, their planes meet too far out: from halfway to their points.
+    left = np.isnan(places[:, 0])
+    nearer = 0.5 * (flat + middles)[left]
+    places[left] = onto_crease(nearer, planes[left], ways[left], spacing, holds, crossing)
+    met = np.linalg.norm(places - middles, axis=1) < 2.0 * spacing
+    found: list[int] = []
+    for k in np.flatnonzero(met).tolist():
+        if all(np.linalg.norm(places[k] - places[other]) > BESIDE * spacing for other in found):
+            found.append(k)
+    return places[found], planes[found]
+
+
+def _nearest(points: Floats, corners: Floats, spacing: float) -> list[tuple[int, int]]:
+    """Which points may move to which corners, the least moves first."""
+    away = np.linalg.norm(points[:, None] - corners[None], axis=2)
+    pairs = np.argwhere(away <= FARTHEST_CORNER * spacing)
+    order = np.argsort(away[tuple(pairs.T)], kind="stable")
+    return [(int(a), int(b)) for a, b in pairs[order]]
 
 
 def _normals(points: Floats, faces: Any, spacing: float, holds: Holds, crossing: Crossing) -> Floats:
@@ -109,8 +171,8 @@ def _normals(points: Floats, faces: Any, spacing: float, holds: Holds, crossing:
     one /= np.maximum(np.linalg.norm(one, axis=1, keepdims=True), 1e-300)
     two = np.cross(way, one)
     met, sure = [], np.ones(len(outer), dtype=bool)
-    for turn in (0.0, 2.0 * np.pi / 3.0, 4.0 * np.pi / 3.0):
-        middle = points[outer] + BESIDE * spacing * (np.cos(turn) * one + np.sin(turn) * two)
+    for aside in (one, two, -one, -two):
+        middle = points[outer] + BESIDE * spacing * aside
         inner, beyond = middle - REACH * spacing * way, middle + REACH * spacing * way
         crosses = np.asarray(holds(inner)) & ~np.asarray(holds(beyond))
         share = np.zeros(len(outer))
@@ -118,7 +180,10 @@ def _normals(points: Floats, faces: Any, spacing: float, holds: Holds, crossing:
             share[crosses] = crossing(inner[crosses], beyond[crosses])
         met.append(inner + share[:, None] * (beyond - inner))
         sure &= crosses
-    found = np.cross(met[1] - met[0], met[2] - met[0])
+    for a, b in ((0, 2), (1, 3)):
+        bow = np.einsum("ni,ni->n", met[a] + met[b] - 2.0 * points[outer], way)
+        sure &= np.abs(bow) < FLAT * BESIDE * spacing
+    found = np.cross(met[2] - met[0], met[3] - met[1])
     length = np.linalg.norm(found, axis=1, keepdims=True)
     planes = np.full_like(points, np.nan)
     planes[outer[sure]] = (found / np.maximum(length, 1e-300))[sure]
@@ -132,57 +197,33 @@ def around(tetrahedra: Ints, count: int) -> tuple[Any, Any]:
     return np.argsort(flat, kind="stable") // 4, starts
 
 
-def _targets(points: Floats, normals: Floats, across: Any, spacing: float) -> list[tuple[int, Any, Floats, Floats]]:
-    """Where points may move: (point, those beyond creases whose planes it takes, place, a way outward there).
+def _targets(points: Floats, normals: Floats, sides: Any) -> Any:
+    """(m, 3) points that may move onto creases, and the two by whose planes: itself and one beyond, the nearest line.
 
-    ``across`` (s, 2): outer edges over which the surface turns.
+    One that has no plane itself, on a crease but for less than BESIDE, takes those of two around it. ``sides`` (s, 2):
+    outer edges.
     """
-    beyond: dict[int, list[int]] = {}
-    for a, b in across.tolist():
-        beyond.setdefault(a, []).append(b)
-        beyond.setdefault(b, []).append(a)
-    found: list[tuple[int, Any, Floats, Floats]] = []
-    for vertex, others in beyond.items():
-        best: tuple[float, Any] = (np.inf, None)
-        for other in others:
-            move = onto_planes(points[vertex], points[[vertex, other]], normals[[vertex, other]])
-            size = float(np.linalg.norm(move))
-            if size < best[0]:
-                best = size, (vertex, (other,), points[vertex] + move, _unit(normals[vertex] + normals[other]))
-        if best[1] is not None:
-            found.append(best[1])
-        most: tuple[float, Any] = (LEAST_CORNER, None)
-        for k, one in enumerate(others):
-            for two in others[:k]:
-                three = normals[[vertex, one, two]]
-                size = abs(float(np.linalg.det(three)))
-                if size > most[0] and normals[one] @ normals[two] < CREASE:
-                    most = size, (one, two)
-        if most[1] is not None:
-            some = [vertex, *most[1]]
-            place = points[vertex] + onto_planes(points[vertex], points[some], normals[some])
-            found.append((vertex, most[1], place, _unit(normals[some].sum(axis=0))))
-    return found
+    beside: dict[int, list[int]] = {}
+    for a, b in sides.tolist():
+        beside.setdefault(a, []).append(b)
+        beside.setdefault(b, []).append(a)
+    found = []
+    for vertex, ring in beside.items():
+        known = [other for other in ring if not np.isnan(normals[other, 0])]
+        pairs = list(combinations(known, 2)) if np.isnan(normals[vertex, 0]) else [(vertex, other) for other in known]
+        some = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+        some = some[np.einsum("si,si->s", normals[some[:, 0]], normals[some[:, 1]]) < CREASE]
+        if len(some):
+            moves = onto_planes(np.repeat(points[vertex][None], len(some), axis=0), points[some], normals[some])
+            found.append((vertex, *some[np.argmin(np.linalg.norm(moves, axis=1))]))
+    return np.array(found, dtype=np.int64).reshape(-1, 3)
 
 
-def _met(
-    found: list[tuple[int, Any, Floats, Floats]],
-    points: Floats,
-    normals: Floats,
-    spacing: float,
-    holds: Holds,
-    crossing: Crossing,
-) -> Floats:
-    """(m, 3) the places of targets, moved to where the surfaces themselves meet that their planes stand for."""
-    places = np.array([one[2] for one in found])
-    for rank in (2, 3):
-        which = [k for k, one in enumerate(found) if len(one[1]) == rank - 1]
-        if not which:
-            continue
-        some = np.array([[found[k][0], *found[k][1]] for k in which])
-        planes, at = normals[some], points[some]
-        places[which] = onto_crease(places[which], planes, convex(at, planes), spacing, holds, crossing)
-    return places
+def onto_planes(points: Floats, through: Floats, normals: Floats) -> Floats:
+    """(m, 3) the shortest moves of points (m, 3) onto planes through places (m, k, 3) with normals (m, k, 3)."""
+    heights = np.einsum("mki,mki->mk", through - points[:, None], normals)
+    moves: Floats = np.einsum("mik,mk->mi", np.linalg.pinv(normals), heights)
+    return moves
 
 
 def convex(at: Floats, planes: Floats) -> Floats:
@@ -206,39 +247,84 @@ def onto_crease(
 ) -> Floats:
     """(m, 3) places near creases, moved onto these: where surfaces of about the normals (m, k, 3) meet.
 
-    ``sides`` (m, k, 3): unit directions from the crease into each surface. What is not met stays as it is.
+    ``sides`` (m, k, 3): unit directions from the crease into each surface. NaN where none is met. Newton's method on
+    planes through three places of each surface beside the crease, which come nearer as it converges.
     """
-    found = places.copy()
-    whole = np.ones(len(places), dtype=bool)
-    for beside in CLOSER:
-        start = found[:, None] + beside * spacing * sides
-        reach = min(REACH, WITHIN * beside) * spacing
-        inner, outer = start - reach * normals, start + reach * normals
-        flat = inner.reshape(-1, 3), outer.reshape(-1, 3)
-        crosses = np.asarray(holds(flat[0])) & ~np.asarray(holds(flat[1]))
-        whole &= crosses.reshape(normals.shape[:2]).all(axis=1)
-        if not whole.any():
-            break
-        some = np.repeat(whole, normals.shape[1])
-        share = crossing(flat[0][some], flat[1][some]).reshape(-1, normals.shape[1])
-        heights = (2.0 * share - 1.0) * reach
-        steepest = np.abs(heights).max(axis=1) / (beside * spacing)
-        found[whole] += np.einsum("mik,mk->mi", np.linalg.pinv(normals[whole]), heights)
-    if whole.any():
-        whole[np.flatnonzero(whole)[steepest > STEEP]] = False
-    found[~whole] = places[~whole]
+    found = np.full_like(places, np.nan)
+    for first in FIRST:
+        left = np.isnan(found[:, 0])
+        if left.any():
+            found[left] = _by_newton(places[left], normals[left], sides[left], first, spacing, holds, crossing)
     return found
 
 
-def onto_planes(point: Floats, through: Floats, normals: Floats) -> Floats:
-    """The shortest move (3,) of a point onto planes through places (k, 3) with normals (k, 3)."""
-    heights = np.einsum("ki,ki->k", through - point, normals)
-    move: Floats = np.linalg.lstsq(normals, heights, rcond=None)[0]
-    return move
+def _by_newton(
+    places: Floats, normals: Floats, sides: Floats, first: float, spacing: float, holds: Holds, crossing: Crossing
+) -> Floats:
+    """As of `onto_crease`, from planes met so many spacings beside the places at first."""
+    found, normals, sides = places.copy(), normals.copy(), sides.copy()
+    beside = np.full(len(places), first)
+    whole = np.ones(len(places), dtype=bool)
+    for _ in range(STEPS):
+        some = np.flatnonzero(whole & (beside > 0.0))
+        if not len(some):
+            break
+        planes, hits, crosses = _beside(found[some], normals[some], sides[some], beside[some], spacing, holds, crossing)
+        heights = np.einsum("mki,mki->mk", planes, hits - found[some][:, None])
+        move = np.einsum("mik,mk->mi", np.linalg.pinv(planes), heights)
+        far = np.linalg.norm(move, axis=1) / (beside[some] * spacing)
+        # What meets no surface is looked for nearer, and what moves much is looked at from as far again.
+        missed = ~crosses | (far > FARTHEST_STEP)
+        beside[some[missed]] *= 0.5
+        whole[some[missed & (beside[some] < LAST_MISSED)]] = False
+        fine = some[~missed]
+        found[fine] += move[~missed]
+        normals[fine] = planes[~missed]
+        sides[fine] = _tangent(sides[fine], normals[fine])
+        last = beside[fine] <= LAST
+        beside[fine] = np.where(last, 0.0, np.maximum(LAST, beside[fine] * np.clip(far[~missed], *NEARER)))
+    whole &= beside == 0.0
+    turned = np.einsum("mki,mli->mkl", normals, normals)
+    turned[:, *np.diag_indices(normals.shape[1])] = -1.0
+    whole &= (turned < CREASE).all(axis=(1, 2))
+    found[~whole] = np.nan
+    return found
 
 
-def _unit(vector: Floats) -> Floats:
-    found: Floats = vector / max(float(np.linalg.norm(vector)), 1e-300)
+def _beside(
+    places: Floats, normals: Floats, sides: Floats, beside: Floats, spacing: float, holds: Holds, crossing: Crossing
+) -> tuple[Floats, Floats, Any]:
+    """Planes of surfaces beside creases: normals (m, k, 3), places (m, k, 3) on them, and whether all (m,) are met."""
+    apart = (beside * spacing)[:, None, None]
+    across = np.cross(normals, sides)
+    met = []
+    crosses = np.ones(len(places), dtype=bool)
+    for along, aside in ((0.6, 0.0), (1.0, -0.4), (1.0, 0.4)):
+        start = (places[:, None] + apart * (along * sides + aside * across)).reshape(-1, 3)
+        hits, open_ = start.copy(), np.ones(len(start), dtype=bool)
+        for within in WITHIN:
+            reach = (np.minimum(FARTHEST_MET, within * beside)[:, None, None] * spacing * normals).reshape(-1, 3)
+            cuts = open_.copy()
+            cuts[open_] = np.asarray(holds((start - reach)[open_])) & ~np.asarray(holds((start + reach)[open_]))
+            if cuts.any():
+                inner, outer = (start - reach)[cuts], (start + reach)[cuts]
+                hits[cuts] = inner + crossing(inner, outer)[:, None] * (outer - inner)
+            open_ &= ~cuts
+            if not open_.any():
+                break
+        crosses &= ~open_.reshape(normals.shape[:2]).any(axis=1)
+        met.append(hits.reshape(normals.shape))
+    planes = np.cross(met[2] - met[0], met[1] - met[0])
+    planes /= np.maximum(np.linalg.norm(planes, axis=2, keepdims=True), 1e-300)
+    planes *= np.sign(np.einsum("mki,mki->mk", planes, normals))[..., None]
+    crosses &= (np.einsum("mki,mki->mk", planes, normals) > LEAST_TURNED).all(axis=1)
+    return planes, met[0], crosses
+
+
+def _tangent(sides: Floats, normals: Floats) -> Floats:
+    """Directions (..., 3) made tangent to surfaces with normals (..., 3), unit."""
+    found: Floats = sides - np.sum(sides * normals, axis=-1, keepdims=True) * normals
+    found /= np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-300)
     return found
 
 

@@ -13,8 +13,6 @@ import numpy as np
 
 from sceneql.bodies.filling.kept_creases import (
     CREASE,
-    FARTHEST,
-    ON,
     Crossing,
     Holds,
     Kept,
@@ -30,9 +28,12 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 PASSES = 12
+FARTHEST_NEW = 1.0
+"""Spacings from the middle of an edge at most to its new corner."""
 NOWHERE = [np.nan] * 3
-LEAST_SHAPE = 0.06
-"""Of each tetrahedron that a split makes: its volume over that of the regular one of its mean side."""
+LEAST_SHAPES = (0.08, 0.06, 0.04)
+"""Of each tetrahedron that a split makes: its volume over that of the regular one of its mean side. The next holds
+where no edge is left that can be split by the last."""
 
 
 def creases_split(
@@ -41,6 +42,7 @@ def creases_split(
     """Points (n, 3) and tetrahedra (t, 4), of which those on creases that are cut off are split."""
     points, planes = kept.points, kept.normals
     cells: Any = tetrahedra.astype(np.int64)
+    level = 0
     for _ in range(PASSES):
         faces = boundary(cells).astype(np.int64)
         sides = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
@@ -66,7 +68,7 @@ def creases_split(
             one, two = (np.where(cells[own] == end, number, cells[own]) for end in (a, b))
             both = np.concatenate([one, two])
             at = np.where((both == number)[:, :, None], places[k], points[np.minimum(both, len(points) - 1)])
-            if shapes(at).min() < LEAST_SHAPE:
+            if shapes(at).min() < LEAST_SHAPES[level]:
                 continue
             touched[own] = True
             new.append(places[k])
@@ -74,7 +76,10 @@ def creases_split(
             gone.append(own)
             made.append(both)
         if not new:
-            break
+            level += 1
+            if level == len(LEAST_SHAPES):
+                break
+            continue
         points = np.concatenate([points, new])
         planes = np.concatenate([planes, on])
         cells = np.concatenate([np.delete(cells, np.concatenate(gone), axis=0), *made])
@@ -91,7 +96,7 @@ def _cut_off(points: Floats, planes: Floats, sides: Any) -> tuple[Any, Floats]:
         ends, least = points[sides[side]], np.inf
         for a, b in np.argwhere(known[side]):
             pair = np.stack([planes[sides[side, 0], a], planes[sides[side, 1], b]])
-            move = float(np.linalg.norm(onto_planes(ends.mean(axis=0), ends, pair)))
+            move = float(np.linalg.norm(onto_planes(ends.mean(axis=0)[None], ends[None], pair[None])))
             if move < least:
                 least, chosen[k] = move, pair
     return sides[which], chosen
@@ -100,10 +105,6 @@ def _cut_off(points: Floats, planes: Floats, sides: Any) -> tuple[Any, Floats]:
 def _places(ends: Floats, planes: Floats, spacing: float, holds: Holds, crossing: Crossing) -> tuple[Floats, Any]:
     """Where the creases over outer edges from and to ends (s, 2, 3) are (s, 3), and which of them (s,) are sure."""
     middle = ends.mean(axis=1)
-    flat = middle + np.array([onto_planes(*one) for one in zip(middle, ends, planes, strict=True)])
-    ways = planes.sum(axis=1)
-    ways /= np.maximum(np.linalg.norm(ways, axis=1, keepdims=True), 1e-300)
-    there = holds(flat - ON * spacing * ways) & ~holds(flat + ON * spacing * ways)
+    flat = middle + onto_planes(middle, ends, planes)
     places = onto_crease(flat, planes, convex(ends, planes), spacing, holds, crossing)
-    near = np.linalg.norm(places - middle, axis=1) <= FARTHEST * spacing
-    return places, np.asarray(there) & near
+    return places, np.linalg.norm(places - middle, axis=1) <= FARTHEST_NEW * spacing
