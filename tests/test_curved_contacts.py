@@ -206,7 +206,7 @@ def test_a_coin_at_any_speed_does_not_pass_a_thin_wall(tmp_path):
     assert x[0] < 1
 
 
-ROLLING = "restitution: 0, friction: 1, rolling: {} m"
+ROLLING = "mode: local, restitution: 0, friction: 1, rolling: {} m"
 
 
 @pytest.mark.parametrize(("radius", "speed", "length"), [(0.1, 1, 0.002), (0.3, 2, 0.03)])

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from sceneql.failure import failing_as
 from sceneql.kinds import Paint, Record, Value, grammar_of, written_name
 from sceneql.quantities.diagnostic import Diagnostic
 
@@ -31,7 +32,8 @@ class Painted:
     def look(self, moment: Moment) -> None:
         """Record the component that is farthest out now, unless one was before."""
         if self.left is None:
-            color = [float(c) for c in moment.at(self.value)]
+            with failing_as(self.part, moment.time, self.value.span):
+                color = [float(c) for c in moment.at(self.value)]
             beyond, name, c = max((max(c - 1.0, -c), name, c) for name, c in zip(NAMES, color, strict=True))
             if beyond > ROUNDING:
                 self.left = moment.time, name, c

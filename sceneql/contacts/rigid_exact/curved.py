@@ -80,10 +80,11 @@ def column(radius: float, half: float) -> Curved:
 
 def axis_of(shape: Convex) -> Convex:
     """What others meet a column by: its axis with its radius; nothing of any other shape."""
-    if shape.kind != CURVED or shape.floats[FORM] != COLUMN:
+    numbers = shape.floats
+    if shape.kind != CURVED or numbers[FORM] != COLUMN:
         return mass()
-    center, axis = shape.floats[CENTER : CENTER + 3], shape.floats[AXES + 3 : AXES + 6]
-    radius, half = shape.floats[SIZES : SIZES + 2].tolist()
+    center, axis = numbers[CENTER : CENTER + 3], numbers[AXES + 3 : AXES + 6]
+    radius, half = numbers[SIZES : SIZES + 2].tolist()
     return capsule(center - half * axis, center + half * axis, radius)
 
 

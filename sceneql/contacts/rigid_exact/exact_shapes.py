@@ -66,9 +66,9 @@ def exact_shape(ref: Ref | None, center: Floats, place: Floats | None, known: Sh
 def point(radius: float, size: float) -> Convex:
     """The shape of a mass: a ball, or without a radius a point, whose gaps are small against ``size`` [m]."""
     ball = convex.ball(radius)
-    floats = ball.floats.copy()
-    floats[REACH] = radius or size
-    return Convex(ball.kind, floats, ball.ints)
+    numbers = ball.floats.copy()
+    numbers[REACH] = radius or size
+    return Convex(ball.kind, numbers, ball.ints)
 
 
 def upright(x: Floats) -> Floats:
