@@ -12,7 +12,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any
 
@@ -88,8 +88,9 @@ def _press(number: int, frame: FrameType | None) -> None:
         _Received.late += 1
         again = threading.Timer(LATER, _thread.interrupt_main, (number,))
         again.daemon = True
-        again.start()
-        return
+        with suppress(RuntimeError):  # no thread can be started: better a lock that stays taken than no end
+            again.start()
+            return
     _Received.late = 0
     _Received.first = _Received.first or number
     _Received.count += 1

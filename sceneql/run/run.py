@@ -192,7 +192,7 @@ class IslandRun:
         name = why.part if why.part in states else next(iter(states))
         mode = self.assembly.contact_mode
         message = f"at {at.time:.6g} s, {name}: contacts go on in mode `{mode}`: {why.message}"
-        help = "it is of order 1 in the step; `mode: local` has it from the start on, `mode: exact` ends the run there"
+        help = "from there on places are of order 1 in the step; `mode: exact` ends the run there"
         self.notes.append(Diagnostic("gave-way", message, self.graph.tasks[name].span, help, severity="warning"))
 
     def _compiled(self, stepper: Stepper) -> System:

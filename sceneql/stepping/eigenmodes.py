@@ -19,8 +19,6 @@ ZERO = 1e-12
 """Squares below that part of the median are zero but for rounding."""
 MORE = 4
 """So many more are sought, so that the last ones of several equal squares are not missed."""
-BLOCK = 8
-"""Vectors at a time, those of eigenmodes_kernels: more than the modes of most symmetries that share a frequency."""
 LOOKS = 4
 """After so many blocks the modes found are looked at."""
 EXACT, ALONE = 1e-9, 1e-20
@@ -55,6 +53,8 @@ def lowest(stiffness: Any, mass: Any, count: int, points: Floats) -> tuple[Float
 
 def _sparse(stiffness: Any, mass: Any, count: int, points: Floats, shift: float) -> tuple[Floats, Floats]:
     """By Lanczos' method in blocks, so that several equal squares are found, all vectors kept orthogonal."""
+    from sceneql.stepping.eigenmodes_kernels import BLOCK
+
     n = mass.shape[0]
     solve = _inverse(stiffness, mass, points, shift)
     block = np.random.Generator(np.random.Philox(1)).standard_normal((n, BLOCK))
@@ -117,7 +117,7 @@ def _inverse(stiffness: Any, mass: Any, points: Floats, shift: float) -> Callabl
 
     from sceneql.linear import multifrontal, multifrontal_kernels
     from sceneql.linear.multifrontal_layout import SINGLE_FACTOR
-    from sceneql.stepping.eigenmodes_kernels import solve_block
+    from sceneql.stepping.eigenmodes_kernels import BLOCK, solve_block
 
     whole = csr_array(stiffness + shift * mass)
     whole.sum_duplicates()

@@ -14,7 +14,7 @@ from sceneql.linear.multifrontal_entries_kernels import at_front
 from sceneql.system.signatures_kernels import A, I
 
 BLOCK = BYTES // 8
-"""Systems at once: the lanes of float64."""
+"""Systems at once, the lanes of float64: more than the modes of most symmetries that share a frequency."""
 SOLVE_BLOCK = types.void(I, A, A, A)
 
 
