@@ -127,6 +127,19 @@ def engage(system: System, stepper: Stepper, driver: Driver) -> Engaged:
         (kernels.WATCHED, keeps_apart is not None and not (needs.newton and method.last_stage >= 0)),
     )
     alone = np.zeros(len(system.y), dtype=bool) if prepared.alone is None else prepared.alone
-    none = np.zeros(0), np.zeros(0, dtype=np.int64), np.zeros(0), prepared.kept
-    how = prepared.text, alone, prepared.scales, told, prepared
-    return Engaged(stepper, functions, interpolant, extend, mixed, *none, *how)
+    return Engaged(
+        stepper,
+        functions,
+        interpolant,
+        extend,
+        mixed,
+        settings=np.zeros(0),
+        numbers=np.zeros(0, dtype=np.int64),
+        work=np.zeros(0),
+        kept=prepared.kept,
+        text=prepared.text,
+        alone=alone,
+        scales=prepared.scales,
+        told=told,
+        first=prepared,
+    )
