@@ -193,7 +193,7 @@ class Flow(Model):
 
         name, _, what = output.rpartition(".")
         if name:
-            from sceneql.flows.solid_forces import on_solid
+            from sceneql.flows.obstacles.solid_forces import on_solid
 
             number = [ref.name for ref in self.around].index(name)
             return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)
