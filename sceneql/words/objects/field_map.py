@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import nullcontext
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from sceneql import kinds
 from sceneql.failure import RunFailure
@@ -42,7 +42,11 @@ class FieldMap(Object):
     """
 
     of: Field = field("The field: `lake.concentration`.")
-    colors: ColorMap = field("The map of colors, from the low to the high end; coolwarm has a middle.", "viridis")
+    colors: ColorMap | Literal["none"] = field(
+        "The map of colors, from the low to the high end; coolwarm has a middle; with `none` it has those of its "
+        "material alone, as a surface of water.",
+        "viridis",
+    )
     range: Bounds | None = field(
         "The values at the ends of the map; by default the least and the largest at the start, where all is even then "
         "those of the whole run.",
@@ -147,7 +151,7 @@ class FieldMap(Object):
         made = placed(sheet, place) if self.height is not None else still(sheet, name, place, moment)
         matte = Surface(color=(1.0, 1.0, 1.0), roughness=1.0, specular=0.0)
         look = matte if self.material is None else moment.surface(name, self.material, None)
-        colors = colored(values, self.scale(moment), self.colors)
+        colors = None if self.colors == "none" else colored(values, self.scale(moment), self.colors)
         yield Mesh(name, look, made.vertices, made.triangles, made.normals, colors)
         lines = [contour(sheet, values, level) for level in self._levels(moment)]
         if sum(map(len, lines)):
