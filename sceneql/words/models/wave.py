@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql import kinds
 from sceneql.grids.domain.cells import counts
@@ -85,6 +85,9 @@ class Wave(Medium):
     0.1*exp(-((x-2)^2 + (y-1)^2)/0.05)}}`, seen by `water: {field_map: {of: pond.height, height: 1, colors: none,
     material: {mirror: {color: "#456"}}}}`.
     """
+
+    swinging: ClassVar[tuple[str, ...]] = (*NAMES.values(), "velocity")
+    """Fields among its outputs that swing about 0."""
 
     of: Literal["height", "number"] = field(
         "What swings: a height, the output `height`; or a number, `value`.", "height"
