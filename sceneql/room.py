@@ -24,8 +24,6 @@ BLAS, BLAS_THREAD = 80 * MIB, 48 * MIB
 MOST_THREADS = 64
 """That its builds for Python take."""
 WITH_BLAS = ("numpy", "scipy.linalg")
-SIDE = 160
-"""Of a matrix whose product with another OpenBLAS packs into its buffer: for small ones it needs none."""
 
 
 def ask_for(size: int, why: str) -> None:
@@ -39,7 +37,7 @@ def ask_for(size: int, why: str) -> None:
 class _Libraries(MetaPathFinder):
     """Asks for the memory of libraries with OpenBLAS before they are loaded, and has them take it at once.
 
-    Else OpenBLAS takes its buffer at the first product of matrices, and ends the process where there is none left.
+    Else OpenBLAS takes its buffer at the first product of matrices, and ends the process where none is left.
     """
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
@@ -53,22 +51,21 @@ class _Libraries(MetaPathFinder):
         if loader is not None:
             load = loader.exec_module
 
-            def load_and_multiply(module: Any) -> None:
+            def load_and_take(module: Any) -> None:
                 load(module)
                 del loader.exec_module
-                _multiply(module)
+                _take_buffer(module)
 
-            loader.exec_module = load_and_multiply
+            loader.exec_module = load_and_take
         return spec
 
 
-def _multiply(library: Any) -> None:
-    """Have the OpenBLAS of numpy, or of scipy.linalg, take the buffer of this thread."""
+def _take_buffer(library: Any) -> None:
+    """Have the OpenBLAS of numpy, or of scipy.linalg, take the buffer of this thread, as any factorization does."""
     if library.__name__ == "numpy":
-        ones = library.ones((SIDE, SIDE))
-        ones @ ones
+        library.linalg.inv(library.eye(2))
     else:
-        library.blas.dgemm(1.0, *(2 * [sys.modules["numpy"].ones((SIDE, SIDE))]))
+        library.lapack.dgetrf(sys.modules["numpy"].eye(2))
 
 
 def ask_before_imports() -> None:
