@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.grids.domain.cells import Cells
     from sceneql.grids.drift import Drift
-    from sceneql.grids.medium import Boundary, Medium
+    from sceneql.grids.medium import Boundary
+    from sceneql.grids.spreading_medium import SpreadingMedium
     from sceneql.system import Assembly, Flow, Grid
 
 THROUGH = "sceneql.flows.carrying_kernels:through"
@@ -34,7 +35,7 @@ SAME = 1e-9
 """Difference of boxes, in parts of a cell, that counts as none."""
 
 
-def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], assembly: Assembly) -> None:
+def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], assembly: Assembly) -> None:
     """Have a flow carry the fields of a model. Raises ScriptError where it is none, or fills another box.
 
     Where fluid comes in through the boundary it brings the `value` that the field has there, or none of it.

@@ -12,7 +12,7 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from sceneql.flows.obstacles import Solids
+    from sceneql.flows.obstacles.obstacles import Solids
     from sceneql.flows.parts import Side
     from sceneql.frame import Floats
 
