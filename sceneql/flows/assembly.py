@@ -9,10 +9,10 @@ import numpy as np
 
 from sceneql.flows import layout
 from sceneql.flows.edges import BEGIN, component_at, edges_of, timed
-from sceneql.flows.obstacles import Solids
-from sceneql.flows.obstructed import obstructed, whole
+from sceneql.flows.obstacles.obstacles import Solids
+from sceneql.flows.obstacles.obstructed import obstructed, whole
+from sceneql.flows.obstacles.skin_velocities import SkinVelocities
 from sceneql.flows.pressure import write_pressure
-from sceneql.flows.skin_velocities import SkinVelocities
 from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces

@@ -49,7 +49,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FORM, RING, SIZES
 from sceneql.contacts.rigid_exact.curved_contact_kernels import FLAT, ON_CORNER, ON_EDGE, ON_FACE, own
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, into, slant
-from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT, core_at
+from sceneql.contacts.rigid_exact.exact_rows_kernels import LYING, MEMORY_AT, SHAPES_AT, WHO_AT, core_at
 from sceneql.contacts.rigid_exact.rim_kernels import on_circle
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -171,7 +171,7 @@ def on_faces(floats, ints, who, margin, next, most):
         nx, ny, nz = turned(floats, mb + AT_TURN, mx, my, mz)
         dx, dy, dz = own(floats, ma, -nx, -ny, -nz)
         sine = slant(floats, fa, dx, dy, dz)
-        flat = sine <= FLAT
+        flat = sine <= max(FLAT, floats[ints[MEMORY_AT] + LYING])
         ux, uz = first_point(floats, fa, ma, mb, nx, ny, nz, dx, dy, dz, most > 0) if flat else (1.0, 0.0)
         for side in range(2 if floats[fa + FORM] == COLUMN else 1):
             for spot in range(4 if flat else 1):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql import kinds
 from sceneql.flows.parts import FORCE, MOST_FACTORED, Buoyancy, Side, Start, fastest_turn
@@ -44,6 +44,8 @@ class Flow(Model):
 
     has_bodies = False
     flows = True
+    swinging: ClassVar[tuple[str, ...]] = ("vorticity",)
+    """Fields among its outputs that are of both signs."""
 
     size: SIZES = field("Sides of the box: two for a flat one, three for a deep one.", above=0)
     corner: SIZES | None = field("Low corner of the box; by default the origin.", None)
@@ -193,7 +195,7 @@ class Flow(Model):
 
         name, _, what = output.rpartition(".")
         if name:
-            from sceneql.flows.solid_forces import on_solid
+            from sceneql.flows.obstacles.solid_forces import on_solid
 
             number = [ref.name for ref in self.around].index(name)
             return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)

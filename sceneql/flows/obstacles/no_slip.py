@@ -17,7 +17,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from sceneql.flows.obstacles import Solids
+    from sceneql.flows.obstacles.obstacles import Solids
     from sceneql.frame import Floats
 
 BESIDE = 0.1

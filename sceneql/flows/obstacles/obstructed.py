@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sceneql.flows.no_slip import seeping, skin
-from sceneql.flows.obstacles import LEAST
+from sceneql.flows.obstacles.no_slip import seeping, skin
+from sceneql.flows.obstacles.obstacles import LEAST
 
 if TYPE_CHECKING:
-    from sceneql.flows.obstacles import Solids
-    from sceneql.flows.skin_velocities import SkinVelocities
+    from sceneql.flows.obstacles.obstacles import Solids
+    from sceneql.flows.obstacles.skin_velocities import SkinVelocities
     from sceneql.flows.staggered import Faces
     from sceneql.frame import Floats
 

@@ -23,10 +23,10 @@ SAME = 1e-9
 def stepper(scheme: int, order: int, step: float) -> Stepper:
     """Fixed steps [s] of multistep_kernels.step."""
     method = Method(
-        step="sceneql.flows.multistep_kernels:step", order=order, numbers=(scheme, 0), settings=(), last_stage=0
+        step="sceneql.flows.schemes.multistep_kernels:step", order=order, numbers=(scheme, 0), settings=(), last_stage=0
     )
     return Stepper(
-        method, Control(first_step=step, unsolved=UNSOLVED), Needs(prepare="sceneql.flows.multistep:prepare")
+        method, Control(first_step=step, unsolved=UNSOLVED), Needs(prepare="sceneql.flows.schemes.multistep:prepare")
     )
 
 
@@ -160,7 +160,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     """The arrays of a step. Raises ScriptError where the island has no flow."""
     import numpy as np
 
-    from sceneql.flows.multistep_kernels import ARRAYS, HEAD, OPERATOR
+    from sceneql.flows.schemes.multistep_kernels import ARRAYS, HEAD, OPERATOR
 
     flow, operators, velocities, tables, text = operators_of(system)
     head = (*stepper.method.numbers, len(operators), HEAD + OPERATOR * len(operators), velocities)

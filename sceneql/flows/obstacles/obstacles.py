@@ -64,7 +64,8 @@ class Solids:
                 self.levels.append(inside(ref, faces.axes == 2, cast("Moment", Start(assembly)))[0])
             except (TypeError, ValueError) as error:
                 message = f"'{ref.name}' cannot stand in a flow: {error}"
-                raise ScriptError([Diagnostic("no-domain", message, ref.span)]) from error
+                help = "take an object with an inside: a mesh that is closed, an outline"
+                raise ScriptError([Diagnostic("no-domain", message, ref.span, help)]) from error
         axes, centers = list(range(faces.axes)), self._centers()
         self.opened = []
         if staircase:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sceneql.flows.multistep import UNSOLVED
+from sceneql.flows.schemes.multistep import UNSOLVED
 from sceneql.system import Control, Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
@@ -49,7 +49,11 @@ def stepper(tolerance: float, step: float | None, largest: float | None) -> Step
         tolerance if step is None else FIXED,
     )
     method = Method(
-        step="sceneql.flows.additive_kernels:step", order=3, numbers=(len(NODES),), settings=tableau, last_stage=0
+        step="sceneql.flows.schemes.additive_kernels:step",
+        order=3,
+        numbers=(len(NODES),),
+        settings=tableau,
+        last_stage=0,
     )
     control = Control(
         first_step=step or 0.0,
@@ -59,16 +63,16 @@ def stepper(tolerance: float, step: float | None, largest: float | None) -> Step
         largest_step=largest or float("inf"),
         unsolved=UNSOLVED,
     )
-    return Stepper(method, control, Needs(prepare="sceneql.flows.additive:prepare"))
+    return Stepper(method, control, Needs(prepare="sceneql.flows.schemes.additive:prepare"))
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
     """The arrays of a step. Raises ScriptError where the island has no flow."""
     import numpy as np
 
-    from sceneql.flows.additive_kernels import HEAD
-    from sceneql.flows.multistep import operators_of
-    from sceneql.flows.multistep_kernels import OPERATOR
+    from sceneql.flows.schemes.additive_kernels import HEAD
+    from sceneql.flows.schemes.multistep import operators_of
+    from sceneql.flows.schemes.multistep_kernels import OPERATOR
 
     flow, operators, velocities, tables, text = operators_of(system)
     tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}
