@@ -3,10 +3,20 @@
 import numpy as np
 import pytest
 
+from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.run.run import Run
 from sceneql.skins.closed_surface import wrong
 from skins import ballooned, deep, forces
 
+DRAWN = """
+models:
+  air: {{flow: {{{fields}}}}}
+  balloon: {{membrane: {{of: ball, law: {{tension: 1 N/m}}}}}}
+forces: [{{immersion: {{on: [balloon], in: air}}}}]
+objects: {{ball: {{sphere: {{position: 0.5 0.5 0.5 m, radius: 0.3 m}}}}}}
+outputs: {{still: {{image: {{}}}}}}
+"""
 BALL = "x^2 + y^2 + z^2 - 0.09"
 EGG = "(x/0.34)^2 + (y/0.24)^2 + (z/0.26)^2 - 1"
 LAWS = [
@@ -111,3 +121,15 @@ def test_triangles_that_are_open_or_meet_in_an_edge_are_no_skin():
     assert "closer" in wrong(4, closed[:3])
     assert "closer" in wrong(6, np.concatenate([closed, [[0, 1, 4], [1, 0, 5], [4, 1, 5], [0, 4, 5]]]))
     assert "2 surfaces" in wrong(8, np.concatenate([closed, closed + 4]))
+
+
+def test_a_deep_skin_is_drawn_smooth_and_its_flow_does_not_hide_it(tmp_path):
+    air = {"fields": "size: 1 1 1 m, cell: 1/14 m, density: 1 kg/m^3, viscosity: 0.1 Pa*s"}
+    path = tmp_path / "scene.yaml"
+    path.write_text(DRAWN.format(**air), encoding="utf-8")
+    graph = load(path)
+    (moment,) = Run(graph).moments([0.02])
+    (mesh,) = moment.lower(graph.drawn["still"])
+    assert mesh.name == "balloon"
+    assert (mesh.normals * (mesh.vertices - 0.5)).sum(axis=1).min() > 0.25
+    assert np.linalg.norm(mesh.normals, axis=1) == pytest.approx(np.ones(len(mesh.normals)), rel=1e-12)

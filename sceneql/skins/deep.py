@@ -58,7 +58,7 @@ class Sheet:
         """The energy of its tension and law [J], 0 at the start."""
         found = self.law.tension * (self.area(points) - float(self.rest[:, 3].sum()))
         if self.law.stretch > 0.0:
-            more = np.linalg.norm(points[self.sides[:, 1]] - points[self.sides[:, 0]], axis=1) - self.lengths
+            more = self.sides_of(points) - self.lengths
             found += float(0.5 * (self.stiffness * more**2).sum())
         if self.law.modulus > 0.0:
             a, b, c = self._corners(points)
@@ -107,6 +107,11 @@ class Sheet:
         begun = np.maximum.accumulate(np.where(fresh, before - is_crossing, 0))
         found = np.zeros(len(places), dtype=bool)
         found[order[~is_crossing] - count] = ((before - begun)[~is_crossing] % 2).astype(bool)
+        return found
+
+    def sides_of(self, points: Floats) -> Floats:
+        """(k,) the lengths of its sides [m]."""
+        found: Floats = np.linalg.norm(points[self.sides[:, 1]] - points[self.sides[:, 0]], axis=1)
         return found
 
     def _corners(self, points: Floats) -> tuple[Floats, Floats, Floats]:

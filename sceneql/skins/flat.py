@@ -48,11 +48,11 @@ class Line:
 
     def area(self, points: Floats) -> float:
         """Its own [m^2]."""
-        return self.depth * float(self._sides(points).sum())
+        return self.depth * float(self.sides_of(points).sum())
 
     def potential(self, points: Floats) -> float:
         """The energy of its tension [J], 0 at the start."""
-        law, s = self.law, self._sides(points) / self.lengths
+        law, s = self.law, self.sides_of(points) / self.lengths
         dense = law.tension * (s - 1.0) + 0.5 * law.stretch * (s - 1.0) ** 2
         dense += 0.5 * law.modulus * (s**2 + 1.0 / s**2 - 2.0)
         return self.depth * float((dense * self.lengths).sum())
@@ -82,7 +82,8 @@ class Line:
             found[row] = np.searchsorted(crossed, places[row, 0]) % 2 == 1
         return found
 
-    def _sides(self, points: Floats) -> Floats:
+    def sides_of(self, points: Floats) -> Floats:
+        """(n,) the lengths of its sides [m]."""
         found: Floats = np.hypot(*(np.roll(points, -1, axis=0) - points)[:, :2].T)
         return found
 

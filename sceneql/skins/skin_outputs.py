@@ -46,9 +46,16 @@ def measure(what: str, skin: Line | Sheet, state: ModelState) -> Any:
             return float(state.y[skin.membrane.position_at + 3 * skin.membrane.count])
         case "triangles":
             return skin.triangles.astype(float)
+        case "stretch":
+            return float((skin.sides_of(points) / skin.lengths).max())
         case "count":
             return float(skin.membrane.count)
     return _pressure_jump(skin, points, state)
+
+
+def widest(skin: Line | Sheet, state: ModelState) -> float:
+    """The longest side, in cells."""
+    return float(skin.sides_of(positions(skin, state)).max() / min(skin.flow.spacing[: len(skin.flow.areas)]))
 
 
 def _pressure_jump(skin: Line | Sheet, points: Floats, state: ModelState) -> float:

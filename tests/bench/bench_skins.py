@@ -6,7 +6,7 @@
     python tests/bench/bench_skins.py rest 64         radius of the relaxing ring at rest
     python tests/bench/bench_skins.py ring 21.33      mode 2 of a ring of springs, cells a radius
     python tests/bench/bench_skins.py correction      how much volume is put back, on three grids
-    python tests/bench/bench_skins.py deep 48         volume of an egg in a deep flow, cells a side, extrapolated
+    python tests/bench/bench_skins.py deep 48 5       volume of an egg in a deep flow, cells a side, step [ms]
     python tests/bench/bench_skins.py capsule 12 10   rubber in shear: deformation, cells a radius, radii between walls
     python tests/bench/bench_skins.py share 64        a skin's part of a step's time there
 
@@ -145,12 +145,12 @@ def correction() -> None:
         print(f"{shape}: {', '.join(f'{one:.2e}' for one in told)} of the volume put back, orders {orders}")
 
 
-def deep(cells: str) -> None:
+def deep(cells: str, step: str = "5") -> None:
     """Volume of an egg that relaxes to 0.4 s, free on two meshes, and kept."""
     law, lost = "law: {springs: {stretch: 10 N/m}}, prestress: 3 N/m", []
     for apart, volume in ((0.5, "free"), (0.25, "free"), (0.5, "kept")):
         more = f", volume: {volume}, spacing: {apart * 3 / int(cells)!r} m"
-        made = Balloon(EGG, law, int(cells), "{ark3: {step: 5 ms}}", 0.4, deep=True, more=more)
+        made = Balloon(EGG, law, int(cells), f"{{ark3: {{step: {step} ms}}}}", 0.4, deep=True, more=more)
         before, begun, most = made.read("volume"), time.process_time(), 0.0
         for k in range(1, 5):
             made.run.advance(0.1 * k)

@@ -99,6 +99,7 @@ class Membrane(Model):
             "The mean pressure of what it holds less that around it, three cells off the skin.",
             computed=True,
         ),
+        "stretch": Gives(Type(), "The largest length of a side over that at the start.", computed=True),
         "potential": Gives(quantity_type(dim.ENERGY), "Energy of its tension, 0 at the start.", computed=True),
         "volume_correction": Gives(
             quantity_type(dim.VOLUME), "The volume that was put back so far, in sum without signs.", tally=True
@@ -164,6 +165,14 @@ class Membrane(Model):
         from sceneql.skins.skin_outputs import measure
 
         return measure(output, self.made, state)
+
+    def trouble(self, state: ModelState) -> tuple[str, str]:
+        """Vertices that have gone so far apart that fluid passes between them."""
+        from sceneql.skins.skin_outputs import widest
+
+        apart = widest(self.made, state)
+        text = f"the vertices of its skin are {apart:.2g} cells apart at the end: fluid passes between them"
+        return (text, "take a smaller `spacing`") if apart > 1.0 else ("", "")
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Of its vertices."""
