@@ -96,6 +96,10 @@ class Model(Kind):
         """What `explain` says of it at the start of the run, as how exact its numbers are."""
         return ""
 
+    def trouble(self, state: ModelState) -> tuple[str, str]:
+        """What a warning says of it at the end of a run, and what helps; empty for nothing."""
+        return "", ""
+
     def sums_up(self, output: str) -> bool:
         """Whether an output is a sum over the run that the state holds: values that read it have no slopes."""
         return output in self.gives and self.gives[output].tally
