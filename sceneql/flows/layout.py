@@ -41,7 +41,8 @@ SOLVER_AT, STORE, STORE_SIZE = 42, 43, 44
 """Where in these integers the plan of a linear solver by name begins (grids/multigrid/linear_kernels); its store, after
 one number a cell; floats of the store."""
 LED = 45
-"""1 where solids move: by cell, after SEEPING, is then the rate of what their walls push [m^3/s^2]."""
+"""By cell where solids move: what they leave of it (0: none moves); the rate of what their walls push [m^3/s^2] is then
+by cell after SEEPING."""
 PLANS, PLAN = 46, 24
 """Of each axis PLAN integers."""
 KIND, LENGTH, TWIDDLES, TWISTS, FACTORS = 0, 1, 2, 3, 4

@@ -83,7 +83,7 @@ def pushed_at(what, ints):
     """Offset of what walls push through cells of velocities or of their rates; -1: nothing."""
     if what == VELOCITY:
         return ints[SEEPING]
-    return ints[SEEPING] + ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2] if what == RATE and ints[LED] == 1 else -1
+    return ints[SEEPING] + ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2] if what == RATE and ints[LED] > 0 else -1
 
 
 @lean_inlined

@@ -92,7 +92,7 @@ class MovingSolids:
 
     def describe(self, ints: Any) -> None:
         """Write what the flow's own integers say of solids."""
-        ints[layout.OWNERS], ints[layout.SEEPING], ints[layout.LED] = self.owners, self.seeping, 1
+        ints[layout.OWNERS], ints[layout.SEEPING], ints[layout.LED] = self.owners, self.seeping, self.whole
         ints[layout.MIDDLES], ints[layout.CUT_FACES] = self.middles, self.faces.count
 
     def start(self, known: Known, x: Floats, flow: NDArray[int64]) -> None:

@@ -78,7 +78,7 @@ def _carried_in(ints: tuple[int, ...], state: ModelState) -> Floats:
     advected(state.y, rate, floats, np.array(ints))
     shut = floats[ints[layout.AREAS] : ints[layout.AREAS] + count] == 0.0
     carried = rate[at : at + count]
-    if ints[layout.LED] == 1:  # what a wall that moves takes up itself it had given
+    if ints[layout.LED] > 0:  # what a wall that moves takes up itself it had given
         carried = carried + _pushed(ints, floats) * state.y[at : at + count]
     found: Floats = np.where(shut, carried, 0.0)
     return found

@@ -125,7 +125,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
                 for j in range(i):
                     total += e[i * s + j] * explicit[j * n + k] + d[i * s + j] * damped[j * n + k]
                 wanted[k] = y0[k] + h * total
-            if one[LED] == 1:  # solids are where they are at the stage
+            if one[LED] > 0:  # solids are where they are at the stage
                 rate(t + nodes[i] * h, wanted, own, floats, ints)
             solved &= project(wanted, VELOCITY, floats, one)
             for k in range(n):
