@@ -49,7 +49,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FORM, RING, SIZES
 from sceneql.contacts.rigid_exact.curved_contact_kernels import FLAT, ON_CORNER, ON_EDGE, ON_FACE, own
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, into, slant
-from sceneql.contacts.rigid_exact.exact_rows_kernels import LYING, MEMORY_AT, SHAPES_AT, WHO_AT, core_at
+from sceneql.contacts.rigid_exact.exact_rows_kernels import LYING, MEMORY_AT, SHAPES_AT, WHO_AT, core_at, pull_at
 from sceneql.contacts.rigid_exact.rim_kernels import on_circle
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -144,6 +144,20 @@ def over_face(floats, ints, shape, face, x, y, z):
     return True
 
 
+@lean(types.boolean(A, I, N, F, F, F, F))
+def comes_to_lie(floats, ints, who, sine, nx, ny, nz):
+    """Whether a circle that is tilted against a face rocks so low, and so often, that it comes to lie there."""
+    lowest = floats[ints[MEMORY_AT] + LYING]
+    if sine > lowest:
+        return False
+    ax, ay, az = three(floats, ints[who + MOVER_A] + AT_W)
+    bx, by, bz = three(floats, ints[who + MOVER_B] + AT_W)
+    x, y, z = cross(nx, ny, nz, ax - bx, ay - by, az - bz)
+    p, q, r = three(floats, pull_at(ints, ints[who + FIRST]))
+    radius = floats[ints[ints[who + SHAPE_OF_A] + FLOATS] + SIZES]
+    return 2.0 * radius * (x * x + y * y + z * z) <= math.sqrt(p * p + q * q + r * r) * lowest
+
+
 FOUND = types.Tuple((N, F))(A, I, N, F, N, N)
 
 
@@ -171,7 +185,8 @@ def on_faces(floats, ints, who, margin, next, most):
         nx, ny, nz = turned(floats, mb + AT_TURN, mx, my, mz)
         dx, dy, dz = own(floats, ma, -nx, -ny, -nz)
         sine = slant(floats, fa, dx, dy, dz)
-        flat = sine <= max(FLAT, floats[ints[MEMORY_AT] + LYING])
+        flat = sine <= FLAT or comes_to_lie(floats, ints, who, sine, nx, ny, nz)
+        within = margin + (2.1 * floats[fa + SIZES] * sine if sine > FLAT and flat else 0.0)
         ux, uz = first_point(floats, fa, ma, mb, nx, ny, nz, dx, dy, dz, most > 0) if flat else (1.0, 0.0)
         for side in range(2 if floats[fa + FORM] == COLUMN else 1):
             for spot in range(4 if flat else 1):
@@ -191,7 +206,7 @@ def on_faces(floats, ints, who, margin, next, most):
                 if solid and not over_face(floats, ints, sb, k, x, y, z):
                     continue
                 least = min(least, gap)
-                if gap > margin or count == most:
+                if gap > within or count == most:
                     continue
                 rec = next + RECORD * count
                 begin_record(floats, ints, rec, who, CORNER_FACE if flat else ON_FACE, radius, fa)

@@ -33,7 +33,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as KIND_OF
-from sceneql.contacts.rigid_exact.crowd_kernels import lowest
+from sceneql.contacts.rigid_exact.crowd_kernels import flattest
 from sceneql.contacts.rigid_exact.curved_ahead_kernels import meet_ahead
 from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved
@@ -240,7 +240,7 @@ def find(t, y, floats, ints, points, names, goes_on):
         if is_curved(ints, sa):
             who = ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b))
             # What rocks, or runs round its circle, again and again and lower than is seen comes to lie.
-            floats[memory + LYING] = 0.0 if goes_on else lowest(floats, ints, pair)
+            floats[memory + LYING] = 0.0 if goes_on else flattest(floats, ints, pair)
             count += meet_ahead(floats, ints, who, margin, next + RECORD * count, most - count)
             floats[memory + LYING] = 0.0
             continue
