@@ -39,9 +39,9 @@ TIRED = 200.0
 """Level from which impacts have no restitution."""
 ENDLESS = 3000.0
 """Level from which they have no end."""
-ROCKS, LIES = 20.0, 3e-5
-"""Level from which a circle that rocks on a face, or runs round on it, comes to lie there; the most that it is tilted and
-rises then, in parts of its size: what rocks so often is tilted by about 0.01 over the level's square."""
+OFTEN, LIES = 20.0, 3e-5
+"""Level from which a circle that rocks on a face, or runs round on it, comes to lie there; the most that it is tilted
+and rises then, in parts of its size: what rocks so often is tilted by about 0.01 over the level's square."""
 
 
 @lean(F(A, I, N))
@@ -82,10 +82,10 @@ def level(floats, ints, pair):
     return floats[ints[KEPT_AT] + spots(ints) + 2 * pair]
 
 
-@lean(F(A, I, N))
-def flattest(floats, ints, pair):
-    """Sine of the tilt up to which a circle comes to lie flat at an event of a pair."""
-    return LIES if level(floats, ints, pair) > ROCKS else 0.0
+@lean(types.boolean(A, I, N))
+def rocks_often(floats, ints, pair):
+    """Whether a circle that rocks comes to lie, if it is low, at an event of a pair."""
+    return level(floats, ints, pair) > OFTEN
 
 
 @lean(F(A, I, N))
