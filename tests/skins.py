@@ -28,3 +28,22 @@ def smooth_area(points):
     places = points[:, 0] + 1j * points[:, 1]
     count = len(places)
     return np.pi * (np.fft.fftfreq(count, 1 / count) * np.abs(np.fft.fft(places) / count) ** 2).sum()
+
+
+DEEP_WAVES = "{left: {periodic: yes}, bottom: {periodic: yes}, back: {periodic: yes}}"
+
+
+def deep(folder, law, formula, at="0.5 0.5 0.5", cells=14, **more):
+    """A skin `balloon` around a solid of a formula in a deep flow `air` of 1 m."""
+    egg = f'{{implicit: {{field: "{formula}", position: {at} m}}}}'
+    more = {"size": "1 1 1 m", "boundary": DEEP_WAVES, "objects": f"objects: {{egg: {egg}}}\n", **more}
+    return ballooned(folder, law, cells=cells, **more)
+
+
+def forces(air, points):
+    """The forces (n, 3) of the skin at other places (n, 3) [N]."""
+    system, skin = air.run.march.system, air.tasks["balloon"].kind.made.membrane
+    floats, y, rate = system.floats.copy(), system.y.copy(), np.zeros(len(system.y))
+    y[skin.position_at : skin.position_at + 3 * skin.count] = points.ravel()
+    air.run.march.driver.rate(0.0, y, rate, floats, system.ints)
+    return floats[skin.force_at : skin.force_at + 3 * skin.count].reshape(-1, 3)

@@ -248,7 +248,10 @@ def test_an_outline_is_a_skin_with_even_sides():
         ({"formula": "abs(hypot(x, y) - 0.25) - 0.05"}, "has 2 outlines in the plane z = 0"),
         ({"formula": "x^2 + y^2 + (z - 0.5)^2 - 0.1"}, "has no outline in the plane z = 0"),
         ({"law": "law: {tension: 1 N/m}, prestress: 1 N/m"}, "all the tension that there is"),
-        ({"law": "law: {tension: 1 N/m, springs: {stretch: 1 N/m}}"}, "one of `springs` and `tension`"),
+        (
+            {"law": "law: {tension: 1 N/m, springs: {stretch: 1 N/m}}"},
+            "has one of `springs`, `neo_hookean` and `tension`",
+        ),
         ({"forces": "forces: [{gravity: {}}]\n"}, "no flow carries 'balloon'"),
         ({"forces": "forces: [{immersion: {in: air}}]\n"}, "names the skins"),
         ({"forces": "forces: [{immersion: {on: [balloon], in: balloon}}]\n"}, "is no flow"),

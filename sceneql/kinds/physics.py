@@ -96,6 +96,10 @@ class Model(Kind):
         """What `explain` says of it at the start of the run, as how exact its numbers are."""
         return ""
 
+    def trouble(self, state: ModelState) -> tuple[str, str]:
+        """What a warning says of it at the end of a run, and what helps; empty for nothing."""
+        return "", ""
+
     def sums_up(self, output: str) -> bool:
         """Whether an output is a sum over the run that the state holds: values that read it have no slopes."""
         return output in self.gives and self.gives[output].tally
@@ -122,8 +126,8 @@ class Model(Kind):
         """Objects whose insides it fills or spreads in."""
         return ()
 
-    def standing(self) -> Iterable[Ref]:
-        """Objects that it takes as they are at the start, so that they must not move."""
+    def shaped(self) -> Iterable[Ref]:
+        """Objects whose shape it takes as it is at the start: they may be moved and turned, but as a whole alone."""
         return ()
 
     def lasts(self) -> bool:

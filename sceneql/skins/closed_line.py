@@ -9,6 +9,7 @@ import numpy as np
 from sceneql.grids.domain.domain import inside
 from sceneql.island.start import Start
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.skins.onto_level import onto
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -19,11 +20,8 @@ LOOKED = 256
 """Cells along the longer side of the box around an object in which its outline is looked for."""
 FINER = 8
 """Points of that outline for a vertex."""
-POLISH, EVEN = 40, 60
-"""Updates of points towards the surface, and of vertices towards equal sides."""
-STEP = 1e-6
-"""Difference of places, in parts of the box, by which slopes are taken."""
-ROUNDING = 1e-13
+EVEN = 60
+"""Updates of vertices towards equal sides."""
 
 
 def closed_line(ref: Ref, spacing: float, assembly: Assembly) -> Floats:
@@ -61,23 +59,11 @@ def _contour(level: Any, low: Floats, high: Floats) -> list[Floats]:
 
 
 def _towards(level: Any, size: float) -> Any:
-    """A function that moves points (k, 2) onto the surface of a level, along its slope."""
+    """A function that moves points (k, 2) onto the surface of a level."""
 
     def polish(points: Floats) -> Floats:
-        found, step = np.column_stack([points, np.zeros(len(points))]), STEP * size
-        for _ in range(POLISH):
-            values = level.values(found)
-            slopes = np.zeros_like(found)
-            for axis in range(2):
-                shift = step * np.eye(3)[axis]
-                slopes[:, axis] = (level.values(found + shift) - level.values(found - shift)) / (2.0 * step)
-            squares = (slopes**2).sum(axis=1)
-            move = np.divide(values, squares, out=np.zeros_like(values), where=squares > 0.0)[:, None] * slopes
-            found -= move
-            if np.abs(move).max() < ROUNDING * size:
-                break
-        polished: Floats = found[:, :2]
-        return polished
+        found: Floats = onto(level, size, np.column_stack([points, np.zeros(len(points))]), 2)[:, :2]
+        return found
 
     return polish
 

@@ -8,12 +8,13 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
     from sceneql.kinds import Ref
+    from sceneql.skins.deep import Sheet
     from sceneql.skins.flat import Line
     from sceneql.system import Assembly, Flow
 
-APART = 0.25
-"""Distance of vertices in cells: what the curve through them holds is then kept to 1e-7 where it has 25 cells across;
-twice as far apart it loses ten times as much."""
+APART = {2: 0.25, 3: 0.5}
+"""Distance of vertices in cells, by the flow's axes. What a curve through them holds is then kept to 1e-7 where it has
+25 cells across; twice as far apart it loses ten times as much."""
 WIDE = 4.0
 """Cells that a skin is wide, at least: its forces are spread over as many."""
 
@@ -21,16 +22,17 @@ WIDE = 4.0
 def spacing_in(flow: Flow, spacing: float | None, of: Ref, assembly: Assembly) -> float:
     """Its vertices' distance [m], at most a cell. Raises ScriptError where that leaves gaps, and around solids."""
     cell = min(flow.spacing[: len(flow.areas)])
+    apart = APART[len(flow.areas)] * cell
     if flow.fractions is not None:
         text = "the flow has solids in it, and nothing keeps a skin from them"
         raise ScriptError([Diagnostic("invalid", text, assembly.line(), "let the flow be without `around`")])
     if spacing is not None and spacing > cell:
         text = f"vertices {spacing:g} m apart are too coarse for cells of {cell:g} m: fluid would pass between them"
-        raise ScriptError([Diagnostic("invalid", text, assembly.line(), f"let `spacing` be {APART * cell:.3g} m")])
-    return APART * cell if spacing is None else spacing
+        raise ScriptError([Diagnostic("invalid", text, assembly.line(), f"let `spacing` be {apart:.3g} m")])
+    return apart if spacing is None else spacing
 
 
-def must_fit(skin: Line, of: Ref, assembly: Assembly) -> None:
+def must_fit(skin: Line | Sheet, of: Ref, assembly: Assembly) -> None:
     """Raises ScriptError where a skin stands outside its flow, or is smaller than what its cells tell."""
     flow, membrane = skin.flow, skin.membrane
     axes = len(flow.areas)

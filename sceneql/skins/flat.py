@@ -11,11 +11,12 @@ from sceneql.skins.closed_line import closed_line, signed_area
 from sceneql.system import Membrane
 
 if TYPE_CHECKING:
-    from numpy import bool_
+    from numpy import bool_, int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
     from sceneql.kinds import Ref
+    from sceneql.skins.law import Elasticity
     from sceneql.system import Assembly, Flow
 
 KERNELS = "sceneql.skins.line_kernels"
@@ -29,10 +30,12 @@ class Line:
     membrane: Membrane
     lengths: Floats
     """(n,) of its sides at the start [m]."""
-    tension: float
-    """There [N/m]."""
-    stretch: float
-    """How much it grows for a relative stretch [N/m]."""
+    law: Elasticity
+
+    @property
+    def triangles(self) -> NDArray[int64]:
+        """(0, 3): none."""
+        return np.zeros((0, 3), dtype=np.int64)
 
     @property
     def depth(self) -> float:
@@ -45,12 +48,14 @@ class Line:
 
     def area(self, points: Floats) -> float:
         """Its own [m^2]."""
-        return self.depth * float(self._sides(points).sum())
+        return self.depth * float(self.sides_of(points).sum())
 
     def potential(self, points: Floats) -> float:
         """The energy of its tension [J], 0 at the start."""
-        more = self._sides(points) - self.lengths
-        return self.depth * float((self.tension * more + 0.5 * self.stretch * more**2 / self.lengths).sum())
+        law, s = self.law, self.sides_of(points) / self.lengths
+        dense = law.tension * (s - 1.0) + 0.5 * law.stretch * (s - 1.0) ** 2
+        dense += 0.5 * law.modulus * (s**2 + 1.0 / s**2 - 2.0)
+        return self.depth * float((dense * self.lengths).sum())
 
     def moments(self, points: Floats) -> tuple[Floats, Floats]:
         """The center (3,) [m] of what it holds, and the mean products (2, 2) of places from there [m^2]."""
@@ -77,26 +82,24 @@ class Line:
             found[row] = np.searchsorted(crossed, places[row, 0]) % 2 == 1
         return found
 
-    def _sides(self, points: Floats) -> Floats:
+    def sides_of(self, points: Floats) -> Floats:
+        """(n,) the lengths of its sides [m]."""
         found: Floats = np.hypot(*(np.roll(points, -1, axis=0) - points)[:, :2].T)
         return found
 
 
-def add_line(
-    of: Ref, spacing: float, tension: float, stretch: float, kept: bool, flow: Flow, assembly: Assembly
-) -> Line:
-    """Reserve the vertices of an object's outline, and add its tension: ``tension`` where it starts, ``stretch``
-    more for a relative stretch [N/m]; ``kept``: its area is. Raises ScriptError."""
+def add_line(of: Ref, spacing: float, law: Elasticity, kept: bool, flow: Flow, assembly: Assembly) -> Line:
+    """Reserve the vertices of an object's outline, and add its tension; ``kept``: its area is. Raises ScriptError."""
     points = closed_line(of, spacing, assembly)
     count, depth = len(points), flow.spacing[2]
     at = assembly.state(np.append(np.column_stack([points, np.zeros(count)]).ravel(), 0.0))
     skin = Membrane(count, at, assembly.floats(np.zeros(3 * count)))
     head = (skin.count, skin.position_at, skin.force_at)
     lengths = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
-    tensions = assembly.floats([tension * depth]), assembly.floats([stretch * depth])
-    assembly.term("internal", f"{KERNELS}:tension", (*head, *tensions, assembly.floats(lengths)))
+    tension, stretch, modulus = (assembly.floats([one * depth]) for one in (law.tension, law.stretch, law.modulus))
+    assembly.term("internal", f"{KERNELS}:tension", (*head, tension, stretch, assembly.floats(lengths), modulus))
     if kept:
         volume, room = assembly.floats([signed_area(points) * depth]), assembly.floats(np.zeros(3 * count))
         ints = (*head, volume, room, at + 3 * count, assembly.floats([depth]))
         assembly.after_step(f"{KERNELS}:keep_area", ints, samples=True)
-    return Line(flow, skin, lengths, tension, stretch)
+    return Line(flow, skin, lengths, law)

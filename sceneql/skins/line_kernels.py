@@ -9,6 +9,7 @@ from sceneql.skins.skin_layout import (
     DEPTH_AT,
     FORCE_AT,
     LENGTHS_AT,
+    MODULUS_AT,
     NORMALS_AT,
     POSITION_AT,
     PRETENSION_AT,
@@ -26,16 +27,18 @@ ROUNDING = 2e-16
 
 @lean(TERM, inner=True)
 def tension(t, y, rate, floats, ints):
-    """Adds what each side pulls at its ends: pretension + stiffness (length/own length - 1), along the side [N]."""
+    """Adds what each side pulls at its ends [N]: pretension + stiffness (s - 1) + modulus (s - 1/s^3), s = length over
+    own length, the last of a neo-Hookean sheet that does not stretch across."""
     count, at, force = ints[COUNT], ints[POSITION_AT], ints[FORCE_AT]
-    pretension, stiffness = floats[ints[PRETENSION_AT]], floats[ints[STIFFNESS_AT]]
+    pretension, stiffness, modulus = floats[ints[PRETENSION_AT]], floats[ints[STIFFNESS_AT]], floats[ints[MODULUS_AT]]
     lengths = floats[ints[LENGTHS_AT] : ints[LENGTHS_AT] + count]
     for v in range(count):
         w = v + 1 if v < count - 1 else 0
         dx, dy = y[at + 3 * w] - y[at + 3 * v], y[at + 3 * w + 1] - y[at + 3 * v + 1]
         length = math.sqrt(dx * dx + dy * dy)
         if length > 0.0:
-            pull = (pretension + stiffness * (length / lengths[v] - 1.0)) / length
+            s = length / lengths[v]
+            pull = (pretension + stiffness * (s - 1.0) + modulus * (s - 1.0 / (s * s * s))) / length
             floats[force + 3 * v] += pull * dx
             floats[force + 3 * v + 1] += pull * dy
             floats[force + 3 * w] -= pull * dx

@@ -10,6 +10,7 @@ from sceneql.flows.layout import PRESSURE
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.skins.deep import Sheet
     from sceneql.skins.flat import Line
     from sceneql.system import ModelState
 
@@ -17,13 +18,13 @@ OFF = 3
 """Cells off the skin from which on the pressure is taken, as its force is spread over those nearer."""
 
 
-def positions(skin: Line, state: ModelState) -> Floats:
+def positions(skin: Line | Sheet, state: ModelState) -> Floats:
     """(n, 3) [m]."""
     at, count = skin.membrane.position_at, skin.membrane.count
     return state.y[at : at + 3 * count].reshape(-1, 3).copy()
 
 
-def measure(what: str, skin: Line, state: ModelState) -> Any:
+def measure(what: str, skin: Line | Sheet, state: ModelState) -> Any:
     """An output of the word `membrane`: float, (3,) or (n, 3)."""
     points = positions(skin, state)
     match what:
@@ -43,12 +44,21 @@ def measure(what: str, skin: Line, state: ModelState) -> Any:
             return float((most - least) / (most + least))
         case "volume_correction":
             return float(state.y[skin.membrane.position_at + 3 * skin.membrane.count])
+        case "triangles":
+            return skin.triangles.astype(float)
+        case "stretch":
+            return float((skin.sides_of(points) / skin.lengths).max())
         case "count":
             return float(skin.membrane.count)
     return _pressure_jump(skin, points, state)
 
 
-def _pressure_jump(skin: Line, points: Floats, state: ModelState) -> float:
+def widest(skin: Line | Sheet, state: ModelState) -> float:
+    """The longest side, in cells."""
+    return float(skin.sides_of(positions(skin, state)).max() / min(skin.flow.spacing[: len(skin.flow.areas)]))
+
+
+def _pressure_jump(skin: Line | Sheet, points: Floats, state: ModelState) -> float:
     """The mean of the pressure in the cells that it holds, less that in all others, but for those beside it [Pa]."""
     flow = skin.flow
     shape, low, spacing = np.array(flow.cells.shape), np.array(flow.low), np.array(flow.spacing)

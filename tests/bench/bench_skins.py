@@ -6,6 +6,9 @@
     python tests/bench/bench_skins.py rest 64         radius of the relaxing ring at rest
     python tests/bench/bench_skins.py ring 21.33      mode 2 of a ring of springs, cells a radius
     python tests/bench/bench_skins.py correction      how much volume is put back, on three grids
+    python tests/bench/bench_skins.py deep 48 5       volume of an egg in a deep flow, cells a side, step [ms]
+    python tests/bench/bench_skins.py capsule 12 10   rubber in shear: deformation, cells a radius, radii between walls
+    python tests/bench/bench_skins.py share 64        a skin's part of a step's time there
 
 Sources: Tu & Peskin (1992), SIAM J. Sci. Stat. Comput. 13, 1361-1376, for the relaxing ring. The frequency and damping
 of the ring of springs are roots of a determinant of Bessel functions, in a fluid without bounds.
@@ -29,7 +32,9 @@ from sceneql.run.run import IslandRun
 FOLDER = Path(tempfile.mkdtemp())
 WAVES = "{left: {periodic: yes}, bottom: {periodic: yes}}"
 ELLIPSE = "x^2/0.75^2 + y^2/0.5^2 - 1"
+EGG = "(x/0.75)^2 + (y/0.5)^2 + (z/0.55)^2 - 1"
 STAR = "hypot(x, y) - 0.55*(1 + 0.25*cos(3*atan2(y, x)) + 0.1*sin(2*atan2(y, x)))"
+SHEAR = (("bottom", -1), ("top", 1))
 SHAPES = {"ring": (ELLIPSE, 0.5), "star": (STAR, 0.4)}
 """Formula, and radius of the circle as long as the skin is without tension."""
 VISCOUS = {1e-3: (-0.03757409, 1.69524035), 1e-2: (-0.12369588, 1.61484587), 3e-2: (-0.22188524, 1.52552240)}
@@ -42,20 +47,40 @@ class Balloon:
     def __init__(
         self, formula: str, law: str, cells: int, solver: str, end: float, side: float = 3.0, mu: float = 0.1,
         at: tuple[float, float] = (1.53, 1.53), walls: bool = False, more: str = "", bound: float = 1.0,
+        deep: bool = False, alone: bool = False,
     ) -> None:  # fmt: skip
         boundary = "{}" if walls else WAVES
-        egg = f'field: "{formula}", bounds: {{ball: {bound}}}, position: {at[0]} {at[1]} 0 m'
-        flow = f"size: {side} {side} m, cell: {side!r}/{cells} m, density: 1 kg/m^3, viscosity: {mu!r} Pa*s"
+        if deep:
+            boundary = boundary.replace("}}", "}, back: {periodic: yes}}")
+        egg = f'field: "{formula}", bounds: {{ball: {bound}}}, position: {at[0]} {at[1]} {1.53 if deep else 0} m'
+        flow = f"size: {side} {side} {side if deep else ''} m, cell: {side!r}/{cells} m"
+        flow += f", density: 1 kg/m^3, viscosity: {mu!r} Pa*s"
         text = (
             f"clock: {{end: {end!r} s, fps: 1}}\nmodels:\n  air: {{flow: {{{flow}, boundary: {boundary}}}}}\n"
             f"  balloon: {{membrane: {{of: egg, {law}{more}}}}}\nforces: [{{immersion: {{on: [balloon], in: air}}}}]\n"
             f"objects: {{egg: {{implicit: {{{egg}}}}}}}\nsolvers: {{main: {solver}}}\n"
         )
+        if alone:
+            lines = text.splitlines(keepends=True)
+            text = "".join(line for line in lines if "balloon" not in line and "egg" not in line)
+        self.tasks, self.run = self.begun(text)
+
+    @staticmethod
+    def begun(text: str) -> tuple[Any, IslandRun]:
+        """The parts of a script and its island, at the start."""
         path = FOLDER / "scene.yaml"
         path.write_text(text, encoding="utf-8")
         graph = load(path, pruned=False)
-        self.tasks, self.run = graph.tasks, IslandRun(graph, graph.islands[0])
-        self.run.advance(0.0)
+        run = IslandRun(graph, graph.islands[0])
+        run.advance(0.0)
+        return graph.tasks, run
+
+    @classmethod
+    def of(cls, text: str) -> Balloon:
+        """That of a script."""
+        made = cls.__new__(cls)
+        made.tasks, made.run = cls.begun(text)
+        return made
 
     def read(self, output: str, model: str = "balloon") -> Any:
         """An output, now."""
@@ -120,6 +145,68 @@ def correction() -> None:
         print(f"{shape}: {', '.join(f'{one:.2e}' for one in told)} of the volume put back, orders {orders}")
 
 
+def deep(cells: str, step: str = "5") -> None:
+    """Volume of an egg that relaxes to 0.4 s, free on two meshes, and kept."""
+    law, lost = "law: {springs: {stretch: 10 N/m}}, prestress: 3 N/m", []
+    for apart, volume in ((0.5, "free"), (0.25, "free"), (0.5, "kept")):
+        more = f", volume: {volume}, spacing: {apart * 3 / int(cells)!r} m"
+        made = Balloon(EGG, law, int(cells), f"{{ark3: {{step: {step} ms}}}}", 0.4, deep=True, more=more)
+        before, begun, most = made.read("volume"), time.process_time(), 0.0
+        for k in range(1, 5):
+            made.run.advance(0.1 * k)
+            most = max(most, abs(made.read("volume") / before - 1.0))
+        lost.append(made.read("volume") / before - 1.0)
+        text = (
+            f"{made.read('count'):.0f} vertices, {volume}: drawn volume {lost[-1]:+.2e} at the end, {most:.1e} at most"
+        )
+        print(f"{text}, deformation {made.read('deformation'):.4f}, {time.process_time() - begun:.0f} s", flush=True)
+    print(f"extrapolated {(4.0 * lost[1] - lost[0]) / 3.0:+.1e}")
+
+
+def share(cells: str) -> None:
+    """Processor time of steps by sbdf2 with a skin of about 2,500 vertices and without."""
+    taken = []
+    for alone in (False, True):
+        law, more = "law: {springs: {stretch: 10 N/m}}, prestress: 3 N/m", f", spacing: {1.0 * 3 / int(cells)!r} m"
+        made = Balloon(EGG, law, int(cells), "{sbdf2: {step: 5 ms}}", 1.0, deep=True, more=more, alone=alone)
+        if not alone:
+            print(f"{made.read('count'):.0f} vertices")
+        made.run.advance(0.02)
+        best = math.inf
+        for k in range(1, 6):
+            begun = time.process_time()
+            made.run.advance(0.02 + 0.02 * k)
+            best = min(best, time.process_time() - begun)
+        taken.append(best / 4)
+    print(f"{taken[0]:.3f} s a step, {taken[1]:.3f} s without: {1 - taken[1] / taken[0]:.0%} of it for the skin")
+
+
+def capsule(across: str, wide: str = "10") -> None:
+    """Capsules of rubber in shear, cells a radius, between walls so many radii apart: D over Ca, drawn to 0."""
+    cell, side, density, found = 1.0 / float(across), float(wide), 0.02, []
+    for number in (0.01, 0.02):
+        ends = ", ".join(f'{name}: {{wall: {{velocity: "[{way * side / 2}, 0, 0]"}}}}' for name, way in SHEAR)
+        text = (
+            f"clock: {{end: 5 s, fps: 1}}\nmodels:\n  air:\n    flow:\n      size: {side} {side} {side} m\n"
+            f"      cell: {cell!r} m\n      density: {density} kg/m^3\n      viscosity: 1 Pa*s\n"
+            f'      initial: {{velocity: "[y - {side / 2}, 0*y, 0*y]"}}\n'
+            f"      boundary: {{left: {{periodic: yes}}, back: {{periodic: yes}}, {ends}}}\n"
+            f"  balloon: {{membrane: {{of: ball, law: {{neo_hookean: {{modulus: {1 / number!r} N/m}}}}}}}}\n"
+            f"forces: [{{immersion: {{on: [balloon], in: air}}}}]\n"
+            f"objects: {{ball: {{sphere: {{radius: 1 m, position: {side / 2} {side / 2} {side / 2} m}}}}}}\n"
+            f"solvers: {{main: {{sbdf2: {{step: {0.1 * number!r} s}}}}}}\n"
+        )
+        made, told, begun = Balloon.of(text), [], time.process_time()
+        for k in range(1, 31):  # it follows in times of 4 mu a/G
+            made.run.advance(number * k)
+            told.append(made.read("deformation"))
+        found.append(told[-1] / number)
+        text = f"Ca {number}: D/Ca {found[-1]:.4f} after {30 * number:.2f} s ({told[-2] / number:.4f} before)"
+        print(f"{text}, {made.read('count'):.0f} vertices, {time.process_time() - begun:.0f} s", flush=True)
+    line = 2.0 * found[0] - found[1]
+    print(f"D/Ca drawn to 0 {line:.4f}, {line / (25 / 12) - 1:+.1%} of 25/12")
+
+
 def circle(cells: str) -> None:
     """A circle of one tension, prestressed, at rest."""
     law = "law: {springs: {stretch: 1 N/m}}, prestress: 1 N/m"
@@ -171,8 +258,9 @@ def ring(across: str) -> None:
 
 
 if __name__ == "__main__":
-    parts = {"areas": areas, "circle": circle, "rest": rest, "ring": ring, "correction": correction}
+    all_of = (areas, circle, rest, ring, correction, deep, share, capsule)
+    parts = {one.__name__: one for one in all_of}
     if len(sys.argv) > 1:
         parts[sys.argv[1]](*sys.argv[2:])
     else:
-        areas("64"), circle("64"), rest("64"), ring("21.33"), correction()
+        areas("64"), circle("64"), rest("64"), ring("21.33"), correction(), deep("48"), share("64")
