@@ -68,6 +68,10 @@ class Model(Protocol):
         """Solids in it."""
 
     @property
+    def domain(self) -> Ref | None:
+        """The object that it fills, where it is no box."""
+
+    @property
     def edges(self) -> str:
         """How cells meet these."""
 
@@ -88,7 +92,8 @@ def add_flow(model: Model, cells: Ground, assembly: Assembly) -> Flow:
 class _Builder:
     def __init__(self, model: Model, cells: Ground, assembly: Assembly) -> None:
         self.model, self.cells, self.assembly = model, cells, assembly
-        sides = {name: part for name, part in model.boundary.items() if name not in {ref.name for ref in model.around}}
+        solids = {ref.name for ref in (*model.around, *([model.domain] if model.domain is not None else []))}
+        sides = {name: part for name, part in model.boundary.items() if name not in solids}
         shared, self.periodic = shares(sides, cells, assembly.line())
         self.faces = Faces(cells, self.periodic)
         self.parts: list[tuple[Side, Any]] = [(part, mine) for part, mine in shared if len(mine)]
@@ -109,9 +114,12 @@ class _Builder:
         self.solids: Solids | None = None
         self.moving: MovingSolids | None = None
         if moving(model.around, assembly):
+            if model.domain is not None:
+                text, help = "solids move through a flow in a box alone, not in a `domain`", "give the flow a `size`"
+                raise ScriptError([Diagnostic("moves", text, model.domain.span or assembly.line(), help)])
             self.moving = MovingSolids(model.around, model, self.faces, assembly)
-        elif model.around:
-            self.solids = Solids(model.around, self.faces, staircase, assembly)
+        elif model.around or model.domain is not None:
+            self.solids = Solids(model.around, self.faces, staircase, assembly, model.domain, model.boundary)
 
     def build(self) -> Flow:
         assembly, faces, cells = self.assembly, self.faces, self.cells
@@ -159,7 +167,8 @@ class _Builder:
         ints[layout.EDGE_FIRST : layout.EDGE_FACES] = edges[2:]
         ints[layout.EDGE_FACES :] = edge_faces
         ints[layout.SCHEME], ints[layout.SKIP] = SCHEMES[self.model.advection], assembly.floats([0.0])
-        walled, solver, moves = len(self.model.around) > 0, self.model.pressure, self.moving is not None
+        moves, solver = self.moving is not None, self.model.pressure
+        walled = moves or self.solids is not None
         scales = areas * inverses
         plan, text = write_pressure(faces, self.opened, walled, areas, scales, solver, assembly, ints, moves)
         ints = np.concatenate([ints, plan])

@@ -131,7 +131,10 @@ def _must_agree(shape: Any, low: Any, spacing: Any, periodic: Any, flow: Flow, n
         same = all((one <= SAME * np.array(flow.spacing)[:axes]).all() for one in apart)
     if not same:
         text = f"the field has other cells than the flow '{name}'"
-        raise ScriptError([Diagnostic("other-domain", text, span, "give both the same `size`, `corner` and `cell`")])
+        sides = [side * count for side, count in zip(flow.spacing, flow.cells.shape, strict=True)][:axes]
+        box = (" ".join(f"{x:.12g}" for x in one) for one in (sides, flow.low[:axes]))
+        help = "give it the flow's `size: {} m`, `corner: {} m` and `cell`".format(*box)
+        raise ScriptError([Diagnostic("other-domain", text, span, help)])
     if tuple(periodic)[:axes] != tuple(flow.cells.periodic)[:axes]:
         text = f"the field and the flow '{name}' are not periodic in the same directions"
         raise ScriptError([Diagnostic("other-domain", text, span, "let the boundary of both say `periodic`")])

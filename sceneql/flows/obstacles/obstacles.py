@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from sceneql.flows.fluid_box import around
 from sceneql.flows.obstacles.no_slip_numbers import LEAST, SLIVER
 from sceneql.grids.domain.cut import below
 from sceneql.grids.domain.domain import inside
@@ -19,7 +20,7 @@ from sceneql.island.start import Start
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Container, Sequence
 
     from sceneql.flows.staggered import Faces
     from sceneql.frame import Floats
@@ -51,11 +52,22 @@ class Opened:
 class Solids:
     """Solids by their level sets, where they stand at the start."""
 
-    def __init__(self, refs: Sequence[Ref], faces: Faces, staircase: bool, assembly: Assembly) -> None:
-        """Raises ScriptError for an object without an inside, and where nothing is left of the box."""
+    def __init__(
+        self,
+        refs: Sequence[Ref],
+        faces: Faces,
+        staircase: bool,
+        assembly: Assembly,
+        domain: Ref | None = None,
+        named: Container[str] = (),
+    ) -> None:
+        """``domain``: what the flow fills; what is around it is the last solid; ``named``: sides of the box by name.
+
+        Raises ScriptError for an object without an inside, and where nothing is left of the box.
+        """
         self.faces, self.staircase, self.spacing = faces, staircase, np.array(faces.cells.spacing)
-        self.refs = refs
-        self.levels = []
+        self.refs = refs if domain is None else (*refs, domain)
+        self.levels: list[Any] = []
         for ref in refs:
             try:
                 self.levels.append(inside(ref, faces.axes == 2, cast("Moment", Start(assembly)))[0])
@@ -63,6 +75,8 @@ class Solids:
                 message = f"'{ref.name}' cannot stand in a flow: {error}"
                 help = "take an object with an inside: a mesh that is closed, an outline"
                 raise ScriptError([Diagnostic("no-domain", message, ref.span, help)]) from error
+        if domain is not None:
+            self.levels.append(around(domain, faces, named, assembly))
         axes, centers = list(range(faces.axes)), self._centers()
         self.opened = []
         if staircase:
@@ -75,7 +89,7 @@ class Solids:
                 self.opened[-1].parts[self.opened[-1].parts < SLIVER] = 0.0
         if not (self.parts > 0.0).any():
             text = "the solids fill the whole box: no cell is left to flow through"
-            raise ScriptError([Diagnostic("no-cell", text, refs[0].span, "take smaller ones, or a larger `size`")])
+            raise ScriptError([Diagnostic("no-cell", text, self.refs[0].span, "take smaller ones, or a larger `size`")])
 
     def _centers(self) -> Floats:
         found = self.faces.cells.centers()
