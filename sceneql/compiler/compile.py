@@ -52,7 +52,7 @@ def compile_script(
     check_studies(checked.settings.studies, script.root, catalogue, KEYS, found)
     report_circles(checked.tasks, found)
     background = checked.settings.background is not None
-    tasks = expand(checked.tasks, catalogue, without=checked.without, background=background)
+    tasks = expand(checked.tasks, catalogue, without=checked.without, implied=checked.implied, background=background)
     report_hollow(tasks, found)
     report_moving(tasks, found)
     check_sizes(tasks, found)

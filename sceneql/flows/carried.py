@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.flows.edges import BEGIN, timed
-from sceneql.flows.layout import AREAS
+from sceneql.flows.layout import AREAS, LED, SEEPING
 from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.carrying import KERNELS as CARRY
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Flow, Grid
 
 THROUGH = "sceneql.flows.carrying_kernels:through"
+PAST = "sceneql.flows.carrying_past_kernels"
 LIFT = "sceneql.flows.carrying_kernels:lift"
 SAME = 1e-9
 """Difference of boxes, in parts of a cell, that counts as none."""
@@ -62,6 +63,8 @@ def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Bou
         values = _values(boundary, cells, mine, grid.at, assembly)
         brought, leaving = assembly.floats(np.zeros(n)), assembly.floats(np.zeros(n))
         known = assembly.floats(opened[beside - first]), values, len(mine)
+        if flow.ints[LED] > 0:
+            _past(grid, flow, areas, assembly)
         if flow.fractions is not None:
             _cut(grid, flow.fractions, faces, opened, drift, assembly)
         starts = [one.at for one in flow.components]
@@ -80,6 +83,26 @@ def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Bou
                 *map(int, periodic), LIMITERS[drift.limiter], strength, *exchange, grid.at + n,
             ),
         )  # fmt: skip
+
+
+def _past(grid: Grid, flow: Flow, areas: Sequence[int], assembly: Assembly) -> None:
+    """Have solids that move leave of a field's cells what they leave of the flow's."""
+    n, numbers = int(np.prod(flow.cells.shape)), assembly.numbers()
+    uncut = numbers[grid.cells.insides_at : grid.cells.insides_at + n]
+    whole = [assembly.floats(numbers[at : at + n]) for at in grid.faces_at[: len(areas)]]
+    pushed, left = flow.ints[SEEPING], flow.ints[LED]
+    last = assembly.floats(uncut * numbers[left : left + n]), assembly.floats(numbers[pushed : pushed + n])
+    area = assembly.floats(flow.areas)
+    sizes = [area + axis for axis in range(len(areas))]
+    ints = (
+        grid.at, grid.cells.insides_at, grid.volumes_at, assembly.floats(uncut), left, pushed, *last, *grid.faces_at,
+        *((*one, one[0])[:3] for one in (whole, areas, sizes)),
+    )  # fmt: skip
+    flat = [int(k) for one in ints for k in (one if isinstance(one, tuple) else (one,))]
+    flat += [*flow.cells.shape, *map(int, flow.cells.periodic), len(areas)]
+    assembly.term("internal", f"{PAST}:past", flat)
+    assembly.term("close", f"{PAST}:keep", flat)
+    assembly.after_step(f"{PAST}:go_past", flat)
 
 
 def _cut(grid: Grid, fractions: Floats, faces: Faces, opened: Floats, drift: Drift, assembly: Assembly) -> None:

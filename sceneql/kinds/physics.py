@@ -126,8 +126,8 @@ class Model(Kind):
         """Objects whose insides it fills or spreads in."""
         return ()
 
-    def standing(self) -> Iterable[Ref]:
-        """Objects that it takes as they are at the start, so that they must not move."""
+    def shaped(self) -> Iterable[Ref]:
+        """Objects whose shape it takes as it is at the start: they may be moved and turned, but as a whole alone."""
         return ()
 
     def lasts(self) -> bool:

@@ -16,13 +16,22 @@ from sceneql.quantities.expression import Link, Number, Type
 
 
 def expand(
-    tasks: Mapping[str, Task], catalogue: Catalogue, *, without: Collection[str] = (), background: bool = False
+    tasks: Mapping[str, Task],
+    catalogue: Catalogue,
+    *,
+    without: Collection[str] = (),
+    implied: Collection[str] = (),
+    background: bool = False,
 ) -> dict[str, Task]:
     """The parts with those that the defaults add; objects that a model drives are linked to it.
 
-    ``without``: names of defaults that the script does not want. ``background``: it has one of its own.
+    ``without``: names of defaults that the script does not want; ``implied``: that it names and does not write, such as
+    a floor, which then lies where the default does. ``background``: it has one of its own.
     """
     result = dict(tasks)
+    for name in implied:
+        at_level = result[name].kind.model_copy(update={"height": _level(result)})
+        result[name] = replace(result[name], kind=at_level)
 
     def has(family: type[Kind]) -> bool:
         return any(isinstance(task.kind, family) for task in result.values())

@@ -92,10 +92,9 @@ each of these ties."""
     WORK,
     PASSED,
     SPARING,
-    LYING,
     BOUNDED,
     MEMORY,
-) = range(17)
+) = range(16)
 """Memory: how many contacts are kept; whether it is open which of them slide or leave; since when they are these [s];
 whether it has begun; when the step began [s]; solutions that were not found to rounding, contacts without room;
 when the latest event was [s], and how many there were at that instant before;

@@ -33,10 +33,10 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as KIND_OF
-from sceneql.contacts.rigid_exact.crowd_kernels import lowest
+from sceneql.contacts.rigid_exact.crowd_kernels import rocks_often
 from sceneql.contacts.rigid_exact.curved_ahead_kernels import meet_ahead
 from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
-from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved
+from sceneql.contacts.rigid_exact.curved_find_kernels import ROCKS, ask, is_curved
 from sceneql.contacts.rigid_exact.exact_hold_kernels import CREEP, STILL, still
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
@@ -45,7 +45,6 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     DRIVES,
     KEPT,
     KEPT_AT,
-    LYING,
     MEMORY_AT,
     MOST,
     PAIRS,
@@ -240,9 +239,8 @@ def find(t, y, floats, ints, points, names, goes_on):
         if is_curved(ints, sa):
             who = ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b))
             # What rocks, or runs round its circle, again and again and lower than is seen comes to lie.
-            floats[memory + LYING] = 0.0 if goes_on else lowest(floats, ints, pair)
+            ints[who + ROCKS] = not goes_on and rocks_often(floats, ints, pair)
             count += meet_ahead(floats, ints, who, margin, next + RECORD * count, most - count)
-            floats[memory + LYING] = 0.0
             continue
         more = touching(floats, ints, pair, a, b, margin, next + RECORD * count, most - count, points, names)
         floats[memory + CROWDED] += max(0, more - most + count)

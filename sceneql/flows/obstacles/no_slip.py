@@ -14,20 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.flows.obstacles.no_slip_numbers import BESIDE, FARTHEST, HALVINGS, NEAREST
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from sceneql.flows.obstacles.obstacles import Solids
     from sceneql.frame import Floats
-
-BESIDE = 0.1
-"""Distance of a face's middle from a wall, in parts of a cell's side, from which on viscosity acts on it."""
-NEAREST = 0.02
-"""Least distance along an axis to a wall, in cells."""
-FARTHEST = 1.5
-"""The same of a wall just beyond the next middle."""
-HALVINGS = 5
-"""Of a side, before the level between its ends counts as linear."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

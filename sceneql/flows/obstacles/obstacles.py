@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from sceneql.flows.obstacles.no_slip_numbers import LEAST, SLIVER
 from sceneql.grids.domain.cut import below
 from sceneql.grids.domain.domain import inside
 from sceneql.island.start import Start
@@ -25,10 +26,6 @@ if TYPE_CHECKING:
     from sceneql.kinds import Moment, Ref
     from sceneql.system import Assembly
 
-SLIVER = 0.02
-"""Open part of a face below which it is closed: what little flows there would need a large pressure behind it."""
-LEAST = 0.3
-"""Least volume of a velocity's own cell, of a whole one: smaller ones have this inertia, for the sake of the step."""
 SPLITS = (4, 4, 2)
 """Parts along each axis of a box of one, two and three axes that the surface may cut."""
 ROUND = 2.5

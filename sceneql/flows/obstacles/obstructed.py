@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.flows.obstacles.no_slip import seeping, skin
-from sceneql.flows.obstacles.obstacles import LEAST
+from sceneql.flows.obstacles.no_slip_numbers import LEAST
 
 if TYPE_CHECKING:
     from sceneql.flows.obstacles.obstacles import Solids

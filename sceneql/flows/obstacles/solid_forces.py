@@ -77,8 +77,28 @@ def _carried_in(ints: tuple[int, ...], state: ModelState) -> Floats:
     floats[ints[layout.INVERSES] : ints[layout.INVERSES] + count] = 1.0
     advected(state.y, rate, floats, np.array(ints))
     shut = floats[ints[layout.AREAS] : ints[layout.AREAS] + count] == 0.0
-    found: Floats = np.where(shut, rate[at : at + count], 0.0)
+    carried = rate[at : at + count]
+    if ints[layout.LED] > 0:  # what a wall that moves takes up itself it had given
+        carried = carried + _pushed(ints, floats) * state.y[at : at + count]
+    found: Floats = np.where(shut, carried, 0.0)
     return found
+
+
+def _pushed(ints: tuple[int, ...], floats: Floats) -> Floats:
+    """By face: what walls push through its own cell [m^3/s]."""
+    shape = ints[layout.CELLS : layout.CELLS + 3]
+    at = ints[layout.SEEPING]
+    out = floats[at : at + int(np.prod(shape))].reshape(shape[::-1])
+    found = []
+    for axis in range(ints[layout.AXES]):
+        line = 2 - axis
+        if ints[layout.PERIODIC + axis]:
+            found.append(0.5 * (out + np.roll(out, 1, axis=line)))
+        else:
+            wide = np.pad(out, [(1, 1) if k == line else (0, 0) for k in range(3)])
+            n = shape[axis]
+            found.append(0.5 * (wide.take(range(n + 1), axis=line) + wide.take(range(1, n + 2), axis=line)))
+    return np.concatenate([one.ravel() for one in found])
 
 
 def _lost(

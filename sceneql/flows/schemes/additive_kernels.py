@@ -17,7 +17,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.flows.layout import AT, FACES, SKIP, WORK
+from sceneql.flows.layout import AT, CHANGE, FACES, LED, RATE, SKIP, VELOCITY, WORK
 from sceneql.flows.projection_kernels import project
 from sceneql.flows.schemes.multistep_kernels import OPERATOR, same, solve, spread, tally
 from sceneql.system.signatures_kernels import STEP, A, F, I, N
@@ -60,12 +60,12 @@ def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
             return False
     if axes == 0:
         return True
-    solved = project(y, True, floats, one)
+    solved = project(y, VELOCITY, floats, one)
     r, z, p, q = more[:n], more[n : 2 * n], more[2 * n : 3 * n], more[3 * n : 4 * n]
     for k in range(first, last):
         q[k] = 0.0
     spread(y, q, 0, axes, floats, numbers[SPREAD:])
-    solved &= project(q, False, floats, one)
+    solved &= project(q, CHANGE, floats, one)
     for k in range(first, last):
         r[k] = wanted[k] - y[k] + a * q[k]
     whole = product(axes, y, y, floats, numbers)
@@ -82,13 +82,13 @@ def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
         for number in range(axes):
             op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
             solve(op, a, r, z, COARSE, floats, tables, floats[one[WORK] :], room)
-        solved &= project(z, False, floats, one)
+        solved &= project(z, CHANGE, floats, one)
         now = product(axes, r, z, floats, numbers)
         part = now / before if count > 0 else 0.0
         for k in range(first, last):
             p[k] = z[k] + part * p[k]
         spread(p, q, 0, axes, floats, numbers[SPREAD:])
-        solved &= project(q, False, floats, one)
+        solved &= project(q, CHANGE, floats, one)
         for k in range(first, last):
             q[k] = p[k] - a * q[k]
         length = now / product(axes, p, q, floats, numbers)
@@ -125,7 +125,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
                 for j in range(i):
                     total += e[i * s + j] * explicit[j * n + k] + d[i * s + j] * damped[j * n + k]
                 wanted[k] = y0[k] + h * total
-            solved &= project(wanted, True, floats, one)
+            if one[LED] > 0:  # solids are where they are at the stage
+                rate(t + nodes[i] * h, wanted, own, floats, ints)
+            solved &= project(wanted, VELOCITY, floats, one)
             for k in range(n):
                 y1[k] = wanted[k]
             a, exact = h * d[i * s + i], max(EXACT, SHARE * tolerance)
@@ -149,7 +151,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
             error += wrong[j] * both
         y1[k] = y0[k] + h * total
         wanted[k] = h * error
-    solved &= project(y1, True, floats, one) and project(wanted, False, floats, one)
+    solved &= project(y1, VELOCITY, floats, one) and project(wanted, CHANGE, floats, one)
     for number in range(numbers[OPERATORS]):
         tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     rate(t + h, y1, end_rate, floats, ints)
@@ -160,7 +162,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for k in range(n):
         rate1[k] = end_rate[k] + spreading[k]
     settings[latest] = t + h
-    if not (project(rate1, False, floats, one) and solved):
+    if not (project(rate1, RATE, floats, one) and solved):
         y1[one[AT]] = math.nan
     worst = 0.0
     for block in range(numbers[BLOCKS]):

@@ -34,6 +34,7 @@ from sceneql.flows.layout import (
     PLAN,
     PRESSURE,
     SKIP,
+    VELOCITY,
     WORK,
 )
 from sceneql.flows.projection_kernels import less_gradient, outflow, project
@@ -311,12 +312,12 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         )
     if scheme != CHORIN:
         gathered = room[:cells]
-        outflow(y1, gathered, True, floats, one)
+        outflow(y1, gathered, VELOCITY, floats, one)
     latest_q = pressure[2 * cells : 3 * cells]  # iterations begin with what the step before took away
     guessed = has_before and one[ITERATES] > 0
     if guessed:
         less_gradient(y1, latest_q, 1.0, floats, one)
-    solved &= project(y1, True, floats, one)
+    solved &= project(y1, VELOCITY, floats, one)
     if guessed:
         for c in range(cells):
             q[c] += latest_q[c]

@@ -61,7 +61,7 @@ class Flow(Model):
         {},
     )
     around: tuple[kinds.ObjectRef, ...] = field(
-        "Solids that stand still in the flow; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
+        "Solids in the flow, which may move by keys or formulas; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
     )
     edges: Literal["cut_cell", "staircase"] = field(
         "How cells meet these solids: cut by them, or whole where their centers lie outside.", "cut_cell"
@@ -118,8 +118,8 @@ class Flow(Model):
         """The solids."""
         return self.around
 
-    def standing(self) -> Iterable[kinds.Ref]:
-        """The solids: cells are cut by them once."""
+    def shaped(self) -> Iterable[kinds.Ref]:
+        """The solids: cells are cut by them, wherever they move."""
         return self.around
 
     def problems(self) -> Iterable[Problem]:
