@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.kinds import Ref
-    from sceneql.skins.law import Elasticity
+    from sceneql.skins.elasticity import Elasticity
     from sceneql.system import Assembly, Flow
 
-KERNELS = "sceneql.skins.sheet_kernels"
+KERNELS = "sceneql.skins.closed_sheet_kernels"
 EVEN = 2.0 / 3.0
 """Of the stretch of a sheet: what springs along sides have, k = EVEN stretch (areas beside)/length^2, so that the
 tension of an even stretch is stretch times it (after Van Gelder 1998, J. Graphics Tools 3, 21-41)."""

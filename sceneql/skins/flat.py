@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.kinds import Ref
-    from sceneql.skins.law import Elasticity
+    from sceneql.skins.elasticity import Elasticity
     from sceneql.system import Assembly, Flow
 
-KERNELS = "sceneql.skins.line_kernels"
+KERNELS = "sceneql.skins.closed_line_kernels"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

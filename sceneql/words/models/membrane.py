@@ -140,8 +140,8 @@ class Membrane(Model):
 
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve its vertices, add its tension and what keeps its volume. Raises ScriptError."""
+        from sceneql.skins.elasticity import Elasticity
         from sceneql.skins.fitting import must_fit, spacing_in
-        from sceneql.skins.law import Elasticity
 
         flow = assembly.flow_of()
         if flow is None:  # it could not be made, which is told
