@@ -320,6 +320,11 @@ class _Checker:
                 return self._body(node, model, body)
             if mark.bodies and name in self.entries and self.family(name) == mark.family:
                 return self._body(node, name, "")
+            if name in OPTIONAL and name in self.entries and self.entries[name].word == NONE:
+                text = f"there is to be no '{name}': `{name}: {NONE}`"
+                remedy = f"leave out `{name}: {NONE}`, or the name here"
+                self.found.error("unknown-name", text, node.span, help=remedy)
+                return None
             if name in self.entries and self.catalogue.load(self.family_of[name], self.entries[name].word) is None:
                 return None  # its word is reported there
             if name in self.entries and self.family(name) in (mark.family, mark.also):
