@@ -130,6 +130,10 @@ class Model(Kind):
         """Objects whose shape it takes as it is at the start: they may be moved and turned, but as a whole alone."""
         return ()
 
+    def standing(self) -> Iterable[Ref]:
+        """Objects that it takes as they are at the start, so that they must not move."""
+        return ()
+
     def lasts(self) -> bool:
         """Whether its bodies are there all the time: births bring energy, and deaths take it."""
         return True

@@ -15,9 +15,19 @@ PLACES = ("position", "rotation")
 
 
 def report_moving(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report values that vary in time of objects whose shape a model takes, and of their members."""
+    """Report values that vary in time of objects whose shape a model takes, and of their members; and bodies there."""
     for task in tasks.values():
-        for ref in task.kind.shaped() if isinstance(task.kind, Model) else ():
+        if not isinstance(task.kind, Model):
+            continue
+        for ref in task.kind.standing():
+            for _, field, value in _varying(tasks[ref.name], tasks):
+                text = f"'{task.name}' begins as '{ref.name}' is at the start, but its {field} varies in time"
+                found.error("moves", text, value.span or ref.span, help="give it one place and shape")
+        for ref in task.kind.shaped():
+            if tasks[ref.name].original is not None:
+                text = f"'{task.name}' has cells cut by '{ref.name}', but a model moves it, and fluid would stay behind"
+                found.error("moves", text, ref.span, help="move it by keys or a formula of time")
+                continue
             for name, field, value in _varying(tasks[ref.name], tasks):
                 if name == ref.name and field in PLACES:
                     continue
