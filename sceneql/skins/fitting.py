@@ -24,8 +24,9 @@ def spacing_in(flow: Flow, spacing: float | None, of: Ref, assembly: Assembly) -
     cell = min(flow.spacing[: len(flow.areas)])
     apart = APART[len(flow.areas)] * cell
     if flow.fractions is not None:
-        text = "the flow has solids in it, and nothing keeps a skin from them"
-        raise ScriptError([Diagnostic("invalid", text, assembly.line(), "let the flow be without `around`")])
+        text = "the flow has solids in it or around it, and nothing keeps a skin from them"
+        help = "let the flow be without `around` and `domain`"
+        raise ScriptError([Diagnostic("invalid", text, assembly.line(), help)])
     if spacing is not None and spacing > cell:
         text = f"vertices {spacing:g} m apart are too coarse for cells of {cell:g} m: fluid would pass between them"
         raise ScriptError([Diagnostic("invalid", text, assembly.line(), f"let `spacing` be {apart:.3g} m")])

@@ -96,7 +96,7 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
     read = {need for task in tasks.values() if isinstance(task.kind, Object) for need in task.needs}
     carriers = [task.kind.carrier() for task in tasks.values() if isinstance(task.kind, Interaction)]
     for flow in carriers:  # a map of a deep flow's box would hide the skins in it
-        if flow is not None and len(getattr(tasks[flow.name].kind, "size", ())) == 3:
+        if flow is not None and len(getattr(tasks[flow.name].kind, "size", None) or ()) == 3:
             read.add(flow.name)
     for model in [task for task in tasks.values() if task.name not in read]:
         of = model.kind.shows(model.name) if isinstance(model.kind, Model) else None

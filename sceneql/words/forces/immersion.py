@@ -37,6 +37,8 @@ class Immersion(Force):
 
     def fastest_carried(self, skins: Mapping[str, Any], flow: Any) -> Iterator[Oscillation]:
         """The fastest waves of each skin that the flow's cells know; viscosity takes a quarter of its largest rate."""
+        if flow.size is None:  # a flow in a domain takes no skins
+            return
         cell = min(side / count for side, count in zip(flow.size, counts(flow.size, flow.cell), strict=False))
         decay = flow.viscosity / flow.density * len(flow.size) / cell**2
         for name, skin in skins.items():
