@@ -153,6 +153,12 @@ def test_a_source_may_read_the_field(tmp_path):
         ("size: 1 1 m, cell: 0.1 m, speed: -1 m/s", "the speed must be at least 0"),
         ("size: 1 1 m, cell: 0.1 m, speed: 1 m/s, damping: -1 /s", "the damping must be at least 0"),
         ("size: 1 1 m, cell: 0.1 m, speed: 1 m/s, damping: x - 0.5", "the damping must be at least 0"),
+        ("size: 1 1 m, cell: 0.1 m, speed: x - 0.5, boundary: {left: {open: yes}}", "the speed must be at least 0"),
+        (
+            "size: 1 1 m, cell: 0.1 m, speed: 1 m/s, probes: {velocity: 0.5 0.5 m}",
+            "a probe cannot be called 'velocity'",
+        ),
+        ("size: 1 1 m, cell: 0.1 m, speed: 1 m/s, probes: {energy: 0.5 0.5 m}", "a probe cannot be called 'energy'"),
         ("size: 1 1 m, cell: 0.1 m, speed: 1/(x - 0.55)/0", "not finite"),
         (
             "size: 1 1 m, cell: 0.1 m, speed: 1 m/s, boundary: {left: {value: 0, open: yes}}",

@@ -145,6 +145,8 @@ class Medium(Model):
 
     has_bodies = False
     is_field = True
+    measures: ClassVar[tuple[str, ...]] = ()
+    """Outputs besides MEASURES, as which no probe may be called."""
     vectors: ClassVar[tuple[str, ...]] = ()
     """Fields whose formulas may be of several numbers."""
 
@@ -194,7 +196,7 @@ class Medium(Model):
         if vectors:
             return
         for name, place in self.probes.items():
-            if name in MEASURES or not name.isidentifier():
+            if name in MEASURES or name in self.measures or not name.isidentifier():
                 yield Problem(f"a probe cannot be called '{name}'", ("probes", name), at_key=True)
             if len(place) not in (2, 3):
                 yield Problem("a probe stands at two or three numbers, `0.5 0.2 m`", ("probes", name))

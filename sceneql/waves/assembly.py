@@ -61,7 +61,7 @@ def add_wave(wave: Wave, boundary: Mapping[str, Part], ground: Ground, assembly:
     """Reserve the field, its velocity and their tallies, and add the term of their rates.
 
     The offset of the field, and of the numbers that `energy` reads. Raises ScriptError for numbers that are not finite,
-    a damping below 0, and boundary parts that overlap.
+    a speed or damping below 0, and boundary parts that overlap.
     """
     n = ground.count
     square = Call("mul", (wave.speed.expr, wave.speed.expr), wave.speed.expr.type)
@@ -74,9 +74,10 @@ def add_wave(wave: Wave, boundary: Mapping[str, Part], ground: Ground, assembly:
     assembly.alike(spread.at, n)
     assembly.alike(velocity_at, n)
     damping = _finite("damping", wave.damping, ground)
-    if damping.min() < 0.0:
-        text = f"the damping must be at least 0, and is {damping.min():g} somewhere"
-        raise ScriptError([Diagnostic("out-of-range", text, None if wave.damping is None else wave.damping.span)])
+    for name, formula, values in (("speed", wave.speed, speeds), ("damping", wave.damping, damping)):
+        if formula is not None and values.min() < 0.0:
+            text = f"the {name} must be at least 0, and is {values.min():g} somewhere"
+            raise ScriptError([Diagnostic("out-of-range", text, formula.span)])
     decays = 2.0 * damping
     for one in spread.radiating:
         np.add.at(decays, one.cells, one.areas * speeds[one.cells] / ground.cells.volumes[one.cells])

@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 UNITS = {"height": dim.LENGTH, "number": dim.PLAIN}
 NAMES = {"height": "height", "number": "value"}
 PLACES = ("x", "y", "z")
-MEASURED = ("max", "min", "mean")
 
 
 class Edge(Record):
@@ -88,6 +87,8 @@ class Wave(Medium):
 
     swinging: ClassVar[tuple[str, ...]] = (*NAMES.values(), "velocity")
     """Fields among its outputs that swing about 0."""
+
+    measures: ClassVar[tuple[str, ...]] = (*NAMES.values(), "velocity", "volume", "energy")
 
     of: Literal["height", "number"] = field(
         "What swings: a height, the output `height`; or a number, `value`.", "height"
