@@ -135,3 +135,5 @@ class IslandFacts:
     """Whether it is masses that nothing but forces at a distance moves (Force.at_a_distance)."""
     apart: bool = False
     """Whether a barrier keeps surfaces apart, towards which explicit steps would creep."""
+    in_solids: int = 0
+    """Velocities of the nodes of elastic solids: each is tied to so many others that factors fill up."""
