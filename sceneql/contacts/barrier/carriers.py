@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.contacts.barrier import pairs_layout as layout
-from sceneql.contacts.barrier.skin_pairs import Places
+from sceneql.contacts.barrier.pair_places import Places
 
 if TYPE_CHECKING:
     from numpy import int64
