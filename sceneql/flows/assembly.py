@@ -9,14 +9,16 @@ import numpy as np
 
 from sceneql.flows import layout
 from sceneql.flows.edges import BEGIN, component_at, edges_of, timed
-from sceneql.flows.obstacles import Solids
-from sceneql.flows.obstructed import obstructed, whole
+from sceneql.flows.obstacles.moving_solids import Known, MovingSolids, moving
+from sceneql.flows.obstacles.obstacles import Solids
+from sceneql.flows.obstacles.obstructed import obstructed, whole
+from sceneql.flows.obstacles.skin_velocities import SkinVelocities
 from sceneql.flows.pressure import write_pressure
-from sceneql.flows.skin_velocities import SkinVelocities
 from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces
 from sceneql.grids.domain.boundary import shares
+from sceneql.grids.multigrid.layout import SINK
 from sceneql.kinds import Formula, Ref
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -66,6 +68,10 @@ class Model(Protocol):
         """Solids in it."""
 
     @property
+    def domain(self) -> Ref | None:
+        """The object that it fills, where it is no box."""
+
+    @property
     def edges(self) -> str:
         """How cells meet these."""
 
@@ -86,7 +92,8 @@ def add_flow(model: Model, cells: Ground, assembly: Assembly) -> Flow:
 class _Builder:
     def __init__(self, model: Model, cells: Ground, assembly: Assembly) -> None:
         self.model, self.cells, self.assembly = model, cells, assembly
-        sides = {name: part for name, part in model.boundary.items() if name not in {ref.name for ref in model.around}}
+        solids = {ref.name for ref in (*model.around, *([model.domain] if model.domain is not None else []))}
+        sides = {name: part for name, part in model.boundary.items() if name not in solids}
         shared, self.periodic = shares(sides, cells, assembly.line())
         self.faces = Faces(cells, self.periodic)
         self.parts: list[tuple[Side, Any]] = [(part, mine) for part, mine in shared if len(mine)]
@@ -104,7 +111,15 @@ class _Builder:
                 self.pressure[mine] = part.outflow.pressure
         self.viscosity = model.viscosity / model.density
         staircase = model.edges == "staircase"
-        self.solids = Solids(model.around, self.faces, staircase, assembly) if model.around else None
+        self.solids: Solids | None = None
+        self.moving: MovingSolids | None = None
+        if moving(model.around, assembly):
+            if model.domain is not None:
+                text, help = "solids move through a flow in a box alone, not in a `domain`", "give the flow a `size`"
+                raise ScriptError([Diagnostic("moves", text, model.domain.span or assembly.line(), help)])
+            self.moving = MovingSolids(model.around, model, self.faces, assembly)
+        elif model.around or model.domain is not None:
+            self.solids = Solids(model.around, self.faces, staircase, assembly, model.domain, model.boundary)
 
     def build(self) -> Flow:
         assembly, faces, cells = self.assembly, self.faces, self.cells
@@ -121,7 +136,8 @@ class _Builder:
         ints[layout.PERIODIC : layout.PERIODIC + 3] = self.periodic
         ints[layout.AXES], ints[layout.AT], ints[layout.FACES] = faces.axes, at, faces.count
         ints[layout.STARTS : layout.STARTS + faces.axes] = faces.starts
-        passage = whole(faces, areas, volumes, self.viscosity)
+        uncut = passage = whole(faces, areas, volumes, self.viscosity)
+        outside = pushes
         if self.solids is not None:
             skins = SkinVelocities(self.solids, self.model.boundary)
             passage = obstructed(self.solids, skins, passage, self.viscosity)
@@ -142,7 +158,8 @@ class _Builder:
         ints[layout.SEEPING] = -1 if passage.seeping is None else assembly.floats(passage.seeping)
         ints[layout.AREAS], ints[layout.INVERSES] = assembly.floats(areas), assembly.floats(inverses)
         ints[layout.SCALES] = assembly.floats(areas * inverses)
-        ints[layout.MOVES], ints[layout.PUSHES] = self._moving(at), self._push(at, pushes, passage.fills)
+        ints[layout.MOVES] = self._moving(at)
+        ints[layout.PUSHES], base, strengths = self._push(pushes, passage.fills)
         viscous = [assembly.floats(tie) for tie in passage.ties]
         viscous = (viscous + viscous[:1])[:3]
         ints[layout.VISCOUS : layout.VISCOUS + 3] = viscous
@@ -150,9 +167,23 @@ class _Builder:
         ints[layout.EDGE_FIRST : layout.EDGE_FACES] = edges[2:]
         ints[layout.EDGE_FACES :] = edge_faces
         ints[layout.SCHEME], ints[layout.SKIP] = SCHEMES[self.model.advection], assembly.floats([0.0])
-        walled, solver = self.solids is not None, self.model.pressure
-        plan, text = write_pressure(faces, self.opened, walled, areas, areas * inverses, solver, assembly, ints)
+        moves, solver = self.moving is not None, self.model.pressure
+        walled = moves or self.solids is not None
+        scales = areas * inverses
+        plan, text = write_pressure(faces, self.opened, walled, areas, scales, solver, assembly, ints, moves)
         ints = np.concatenate([ints, plan])
+        sinks, solved, grids = self._grids(at, given, volumes, friction, viscous, edges[1], edge_faces)
+        fractions = None if self.solids is None else self.solids.fractions(areas)
+        if self.moving is not None:
+            self.moving.describe(ints)
+            edge_weights = assembly.numbers()[edges[1] : edges[1] + len(edge_faces)]
+            held = int(plan[SINK]) if len(plan) else -1
+            weighed = (base, strengths, edge_weights, sinks, solved)
+            known = Known(uncut, given, outside, *weighed, self.model.density, self.viscosity, held)
+            self.moving.start(known, x, ints)
+            fractions = self.moving.fractions()
+            text += ", cells cut anew at each instant"
+        self._force(at, int(ints[layout.PUSHES]), base, strengths)
         numbers = tuple(ints.tolist())
         assembly.term("close", "sceneql.flows.advection_kernels:advect", numbers)
         assembly.term("close", "sceneql.flows.advection_kernels:rub", numbers)
@@ -160,12 +191,12 @@ class _Builder:
         assembly.state(self._projected(x, ints))
         flow = Flow(
             cells=Cells(cells.shape, self.periodic, np.zeros(len(cells.volumes), dtype=bool), 0, 0),
-            components=self._grids(at, given, volumes, friction, viscous, edges[1], edge_faces),
+            components=grids,
             areas=faces.areas,
             spacing=tuple(cells.spacing.tolist()),
             low=tuple(cells.low.tolist()),
             ints=numbers,
-            fractions=None if self.solids is None else self.solids.fractions(areas),
+            fractions=fractions,
             density=self.model.density,
             viscosity=self.model.viscosity,
             pressure=text,
@@ -299,7 +330,7 @@ class _Builder:
 
         own = ints.copy()
         own[layout.AT] = 0
-        if not project(x, True, self.assembly.numbers(), own):
+        if not project(x, layout.VELOCITY, self.assembly.numbers(), own):
             text = "the iterations for the pressure of the start do not end"
             raise ScriptError([Diagnostic("invalid", text, self.assembly.line())])
         return x
@@ -333,23 +364,27 @@ class _Builder:
                     assembly.term("internal", kernel, ints)
         return moves
 
-    def _push(self, at: int, pushes: Floats, fills: Floats) -> int:
-        """Offset of the accelerations by the pressure outside, and by a force that the script gives."""
-        assembly, faces, force = self.assembly, self.faces, self.model.force
+    def _push(self, pushes: Floats, fills: Floats) -> tuple[int, int, int]:
+        """Offsets of the accelerations by the pressure outside, and by a force that the script gives; of those without
+        it, and of what it is multiplied with by face, or -1 where there is none."""
+        assembly, force = self.assembly, self.model.force
         pushing = assembly.floats(pushes)
         if force is None:
-            return pushing
+            return pushing, -1, -1
         self._must_fit(force)
-        base = assembly.floats(pushes)
-        for axis in range(faces.axes):
+        return pushing, assembly.floats(pushes), assembly.floats(fills / self.model.density)
+
+    def _force(self, at: int, pushing: int, base: int, weights: int) -> None:
+        """Add what writes the accelerations by a force."""
+        assembly, faces, force = self.assembly, self.faces, self.model.force
+        for axis in range(faces.axes if force is not None else 0):
+            assert force is not None
             start, shape = faces.starts[axis], faces.shapes[axis]
-            weight = assembly.floats(fills[start : start + int(np.prod(shape))] / self.model.density)
-            arrays = (pushing + start, base + start, weight)
+            arrays = (pushing + start, base + start, weights + start)
             box = assembly.floats(faces.box(axis))
             sizes = (shape[2], shape[1], shape[0])
             kernel, ints = over_cells(assembly, components(force.expr)[axis], at + start, arrays, sizes, box)
             assembly.term("internal", kernel, ints)
-        return pushing
 
     def _grids(
         self,
@@ -360,8 +395,9 @@ class _Builder:
         viscous: Sequence[int],
         weights_at: int,
         edge_faces: Sequence[int],
-    ) -> tuple[Grid, ...]:
-        """Each component as a field whose conductances are those of viscosity."""
+    ) -> tuple[int, int, tuple[Grid, ...]]:
+        """Each component as a field whose conductances are those of viscosity; before these, offsets of what viscosity
+        takes beside its ties, and of the volumes that are solved for, by face."""
         faces, assembly = self.faces, self.assembly
         sink = np.zeros(faces.count)
         weights = assembly.numbers()[weights_at : weights_at + len(edge_faces)]
@@ -375,4 +411,4 @@ class _Builder:
             cells = Cells((shape[2], shape[1], shape[0]), self.periodic, own, solved + start, 0)
             ties = (viscous[0] + start, viscous[1] + start, viscous[2] + start)
             found.append(Grid(cells, at + start, solved + start, sinks + start, ties, False, -1, True))
-        return tuple(found)
+        return sinks, solved, tuple(found)

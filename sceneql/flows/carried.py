@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.flows.edges import BEGIN, timed
-from sceneql.flows.layout import AREAS
+from sceneql.flows.layout import AREAS, LED, SEEPING
 from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.carrying import KERNELS as CARRY
@@ -25,16 +25,18 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.grids.domain.cells import Cells
     from sceneql.grids.drift import Drift
-    from sceneql.grids.medium import Boundary, Medium
+    from sceneql.grids.medium import Boundary
+    from sceneql.grids.spreading_medium import SpreadingMedium
     from sceneql.system import Assembly, Flow, Grid
 
 THROUGH = "sceneql.flows.carrying_kernels:through"
+PAST = "sceneql.flows.carrying_past_kernels"
 LIFT = "sceneql.flows.carrying_kernels:lift"
 SAME = 1e-9
 """Difference of boxes, in parts of a cell, that counts as none."""
 
 
-def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], assembly: Assembly) -> None:
+def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], assembly: Assembly) -> None:
     """Have a flow carry the fields of a model. Raises ScriptError where it is none, or fills another box.
 
     Where fluid comes in through the boundary it brings the `value` that the field has there, or none of it.
@@ -42,6 +44,8 @@ def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], 
     assert drift.by is not None
     flow = assembly.flow_of(drift.by.name)
     if flow is None:
+        if getattr(assembly.object(drift.by), "flows", False):
+            return  # its own assembly has failed
         text = f"'{drift.by.name}' is no flow"
         raise ScriptError([Diagnostic("no-flow", text, drift.by.span, "name a model `flow`")])
     cells = cells_of(model, assembly)
@@ -59,6 +63,8 @@ def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], 
         values = _values(boundary, cells, mine, grid.at, assembly)
         brought, leaving = assembly.floats(np.zeros(n)), assembly.floats(np.zeros(n))
         known = assembly.floats(opened[beside - first]), values, len(mine)
+        if flow.ints[LED] > 0:
+            _past(grid, flow, areas, assembly)
         if flow.fractions is not None:
             _cut(grid, flow.fractions, faces, opened, drift, assembly)
         starts = [one.at for one in flow.components]
@@ -79,11 +85,32 @@ def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], 
         )  # fmt: skip
 
 
+def _past(grid: Grid, flow: Flow, areas: Sequence[int], assembly: Assembly) -> None:
+    """Have solids that move leave of a field's cells what they leave of the flow's."""
+    n, numbers = int(np.prod(flow.cells.shape)), assembly.numbers()
+    uncut = numbers[grid.cells.insides_at : grid.cells.insides_at + n]
+    whole = [assembly.floats(numbers[at : at + n]) for at in grid.faces_at[: len(areas)]]
+    pushed, left = flow.ints[SEEPING], flow.ints[LED]
+    last = assembly.floats(uncut * numbers[left : left + n]), assembly.floats(numbers[pushed : pushed + n])
+    area = assembly.floats(flow.areas)
+    sizes = [area + axis for axis in range(len(areas))]
+    ints = (
+        grid.at, grid.cells.insides_at, grid.volumes_at, assembly.floats(uncut), left, pushed, *last, *grid.faces_at,
+        *((*one, one[0])[:3] for one in (whole, areas, sizes)),
+    )  # fmt: skip
+    flat = [int(k) for one in ints for k in (one if isinstance(one, tuple) else (one,))]
+    flat += [*flow.cells.shape, *map(int, flow.cells.periodic), len(areas)]
+    assembly.term("internal", f"{PAST}:past", flat)
+    assembly.term("close", f"{PAST}:keep", flat)
+    assembly.after_step(f"{PAST}:go_past", flat)
+
+
 def _cut(grid: Grid, fractions: Floats, faces: Faces, opened: Floats, drift: Drift, assembly: Assembly) -> None:
     """Leave of a field's cells what solids leave of the flow's. Raises ScriptError where its coefficient varies."""
     if grid.varying:
         text = "a field around solids has a coefficient that varies neither in time nor with the field"
-        raise ScriptError([Diagnostic("invalid", text, drift.by.span if drift.by else None)])
+        help = "write its `coefficient` by place alone, or let no solids stand in the flow"
+        raise ScriptError([Diagnostic("invalid", text, drift.by.span if drift.by else None, help)])
     n, numbers = len(fractions), assembly.numbers()
     volumes = fractions * numbers[grid.cells.insides_at : grid.cells.insides_at + n]
     assembly.write(grid.cells.insides_at, volumes)
@@ -104,7 +131,10 @@ def _must_agree(shape: Any, low: Any, spacing: Any, periodic: Any, flow: Flow, n
         same = all((one <= SAME * np.array(flow.spacing)[:axes]).all() for one in apart)
     if not same:
         text = f"the field has other cells than the flow '{name}'"
-        raise ScriptError([Diagnostic("other-domain", text, span, "give both the same `size`, `corner` and `cell`")])
+        sides = [side * count for side, count in zip(flow.spacing, flow.cells.shape, strict=True)][:axes]
+        box = (" ".join(f"{x:.12g}" for x in one) for one in (sides, flow.low[:axes]))
+        help = "give it the flow's `size: {} m`, `corner: {} m` and `cell`".format(*box)
+        raise ScriptError([Diagnostic("other-domain", text, span, help)])
     if tuple(periodic)[:axes] != tuple(flow.cells.periodic)[:axes]:
         text = f"the field and the flow '{name}' are not periodic in the same directions"
         raise ScriptError([Diagnostic("other-domain", text, span, "let the boundary of both say `periodic`")])

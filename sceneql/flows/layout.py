@@ -40,7 +40,10 @@ MIDDLES, CUT_FACES = 40, 41
 SOLVER_AT, STORE, STORE_SIZE = 42, 43, 44
 """Where in these integers the plan of a linear solver by name begins (grids/multigrid/linear_kernels); its store, after
 one number a cell; floats of the store."""
-PLANS, PLAN = 45, 24
+LED = 45
+"""By cell where solids move: what they leave of it (0: none moves); the rate of what their walls push [m^3/s^2] is then
+by cell after SEEPING."""
+PLANS, PLAN = 46, 24
 """Of each axis PLAN integers."""
 KIND, LENGTH, TWIDDLES, TWISTS, FACTORS = 0, 1, 2, 3, 4
 """Of a plan: the modes; length of the Fourier transform; cosines and sines of 2 pi k/length, then of pi k/(2 length);
@@ -54,5 +57,8 @@ COSINES, SINES, QUARTER_COSINES, QUARTER_SINES, WAVES, NODES, NODES_FREE, FREE_N
 """Modes of an axis. Of values at centers: none crosses the ends, 0 at both, none crosses and then 0, 0 and then none
 crosses; periodic. Of values at faces, with those at both ends: 0 there, 0 and then free, free and then 0, free."""
 UPWIND, CENTRAL, KOREN = range(3)
+CHANGE, VELOCITY, RATE = range(3)
+"""What loses its divergence: a change of velocities or of rates, through which walls push nothing; velocities; their
+rates."""
 LANES = 8
 """Pairs of rows that are transformed side by side: as many as numbers in a lane, and in a line of memory."""

@@ -24,13 +24,14 @@ if TYPE_CHECKING:
 
 
 def write_pressure(
-    faces: Faces, opened: Any, solid: bool, areas: Floats, scales: Floats, solver: str, assembly: Assembly, ints: Any
-) -> tuple[NDArray[int64], str]:
+    faces: Faces, opened: Any, solid: bool, areas: Floats, scales: Floats, solver: str, assembly: Assembly, ints: Any,
+    varies: bool = False,
+) -> tuple[NDArray[int64], str]:  # fmt: skip
     """Write the integers of the pressure's equation, by the open ``areas`` of faces and those over volumes; the plan of
     the linear solver that is named, empty for `auto` and `fast_transform`, and a text for `explain`.
 
-    ``opened``: by boundary face, whether fluid leaves there; ``solid``: whether solids stand in the flow. Raises
-    ScriptError where the solver cannot take the grid.
+    ``opened``: by boundary face, whether fluid leaves there; ``solid``: whether solids stand in the flow; ``varies``:
+    whether the coefficients change. Raises ScriptError where the solver cannot take the grid.
     """
     cells = faces.cells
     n = len(cells.volumes)
@@ -78,10 +79,12 @@ def write_pressure(
     ints[layout.WORK] = assembly.floats(np.zeros(room + (0 if uniform else 5 * n))) + (0 if uniform else 5 * n)
     if solver in ("auto", "fast_transform"):
         return np.zeros(0, dtype=np.int64), "" if uniform else " by conjugate gradients"
-    return _by_name(solver, faces, sink, assembly, ints)
+    return _by_name(solver, faces, sink, assembly, ints, varies)
 
 
-def _by_name(solver: str, faces: Faces, sink: Floats, assembly: Assembly, ints: Any) -> tuple[NDArray[int64], str]:
+def _by_name(
+    solver: str, faces: Faces, sink: Floats, assembly: Assembly, ints: Any, varies: bool
+) -> tuple[NDArray[int64], str]:
     """The plan of a linear solver (grids/multigrid/linear_kernels), and a text for `explain`."""
     cells, axes = faces.cells, faces.axes
     n, shape = len(sink), cells.shape
@@ -97,7 +100,7 @@ def _by_name(solver: str, faces: Faces, sink: Floats, assembly: Assembly, ints: 
     volumes, sinks = assembly.floats(np.zeros(n)), assembly.floats(held)
     gx, gy, *gz = ints[layout.CONDUCTANCES : layout.CONDUCTANCES + axes].tolist()
     described = Cells(shape, faces.periodic, np.zeros(n, dtype=bool), 0, 0)
-    plan, room, text = laid_out(solver, Grid(described, 0, volumes, sinks, (gx, gy, *gz, gx)[:3], False, -1, True))
+    plan, room, text = laid_out(solver, Grid(described, 0, volumes, sinks, (gx, gy, *gz, gx)[:3], varies, -1, True))
     ints[layout.ITERATES], ints[layout.SOLVER_AT] = 2, len(ints)
     ints[layout.STORE], ints[layout.STORE_SIZE] = assembly.floats(np.zeros(n + room)), room
     return plan, f" by {solver}, {text}, as the script says"

@@ -21,10 +21,12 @@ from sceneql.flows.layout import (
     FACES,
     INVERSES,
     ITERATES,
+    LED,
     MOVES,
     PERIODIC,
     PLANS,
     PRESSURE,
+    RATE,
     SCALES,
     SEEPING,
     SINGULAR,
@@ -35,12 +37,13 @@ from sceneql.flows.layout import (
     STARTS,
     STORE,
     STORE_SIZE,
+    VELOCITY,
     WORK,
 )
 from sceneql.grids.multigrid.layout import SOLVER
 from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
-from sceneql.system.signatures_kernels import TERM, A, F, I
+from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
 SMALL = 2e-12
 """Residual of iterations, in parts of what flows through faces."""
@@ -76,16 +79,25 @@ def centered(x, sink, ints):
 
 
 @lean_inlined
-def through_faces(x, moving, floats, ints):
+def pushed_at(what, ints):
+    """Offset of what walls push through cells of velocities or of their rates; -1: nothing."""
+    if what == VELOCITY:
+        return ints[SEEPING]
+    return ints[SEEPING] + ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2] if what == RATE and ints[LED] > 0 else -1
+
+
+@lean_inlined
+def through_faces(x, what, floats, ints):
     """The root of the sum of squares of what flows through all faces, and through cells from walls [m^3/s]."""
     faces = ints[FACES]
     u, areas = x[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
     total = 0.0
     for k in range(faces):
         total += (areas[k] * u[k]) ** 2
-    if moving and ints[SEEPING] >= 0:
+    pushed = pushed_at(what, ints)
+    if pushed >= 0:
         for c in range(ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2]):
-            total += floats[ints[SEEPING] + c] ** 2
+            total += floats[pushed + c] ** 2
     return math.sqrt(total)
 
 
@@ -161,11 +173,12 @@ def first_face(axis, j, k, ints):
     return ints[STARTS + axis] + nx * (j + ny * k), -place * stride if around else stride
 
 
-@lean(types.void(A, A, types.boolean, A, I))
-def outflow(x, out, moving, floats, ints):
-    """Net outflow of each cell (cells,) of velocities x, at ints[AT] and on [m^3/s].
+@lean(types.void(A, A, N, A, I))
+def outflow(x, out, what, floats, ints):
+    """Net outflow of each cell (cells,) of velocities x, at ints[AT] and on [m^3/s], less what walls that move push
+    through it; of rates where solids move, and else, as they turn steadily in their places, of velocities alone.
 
-    ``moving``: less what walls that move push through it, which their rates, as they move steadily, have no part of.
+    ``what``: one of VELOCITY, RATE and CHANGE.
     """
     nx, ny, nz, faces = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2], ints[FACES]
     u, areas = x[ints[AT] : ints[AT] + faces], floats[ints[AREAS] : ints[AREAS] + faces]
@@ -184,9 +197,10 @@ def outflow(x, out, moving, floats, ints):
                 v, w, a, b = u[low:], u[low + up :], areas[low:], areas[low + up :]
                 for i in range(nx):
                     own[i] += b[i] * w[i] - a[i] * v[i]
-    if moving and ints[SEEPING] >= 0:
+    pushed = pushed_at(what, ints)
+    if pushed >= 0:
         for c in range(nx * ny * nz):
-            out[c] -= floats[ints[SEEPING] + c]
+            out[c] -= floats[pushed + c]
 
 
 @lean_inlined
@@ -227,19 +241,19 @@ def less_gradient(x, q, factor, floats, ints):
                     lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, nx)
 
 
-@lean(types.boolean(A, types.boolean, A, I))
-def project(x, moving, floats, ints):
+@lean(types.boolean(A, N, A, I))
+def project(x, what, floats, ints):
     """Make x free of divergence; floats[ints[PRESSURE]:] is then what its gradient takes away. Whether it is.
 
-    ``moving``: x are velocities, not rates (outflow).
+    ``what``: VELOCITY, RATE or CHANGE (outflow).
     """
     n = ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2]
     q = floats[ints[PRESSURE] : ints[PRESSURE] + n]
-    outflow(x, q, moving, floats, ints)
+    outflow(x, q, what, floats, ints)
     for c in range(n):
         q[c] = -q[c]
     solved = True
-    small = SMALL * through_faces(x, moving, floats, ints) if ints[ITERATES] > 0 else 0.0
+    small = SMALL * through_faces(x, what, floats, ints) if ints[ITERATES] > 0 else 0.0
     if ints[ITERATES] == 1:
         solved = by_iterations(q, small, floats, ints)
     elif ints[ITERATES] == 2:
@@ -257,5 +271,5 @@ def constrain(t, y, rate, floats, ints):
     for k in range(ints[FACES]):
         if floats[ints[INVERSES] + k] == 0.0:
             rate[at + k] = floats[ints[MOVES] + k]
-    if floats[ints[SKIP]] == 0.0 and not project(rate, False, floats, ints):
+    if floats[ints[SKIP]] == 0.0 and not project(rate, RATE, floats, ints):
         rate[at] = math.nan

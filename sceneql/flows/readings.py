@@ -40,7 +40,7 @@ def measure(what: str, cells: FieldLayout, ints: tuple[int, ...], density: float
             from sceneql.flows.projection_kernels import outflow
 
             out = np.zeros(cells.count)
-            outflow(state.y, out, True, state.floats, np.array(ints))
+            outflow(state.y, out, layout.VELOCITY, state.floats, np.array(ints))
             return float(np.abs(out).max() / np.prod(cells.spacing))
     sums = [_own(ints, state.floats, cells, axis) for axis in range(ints[layout.AXES])]
     velocities = components(ints, state.y)

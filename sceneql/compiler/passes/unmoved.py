@@ -1,4 +1,4 @@
-"""Objects that a model takes as they are at the start must not move: refused before anything runs."""
+"""Objects whose shape a model takes as it is at the start must not change it: refused before anything runs."""
 
 from __future__ import annotations
 
@@ -9,16 +9,22 @@ from sceneql.graph import Task
 from sceneql.kinds import Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
-HELP = "give it one place and shape; let the fluid stream past it instead"
+HELP = "let it move or turn as a whole: by its own `position` and `rotation`"
+PLACES = ("position", "rotation")
+"""Fields of an object that move it as a whole."""
 
 
 def report_moving(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report values that vary in time of objects that a model takes as they are at the start, and of their members."""
+    """Report values that vary in time of objects whose shape a model takes, and of their members."""
     for task in tasks.values():
-        for ref in task.kind.standing() if isinstance(task.kind, Model) else ():
+        for ref in task.kind.shaped() if isinstance(task.kind, Model) else ():
             for name, field, value in _varying(tasks[ref.name], tasks):
+                if name == ref.name and field in PLACES:
+                    continue
                 which = f"'{ref.name}'" if name == ref.name else f"'{name}' in '{ref.name}'"
-                text = f"'{task.name}' has cells cut by {which} as it is at the start, but its {field} varies in time"
+                text = (
+                    f"'{task.name}' has cells cut by {which} in its shape at the start, but its {field} varies in time"
+                )
                 found.error("moves", text, value.span or ref.span, help=HELP)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.contacts.barrier import pairs_layout as layout
-from sceneql.contacts.barrier.pair_places import Places
+from sceneql.contacts.barrier.carriers import Carriers, Places
 from sceneql.contacts.barrier.standing import areas_of
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
@@ -78,8 +78,6 @@ def add_pairs(
     ]
     ints = np.concatenate([np.array(head, dtype=np.int64), lists])
     if any(one.rigid for one in surfaces):
-        from sceneql.contacts.barrier.carriers import Carriers
-
         known: Places = Carriers.of(surfaces, rows)
     else:
         known = Places(len(rest), np.arange(len(rest), dtype=np.int64) * (len(rest) + 1), rows)

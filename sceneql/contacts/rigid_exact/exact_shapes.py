@@ -140,7 +140,7 @@ def led_by(ref: Ref, assembly: Assembly) -> Led | None:
     if isinstance(height, Value) and not height.constant:
         message = f"the height of '{ref.name}' varies, by which mode `exact` does not follow it"
         raise ScriptError(
-            [Diagnostic("no-collider", message, height.span, "mode: local does; a plane moves by `position`, too")]
+            [Diagnostic("no-collider", message, height.span, "`mode: local` does; a plane moves by `position`, too")]
         )
     mover = led_side(ref, kind, assembly).mover
     assert isinstance(mover, Led)
@@ -192,7 +192,8 @@ def apart_exactly(
             continue
         gap, met = gap_of(shapes[first], places[first], shapes[second], places[second], assembly.numbers())
         if both_curved and not met and gap < DEEP * min(shapes[a].reach, shapes[b].reach):
-            message = f"{said(one)} and {said(other)} touch by an end, which mode `exact` knows of no two curved bodies"
+            sides = "two curved bodies meet in mode `exact` by round sides and rims alone"
+            message = f"{said(one)} and {said(other)} touch where one is flat: {sides}"
             found.error("no-collider", message, _place(one, assembly), help="mode `local` takes both")
             continue
         if -gap > DEEP * min(shapes[a].reach, shapes[b].reach):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql import kinds
 from sceneql.flows.parts import FORCE, MOST_FACTORED, Buoyancy, Side, Start, fastest_turn
@@ -44,8 +44,16 @@ class Flow(Model):
 
     has_bodies = False
     flows = True
+    swinging: ClassVar[tuple[str, ...]] = ("vorticity",)
+    """Fields among its outputs that are of both signs."""
 
-    size: SIZES = field("Sides of the box: two for a flat one, three for a deep one.", above=0)
+    size: SIZES | None = field("Sides of the box: two for a flat one, three for a deep one.", None, above=0)
+    domain: kinds.ObjectRef | None = field(
+        "In place of `size` the object whose inside it fills, cut out of the box around it: its skin is a wall, but "
+        "at sides of that box which `boundary` names: there its section three cells off is drawn straight on.",
+        None,
+    )
+    flat: bool = field("The section of that object at z = 0 alone.", False)
     corner: SIZES | None = field("Low corner of the box; by default the origin.", None)
     depth: kinds.FixedLength = field("How thick a flat box is.", "1 m", above=0)
     cell: kinds.FixedLength = field("Largest side of a cell.", above=0)
@@ -59,7 +67,7 @@ class Flow(Model):
         {},
     )
     around: tuple[kinds.ObjectRef, ...] = field(
-        "Solids that stand still in the flow; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
+        "Solids in the flow, which may move by keys or formulas; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
     )
     edges: Literal["cut_cell", "staircase"] = field(
         "How cells meet these solids: cut by them, or whole where their centers lie outside.", "cut_cell"
@@ -97,7 +105,9 @@ class Flow(Model):
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
         """Those of the flow, and of each solid."""
         around = written.get("around", ())
-        names = [around] if isinstance(around, str) else around
+        listed = [around] if isinstance(around, str) else around
+        names = [*listed] if isinstance(listed, list | tuple) else []
+        names += [written["domain"]] if written.get("domain") is not None else []
         found = dict(cls.gives)
         if written.get("pressure", "auto") not in AT_ONCE:
             rate = quantity_type(dim.VOLUME * dim.FREQUENCY, (None,))
@@ -105,23 +115,38 @@ class Flow(Model):
                 "What the latest solution for the pressure left, by iterations: of `gauss_seidel`, `sor` every fourth."
             )
             found["residuals"] = Gives(rate, text, computed=True)
-        for name in names if isinstance(names, list | tuple) else ():
+        for name in names:
             found[f"{name}.force"] = Gives(quantity_type(dim.FORCE, (3,)), "What the fluid does to it.", computed=True)
             found[f"{name}.torque"] = Gives(
                 quantity_type(dim.FORCE * dim.LENGTH, (3,)), "Its torque about the origin.", computed=True
             )
         return found
 
-    def insides(self) -> Iterable[kinds.Ref]:
-        """The solids."""
-        return self.around
+    @property
+    def skins(self) -> tuple[kinds.Ref, ...]:
+        """The solids, and last the object that it fills."""
+        return (*self.around, *(() if self.domain is None else (self.domain,)))
 
-    def standing(self) -> Iterable[kinds.Ref]:
-        """The solids: cells are cut by them once."""
-        return self.around
+    def insides(self) -> Iterable[kinds.Ref]:
+        """The solids, and what it fills."""
+        return self.skins
+
+    def shaped(self) -> Iterable[kinds.Ref]:
+        """The same: cells are cut by them, wherever they move."""
+        return self.skins
+
+    def shown_in_place_of(self) -> Iterable[kinds.Ref]:
+        """What it fills."""
+        return () if self.domain is None else (self.domain,)
 
     def problems(self) -> Iterable[Problem]:
         """Sides that do not fit, too many cells, boundaries of no side."""
+        if (self.size is None) == (self.domain is None):
+            yield Problem("a flow fills one of `domain` and `size`")
+            return
+        yield from self._named()
+        if self.size is None:
+            return
         if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
             yield Problem("a box has two or three sides, and its corner as many numbers")
             return
@@ -139,24 +164,34 @@ class Flow(Model):
         if self.pressure == "direct" and most < cells <= MOST_CELLS:
             text = f"factors of {cells:,} cells would not fit: at most {most:,} in {len(self.size)} dimensions"
             yield Problem(f"{text}; take `multigrid`", ("pressure",), code="limit-refused")
-        if self.pressure == "fast_transform" and self.around:
+
+    def _named(self) -> Iterable[Problem]:
+        """Parts of the boundary that do not fit, and a solver that bears no solids."""
+        if self.pressure == "fast_transform" and self.skins:
             yield Problem("a fast transform needs a box without solids: take `auto`", ("pressure",))
-        solids = {ref.name for ref in self.around}
+        solids = {ref.name for ref in self.skins}
         for name, part in self.boundary.items():
             if name in solids and (part.wall is None or part.velocity is None or part.chosen or part.slip > 0.0):
                 text = f"of the solid '{name}' a flow takes a whole `wall` with a `velocity`, which fluid sticks to"
                 yield Problem(text, ("boundary", name), at_key=True)
-        known = (*SIDES[: 2 * len(self.size)], "rest", *solids)
+        sides = SIDES if self.size is None else SIDES[: 2 * len(self.size)]
+        known = (*sides, "rest", *solids)
         for name in [name for name, part in self.boundary.items() if name not in known and not part.chosen]:
             text = f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
             yield Problem(text, ("boundary", name), at_key=True)
 
     def fastest(self, name: str) -> Iterable[Oscillation]:
         """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann), and advection."""
-        spacing = [side / n for side, n in zip(self.size, counts(self.size, self.cell), strict=False)]
+        if self.size is None:  # the object tells its box when it is assembled: as if it were a deep one
+            size = (self.cell,) * (2 if self.flat else 3)
+        else:
+            size = self.size
+        spacing = [side / n for side, n in zip(size, counts(size, self.cell), strict=False)]
         decay = 4.0 * self.viscosity / self.density * sum(1.0 / side**2 for side in spacing)
         if decay > 0.0:
             yield Oscillation(0.0, decay, f"the viscosity over cells of {self.cell:g} m", ("viscosity",))
+        if self.size is None:
+            return
         turn = fastest_turn(self.initial, self.boundary, self.corner or (0.0,) * len(self.size), self.size, spacing)
         if turn > 0.0:  # a wave of four cells, which advection turns fastest: viscosity has half its largest rate there
             yield Oscillation(0.0, 0.5 * decay, f"the flow through cells of {self.cell:g} m", ("cell",), turn)
@@ -164,11 +199,13 @@ class Flow(Model):
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a face, and add the terms of the rate. Raises ScriptError."""
         from sceneql.flows.assembly import add_flow
-        from sceneql.grids.domain import cells
+        from sceneql.flows.fluid_box import box_of
         from sceneql.grids.ground import Ground
 
-        corner = self.corner or (0.0,) * len(self.size)
-        ground = Ground(cells.box(self.size, corner, self.cell, self.depth), assembly)
+        size = self.size or ()
+        corner = self.corner or (0.0,) * len(size)
+        named = self.boundary
+        ground = Ground(box_of(self.domain, self.flat, size, corner, self.cell, self.depth, named, assembly), assembly)
         flow = add_flow(self, ground.cells, assembly)
         assembly.remember(*ground.memory, *flow.ints)
 
@@ -193,8 +230,8 @@ class Flow(Model):
 
         name, _, what = output.rpartition(".")
         if name:
-            from sceneql.flows.solid_forces import on_solid
+            from sceneql.flows.obstacles.solid_forces import on_solid
 
-            number = [ref.name for ref in self.around].index(name)
+            number = [ref.name for ref in self.skins].index(name)
             return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)
         return measure(output, self.layout(state, output), state.ints[5:], self.density, state)

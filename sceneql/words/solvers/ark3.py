@@ -28,13 +28,13 @@ class Ark3(Solver):
 
     def stepper(self) -> Stepper:
         """By the tolerance, or fixed steps."""
-        from sceneql.flows import additive
+        from sceneql.flows.schemes import additive
 
         return additive.stepper(self.tolerance, self.step, self.largest_step)
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """Largest of the modes', whose decay is implicit and whose turning explicit."""
-        from sceneql.flows import additive, multistep
+        from sceneql.flows.schemes import additive, multistep
 
         return multistep.largest_growth(jacobian, lambda decay, turn: additive.growth(decay, turn, step))
 

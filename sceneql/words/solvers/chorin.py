@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from sceneql.flows import multistep
+from sceneql.flows.schemes import multistep
 from sceneql.kinds import FixedTime, Solver, field
 
 if TYPE_CHECKING:

@@ -1,0 +1,1 @@
+"""Solids in a flow: what they leave of cells."""

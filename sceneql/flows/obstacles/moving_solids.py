@@ -1,0 +1,145 @@
+"""Solids that move through a flow: what its kernels need to cut its cells anew after each step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from sceneql.contacts.colliders import is_moving, surfaces
+from sceneql.flows import layout
+from sceneql.flows.obstacles import moving_layout as own
+from sceneql.kinds import Object
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.flows.obstacles.obstructed import Passage
+    from sceneql.flows.staggered import Faces
+    from sceneql.frame import Floats
+    from sceneql.kinds import Ref
+    from sceneql.system import Assembly
+
+GO = "sceneql.flows.obstacles.cut_anew_kernels:go"
+GO_ON = "sceneql.flows.obstacles.cut_anew_kernels:go_on"
+UNSOLVED = ("direct",)
+"""Solvers of the pressure whose factors would have to be made anew in each step."""
+
+
+def moving(refs: Sequence[Ref], assembly: Assembly) -> bool:
+    """Whether any of some solids moves."""
+    return any(is_moving(cast(Object, assembly.object(ref))) for ref in refs)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Known:
+    """What does not change of a flow whose solids move: by face but where said."""
+
+    passage: Passage
+    """Of the uncut box."""
+    given: Any
+    """Whether the velocity is given, on the boundary."""
+    outside: Floats
+    """Acceleration by the pressure outside."""
+    base: int
+    weights: int
+    """Offsets of accelerations without the force that a script gives, and of what that is multiplied with; or -1."""
+    edge_weights: Floats
+    """By edge: ties to the box's walls [m^3/s]."""
+    sinks: int
+    solved: int
+    """Offsets of these arrays of the components (system.Grid)."""
+    density: float
+    viscosity: float
+    """[kg/m^3], kinematic [m^2/s]"""
+    held: int
+    """Offset of the sinks of the pressure's equation as a linear solver by name sees them; or -1."""
+
+
+class MovingSolids:
+    """Solids of which some move, by the surfaces of contacts."""
+
+    def __init__(self, refs: Sequence[Ref], model: Any, faces: Faces, assembly: Assembly) -> None:
+        """Raises ScriptError for solids that change their shape, and for what does not go with solids that move."""
+        self.faces, self.assembly, count = faces, assembly, len(refs)
+        line = refs[0].span or assembly.line()
+        if model.edges == "staircase":
+            text, help = "solids that move cut the cells: a staircase would jump", "take `edges: cut_cell`"
+            raise ScriptError([Diagnostic("invalid", text, line, help)])
+        if model.pressure in UNSOLVED:
+            text = f"solids that move change the equation of the pressure, which `{model.pressure}` would factor anew"
+            raise ScriptError([Diagnostic("invalid", text, line, "take `pressure: auto` or `multigrid`")])
+        named = [name for name in cast("Mapping[str, Any]", model.boundary) if name in {ref.name for ref in refs}]
+        if named:
+            text = f"beside solids that move the wall of '{named[0]}' has the velocity of its own motion"
+            help = "leave it out of `boundary`, and give it a rotation by keys or a formula"
+            raise ScriptError([Diagnostic("invalid", text, line, help)])
+        self.solids = surfaces(refs, assembly, own.HEAD)
+        self.count = count
+        cells = int(np.prod(faces.cells.shape))
+        zeros = np.zeros(faces.count)
+        self.whole = assembly.floats(np.zeros(cells))
+        self.cells, self.rates = assembly.floats(np.zeros(cells)), assembly.floats(np.zeros(cells))
+        self.scratch = [assembly.floats(zeros) for _ in range(3 + 3 + 2 + 2)]
+        self.middles = assembly.floats(np.concatenate([np.arange(faces.count), *[zeros] * 3]))
+        self.owners = assembly.floats(np.zeros(faces.count + cells))
+        self.seeping = assembly.floats(np.zeros(2 * cells))
+
+    def describe(self, ints: Any) -> None:
+        """Write what the flow's own integers say of solids."""
+        ints[layout.OWNERS], ints[layout.SEEPING], ints[layout.LED] = self.owners, self.seeping, self.whole
+        ints[layout.MIDDLES], ints[layout.CUT_FACES] = self.middles, self.faces.count
+
+    def start(self, known: Known, x: Floats, flow: NDArray[int64]) -> None:
+        """Cut all cells at the start, and add what cuts them anew; ``x``: the velocities, as solids leave them then.
+
+        Raises ScriptError where they leave nothing, or push more than a closed box has room for.
+        """
+        from sceneql.flows.obstacles.cut_anew_kernels import cut_anew, settle
+
+        assembly, faces = self.assembly, self.faces
+        spacing = faces.cells.spacing
+        areas = np.array(faces.areas)
+        fastest = 4.0 * known.viscosity * float((1.0 / spacing[: faces.axes] ** 2).sum())
+        entry = float((2.0 * areas / spacing[: faces.axes]).sum())
+        draw = sum(float(tie.max(initial=0.0)) for tie in known.passage.ties)
+        numbers = [*faces.low, *spacing, known.density, fastest, entry, draw]
+        ties = [assembly.floats(tie) for tie in known.passage.ties]
+        uncut = [known.passage.areas, known.passage.volumes, known.given.astype(float), known.outside]
+        levels, parts, depths, *rest = self.scratch
+        centers = [self.middles + faces.count * k for k in (1, 2, 3)]
+        head = [
+            self.count, own.HEAD + len(self.solids), *(*ties, ties[0])[:3],
+            *(assembly.floats(one) for one in uncut), known.base, known.weights, assembly.floats(known.edge_weights),
+            known.sinks, known.solved, levels, parts, depths, *centers, *rest[:5], self.cells, self.whole,
+            known.held, assembly.floats(numbers), rest[5], self.rates, rest[6],
+        ]  # fmt: skip
+        assert len(head) == own.HEAD
+        ints = np.array([*head, *self.solids, *flow], dtype=np.int64)
+        at_start = ints.copy()
+        at_start[at_start[own.FLOW] + layout.AT] = 0
+        now = assembly.numbers()
+        room = cut_anew(now, at_start)
+        settle(x, now, at_start)
+        assembly.write(0, now)
+        n = int(np.prod(faces.cells.shape))
+        if not (now[self.whole : self.whole + n] > 0.0).any():
+            text = "the solids fill the whole box: no cell is left to flow through"
+            raise ScriptError([Diagnostic("no-cell", text, assembly.line(), "take smaller ones, or a larger `size`")])
+        if not room:
+            text = "a solid moves through a side of a closed box, and the flow cannot be compressed"
+            help = "give a part of the boundary `outflow: {}`, or keep the solid inside"
+            raise ScriptError([Diagnostic("no-way-out", text, assembly.line(), help)])
+        assembly.term("internal", GO, ints.tolist())
+        assembly.after_step(GO_ON, ints.tolist())
+
+    def fractions(self) -> Floats:
+        """The open part of each cell at the start (obstacles.Solids.fractions)."""
+        n = int(np.prod(self.faces.cells.shape))
+        found: Floats = self.assembly.numbers()[self.whole : self.whole + n]
+        return found

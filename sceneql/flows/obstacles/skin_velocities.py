@@ -1,0 +1,73 @@
+"""The velocity of the walls of solids that stand in a flow and turn in place, or whose skin moves along itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.flows.edges import component_at, timed
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from sceneql.flows.obstacles.obstacles import Solids
+    from sceneql.flows.parts import Side
+    from sceneql.frame import Floats
+
+THROUGH = 0.05
+"""Velocity across a wall, in parts of the largest on it, from which on it counts as one through it."""
+
+NEAR = 0.05
+"""Reach of the differences that feet of walls are found by, in cells."""
+
+
+class SkinVelocities:
+    """By parts of a boundary that are named like solids."""
+
+    def __init__(self, solids: Solids, boundary: Mapping[str, Side]) -> None:
+        """Raises ScriptError where a velocity varies in time, has other components than the box sides, or leads
+        through its wall."""
+        self.solids = solids
+        named = ((number, boundary.get(ref.name)) for number, ref in enumerate(solids.refs))
+        self.formulas = [(number, part.velocity) for number, part in named if part is not None and part.velocity]
+        axes = solids.faces.axes
+        for number, formula in self.formulas:
+            if timed(formula.expr):
+                text = "the velocity of a solid's wall does not vary in time"
+                raise ScriptError([Diagnostic("invalid", text, formula.span, "write it by place alone: `[-y, x]`")])
+            if formula.expr.type.shape != (axes,):
+                text = f"this velocity needs {axes} components, one for each side of the box"
+                raise ScriptError([Diagnostic("wrong-shape", text, formula.span)])
+            points = np.concatenate([solids.faces.points(axis) for axis in range(axes)])
+            feet, normals, beside = self._feet(points)
+            mine = beside & (solids.nearest(points) == number)
+            if not mine.any():
+                continue
+            there = np.stack([component_at(formula, axis, feet[mine], 0.0) for axis in range(axes)], axis=1)
+            across = (there * normals[mine][:, :axes]).sum(axis=1)
+            if np.abs(across).max() > THROUGH * np.sqrt((there**2).sum(axis=1).max()):
+                text = "a wall moves along itself: this velocity leads through that of the solid"
+                raise ScriptError([Diagnostic("invalid", text, formula.span, "turn it about its own axis: `[-y, x]`")])
+
+    def _feet(self, points: Floats) -> tuple[Floats, Floats, Floats]:
+        """Points of walls nearest to those that are beside them, else these; normals (k, 3); which are beside."""
+        level, slopes = self.solids.planes(points, NEAR)
+        steep = np.maximum(np.linalg.norm(slopes, axis=1), 1e-9)
+        spacing = self.solids.spacing[: self.solids.faces.axes]
+        beside = np.abs(level) < 1.5 * steep * spacing.max()
+        feet = points - np.where(beside, level / steep**2, 0.0)[:, None] * slopes
+        return feet, slopes / steep[:, None], beside
+
+    def at(self, points: Floats, component: int) -> Floats:
+        """A component (k,) of the velocity of the wall nearest to points (k, 3) [m/s]."""
+        found = np.zeros(len(points))
+        if not self.formulas or not len(points):
+            return found
+        feet, _, _ = self._feet(points)
+        owners = self.solids.nearest(points)
+        for number, formula in self.formulas:
+            mine = owners == number
+            found[mine] = component_at(formula, component, feet[mine], 0.0)
+        return found

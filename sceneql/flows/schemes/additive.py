@@ -1,0 +1,99 @@
+"""The additive Runge-Kutta pair of order 3(2) for flows, and how its steps are prepared."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.flows.schemes.multistep import UNSOLVED
+from sceneql.system import Control, Method, Needs, Prepared, Stepper
+
+if TYPE_CHECKING:
+    from sceneql.island.system import System
+
+_D = 1767732205903 / 4055673282236
+NODES = (0.0, 1767732205903 / 2027836641118, 3 / 5, 1.0)
+WEIGHTS = (1471266399579 / 7840856788654, -4482444167858 / 7529755066697, 11266239266428 / 11593286722821, _D)
+EMBEDDED = (
+    2756255671327 / 12835298489170,
+    -10771552573575 / 22201958757719,
+    9247589265047 / 10645013368117,
+    2193209047091 / 5459859503100,
+)
+EXPLICIT = (
+    (0.0, 0.0, 0.0, 0.0),
+    (1767732205903 / 2027836641118, 0.0, 0.0, 0.0),
+    (5535828885825 / 10492691773637, 788022342437 / 10882634858940, 0.0, 0.0),
+    (6485989280629 / 16251701735622, -4246266847089 / 9704473918619, 10755448449292 / 10357097424841, 0.0),
+)
+IMPLICIT = (
+    (0.0, 0.0, 0.0, 0.0),
+    (_D, _D, 0.0, 0.0),
+    (2746238789719 / 10658868560708, -640167445237 / 6845629431997, _D, 0.0),
+    WEIGHTS,
+)
+"""ARK3(2)4L[2]SA (Kennedy & Carpenter 2003, Appl. Numer. Math. 44, 139-181)."""
+
+
+FIXED = 1e-6
+"""Stands in for the tolerance of steps of one length."""
+
+
+def stepper(tolerance: float, step: float | None, largest: float | None) -> Stepper:
+    """Steps by the tolerance, or of one length [s]."""
+    tableau = (
+        *(one for row in EXPLICIT for one in row),
+        *(one for row in IMPLICIT for one in row),
+        *WEIGHTS,
+        *(b - c for b, c in zip(WEIGHTS, EMBEDDED, strict=True)),
+        *NODES,
+        tolerance if step is None else FIXED,
+    )
+    method = Method(
+        step="sceneql.flows.schemes.additive_kernels:step",
+        order=3,
+        numbers=(len(NODES),),
+        settings=tableau,
+        last_stage=0,
+    )
+    control = Control(
+        first_step=step or 0.0,
+        adaptive=step is None,
+        tolerance=0.0 if step is not None else tolerance,
+        absolute=0.0 if step is not None else tolerance,
+        largest_step=largest or float("inf"),
+        unsolved=UNSOLVED,
+    )
+    return Stepper(method, control, Needs(prepare="sceneql.flows.schemes.additive:prepare"))
+
+
+def prepare(system: System, stepper: Stepper) -> Prepared:
+    """The arrays of a step. Raises ScriptError where the island has no flow."""
+    import numpy as np
+
+    from sceneql.flows.schemes.additive_kernels import HEAD
+    from sceneql.flows.schemes.multistep import operators_of
+    from sceneql.flows.schemes.multistep_kernels import OPERATOR
+
+    flow, operators, velocities, tables, text = operators_of(system)
+    tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}
+    blocks = [(first, last - first - (last - 1 in tallies)) for first, last, *_ in system.ranges]
+    (stages,) = stepper.method.numbers
+    tables_at = len(stepper.method.settings) + len(blocks) + 1
+    head = (stages, HEAD + OPERATOR * len(operators) + 2 * len(blocks), len(blocks), velocities, len(operators))
+    return Prepared(
+        settings=np.array([*stepper.method.settings, *[0.0] * len(blocks), -np.inf, *tables.numbers]),
+        numbers=np.array([*head, tables_at, *np.ravel(operators), *np.ravel(blocks), *flow.ints], dtype=np.int64),
+        work=(13 + 2 * stages) * len(system.y),
+        text=text,
+    )
+
+
+def growth(decay: float, turn: float, step: float) -> float:
+    """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
+    import numpy as np
+
+    implicit, explicit = -step * decay, 1j * step * turn
+    stages = np.linalg.solve(
+        np.eye(len(NODES)) - implicit * np.array(IMPLICIT) - explicit * np.array(EXPLICIT), np.ones(len(NODES))
+    )
+    return float(abs(1.0 + (implicit + explicit) * (np.array(WEIGHTS) @ stages)))

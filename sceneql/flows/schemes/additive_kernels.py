@@ -1,0 +1,185 @@
+# mypy: ignore-errors
+"""A step of an additive Runge-Kutta pair on a flow: explicit in advection, implicit in viscosity and diffusion.
+
+Stage i solves Y_i - a P L Y_i = P (y0 + h sum over j < i of (e_ij N_j + d_ij L Y_j)), a = h d_ii, with L and N as in
+multistep_kernels and P the projection. So the pressure keeps to each stage, and beside walls the order stays. The
+velocities are found by conjugate gradients among those free of divergence, with P (1 - a L)^-1 as preconditioner.
+
+``settings``: the tableau (e, d, b, b - b of the embedded method, nodes), the tolerance, then the size that each block
+of the state has had, the end of the latest step, and the tables. ``numbers``: [stages, where the flow's integers begin,
+number of blocks, operators of velocities, operators, where in the settings the tables begin], the operators, [offset in
+y, count] of each block, whose errors are measured together, the flow's integers.
+"""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean
+from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
+from sceneql.flows.layout import AT, CHANGE, FACES, LED, RATE, SKIP, VELOCITY, WORK
+from sceneql.flows.projection_kernels import project
+from sceneql.flows.schemes.multistep_kernels import OPERATOR, same, solve, spread, tally
+from sceneql.system.signatures_kernels import STEP, A, F, I, N
+
+STAGES, FLOW_AT, BLOCKS, AXES, OPERATORS, TABLES_AT, HEAD = range(7)
+SPREAD = 1
+"""Where the integers begin as multistep_kernels.spread reads them."""
+EXACT, SHARE = 1e-10, 1e-3
+"""Residual of a stage's velocities, in parts of their size, and of the tolerance, whichever is larger."""
+FINE, COARSE = 1e-12, 1e-3
+"""Residuals of systems without projection, those of the preconditioner the second."""
+MOST, LEAST = 30, 1e3
+"""Iterations of a stage; how many times the residual asked for may be left then."""
+
+
+@lean(types.float64(N, A, A, A, I), inner=True)
+def product(axes, x, y, floats, numbers):
+    """Inner product of velocities, by the volumes of their own cells."""
+    total = 0.0
+    for number in range(axes):
+        op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
+        for c in range(op[1] * op[2] * op[3]):
+            total += floats[op[4] + c] * x[op[0] + c] * y[op[0] + c]
+    return total
+
+
+@lean(types.boolean(F, F, A, A, A, A, A, A, I), inner=True)
+def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
+    """Solve Y - a P L Y = wanted in y; wanted is free of divergence; ``exact``: the residual.
+
+    Whether it was reached. ``room``, ``more``: 4 arrays of y's size each.
+    """
+    n = y.size
+    one = numbers[numbers[FLOW_AT] :]
+    first, last = one[AT], one[AT] + one[FACES]
+    axes = numbers[AXES]
+    for number in range(numbers[OPERATORS]):
+        op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
+        if not solve(op, a, wanted, y, FINE, floats, tables, floats[one[WORK] :], room):
+            return False
+    if axes == 0:
+        return True
+    solved = project(y, VELOCITY, floats, one)
+    r, z, p, q = more[:n], more[n : 2 * n], more[2 * n : 3 * n], more[3 * n : 4 * n]
+    for k in range(first, last):
+        q[k] = 0.0
+    spread(y, q, 0, axes, floats, numbers[SPREAD:])
+    solved &= project(q, CHANGE, floats, one)
+    for k in range(first, last):
+        r[k] = wanted[k] - y[k] + a * q[k]
+    whole = product(axes, y, y, floats, numbers)
+    before = 0.0
+    for count in range(MOST + 1):
+        enough = exact if count < MOST else LEAST * exact
+        left = product(axes, r, r, floats, numbers)
+        if not left > enough * enough * whole:
+            return solved and left <= enough * enough * whole
+        if count == MOST:
+            break
+        for k in range(first, last):
+            z[k] = r[k]
+        for number in range(axes):
+            op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
+            solve(op, a, r, z, COARSE, floats, tables, floats[one[WORK] :], room)
+        solved &= project(z, CHANGE, floats, one)
+        now = product(axes, r, z, floats, numbers)
+        part = now / before if count > 0 else 0.0
+        for k in range(first, last):
+            p[k] = z[k] + part * p[k]
+        spread(p, q, 0, axes, floats, numbers[SPREAD:])
+        solved &= project(q, CHANGE, floats, one)
+        for k in range(first, last):
+            q[k] = p[k] - a * q[k]
+        length = now / product(axes, p, q, floats, numbers)
+        for k in range(first, last):
+            y[k] += length * p[k]
+            r[k] -= length * q[k]
+        before = now
+    return False
+
+
+@lean(STEP, inner=True)
+def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
+    """y1 after a step of length h; its error by the embedded method."""
+    n, s = y0.size, numbers[STAGES]
+    rate1, end, end_rate = work[:n], work[n : 2 * n], work[2 * n : 3 * n]
+    wanted, spreading, room, more = work[3 * n : 4 * n], work[4 * n : 5 * n], work[5 * n : 9 * n], work[9 * n : 13 * n]
+    explicit, damped = work[13 * n : (13 + s) * n], work[(13 + s) * n : (13 + 2 * s) * n]
+    e, d = settings[: s * s], settings[s * s : 2 * s * s]
+    b, wrong, nodes = settings[2 * s * s :], settings[2 * s * s + s :], settings[2 * s * s + 2 * s :]
+    latest, tables, velocities = numbers[TABLES_AT] - 1, settings[numbers[TABLES_AT] :], numbers[AXES]
+    tolerance, sizes = settings[2 * s * s + 3 * s], settings[2 * s * s + 3 * s + 1 :]
+    one = numbers[numbers[FLOW_AT] :]
+    rate = rate_at(functions[AT_RATE])
+    floats[one[SKIP]] = 1.0
+    solved = True
+    for i in range(s):
+        own, mine = explicit[i * n : (i + 1) * n], damped[i * n : (i + 1) * n]
+        if i == 0:
+            for k in range(n):
+                y1[k] = y0[k]
+        else:
+            for k in range(n):
+                total = 0.0
+                for j in range(i):
+                    total += e[i * s + j] * explicit[j * n + k] + d[i * s + j] * damped[j * n + k]
+                wanted[k] = y0[k] + h * total
+            if one[LED] > 0:  # solids are where they are at the stage
+                rate(t + nodes[i] * h, wanted, own, floats, ints)
+            solved &= project(wanted, VELOCITY, floats, one)
+            for k in range(n):
+                y1[k] = wanted[k]
+            a, exact = h * d[i * s + i], max(EXACT, SHARE * tolerance)
+            solved &= implicit(a, exact, wanted, y1, room, more, floats, tables, numbers)
+        if i == 0 and same(y0, end) and settings[latest] == t:
+            for k in range(n):
+                own[k] = end_rate[k]
+        else:
+            rate(t + nodes[i] * h, y1, own, floats, ints)
+        for k in range(n):
+            mine[k] = 0.0
+        spread(y1, mine, velocities, numbers[OPERATORS], floats, numbers[SPREAD:])
+        for k in range(n):
+            own[k] -= mine[k]
+        spread(y1, mine, 0, velocities, floats, numbers[SPREAD:])
+    for k in range(n):
+        total = error = 0.0
+        for j in range(s):
+            both = explicit[j * n + k] + damped[j * n + k]
+            total += b[j] * both
+            error += wrong[j] * both
+        y1[k] = y0[k] + h * total
+        wanted[k] = h * error
+    solved &= project(y1, VELOCITY, floats, one) and project(wanted, CHANGE, floats, one)
+    for number in range(numbers[OPERATORS]):
+        tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
+    rate(t + h, y1, end_rate, floats, ints)
+    floats[one[SKIP]] = 0.0
+    for k in range(n):
+        end[k], spreading[k] = y1[k], 0.0
+    spread(y1, spreading, 0, velocities, floats, numbers[SPREAD:])
+    for k in range(n):
+        rate1[k] = end_rate[k] + spreading[k]
+    settings[latest] = t + h
+    if not (project(rate1, RATE, floats, one) and solved):
+        y1[one[AT]] = math.nan
+    worst = 0.0
+    for block in range(numbers[BLOCKS]):
+        place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
+        at, count = numbers[place], numbers[place + 1]
+        total = 0.0
+        size = sizes[block]
+        for k in range(at, at + count):
+            total += wanted[k] * wanted[k]
+            size = max(size, abs(y0[k]), abs(y1[k]))
+        if not math.isfinite(total):
+            return math.inf
+        if size > 0.0 and count > 0:
+            worst = max(worst, math.sqrt(total / count) / (tolerance * size))
+    if worst <= 1.0:
+        for block in range(numbers[BLOCKS]):
+            place = numbers[FLOW_AT] - 2 * numbers[BLOCKS] + 2 * block
+            for k in range(numbers[place], numbers[place] + numbers[place + 1]):
+                sizes[block] = max(sizes[block], abs(y1[k]))
+    return worst

@@ -1,0 +1,203 @@
+"""How the solvers of flows are prepared, and what their steps bear."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from sceneql.flows.layout import PLAN
+from sceneql.system import Control, Method, Needs, Prepared, Stepper
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.island.system import System
+    from sceneql.system import Flow, Grid
+
+CHORIN, CNAB2, SBDF2 = range(3)
+UNSOLVED = "a value is no longer finite, or the pressure and viscosity of a step are not solved for: it is too long"
+"""What a failed step of these solvers is told as."""
+SAME = 1e-9
+"""Difference from a box of one coefficient, in parts of the largest, that counts as rounding."""
+
+
+def stepper(scheme: int, order: int, step: float) -> Stepper:
+    """Fixed steps [s] of multistep_kernels.step."""
+    method = Method(
+        step="sceneql.flows.schemes.multistep_kernels:step", order=order, numbers=(scheme, 0), settings=(), last_stage=0
+    )
+    return Stepper(
+        method, Control(first_step=step, unsolved=UNSOLVED), Needs(prepare="sceneql.flows.schemes.multistep:prepare")
+    )
+
+
+class Tables:
+    """Numbers that the transforms of operators read."""
+
+    def __init__(self) -> None:
+        self.numbers: list[float] = []
+
+    def store(self, values: Any) -> int:
+        """Keep numbers; the offset of the first."""
+        self.numbers += [float(one) for one in values]
+        return len(self.numbers) - len(values)
+
+
+def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[int]:
+    """The integers of a field's operator (multistep_kernels): what solves it on a box of one coefficient is at hand.
+
+    ``tallied``: whether what has come in follows its entries in y.
+    """
+    import numpy as np
+
+    from sceneql.flows.transforms import modes, plan_of
+
+    shape, n = grid.cells.shape, int(np.prod(grid.cells.shape))
+    volume = floats[grid.cells.insides_at : grid.cells.insides_at + n].reshape(shape[::-1])
+    sink = floats[grid.sink_at : grid.sink_at + n].reshape(shape[::-1])
+    whole = float(volume.max())
+    decays, plans, lengths, total, axes = [], [], 1, 0.0, []
+    for axis in range(3):
+        count, periodic = shape[axis], grid.cells.periodic[axis]
+        ties = floats[grid.faces_at[axis] : grid.faces_at[axis] + n].reshape(shape[::-1])
+        if axis == 2 and count == 1:
+            decays.append(tables.store([0.0]))
+            plans += [0] * PLAN
+            continue
+        rate = float(np.median(ties[ties > 0.0])) / whole if (ties > 0.0).any() else 0.0
+        ends = [np.moveaxis(part, 2 - axis, 0) for part in (volume, sink, ties)]
+        fixed = [float((ends[0][end] > 0.0).mean()) < 0.5 for end in (0, -1)]
+        halved = [float(np.median(ends[0][end])) < 0.75 * whole for end in (0, -1)]
+        faces = any(halved) and not periodic
+        middle = np.moveaxis(sink, 2 - axis, 0)[count // 2]
+        held = [float(np.median(ends[1][end] - middle)) > rate * whole for end in (0, -1)]
+        zero = (fixed[0], fixed[1]) if faces else (held[0], held[1])
+        kind, length, values = modes(count, periodic, zero, faces)
+        decays.append(tables.store(rate * values))
+        plans += plan_of(kind, length, tables.store)
+        lengths *= length
+        total += 2.0 * rate * whole
+        axes.append((ties, *_line(count, rate, periodic, zero, faces)))
+    offsets = (grid.at, *shape, grid.cells.insides_at, grid.sink_at, *grid.faces_at)
+    exact = int(_is_product(volume, sink, whole, axes))
+    sizes = tables.store([lengths, whole, total])
+    return [*offsets, *decays, sizes, grid.at + n if tallied else -1, exact, *plans]
+
+
+def _line(count: int, rate: float, periodic: bool, zero: tuple[bool, bool], faces: bool) -> tuple[Any, Any, Any]:
+    """Volumes, conductances to the one before and sinks (count,) of the line whose modes are `modes`."""
+    import numpy as np
+
+    volumes, ties, sinks = np.ones(count), np.full(count, rate), np.zeros(count)
+    if not periodic:
+        ties[0] = 0.0
+        for end, held in zip((0, -1), zero, strict=True):
+            if faces:
+                volumes[end] = 0.0 if held else 0.5
+            else:
+                sinks[end] += 2.0 * rate * held
+    return volumes, ties, sinks
+
+
+def _is_product(volume: Floats, sink: Floats, whole: float, axes: list[tuple[Any, ...]]) -> bool:
+    """Whether a field (nz, ny, nx) is the box whose lines along each axis are these, so that transforms solve it."""
+    import numpy as np
+
+    def spread(axis: int, values: Any) -> Any:
+        found = np.full((1, 1, 1), whole)
+        for other, (_, volumes, _, _) in enumerate(axes):
+            mine = values if other == axis else volumes
+            found = found * mine.reshape([-1 if k == 2 - other else 1 for k in range(3)])
+        return found
+
+    solved = volume > 0.0
+    sinks = sum(spread(axis, one[3]) for axis, one in enumerate(axes))
+    alike = _alike(volume, spread(0, axes[0][1]), np.ones_like(solved)) and _alike(sink, sinks, solved)
+    for axis, (ties, _, along, _) in enumerate(axes):
+        beside = solved | np.roll(solved, 1, axis=2 - axis)
+        alike = alike and _alike(ties, spread(axis, along), beside)
+    return alike
+
+
+def _alike(found: Any, wanted: Any, chosen: Any) -> bool:
+    """Whether the chosen numbers of two arrays are the same but for rounding."""
+    import numpy as np
+
+    wanted = np.broadcast_to(wanted, found.shape)
+    return bool((np.abs(found - wanted)[chosen] <= SAME * max(np.abs(wanted).max(), 1e-300)).all())
+
+
+def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, str]:
+    """The flow, the operators (multistep_kernels), how many of them are velocities', the tables of
+    their transforms, and a text for `explain`.
+
+    Raises ScriptError where the island has no flow.
+    """
+    from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+    flow, grids = system.fields.flow, system.fields.grids
+    if flow is None:
+        _, _, part, spans = system.ranges[0]
+        message = f"this solver marches an island with a flow, and '{part}' is none"
+        raise ScriptError([Diagnostic("no-flow", message, spans[0], "let auto march it")])
+    velocities = [grid for grid in flow.components if _spreads(grid, system.floats)]
+    fixed = [grid for grid in grids if not grid.varying]
+    fields = [*velocities, *(grid for grid in fixed if _spreads(grid, system.floats))]
+    tables = Tables()
+    found = [operator(grid, system.floats, tables, grid not in velocities) for grid in fields]
+    left = len(grids) - len(fixed)
+    text = "advection explicit, viscosity and diffusion implicit by conjugate gradients, then a projection"
+    text += flow.pressure
+    return (
+        flow,
+        found,
+        len(velocities),
+        tables,
+        text + (f"; {left} fields with varying coefficients explicit" if left else ""),
+    )
+
+
+def prepare(system: System, stepper: Stepper) -> Prepared:
+    """The arrays of a step. Raises ScriptError where the island has no flow."""
+    import numpy as np
+
+    from sceneql.flows.schemes.multistep_kernels import ARRAYS, HEAD, OPERATOR
+
+    flow, operators, velocities, tables, text = operators_of(system)
+    head = (*stepper.method.numbers, len(operators), HEAD + OPERATOR * len(operators), velocities)
+    volume = flow.areas[0] * flow.spacing[0]
+    return Prepared(
+        settings=np.array([-np.inf, -np.inf, 1.0, flow.viscosity / flow.density / volume, *tables.numbers]),
+        numbers=np.array([*head, *np.ravel(operators), *flow.ints], dtype=np.int64),
+        work=ARRAYS * len(system.y) + 3 * int(np.prod(flow.cells.shape)),
+        text=text,
+    )
+
+
+def _spreads(grid: Grid, floats: object) -> bool:
+    """Whether anything crosses the faces of a field's cells, or leaves them."""
+    import numpy as np
+
+    n = int(np.prod(grid.cells.shape))
+    numbers = np.asarray(floats)
+    axes = grid.faces_at[: 3 if grid.cells.shape[2] > 1 else 2]
+    return any(numbers[at : at + n].any() for at in (*axes, grid.sink_at))
+
+
+def growth(scheme: int, decay: float, turn: float, step: float) -> float:
+    """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
+    implicit, explicit = step * decay, 1j * step * turn
+    if scheme == CHORIN:
+        return abs((1.0 + explicit) / (1.0 + implicit))
+    if scheme == CNAB2:
+        a, b, c = 1.0 + 0.5 * implicit, 1.0 - 0.5 * implicit + 1.5 * explicit, 0.5 * explicit
+    else:
+        a, b, c = 1.5 + implicit, 2.0 + 2.0 * explicit, 0.5 + explicit
+    root = (b * b - 4.0 * a * c) ** 0.5
+    return max(abs(b + root), abs(b - root)) / (2.0 * abs(a))
+
+
+def largest_growth(jacobian: Floats, of_mode: Callable[[float, float], float]) -> float:
+    """The largest growth factor of the modes of a Jacobian, by their decay and their turning [1/s]."""
+    import numpy as np
+
+    return max((of_mode(-float(mode.real), float(mode.imag)) for mode in np.linalg.eigvals(jacobian)), default=0.0)
