@@ -8,6 +8,8 @@ from contextlib import contextmanager
 
 LONG = 0.5
 """Seconds after which it is worth showing: what takes less flickers."""
+MINUTES, HOURS = 100.0, 6000.0
+"""Seconds from which on a time is told in minutes, in hours."""
 
 
 class Deed:
@@ -35,3 +37,10 @@ def now(longer: float | None = None) -> str:
     """The innermost of what has been done for longer than so many seconds, by default LONG; empty where nothing has."""
     begun = time.monotonic() - (LONG if longer is None else longer)
     return next((deed.what for deed in reversed([*_deeds]) if deed.since <= begun), "")
+
+
+def duration(seconds: float) -> str:
+    """A time in words: `40 s`, `12 min`, `2.5 h`."""
+    if seconds < MINUTES:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < HOURS else f"{seconds / 3600.0:.3g} h"

@@ -10,8 +10,9 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.abc import MetaPathFinder
-from importlib.machinery import ModuleSpec
+from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
+from typing import Any
 
 MIB = 2**20
 TO_COMPILE = 160 * MIB
@@ -34,14 +35,37 @@ def ask_for(size: int, why: str) -> None:
 
 
 class _Libraries(MetaPathFinder):
-    """Finds no module, but asks for the memory of those with OpenBLAS before they are looked for."""
+    """Asks for the memory of libraries with OpenBLAS before they are loaded, and has them take it at once.
+
+    Else OpenBLAS takes its buffer at the first product of matrices, and ends the process where none is left.
+    """
 
     def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
-        if name in WITH_BLAS:
-            asked = os.environ.get("OPENBLAS_NUM_THREADS", "")
-            threads = min(int(asked) if asked.isdecimal() else os.cpu_count() or 1, MOST_THREADS)
-            ask_for(BLAS + BLAS_THREAD * threads, f"to load {name.partition('.')[0]}")
-        return None
+        if name not in WITH_BLAS:
+            return None
+        asked = os.environ.get("OPENBLAS_NUM_THREADS", "")
+        threads = min(int(asked) if asked.isdecimal() else os.cpu_count() or 1, MOST_THREADS)
+        ask_for(BLAS + BLAS_THREAD * threads, f"to load {name.partition('.')[0]}")
+        spec = PathFinder.find_spec(name, path, target)
+        loader: Any = None if spec is None else spec.loader
+        if loader is not None:
+            load = loader.exec_module
+
+            def load_and_take(module: Any) -> None:
+                load(module)
+                del loader.exec_module
+                _take_buffer(module)
+
+            loader.exec_module = load_and_take
+        return spec
+
+
+def _take_buffer(library: Any) -> None:
+    """Have the OpenBLAS of numpy, or of scipy.linalg, take the buffer of this thread, as any factorization does."""
+    if library.__name__ == "numpy":
+        library.linalg.inv(library.eye(2))
+    else:
+        library.lapack.dgetrf(sys.modules["numpy"].eye(2))
 
 
 def ask_before_imports() -> None:

@@ -19,7 +19,7 @@ class Air:
         text = f"clock: {{end: {end} s, fps: 10}}\n{before}models:\n{first}  air:\n    flow:\n{lines}\n{models}"
         path.write_text(f"{text}solvers: {{main: {solver}}}\n", encoding="utf-8")
         graph = load(path, pruned=False)
-        self.tasks, self.end = graph.tasks, end
+        self.graph, self.tasks, self.end = graph, graph.tasks, end
         self.run = IslandRun(graph, graph.islands[0])
 
     def at(self, time):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from sceneql.march import engaged
 from sceneql.march.march import March
 from sceneql.march.spectrum import spectrum
 from sceneql.pipeline import load
@@ -66,6 +67,27 @@ def test_auto_finds_stiffness_where_rounding_keeps_steps_below_the_stable_one(tm
     assert taken(march) == ["dop853", "radau"]
     assert march.statistics.steps < 2500
     assert y[0] == pytest.approx((2000**2 * np.cos(10) + 2000 * np.sin(10)) / (2000**2 + 1), abs=1e-11)
+
+
+VAN_DER_POL = equations("{y: 2, z: 0}", "{y: z, z: ((1 - y^2)*z - y)*1e6}")
+
+
+def test_a_method_that_is_taken_again_is_not_laid_out_again(tmp_path, monkeypatch):
+    """Its first steps know nothing of the last ones before: they are those of a method laid out anew."""
+    laid_out = []
+    engage = engaged.engage
+
+    def counted(system, stepper, driver):
+        laid_out.append(stepper.method.name)
+        return engage(system, stepper, driver)
+
+    monkeypatch.setattr(engaged, "engage", counted)
+    y, march = marched(tmp_path, VAN_DER_POL, "auto: {tolerance: 1e-10}", 2)
+    assert taken(march) == ["radau", "dop853", "radau", "dop853", "radau"]
+    assert laid_out == ["dop853", "radau", "dop853"], "the island is laid out anew with its Jacobian after the first"
+    monkeypatch.setattr(engaged.Methods, "begin", lambda _, *island, counts: engage(*island).begin(counts))
+    anew, _ = marched(tmp_path, VAN_DER_POL, "auto: {tolerance: 1e-10}", 2)
+    assert np.array_equal(y, anew)
 
 
 def test_auto_does_not_change_its_method_for_the_few_steps_that_are_left(tmp_path):

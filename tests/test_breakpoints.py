@@ -10,6 +10,7 @@ from sceneql.bodies.time_shift import goes_evenly
 from sceneql.island.breakpoint_table import BreakpointTable, next_breakpoint
 from sceneql.island.breakpoints import Breakpoints
 from sceneql.pipeline import load
+from sceneql.quantities.chance import random as chance
 from sceneql.quantities.expression import Call, Key, Keys, Link, Number, Symbol, Type
 from sceneql.run.run import Run
 
@@ -369,3 +370,31 @@ def test_every_one_of_several_bells_is_seen(tmp_path):
     script += "solvers: {main: {dopri5: {}}}\noutputs: {t: {record: {of: [e.x]}}}\n"
     ((x,),) = watch(tmp_path, script, [2.5], "e.x")
     assert x == pytest.approx(2.5 * math.sqrt(math.pi) * 1e-2 / math.pi, rel=1e-3)
+
+
+@pytest.mark.parametrize("solver", ["auto", "{dop853: {}}", "{radau: {}}"])
+def test_chance_by_the_clock_in_a_rate_is_new_with_each_tick(tmp_path, solver):
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        "clock: {end: 3 s}\nmodels: {m: {equations: {start: {x: 0}, rate: {x: 'random(floor(t), 7)'}}}}\n"
+        f"solvers: {{main: {solver}}}\noutputs: {{table: {{record: {{of: [m.x]}}}}}}\n",
+        encoding="utf-8",
+    )
+    run = Run(load(path))
+    (island,) = run.islands
+    island.advance(3.0)
+    drawn = sum(chance(i, 7) for i in range(3))
+    assert island.state("m").y[0] == pytest.approx(drawn, rel=1e-6)
+
+
+def test_chance_in_a_source_is_compiled(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        "clock: {end: 1 s}\nmodels: {m: {diffusion: {of: number, size: 1 1 m, cell: 0.25 m, coefficient: 0, "
+        "source: 'random(floor(4*x), floor(4*y), 2)'}}}\noutputs: {table: {record: {of: [m.mean]}}}\n",
+        encoding="utf-8",
+    )
+    (island,) = Run(load(path)).islands
+    island.advance(1.0)
+    drawn = [chance(i, j, 2) for j in range(4) for i in range(4)]
+    assert island.state("m").y[:16] == pytest.approx(drawn, rel=1e-12)

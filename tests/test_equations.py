@@ -299,7 +299,6 @@ WRONG = {
         {"start": {"y": "1", "z": "y"}, "rate": {"y": "1", "z": "1"}}, ("start", "z"), "'y' has no value before"
     ),
     "a vector as a rate": ({"start": {"y": "1"}, "rate": {"y": "[y, 1, 2]"}}, ("rate", "y"), "must be one number"),
-    "chance in a rate": ({"start": {"y": "1"}, "rate": {"y": "random(y)"}}, ("rate", "y"), "must be one number"),
     "a pole at the start": (
         {"start": {"y": "0"}, "rate": {"y": "1/y"}}, ("rate", "y"), "the rate of y has no finite value at the start"
     ),

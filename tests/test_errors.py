@@ -18,6 +18,7 @@ CODE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 TELLING = {"Diagnostic", "MismatchError", "_Fault", "_error", "_fail", "error", "stop", "warning"}
 """Functions whose first text is a code."""
 WITHOUT_SCRIPT = {
+    "long-film": "ten thousand frames would be drawn",
     "script-missing": "there is no script",
     "too-large": "the script would be of 64 MB",
     "too-many-nodes": "the script would be of megabytes",

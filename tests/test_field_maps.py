@@ -447,3 +447,33 @@ models: {plate: {diffusion: {domain: holed, flat: yes, cell: 2 cm, coefficient: 
 outputs: {still: {image: {size: 64 36, time: 0 s}}}
 """)
     assert load(tmp_path / "scene.yaml").drawn["still"] == ("plate_map",)
+
+
+SKIN = """
+models: {{skin: {{wave: {{size: 1 1 m, cell: 0.25 m, speed: 1 m/s, initial: 0.2*x - 0.05}}}}}}
+objects: {{sheet: {{field_map: {{of: skin.height, {fields}}}}}}}
+cameras: {{above: {{perspective: {{position: 0.5 0.5 3 m, look_at: 0.5 0.5 0 m, up: 0 1 0}}}}}}
+outputs: {{film: {{image: {{size: 64 32}}}}}}
+"""
+
+
+def test_what_swings_about_zero_has_the_middle_of_its_map_there(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SKIN.format(fields=""), encoding="utf-8")
+    graph = load(path)
+    (moment,) = Run(graph).moments([0.0])
+    (mesh,) = [shape for shape in frame_of(graph, "film", (64, 32), moment, 0).shapes if isinstance(shape, Mesh)]
+    most = 0.2 * 0.875 - 0.05
+    inner = np.abs(mesh.vertices[:, :2] - 0.5).max(axis=1) < 0.3
+    heights = 0.2 * mesh.vertices[inner, 0] - 0.05
+    np.testing.assert_allclose(mesh.colors[inner], colored(heights, (-most, most), "coolwarm"), atol=1e-9)
+
+
+def test_a_map_of_no_colors_has_those_of_its_material(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SKIN.format(fields="colors: none, height: 1, material: {mirror: {}}"), encoding="utf-8")
+    graph = load(path)
+    (moment,) = Run(graph).moments([0.0])
+    (mesh,) = [shape for shape in frame_of(graph, "film", (64, 32), moment, 0).shapes if isinstance(shape, Mesh)]
+    assert mesh.colors is None
+    assert mesh.vertices[:, 2].max() > 0.1

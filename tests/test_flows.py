@@ -383,3 +383,13 @@ def test_what_has_come_in_is_what_is_there_also_around_solids(tmp_path, solver):
     assert air.read("mass", "dye") == pytest.approx(air.read("inflow", "dye"), rel=1e-10)
     assert air.read("max", "dye") <= 2.0 + 1e-6
     assert len(air.read("concentration", "dye")) < 256
+
+
+def test_both_sides_of_a_direction_may_say_that_it_is_periodic(tmp_path):
+    """Who writes both means one thing; the second was refused, since the first has its faces already."""
+    narrow = {"size": "0.4 1 m", "cell": "0.1 m", "viscosity": "1 Pa*s", "force": '"[8, 0]"'}
+    one, both = (
+        Air(tmp_path, "{sbdf2: {step: 20 ms}}", 0.1, boundary=f"{{left: {{periodic: yes}}{more}}}", **narrow).at(0.1)
+        for more in ("", ", right: {periodic: yes}")
+    )
+    assert np.array_equal(one.read("velocity"), both.read("velocity"))

@@ -79,6 +79,7 @@ SOLIDS = {
     "half cylinder": (HALF, lambda x, y, z: [np.hypot(x, z) - 1, x, y - 0.65, y + 0.65],
                       [(0, y, z) for y in (0.65, -0.65) for z in (1, -1)]),
 }  # fmt: skip
+CAP = "intersection: {of: [{sphere: {radius: 1 m}}, {box: {size: 4 2 4 m, position: 0 %s 0 m}}]}"
 SPACINGS = {
     "plate": [0.25, 0.28, 0.31, 0.35, 0.4],
     "quarter ball": [0.3, 0.4],
@@ -101,6 +102,17 @@ def test_corners_are_nodes_and_nodes_of_creases_stand_on_both_surfaces_at_any_sp
         both = on[:, mesh.faces[:, ends]].all(axis=2)
         crease = both.sum(axis=0) > 1
         assert (on[:, mesh.faces[crease, 3 + k]] >= both[:, crease]).all()
+
+
+@pytest.mark.parametrize(("height", "spacing"), [(0.5, 0.26), (0.5, 0.15), (0.7, 0.15)])
+def test_no_face_cuts_off_an_acute_lip(tmp_path, height, spacing):
+    """There is more than a spacing from the middle of an edge that cuts it off to the lip."""
+    mesh = made(tmp_path, CAP % (1 + height), spacing, "p2")
+    on = np.abs([np.linalg.norm(mesh.points, axis=1) - 1, mesh.points[:, 1] - height]) < 1e-9
+    assert on[:, mesh.faces[:, :3]].all(axis=2).any(axis=0).all()
+    lip = np.hypot(*mesh.points[np.unique(mesh.faces[:, :3])][:, [0, 2]].T).max()
+    assert lip == pytest.approx(np.sqrt(1 - height**2), abs=1e-9)
+    assert mesh.sizes(np.concatenate([np.eye(4), fine_rule()[0]])).min() > 0.0
 
 
 @pytest.mark.parametrize("place", ["0 1.6 0", "0.1 0.3 7", "1e3 0 0"])

@@ -240,6 +240,23 @@ def test_a_library_that_would_end_the_process_for_want_of_memory_is_not_loaded(t
     assert "MiB to load numpy, when starting the run" in said
 
 
+@pytest.mark.parametrize(
+    ("library", "product"), [("numpy", "a @ a"), ("scipy.linalg", "scipy.linalg.blas.dgemm(1.0, a, a)")]
+)
+def test_openblas_has_its_memory_from_its_import_on(library, product):
+    """It took it at the first product, and ended the process with exit code 1 where none was left."""
+    run = (
+        "import resource; from sceneql import room; room.ask_before_imports();"
+        f"import numpy, {library}; a = numpy.arange(90000.0).reshape(300, 300) % 7;"
+        "now = resource.getpagesize()*int(open('/proc/self/statm').read().split()[0]);"
+        "resource.setrlimit(resource.RLIMIT_AS, (now + 12*2**20,)*2);"
+        f"print(({product})[0].shape)"
+    )
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
+    done = subprocess.run([sys.executable, "-c", run], capture_output=True, text=True, env=environment, timeout=60)
+    assert done.returncode == 0, done.stderr
+
+
 def test_what_libraries_make_of_a_want_of_memory_is_one():
     assert starved(MemoryError())
     assert starved(ImportError("libavfilter.so: failed to map segment from shared object"))

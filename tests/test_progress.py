@@ -2,6 +2,7 @@
 
 import os
 import pty
+import re
 import select
 import signal
 from contextlib import suppress
@@ -74,6 +75,16 @@ def test_what_takes_minutes_is_told_in_a_line_where_there_is_no_terminal(monkeyp
         while not told:
             told = capsys.readouterr().err
     assert told.splitlines()[0] == "film: filling bone"
+
+
+def test_frames_and_what_they_will_take_are_told_where_there_is_no_terminal(monkeypatch, capsys):
+    monkeypatch.setattr("sceneql.report.progress.LINES", 0.01)
+    told = ""
+    with bar("film") as step:
+        step(3, 36_000)
+        while told.count("\n") < 2:
+            told += capsys.readouterr().err
+    assert re.fullmatch(r"film: 3 of 36,000, about [\d.]+ (s|min|h) left", told.splitlines()[0])
 
 
 def test_a_march_tells_its_steps_and_when_it_will_be_at_the_next_instant():

@@ -115,3 +115,45 @@ def test_a_ring_bounces_and_wobbles_down_without_making_energy(tmp_path):
     energy, dissipated = np.array(rows).T
     np.testing.assert_allclose(energy, energy[0], rtol=1e-6)
     assert np.diff(dissipated).min() > -1e-6 * energy[0]
+
+
+@pytest.mark.parametrize("friction", [0, 100])
+def test_a_cylinder_that_falls_past_the_flat_runs_round_its_rim_and_keeps_its_energy(tmp_path, friction):
+    """Nothing strikes: the place that touches goes half round in a time as short as the miss is small (Srinivasan &
+    Ruina 2008, Rocking and rolling: a can that appears to rock might actually roll)."""
+    a, r, h = np.radians(2), 0.1, 0.1
+    place = f"position: 0 {r * np.sin(a) + h / 2 * np.cos(a)} 0 m, rotation: {{about: 1 0 0, angle: 2 deg}}"
+    rows = watch(
+        tmp_path, f"cylinder: {{radius: {r} m, height: {h} m, {place}}}", "mass: 1 kg, spin: 0 0 2e-3 rad/s",
+        np.linspace(0, 0.2, 81), "it.energy", "it.dissipated", "it.position",
+        law=f"restitution: 0, friction: {friction}", solver="dop853: {tolerance: 1e-9}",
+    )  # fmt: skip
+    energy, dissipated, x = (np.array(some) for some in zip(*rows, strict=True))
+    np.testing.assert_allclose(energy - dissipated, energy[0], rtol=1e-8)
+    lowest = np.flatnonzero((np.diff(x[:-1, 1]) < 0) & (np.diff(x[1:, 1]) > 0))
+    assert len(lowest) == 3
+    assert x[lowest + 1, 1].max() < h / 2 + 5e-4 < h / 2 + 3.4e-3 < x[lowest[0] + 14, 1]
+
+
+def test_a_drum_that_stands_and_is_struck_gains_no_energy(tmp_path):
+    """It rocks, and falls past the flat within a step; 124 J once became 1,583."""
+    script = """
+clock: {end: 0.3 s}
+objects:
+  drum: {cylinder: {radius: 0.324 m, height: 0.279 m, position: 0 0.1395 0 m}}
+  ball: {sphere: {radius: 0.114 m, position: 0.264 0.948 -0.155 m}}
+  floor: plane
+models:
+  it:
+    rigid:
+      density: 600 kg/m^3
+      bodies:
+        drum: {of: drum}
+        ball: {of: ball, velocity: -1.420 -2.251 -0.045 m/s, spin: -4.348 -4.944 3.306 rad/s}
+forces: [gravity]
+contacts: {touch: {collision: {mode: exact, between: [it, floor], restitution: 0.5, friction: 0.5}}}
+"""
+    rows = runs.watch(tmp_path, script, np.linspace(0, 0.3, 121), "it.energy", "it.dissipated", pruned=False)
+    energy, dissipated = np.array(rows).T
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-6)
+    assert np.diff(energy - dissipated).max() < 1e-6 * energy[0]

@@ -280,3 +280,32 @@ def test_explain_tells_that_stops_and_motors_are_exact(tmp_path):
         drive = "limits: -60 10 deg, motor: {speed: 1 rad/s, torque: 1 N*m}"
         path.write_text(scene(drive, "gravity", mode) + "outputs: {t: {record: {of: [h.angle]}}}\n")
         assert f"stops and its motor act {told}" in text(explain(load(path)))
+
+
+def test_a_cart_on_a_rail_and_on_the_floor_is_left_to_explicit_steps(tmp_path):
+    """Rail and floor bear it both: an implicit solver finds no way there. Its pendulum is that of Lagrange's equations
+    until the cart meets the stop."""
+    script = """
+clock: {end: 0.25 s}
+objects:
+  box: {box: {size: 0.4 0.2 0.3 m, position: 0 0.1 0 m}}
+  bob: {sphere: {radius: 0.1 m, position: 0.5 0.6 0 m}}
+  floor: plane
+models: {it: {rigid: {of: box, mass: 2 kg}}, pendulum: {rigid: {of: bob, mass: 1 kg}}}
+ties:
+  rail: {slider: {between: [it, world], axis: 1 0 0, limits: -0.3 0.3 m}}
+  pin: {hinge: {between: [pendulum, it], at: 0 0.6 0 m, axis: 0 0 1}}
+forces: [gravity]
+contacts: {touch: {collision: {mode: exact, between: [it, pendulum, floor], restitution: 0, friction: 0}}}
+"""
+    rows = runs.watch(tmp_path, script, [0.1, 0.25], "it.position", "pin.angle", pruned=False)
+
+    def rate(t, y):
+        _, angle, v, w = y
+        sine, cosine, moment = np.sin(angle), np.cos(angle), 0.4 * 0.1**2 + 0.5**2
+        matrix = [[3, -0.5 * sine], [-0.5 * sine, moment]]
+        return v, w, *np.linalg.solve(matrix, [0.5 * cosine * w**2, -GRAVITY * 0.5 * cosine])
+
+    exact = solve_ivp(rate, (0, 0.25), [0, 0, 0, 0], t_eval=[0.1, 0.25], rtol=1e-12, atol=1e-13, method="DOP853").y
+    np.testing.assert_allclose([x for x, _ in rows], np.column_stack([exact[0], [0.1, 0.1], [0, 0]]), atol=1e-6)
+    np.testing.assert_allclose([angle for _, angle in rows], exact[1], atol=1e-5)

@@ -45,6 +45,13 @@ def test_a_film_without_shots_has_the_clocks_frames(tmp_path):
     assert graph.tasks["film"].kind.times(clock) == clock.frames(24)
 
 
+@pytest.mark.parametrize(("end", "told"), [(1000, []), (3600, ["36,000 frames", "10 h"])])
+def test_a_film_of_many_frames_is_told_before_it_is_drawn(tmp_path, end, told):
+    warnings = graph_of(tmp_path, sets=[f"clock.end={end} s"]).warnings
+    assert [one.code for one in warnings] == ["long-film"] * bool(told)
+    assert all(text in one.message for one in warnings for text in told)
+
+
 def test_a_shot_is_what_its_camera_sees(tmp_path):
     cut = graph_of(tmp_path, "[{until: 1 s}, {camera: near}]")
     plain = graph_of(tmp_path, sets=["film.camera=near"])

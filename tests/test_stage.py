@@ -77,6 +77,13 @@ def test_what_is_hit_lies_at_zero_or_under_what_starts_lower(tmp_path, models, h
     assert graph.tasks["floor"].kind.height.number() == pytest.approx(height, abs=1e-12)
 
 
+def test_a_floor_that_is_named_and_not_written_is_the_default_one(tmp_path):
+    models = "{a: {particles: {list: {x: {position: 0 -3 0 m, radius: 0.5 m}}}}}"
+    graph = graph_of(tmp_path, f"models: {models}\ncontacts: {{touch: {{collision: {{between: [a, floor]}}}}}}")
+    assert graph.tasks["floor"].word == "plane"
+    assert graph.tasks["floor"].kind.height.number() == pytest.approx(-3.5, abs=1e-12)
+
+
 def test_an_object_that_falls_from_below_zero_has_the_ground_under_it(tmp_path):
     objects = "objects: {ball: {sphere: {radius: 0.2 m, position: 0 -2 0 m}}}"
     graph = graph_of(tmp_path, f"{objects}\n{FALL}\nforces: [gravity, collision]")

@@ -362,3 +362,22 @@ def test_compiled_or_not_the_picture_is_the_same():
     plain = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, env=environment).stdout
     compiled = Trace(samples=2).draw(small_scene()).linear
     assert np.frombuffer(plain, dtype=np.float32) == pytest.approx(compiled.ravel(), abs=1e-5)
+
+
+@pytest.mark.parametrize("away", [3.0, 1e3, 1e5])
+def test_no_ray_slips_through_a_mesh_where_triangles_have_a_common_edge(away):
+    """A flat sheet, whose diagonals the pixels of a camera before it hit exactly, had specks of what is behind it."""
+    random = np.random.default_rng(5)
+    side = np.linspace(-1, 1, 12)
+    x, y = (one.ravel() for one in np.meshgrid(side, side))
+    points = np.stack([x, y, 0.2 * np.sin(3 * x) * np.cos(2 * y)], axis=1)
+    first = (np.arange(11)[:, None] * 12 + np.arange(11)).ravel()
+    triangles = np.concatenate([first[:, None] + (0, 1, 13), first[:, None] + (0, 13, 12)]).astype(np.int32)
+    inner = first.reshape(11, 11)[1:, 1:].ravel()
+    ends = np.concatenate([inner[:, None] + other for other in ((0, 13), (0, 1), (0, 12))])
+    sheet = pack(frame(Mesh("sheet", WHITE, points, triangles)))
+    for a, b in points[np.tile(ends, (3, 1))]:
+        origin = away * np.append(random.uniform(-0.5, 0.5, 2), 1.0)
+        towards = a + random.uniform(0.0, 1.0) * (b - a) - origin
+        t, _, _ = met(sheet, [*origin, *towards / np.linalg.norm(towards)])
+        assert t < math.inf

@@ -3,7 +3,10 @@
 
 import math
 
-from sceneql.compiled.kernels import inlined
+from numba import types
+
+from sceneql.compiled.kernels import inlined, lean
+from sceneql.system.signatures_kernels import F
 
 
 @inlined
@@ -38,3 +41,14 @@ def noise_in_time(s, channel, key):
     total = a * signed(i - 1, channel, key) + b * signed(i, channel, key)
     total += c * signed(i + 1, channel, key) + d * signed(i + 2, channel, key)
     return total / 6.0
+
+
+@lean(types.float64(F, F, F))
+def uniform(i, j, k):
+    """The number of `random`, as quantities.chance.random: in [0, 1) for the whole parts of i, j, k modulo 2^32."""
+    if not (math.isfinite(i) and math.isfinite(j) and math.isfinite(k)):
+        return math.nan
+    first = int(math.floor(i) % 4294967296.0)
+    second = int(math.floor(j) % 4294967296.0)
+    high, low = philox(first, second, int(math.floor(k) % 4294967296.0))
+    return float((high << 21) | (low >> 11)) * 2.0**-53

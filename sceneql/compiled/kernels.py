@@ -271,11 +271,15 @@ lean_inlined = njit(_nrt=False, **HELPER)
 
 
 def address(function: Any, kind: Any) -> Any:
-    """Address of a compiled kernel of FunctionType ``kind``, for ``function_at``. Keep the kernel alive."""
-    if config.DISABLE_JIT:
-        return function
-    compiled = function.overloads[kind.signature.args]
-    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+    """Address of a compiled kernel of FunctionType ``kind``, for ``function_at``."""
+    return function if config.DISABLE_JIT else address_of(function, kind.signature.args)
+
+
+@cache
+def address_of(function: Any, arguments: Any) -> int:
+    """Address of a compiled kernel that takes such arguments, which lives on; to ask LLVM takes 50 us."""
+    compiled = function.overloads[arguments]
+    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
 
 
 def function_at(kind: Any) -> Any:

@@ -9,16 +9,16 @@ from typing import Any
 import numba
 from numba import types
 
-from sceneql.compiled.kernels import address, function_at
+from sceneql.compiled.kernels import address_of, function_at
 
 _uncompiled: list[Any] = []
 """Functions by their number, in place of addresses where numba is switched off."""
 
 
 def number_of(function: Any, signature: Any) -> int:
-    """The integer by which kernels find another kernel of that signature. Keep the kernel alive."""
+    """The integer by which kernels find another kernel of that signature."""
     if not numba.config.DISABLE_JIT:
-        return int(address(function, types.FunctionType(signature)))
+        return address_of(function, signature.args)
     _uncompiled.append(function)
     return len(_uncompiled) - 1
 

@@ -39,8 +39,11 @@ TERM_HEAD = (
     "from sceneql.compiled.kernels import kernel",
     "from sceneql.system.signatures_kernels import TERM",
 )
-NOISE_HEAD = ("from sceneql.compiled.noise_kernels import noise_line, noise_space",)
-"""Of kernels with noise alone: others need not have it compiled."""
+OWN_HEADS = {
+    "noise_": "from sceneql.compiled.noise_kernels import noise_line, noise_space",
+    "uniform(": "from sceneql.compiled.chance_kernels import uniform",
+}
+"""Of kernels with noise or chance alone: others need not have it compiled."""
 
 TEXTS: Mapping[str, str] = {
     "add": "{0} + {1}",
@@ -72,10 +75,12 @@ TEXTS: Mapping[str, str] = {
     "ge": "truth({0} >= {1})",
     "eq": "truth({0} == {1})",
     "where": "{1} if {0} else {2}",
+    "random": "uniform({0}, {1}, {2})",
     "noise_line": "noise_line({0}, {1})",
     "noise_space": "noise_space({0}, {1}, {2}, {3})",
 }
-"""The operations that a kernel may use, by the names of the one table; {0}, {1}, ... are names of floats."""
+"""The operations that a kernel may use, by the names of the one table; {0}, ... are names of floats, 0 if not given."""
+NOT_GIVEN = ("0.0", "0.0")
 
 
 @dataclass
@@ -159,7 +164,7 @@ class Printer:
                 text, operands = PRODUCTS.get(exponent(expr)), []
                 for arg in args if text is None else args[:1]:
                     operands.append((yield arg))
-                return self._assign((text or TEXTS[op]).format(*operands))
+                return self._assign((text or TEXTS[op]).format(*operands, *NOT_GIVEN))
         raise TypeError(f"a {type(expr).__name__.lower()} has no place in a scalar formula")
 
     def _assign(self, text: str) -> str:
@@ -204,7 +209,7 @@ def write_term(
     """
     text = [
         *TERM_HEAD,
-        *(NOISE_HEAD if any("= noise_" in line for line in lines) else ()),
+        *(head for start, head in OWN_HEADS.items() if any(f"= {start}" in line for line in lines)),
         *imports,
         *("", "", "@kernel(TERM)"),
         f"def {function}(t, y, out, floats, ints):",

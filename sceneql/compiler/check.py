@@ -49,6 +49,8 @@ class Checked:
     """Paths of the files that its parts name, used or not."""
     without: frozenset[str] = frozenset()
     """Names of defaults that it says it has none of: `floor: none`."""
+    implied: frozenset[str] = frozenset()
+    """Names of defaults that it names and does not write."""
 
 
 def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Parsed | None = None) -> Checked:
@@ -66,11 +68,12 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Pars
     checker.defaults()
     settings = checker.settings()
     tasks = checker.whole_tasks() if found.errors else checker.tasks
-    return Checked(script, settings, tasks, checker.timed, tuple(checker.files), frozenset(checker.without))
+    known = frozenset(checker.without), frozenset(checker.implied)
+    return Checked(script, settings, tasks, checker.timed, tuple(checker.files), *known)
 
 
-NONE, OPTIONAL = "none", ("floor",)
-"""In place of a word: a default of this name that the script does without, and which these are."""
+NONE, OPTIONAL = "none", {"floor": "plane"}
+"""In place of a word: a default of this name that the script does without; which these are, and what by word."""
 WORLD = "world"
 """What does not move, where a field may name it."""
 
@@ -86,6 +89,7 @@ class _Checker:
         self.timed = True
         self.files: list[str] = []
         self.without: set[str] = set()
+        self.implied: set[str] = set()
         self.folder = Path(script.sources[0].name).parent
         for family, entries in (*script.sections.items(), *script.unmade.items()):
             for name, entry in entries.items():
@@ -323,6 +327,9 @@ class _Checker:
             if name not in self.entries and self.catalogue.load(mark.family, node.text) is not None:
                 in_place = Entry(anonymous, node.text, None, node.span, node.span, entry.scope)
                 return self._in_place(in_place, mark.family)
+            if name in OPTIONAL and name not in self.entries and "objects" in (mark.family, mark.also):
+                self.implied.add(name)
+                return self._in_place(Entry(name, OPTIONAL[name], None, node.span, node.span, None), "objects")
             self._unknown(node, name, mark)
             return None
         if isinstance(node, MappingNode) and len(node.entries) == 1:

@@ -26,12 +26,17 @@ from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.compiler.passes.unmoved import report_moving
 from sceneql.compiler.studies import check_studies
 from sceneql.compiler.values_below import values_of
+from sceneql.doing import duration
 from sceneql.graph import Origin, SimulationGraph, Task, Variants
 from sceneql.kinds import Camera, Clock, Exceeds, Model, Object, Output, Picture
 from sceneql.language.script import Script
 from sceneql.language.tree import unsure
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
+
+LONG = 10_000
+"""Frames from which on it is told, before they are drawn, how many there are."""
+SHORTER = "a larger `speed` of the `clock`, or an `end` that is sooner, makes fewer; `render --draft` draws them sooner"
 
 
 def compile_script(
@@ -47,7 +52,7 @@ def compile_script(
     check_studies(checked.settings.studies, script.root, catalogue, KEYS, found)
     report_circles(checked.tasks, found)
     background = checked.settings.background is not None
-    tasks = expand(checked.tasks, catalogue, without=checked.without, background=background)
+    tasks = expand(checked.tasks, catalogue, without=checked.without, implied=checked.implied, background=background)
     report_hollow(tasks, found)
     report_moving(tasks, found)
     check_sizes(tasks, found)
@@ -130,11 +135,14 @@ def _check_outputs(
     place: Span | None,
     found: Diagnostics,
 ) -> None:
-    """Refuse outputs of more instants than a run can have; warn of pictures of nothing."""
+    """Refuse outputs of more instants than a run can have; warn of long films, and of pictures of nothing."""
     for task in tasks.values():
         if isinstance(task.kind, Output):
             try:
-                task.kind.times(clock)
+                instants = len(task.kind.times(clock))
+                if isinstance(task.kind, Picture) and (frames := instants // task.kind.parts) > LONG:
+                    text = f"'{task.name}' is of {frames:,} frames: a second for each would be {duration(frames)}"
+                    found.warning("long-film", text, task.span or place, help=SHORTER)
             except Exceeds as error:
                 found.error("limit-refused", f"{task.name}: {error}", task.span or place)
             if not drawn.get(task.name, (task.name,)):

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.grids.domain.cells import Cells
     from sceneql.grids.drift import Drift
-    from sceneql.grids.medium import Boundary, Medium
+    from sceneql.grids.medium import Boundary
+    from sceneql.grids.spreading_medium import SpreadingMedium
     from sceneql.system import Assembly, Flow, Grid
 
 THROUGH = "sceneql.flows.carrying_kernels:through"
@@ -35,7 +36,7 @@ SAME = 1e-9
 """Difference of boxes, in parts of a cell, that counts as none."""
 
 
-def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], assembly: Assembly) -> None:
+def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], assembly: Assembly) -> None:
     """Have a flow carry the fields of a model. Raises ScriptError where it is none, or fills another box.
 
     Where fluid comes in through the boundary it brings the `value` that the field has there, or none of it.
@@ -43,6 +44,8 @@ def carry(model: Medium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], 
     assert drift.by is not None
     flow = assembly.flow_of(drift.by.name)
     if flow is None:
+        if getattr(assembly.object(drift.by), "flows", False):
+            return  # its own assembly has failed
         text = f"'{drift.by.name}' is no flow"
         raise ScriptError([Diagnostic("no-flow", text, drift.by.span, "name a model `flow`")])
     cells = cells_of(model, assembly)
@@ -106,7 +109,8 @@ def _cut(grid: Grid, fractions: Floats, faces: Faces, opened: Floats, drift: Dri
     """Leave of a field's cells what solids leave of the flow's. Raises ScriptError where its coefficient varies."""
     if grid.varying:
         text = "a field around solids has a coefficient that varies neither in time nor with the field"
-        raise ScriptError([Diagnostic("invalid", text, drift.by.span if drift.by else None)])
+        help = "write its `coefficient` by place alone, or let no solids stand in the flow"
+        raise ScriptError([Diagnostic("invalid", text, drift.by.span if drift.by else None, help)])
     n, numbers = len(fractions), assembly.numbers()
     volumes = fractions * numbers[grid.cells.insides_at : grid.cells.insides_at + n]
     assembly.write(grid.cells.insides_at, volumes)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -63,6 +63,29 @@ def add_field(field: Spreading, boundary: Boundary, drift: Drift | None, ground:
     return _Builder(field, boundary, drift, ground, assembly).build()
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Spread:
+    """What `diffusion_kernels.spread` needs for a field that is in the state."""
+
+    at: int
+    ints: tuple[int, ...]
+    """Its integers."""
+    more: tuple[int, ...]
+    """Those of its slopes: the same, and more behind them."""
+    places: Callable[[], tuple[Any, Any]]
+    """Rows and columns of its slopes, (k,) each."""
+    radiating: list[Condition]
+    """Parts of the boundary that are open."""
+
+
+def spread_of(field: Spreading, boundary: Boundary, ground: Ground, assembly: Assembly) -> Spread:
+    """Reserve an entry of y per cell and one for the inflow, and what its spread reads; the term is the caller's.
+
+    Raises ScriptError as `add_field` does.
+    """
+    return _Builder(field, boundary, None, ground, assembly).spread()
+
+
 def varies(formula: Formula | None) -> bool:
     """Whether a formula depends on time, on the field or on other parts."""
     return formula is not None and any(
@@ -81,15 +104,36 @@ class _Builder:
 
     def build(self) -> Grid:
         cells, assembly = self.ground.cells, self.assembly
+        spread = self.spread()
+        _, _, _, _, volumes, sink, fed, *faces, _ = spread.ints
+        kernel = f"{KERNELS}:spread"
+        assembly.term("close", kernel, spread.ints, lambda: Slopes(SLOPES, *spread.places(), spread.more))
+        if self.drift is not None and self.drift.by is None:
+            flow = flow_of(self.drift, cells, self.ties, self.given, self.periodic)
+            self._drifts(self.drift, flow, self.given, self.periodic)
+        return Grid(
+            cells=Cells(cells.shape, self.periodic, ~self.inside, self.ground.volumes_at, self.ground.box_at),
+            at=self.at,
+            volumes_at=volumes,
+            sink_at=sink,
+            faces_at=(faces[0], faces[1], faces[2]),
+            varying=self.varying or spread.more[-1] > 0,
+            fed_at=-1 if self.varying or self.feeding or self.drift is not None else fed,
+            carried=self.drift is not None,
+            keeps=self._keeps(self.given),
+        )
+
+    def spread(self) -> Spread:
+        cells, assembly = self.ground.cells, self.assembly
         nx, ny, nz = cells.shape
         n = self.count = self.ground.count
         self.cells, self.inside, self.centers = cells, self.ground.inside, self.ground.centers
         self.at = assembly.state(np.append(self._start(), 0.0))
-        given, periodic = conditions(self.boundary, cells, assembly.line())
-        self.conditions = [one for one in given if not one.open]
-        ties = [self._ties(axis, periodic[axis]) for axis in range(3 if nz > 1 else 2)]
-        varying = varies(self.field.coefficient)
-        if varying:
+        self.given, self.periodic = conditions(self.boundary, cells, assembly.line())
+        self.conditions = [one for one in self.given if not one.open]
+        ties = self.ties = [self._ties(axis, self.periodic[axis]) for axis in range(3 if nz > 1 else 2)]
+        self.varying = varies(self.field.coefficient)
+        if self.varying:
             faces, sink, weights, bend = self._varying_coefficient(ties)
         else:
             faces, sink, weights = self._constant_coefficient(ties)
@@ -97,23 +141,10 @@ class _Builder:
         fed, reaction = self._fed(weights)
         faces = (*faces, faces[0])[:3] if len(faces) == 2 else faces
         ties_at = tuple(self.ties_at) if bend else (0, 0, 0)
-        volumes = self.ground.divisors_at
-        ints = (self.at, nx, ny, nz, volumes, sink, fed, *faces, self.at + n)
+        ints = (self.at, nx, ny, nz, self.ground.divisors_at, sink, fed, *faces, self.at + n)
         more = (*ints, bend, *(*ties_at, 0)[:3], reaction)
-        assembly.term("close", f"{KERNELS}:spread", ints, lambda: Slopes(SLOPES, *self._slopes(periodic), more))
-        if self.drift is not None and self.drift.by is None:
-            self._drifts(self.drift, flow_of(self.drift, cells, ties, given, periodic), given, periodic)
-        return Grid(
-            cells=Cells(cells.shape, periodic, ~self.inside, self.ground.volumes_at, self.ground.box_at),
-            at=self.at,
-            volumes_at=volumes,
-            sink_at=sink,
-            faces_at=(faces[0], faces[1], faces[2]),
-            varying=varying or reaction > 0,
-            fed_at=-1 if varying or self.feeding or self.drift is not None else fed,
-            carried=self.drift is not None,
-            keeps=self._keeps(given),
-        )
+        radiating = [one for one in self.given if one.open]
+        return Spread(self.at, ints, more, lambda: self._slopes(self.periodic), radiating)
 
     def _keeps(self, given: list[Condition]) -> tuple[float, float]:
         """Bounds of the field by the maximum principle (Protter and Weinberger 1967, chapter 3), else infinite.

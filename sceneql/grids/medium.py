@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql import kinds
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, centers_of, counts
-from sceneql.grids.drift import Drift
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Record, Symbols, field, quantity_type
-from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.dimension import Dimension
@@ -28,7 +26,6 @@ if TYPE_CHECKING:
 
 PLACE = Annotated[Formula, Symbols(("x", "y", "z"), at_start=True)]
 ANY = ("x", "y", "z", "t", "c")
-COEFFICIENT = Annotated[Formula, Symbols(ANY, dim.AREA / dim.TIME)]
 VALUE = Annotated[Formula, Symbols(ANY, dim.PLAIN, of_field=True)]
 START = Annotated[Formula, Symbols(("x", "y", "z"), dim.PLAIN, of_field=True, at_start=True)]
 FLUX = Annotated[Formula, Symbols(ANY, dim.VELOCITY, of_field=True)]
@@ -148,6 +145,8 @@ class Medium(Model):
 
     has_bodies = False
     is_field = True
+    vectors: ClassVar[tuple[str, ...]] = ()
+    """Fields whose formulas may be of several numbers."""
 
     domain: kinds.ObjectRef | None = field(
         "The object whose inside, at the start, it spreads in; or give `size`.", None
@@ -162,7 +161,6 @@ class Medium(Model):
     corner: SIZES | None = field("Low corner of that box; by default the origin.", None)
     depth: kinds.FixedLength = field("How thick a flat domain is.", "1 m", above=0)
     cell: kinds.FixedLength = field("Largest side of a cell.", above=0)
-    drift: Drift | None = field("A flow that carries what spreads.", None)
     probes: dict[str, SIZES] = field(
         "Places by name: the value of the cell there is an output of that name, which other parts may read while all "
         "is solved together.",
@@ -181,28 +179,20 @@ class Medium(Model):
         """The boundary conditions of every field."""
         raise NotImplementedError
 
-    def coefficients(self) -> Iterable[tuple[Formula | None, tuple[str, ...]]]:
-        """The diffusion coefficient of every field, and its place in the script."""
-        raise NotImplementedError
-
     def problems(self) -> Iterable[Problem]:
-        """Two places or none, coefficients below 0, sides that do not fit, too many cells, boundaries of no side."""
+        """Two places or none, sides that do not fit, too many cells, boundaries of no side."""
         if (self.size is None) == (self.domain is None):
             yield Problem("it spreads in one of `domain` and `size`")
         vectors = [
             path
             for name in type(self).model_fields
-            if name != "drift"
+            if name not in self.vectors
             for path in _vectors(getattr(self, name), (name,))
         ]
         for path in vectors:
             yield Problem(f"{path[-1]} is one number at each place, not several", path, code="wrong-shape")
         if vectors:
             return
-        for coefficient, path in self.coefficients():
-            d = number_in(coefficient)
-            if d is not None and d < 0.0:
-                yield Problem(f"the coefficient must be at least 0, and is {d:g}", path, code="out-of-range")
         for name, place in self.probes.items():
             if name in MEASURES or not name.isidentifier():
                 yield Problem(f"a probe cannot be called '{name}'", ("probes", name), at_key=True)
@@ -213,8 +203,6 @@ class Medium(Model):
             return
         if self.size is None:
             return
-        if self.drift is not None:
-            yield from self._misled(self.drift, len(self.size))
         if len(self.size) not in (2, 3) or (self.corner is not None and len(self.corner) != len(self.size)):
             yield Problem("a domain has two or three sides, and its corner as many numbers")
             return
@@ -234,34 +222,6 @@ class Medium(Model):
             if name not in known and not part.chosen
         ):
             yield Problem(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`")
-
-    def _misled(self, drift: Drift, sides: int) -> Iterable[Problem]:
-        if drift.by is not None:
-            return
-        if drift.velocity is not None and drift.velocity.expr.type.shape != (sides,):
-            yield Problem(f"the velocity of a drift needs {sides} components, one for each side", ("drift",))
-        if drift.velocity is None and sides == 3:
-            yield Problem("a deep drift has a velocity, not a stream function", ("drift",))
-
-    def spreading(self, coefficient: Formula | None) -> Oscillation | None:
-        """The rates that limit explicit steps of a field of constant D: the decay of the checkerboard, and the drift.
-
-        The first is at most 4 D sum of 1/spacing^2 (von Neumann's bound); None where a coefficient varies.
-        """
-        d = 0.0 if coefficient is None else number_in(coefficient)
-        if d is None:
-            return None
-        spacing: tuple[float, ...] = (self.cell, self.cell)  # of a flat domain; rates of a deep one are larger
-        if self.size is not None:
-            spacing = tuple(side / n for n, side in zip(counts(self.size, self.cell), self.size, strict=False))
-        rate = 4.0 * d * sum(1.0 / side**2 for side in spacing)
-        carried = 0.0
-        if self.drift is not None and coefficient is not None and self.size is not None:
-            carried = self.drift.fastest(self.corner or (0.0,) * len(spacing), self.size, spacing)
-        ways = " and ".join(way for way, one in (("spread", rate), ("drift", carried)) if one > 0.0)
-        if not ways:
-            return None
-        return Oscillation(0.0, rate + carried, f"the {ways} over cells of {self.cell:g} m", ("cell",))
 
     def sums_up(self, output: str) -> bool:
         """What has come in, of any field."""

@@ -35,9 +35,9 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.island.inputs import Word
     from sceneql.island.setting import Setting
-    from sceneql.system import Bodies, Flow, Grid, Mode, Slopes, Stage, Tied
+    from sceneql.system import Bodies, Flow, Grid, Membrane, Mode, Slopes, Stage, Tied
 
-STAGES: tuple[Stage, ...] = ("internal", "force", "tie", "close", "constrain")
+STAGES: tuple[Stage, ...] = ("velocity", "internal", "force", "tie", "close", "constrain")
 TIED = 150
 """Entries of y up to which the Jacobian of an island with ties is found by differences, which are as fast."""
 
@@ -83,6 +83,7 @@ class IslandAssembly(Reserved):
     _stops: set[Breakpoint] = field(default_factory=set)
     _grids: list[Grid] = field(default_factory=list)
     _flows: dict[str, Flow] = field(default_factory=dict)
+    _membranes: dict[str, Membrane] = field(default_factory=dict)
     _apart: bool = True
     _unsloped: str = ""
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
@@ -176,9 +177,17 @@ class IslandAssembly(Reserved):
             raise ScriptError([Diagnostic("two-flows", text, self.line(), "let them not read one another")])
         self._flows[self._word[0]] = flow
 
-    def flow_of(self, model: str) -> Flow | None:
-        """The flow of a model (system.Assembly)."""
-        return self._flows.get(model)
+    def flow_of(self, model: str | None = None) -> Flow | None:
+        """The flow of a model, or the only one (system.Assembly)."""
+        return next(iter(self._flows.values()), None) if model is None else self._flows.get(model)
+
+    def membrane(self, membrane: Membrane) -> None:
+        """Say that entries are those of a skin (system.Assembly)."""
+        self._membranes[self._word[0]] = membrane
+
+    def membrane_of(self, model: str) -> Membrane | None:
+        """The skin of a model (system.Assembly)."""
+        return self._membranes.get(model)
 
     @property
     def on_grids(self) -> Fields:

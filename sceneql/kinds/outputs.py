@@ -131,6 +131,11 @@ class Picture(Output):
         """The graphs and cameras that stand in its layout."""
         return tuple(ref for row in self.layout if not isinstance(row, EachVariant) for ref in row)
 
+    @property
+    def parts(self) -> int:
+        """Instants of the simulation in a frame."""
+        return 1
+
     def seen_from(self, time: float) -> Ref | None:
         """The camera of an instant [s] of the simulation, where that is not the output's own."""
         return None

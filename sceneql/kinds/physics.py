@@ -52,6 +52,9 @@ class Model(Kind):
     has_skin: ClassVar[bool] = False
     """Whether its masses span a surface: all of a contact with such a model are solved together."""
 
+    carried: ClassVar[bool] = False
+    """Whether it is a skin without inertia that a flow carries (system.Membrane), assembled after the flow."""
+
     def assemble(self, name: str, assembly: Assembly) -> Bodies | None:
         """Reserve state, give initial values, add the terms of its own rate; the point masses forces may act on."""
         raise TypeError(f"{type(self).__name__} has no state")
@@ -92,6 +95,10 @@ class Model(Kind):
     def remark(self, state: ModelState) -> str:
         """What `explain` says of it at the start of the run, as how exact its numbers are."""
         return ""
+
+    def trouble(self, state: ModelState) -> tuple[str, str]:
+        """What a warning says of it at the end of a run, and what helps; empty for nothing."""
+        return "", ""
 
     def sums_up(self, output: str) -> bool:
         """Whether an output is a sum over the run that the state holds: values that read it have no slopes."""
@@ -197,6 +204,18 @@ class Interaction(Kind):
     def targets(self) -> tuple[str, ...] | None:
         """Names of the models it acts on; None: all that have masses."""
         return None
+
+    def carrier(self) -> Ref | None:
+        """The flow by which it has skins carried (Model.carried), in place of acting on masses; else None."""
+        return None
+
+    def fastest_carried(self, skins: Mapping[str, Model], flow: Model) -> Iterable[Oscillation]:
+        """As `fastest`, of skins that its `carrier` carries."""
+        return ()
+
+    def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:
+        """Add its terms for one skin, where it has a `carrier`."""
+        raise NotImplementedError
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add its terms for one model."""

@@ -23,7 +23,15 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_ENERGY, AT_JACOBIAN, AT_LIMIT, AT_RATE, jacobian_at, limit_at, rate_at
-from sceneql.linear.stage_kernels import POSITIONS, POSITIONS_AT, factor_stage, solve_stage
+from sceneql.linear.stage_kernels import (
+    BORDER,
+    CORE_AT,
+    POSITIONS,
+    POSITIONS_AT,
+    UNKNOWNS,
+    factor_stage,
+    solve_stage,
+)
 from sceneql.system.signatures_kernels import A, F, I
 
 FACTORED, CONTRACTION, RELATIVE, ABSOLUTE, SHARE, CAREFUL, POSITIVE, ITERATIONS, FACTORIZATIONS, MEMORY = range(10)
@@ -129,11 +137,13 @@ def end_stage(floats):
 
 @lean_inlined
 def approach(functions, t, a, base, y0, y, plan, floats, ints):
-    """Let positions follow the velocities of a guess, no further than surfaces stay apart."""
+    """Let positions follow the velocities of a guess, and bodies turn, no further than surfaces stay apart."""
     follow(plan, a, base, y)
     part = limit_at(functions[AT_LIMIT])(t, y0, y, floats, ints)
     if part < 1.0:
-        at = plan[POSITIONS_AT]
+        core, at = plan[CORE_AT], plan[POSITIONS_AT]
+        for k in range(core, core + plan[UNKNOWNS] - plan[BORDER]):  # quaternions among them
+            y[plan[k]] = y0[plan[k]] + CLEAR * part * (y[plan[k]] - y0[plan[k]])
         for k in range(at, at + 3 * plan[POSITIONS], 3):
             y[plan[k]] = y0[plan[k]] + CLEAR * part * (y[plan[k]] - y0[plan[k]])
             y[plan[k + 1]] = (y[plan[k]] - base[plan[k]]) / a

@@ -82,6 +82,7 @@ class Assembled:
             floats=made.numbers,
             orbits=bool(forces) and made.moved_by_forces_alone and all(force.at_a_distance() for force in forces),
             apart="barrier" in made.contact_mode,
+            tied_contacts="exact" in made.contact_mode and bool(made.ties),
         )
 
     def act(self) -> None:
@@ -108,6 +109,9 @@ class Assembled:
         """Add a force on the masses of all its models."""
         task = self.graph.tasks[force]
         kind = cast(Interaction, task.kind)
+        for model in [model for name, model in self.island.forces if name == force] if kind.carrier() else ():
+            with self.word(force, model):
+                kind.assemble_carried(force, self.assembly, model)
         everyone = [self.bodies.get(model) for name, model in self.island.forces if name == force]
         masses = [bodies for bodies in everyone if bodies is not None]
         if kind.mutual and masses:
@@ -142,7 +146,7 @@ def models_of(graph: SimulationGraph, island: Island) -> Assembled:
     made = Assembled(graph, island, IslandAssembly(Setting(graph.tasks, graph.settings.clock.end)))
     stepper = cast(Solver, graph.tasks[island.solver].kind).stepper()
     made.assembly.by_tolerance = stepper.control.adaptive and not (stepper.needs.jacobian or stepper.needs.march)
-    for name in island.models:
+    for name in sorted(island.models, key=lambda name: cast(Model, graph.tasks[name].kind).carried):
         with made.word(name), doing(f"making {name}"):
             made.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, made.assembly)
     for name in island.models:

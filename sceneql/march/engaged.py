@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,6 +43,17 @@ class Engaged:
     """(n,) bool: entries whose errors are measured by their own sizes."""
     scales: tuple[int, int]
     """`kept`, `text` and `scales` as in `Prepared`."""
+    told: tuple[tuple[int, int], ...]
+    """(index, value) of the counts that tell the loop of steps how the method goes."""
+    first: Prepared
+    """What `settings` and `numbers` are before the first step."""
+
+    def begin(self, counts: Any) -> Engaged:
+        """The method with a memory as before its first step, about which the loop's ``counts`` are told."""
+        for k, value in self.told:
+            counts[k] = value
+        settings, numbers = np.array(self.first.settings, np.float64), np.array(self.first.numbers, np.int64)
+        return replace(self, settings=settings, numbers=numbers, work=np.zeros(self.first.work))
 
     @property
     def sizes(self) -> Floats:
@@ -66,8 +77,28 @@ class Engaged:
         self.settings[0] = 0.0
 
 
-def engage(system: System, stepper: Stepper, driver: Driver, counts: Any) -> Engaged:
-    """Put a method to work on an island, and tell the loop of steps by its ``counts`` how it goes."""
+class Methods:
+    """The methods of a march as laid out on its island, between which it may go back and forth."""
+
+    def __init__(self, several: bool) -> None:
+        """``several``: whether it may; else nothing is kept."""
+        self._several = several
+        self._system: System | None = None
+        self._laid_out: dict[int, Engaged] = {}
+
+    def begin(self, system: System, stepper: Stepper, driver: Driver, *, counts: Any) -> Engaged:
+        """The method at work, see `Engaged.begin`; laid out anew where the island has been, or at its first time."""
+        if system is not self._system:
+            self._system = system
+            self._laid_out.clear()
+        known = self._laid_out.get(id(stepper)) or engage(system, stepper, driver)
+        if self._several:
+            self._laid_out[id(stepper)] = known
+        return known.begin(counts)
+
+
+def engage(system: System, stepper: Stepper, driver: Driver) -> Engaged:
+    """Lay out the work of a method on an island; it works after `begin`."""
     method, control, needs = stepper.method, stepper.control, stepper.needs
     local = bool(system.structure.local)
     between = needs.jacobian and not needs.newton
@@ -86,14 +117,29 @@ def engage(system: System, stepper: Stepper, driver: Driver, counts: Any) -> Eng
         prepared = Prepared(method.settings, method.numbers, max(1, method.work) * len(system.y))
     else:
         prepared = function(needs.prepare)(system, stepper)
-    counts[kernels.ADAPTIVE] = control.adaptive
-    counts[kernels.ORDER] = method.order
-    counts[kernels.LAST_STAGE] = -1 if local and between else method.last_stage
-    counts[kernels.CONTROLS] = control.self_controlled
-    counts[kernels.HALVES] = control.halves
-    # The last stage of Newton's method is a state that it has reached without letting surfaces pass one another.
-    counts[kernels.WATCHED] = keeps_apart is not None and not (needs.newton and method.last_stage >= 0)
+    told = (
+        (kernels.ADAPTIVE, control.adaptive),
+        (kernels.ORDER, method.order),
+        (kernels.LAST_STAGE, -1 if local and between else method.last_stage),
+        (kernels.CONTROLS, control.self_controlled),
+        (kernels.HALVES, control.halves),
+        # The last stage of Newton's method is a state that it has reached without letting surfaces pass one another.
+        (kernels.WATCHED, keeps_apart is not None and not (needs.newton and method.last_stage >= 0)),
+    )
     alone = np.zeros(len(system.y), dtype=bool) if prepared.alone is None else prepared.alone
-    settings, numbers = np.array(prepared.settings, dtype=np.float64), np.array(prepared.numbers, dtype=np.int64)
-    memory = settings, numbers, np.zeros(prepared.work), prepared.kept
-    return Engaged(stepper, functions, interpolant, extend, mixed, *memory, prepared.text, alone, prepared.scales)
+    return Engaged(
+        stepper,
+        functions,
+        interpolant,
+        extend,
+        mixed,
+        settings=np.zeros(0),
+        numbers=np.zeros(0, dtype=np.int64),
+        work=np.zeros(0),
+        kept=prepared.kept,
+        text=prepared.text,
+        alone=alone,
+        scales=prepared.scales,
+        told=told,
+        first=prepared,
+    )

@@ -54,7 +54,8 @@ def find_event(
 ):  # fmt: skip
     """First contact in the accepted step (t0, h): (pair, length of the step up to it), or (-1, h).
 
-    With a length below h, y1 and rate1 are those at the contact. (pair, 0): a touching pair approaches at the start.
+    With a length below h, y1 and rate1 are those at the contact. (pair, 0): a touching pair approaches at the start. A
+    negative length: the step of this length has an error above 1.
     """
     dense, gap = dense_at(functions[AT_DENSE]), gap_at(functions[AT_GAP])
     pairs = leaving.size

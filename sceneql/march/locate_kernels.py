@@ -12,7 +12,7 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 ULP = 2.3e-16
 
-LOCATE = types.float64(I, N, F, types.boolean, F, F, F, A, A, A, A, A, I, A, I, A)
+LOCATE = types.UniTuple(F, 2)(I, N, F, types.boolean, F, F, F, A, A, A, A, A, I, A, I, A)
 
 
 @lean(LOCATE, inner=True)
@@ -20,18 +20,19 @@ def locate(
     functions, pair, contact, deflate, t0, low, high,
     y0, rate0, y1, work, settings, numbers, floats, ints, now,
 ):  # fmt: skip
-    """Length [s] of the step from t0 up to contact, rounded to where the pair is still apart; y1 is the state there.
+    """Length [s] of the step from t0 up to contact, rounded to where the pair is still apart, and the step's error; y1
+    is the state there.
 
     The root of (gap - contact), divided by the length if ``deflate``, by Chandrupatla's hybrid of bisection and inverse
     quadratic interpolation (Chandrupatla 1997) on steps of the solver itself. 0: the pair never leaves contact.
     Negative: no contact up to -length.
     """
     step, gap = step_at(functions[AT_STEP]), gap_at(functions[AT_GAP])
-    step(functions, t0, high, y0, rate0, y1, work, settings, numbers, floats, ints)
+    error = step(functions, t0, high, y0, rate0, y1, work, settings, numbers, floats, ints)
     gap(t0 + high, y1, now, floats, ints)
     f2 = now[pair] - contact
     if f2 >= 0.0:
-        return -high
+        return -high, error
     x2 = high
     x1 = low if low > 0.0 else high * 1e-6
     if deflate:
@@ -52,14 +53,14 @@ def locate(
             gap(t0, y0, now, floats, ints)
             f1 = now[pair] - contact
             if deflate or f1 <= 0.0:
-                return 0.0
+                return 0.0, 0.0
             x1 = 0.0
             break
     tolerance = ULP * (abs(t0) + high)
     fraction = 0.5
     while True:
         x = x1 + fraction * (x2 - x1)
-        step(functions, t0, x, y0, rate0, y1, work, settings, numbers, floats, ints)
+        error = step(functions, t0, x, y0, rate0, y1, work, settings, numbers, floats, ints)
         gap(t0 + x, y1, now, floats, ints)
         f = now[pair] - contact
         if deflate:
@@ -84,9 +85,9 @@ def locate(
             fraction = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
         fraction = min(1.0 - least, max(least, fraction))
     if f1 >= 0.0:
-        return x1
-    step(functions, t0, x2, y0, rate0, y1, work, settings, numbers, floats, ints)
-    return x2
+        return x1, error
+    error = step(functions, t0, x2, y0, rate0, y1, work, settings, numbers, floats, ints)
+    return x2, error
 
 
 @lean(FIRST_OF, inner=True)
@@ -94,13 +95,17 @@ def first_of(
     functions, pair, t0, low, high, y0, rate0, y1, rate1,
     work, settings, numbers, floats, ints, start, now, above, leaving, slop,
 ):  # fmt: skip
-    """Locate the contact of a pair, and then of each other pair that is found to be in contact even earlier."""
+    """Locate the contact of a pair, and then of each other pair that is found to be in contact even earlier.
+
+    The length is negative where the step up to it has an error above 1: forces may grow without bound towards an event,
+    as those on a rim that is about to lie flat, and the whole step have had no stage where they do.
+    """
     rate, gap = rate_at(functions[AT_RATE]), gap_at(functions[AT_GAP])
     while True:
         touched = above[pair] == 0.0
         if touched and leaving[pair] == 0:
             return pair, 0.0
-        length = locate(
+        length, error = locate(
             functions, pair, reference(start[pair], slop), touched, t0, 0.0 if touched else low, high,
             y0, rate0, y1, work, settings, numbers, floats, ints, now,
         )  # fmt: skip
@@ -114,6 +119,7 @@ def first_of(
                     earlier = other
         if earlier < 0:
             rate(t0 + math.fabs(length), y1, rate1, floats, ints)
-            return (pair, length) if length > 0.0 else (-1, -length)
+            told = math.fabs(length) if error <= 1.0 else -math.fabs(length)
+            return (pair, told) if length > 0.0 else (-1, told)
         pair = earlier
         high = length

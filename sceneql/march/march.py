@@ -18,7 +18,7 @@ from sceneql.island.island import IslandAssembly
 from sceneql.island.system import System
 from sceneql.march import march_kernels as kernels
 from sceneql.march.driver import driver
-from sceneql.march.engaged import engage
+from sceneql.march.engaged import Methods
 from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
 from sceneql.march.first_step import first_step
 from sceneql.march.pace import Pace
@@ -101,6 +101,7 @@ class March:
         """(n,) what was taken from the state at the start, as velocities that ties forbid; None: nothing settles it."""
         self._floats_time = math.nan
         self._alone = np.zeros(n, dtype=bool)
+        self._methods = Methods(several=stiff is not None)
         self._switch = None
         if stiff is not None:
             self._switch = Switch(stepper, stiff, self.rate, system.partner, end)
@@ -129,7 +130,7 @@ class March:
         if self.system.structure.local or self.system.structure.limits:
             slopes = stepper.needs.jacobian
             self.floats[channels.STAGE] = self.system.floats[channels.STAGE] if slopes else channels.NO_SLOPES
-        self._engaged = engaged = engage(self.system, stepper, self.driver, self._counts)
+        self._engaged = engaged = self._methods.begin(self.system, stepper, self.driver, counts=self._counts)
         self._settings, self._numbers, self._work = engaged.settings, engaged.numbers, engaged.work
         self._alone = engaged.alone
         self._extended = math.nan
@@ -310,24 +311,11 @@ class March:
                 left = min(left, self._last_look + self._switch.until_look - int(counts[kernels.STEPS]))
             counts[kernels.LEFT] = left
             status = kernels.march(
-                self._engaged.functions,
-                min(target, self._step_end),
-                self._step_end,
-                self._y0,
-                self._rate0,
-                self._y1,
-                self._rate1,
-                self._sample,
-                self._work,
-                self._settings,
-                self._numbers,
-                self.floats,
-                self.system.ints,
-                self._gaps,
-                self._leaving,
-                clock,
-                counts,
-            )
+                self._engaged.functions, min(target, self._step_end), self._step_end,
+                self._y0, self._rate0, self._y1, self._rate1, self._sample,
+                self._work, self._settings, self._numbers, self.floats, self.system.ints,
+                self._gaps, self._leaving, clock, counts,
+            )  # fmt: skip
             if counts[kernels.SWAPPED]:
                 self._y0, self._rate0, self._y1, self._rate1 = self._y1, self._rate1, self._y0, self._rate0
                 counts[kernels.SWAPPED] = 0

@@ -299,6 +299,10 @@ def march(
                 if take_back(t1 - t0, t0, y0, rate0, y1, rate1, clock, counts):
                     continue
                 return STEP_TOO_SMALL if counts[ADAPTIVE] > 0 else NOT_FINITE
+            if reached < 0.0:
+                reached = -reached
+                if counts[ADAPTIVE] > 0 and take_back(reached, t0, y0, rate0, y1, rate1, clock, counts):
+                    continue
             counts[PENDING] = pair
             if reached == 0.0:
                 copy(y0, y1)

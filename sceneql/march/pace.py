@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+from sceneql.doing import duration
+
 if TYPE_CHECKING:
     from sceneql.doing import Deed
 
@@ -16,8 +18,6 @@ YEARS, FEWER = 1e8, 2_000
 """Where steps take long: seconds that all would take, from which on fewer of them are enough."""
 GROWING = 1.5
 """Factor from look to look by which steps grow that are on their way to be longer."""
-MINUTES, HOURS = 100.0, 6000.0
-"""Seconds from which on a time is told in minutes, in hours."""
 
 
 class Pace:
@@ -43,16 +43,10 @@ class Pace:
         self._last, self._mean = (t, steps, now), (t - t0) / (steps - before)
         left = (self._target - t) / self._mean if self._mean > 0.0 else float("inf")
         seconds = left * (now - at) / (steps - before)
-        self._deed.what = f"solving, at {t:.6g} s: steps of {self._mean:.2g} s, to the next instant {_told(seconds)}"
+        self._deed.what = f"solving, at {t:.6g} s: steps of {self._mean:.2g} s, to the next instant {duration(seconds)}"
         self._endless = not left < MOST_STEPS
         if grown or not self._endless:
             self._looks, self._since = 0, steps
         else:
             self._looks += 1
         return self._looks >= LOOKS and steps - self._since >= (FEWER if seconds > YEARS else FEWEST)
-
-
-def _told(seconds: float) -> str:
-    if seconds < MINUTES:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60.0:.0f} min" if seconds < HOURS else f"{seconds / 3600.0:.3g} h"

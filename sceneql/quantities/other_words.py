@@ -274,7 +274,6 @@ _SENTENCES = (
     ("section", "resolution size width height", "write `outputs: {film: {video: {size: 720p}}}`"),
     ("section", "scene world root project", "the sections stand by themselves, with no key around them"),
     ("section", "floor", "write `objects: {floor: plane}`"),
-    ("part", "floor", "the floor that a scene has by itself is named once it is written: `objects: {floor: plane}`"),
     ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
     ("entry", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
 )

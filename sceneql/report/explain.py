@@ -207,7 +207,7 @@ def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
     if run.assembly.contact_why:
         return run.assembly.contact_why
     if run.assembly.contact_mode == "barrier":
-        return "the one that elastic solids have"
+        return "the one that elastic solids, and rigid bodies beside them, have"
     kinds = [graph.tasks[contact].kind for contact, _, _ in run.island.contacts]
     if all(getattr(kind, "mode", "auto") == "auto" for kind in kinds):
         return f"chosen for {run.assembly.body_count()} masses"

@@ -1,9 +1,14 @@
-"""A progress bar with what is being done, or without a terminal a line a minute; it raises interrupts that got lost."""
+"""A progress bar with what is being done, or without a terminal lines on long runs; it raises interrupts that got lost.
+
+Without a terminal there is a line a minute of what has been done for long, else, after 1, 2, 4, ... minutes, one of how
+many frames there are, and about how long they will take.
+"""
 
 from __future__ import annotations
 
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -45,8 +50,8 @@ def bar(title: str) -> Iterator[Callable[[int, int], None]]:
 @contextmanager
 def _drawn(title: str) -> Iterator[Callable[[int, int], None]]:
     if not sys.stderr.isatty():
-        with _lines(title):
-            yield lambda done, total: None
+        with _lines(title) as step:
+            yield step
         return
     shown = _Shown(title)
     waiting = threading.Timer(PATIENCE, shown.appear)
@@ -61,17 +66,27 @@ def _drawn(title: str) -> Iterator[Callable[[int, int], None]]:
 
 
 @contextmanager
-def _lines(title: str) -> Iterator[None]:
-    ended = threading.Event()
+def _lines(title: str) -> Iterator[Callable[[int, int], None]]:
+    ended, began = threading.Event(), time.monotonic()
+    steps = [0, 0]
+
+    def step(done: int, total: int) -> None:
+        steps[:] = done, total
 
     def say() -> None:
+        ticks = 0
         while not ended.wait(LINES):
+            ticks += 1
+            done, total = steps
             if what := doing.now(LONG):
                 print(f"{title}: {what}", file=sys.stderr, flush=True)
+            elif 0 < done < total and ticks & (ticks - 1) == 0:
+                left = doing.duration((time.monotonic() - began) * (total - done) / done)
+                print(f"{title}: {done:,} of {total:,}, about {left} left", file=sys.stderr, flush=True)
 
     threading.Thread(target=say, daemon=True).start()
     try:
-        yield
+        yield step
     finally:
         ended.set()
 

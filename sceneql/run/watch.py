@@ -306,8 +306,12 @@ def _singular(island: IslandRun) -> Iterator[Diagnostic]:
 
 
 def _troubled(island: IslandRun) -> Iterator[Diagnostic]:
-    """What contacts and ties say of the run at its end."""
+    """What models, contacts and ties say of the run at its end."""
     tasks = island.graph.tasks
+    for name in island.island.models:
+        text, help = cast(Model, tasks[name].kind).trouble(island.state(name))
+        if text:
+            yield Diagnostic("model-trouble", text, tasks[name].span, help, severity="warning")
     for name in dict.fromkeys(force for force, _ in island.island.forces if isinstance(tasks[force].kind, Tie)):
         if text := cast(Tie, tasks[name].kind).trouble(island.state(name)):
             yield Diagnostic("tie-trouble", text, tasks[name].span, severity="warning")

@@ -33,14 +33,14 @@ A step gets the addresses of the functions it may call: ``rate = rate_at(functio
 It may be called again from the same start with another h (a rejected step; the search for an event), and `dense`
 belongs to the latest call. After an event y0 is not the y1 of the step before.
 
-Stages: the terms run in the order `internal` (a model's own), `force`, `tie` (the forces by which bodies keep to their
-ties, found from all other forces), `close` (a model turns newtons into accelerations by its inverse masses and writes
-dx/dt = v), `constrain` (a resting contact removes accelerations into
-the surface).
+Stages: the terms run in the order `velocity` (what moves as a flow does takes its velocity), `internal` (a model's
+own), `force`, `tie` (the forces by which bodies keep to their ties, found from all other forces), `close` (a model
+turns newtons into accelerations by its inverse masses and writes dx/dt = v; what has no inertia hands them to the
+flow), `constrain` (a resting contact removes accelerations into the surface, a flow loses its divergence).
 """
 
 from sceneql.system.assembly import Assembly, Mode
-from sceneql.system.fields import Cells, Fields, Flow, Grid
+from sceneql.system.fields import Cells, Fields, Flow, Grid, Membrane
 from sceneql.system.state import Bodies, ModelState, Place, Skin, Turning
 from sceneql.system.stepping import Control, IslandFacts, Method, Needs, Prepared, Stepper
 from sceneql.system.terms import Pattern, Slopes, Stage
@@ -57,6 +57,7 @@ __all__ = [
     "Grid",
     "IslandFacts",
     "Led",
+    "Membrane",
     "Method",
     "Mode",
     "ModelState",

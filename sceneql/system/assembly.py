@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from sceneql.kinds.word import Kind
     from sceneql.quantities.expression import Expr, Link
     from sceneql.quantities.span import Span
-    from sceneql.system.fields import Flow, Grid
+    from sceneql.system.fields import Flow, Grid, Membrane
     from sceneql.system.state import ModelState, Place
     from sceneql.system.ties import Tied
 
@@ -146,8 +146,14 @@ class Assembly(Protocol):
     def flow(self, flow: Flow) -> None:
         """Say that entries of the state are an incompressible flow, the only one of the island."""
 
-    def flow_of(self, model: str) -> Flow | None:
-        """The flow of a model; None where it is none of this island's."""
+    def flow_of(self, model: str | None = None) -> Flow | None:
+        """The flow of a model, or by default the only one; None where this island has none."""
+
+    def membrane(self, membrane: Membrane) -> None:
+        """Say that entries of the state are a skin that a flow carries."""
+
+    def membrane_of(self, model: str) -> Membrane | None:
+        """The skin of a model; None where it has none."""
 
     def offer(self, output: str, grid: Grid) -> None:
         """Name a field output of the model that is being assembled; its tally of inflow follows its cells in y."""

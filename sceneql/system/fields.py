@@ -76,6 +76,17 @@ class Flow:
     """How it is solved for, for `explain`."""
 
 
+@dataclass(frozen=True, slots=True)
+class Membrane:
+    """Points without inertia, a closed skin, that move as a flow does and hand it their forces."""
+
+    count: int
+    position_at: int
+    """y[position_at + 3k : +3] [m]."""
+    force_at: int
+    """floats[force_at + 3k : +3] [N]: 0 after stage `velocity`, then what terms of `internal` and `force` add."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Fields:
     """The fields of an island: any number at centers of cells, and at most one flow."""

@@ -135,3 +135,5 @@ class IslandFacts:
     """Whether it is masses that nothing but forces at a distance moves (Force.at_a_distance)."""
     apart: bool = False
     """Whether a barrier keeps surfaces apart, towards which explicit steps would creep."""
+    tied_contacts: bool = False
+    """Whether ties and exact contacts of rigid bodies are solved together: implicit steps have no matrix for both."""

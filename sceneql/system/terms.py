@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from numpy import bool_, int64
     from numpy.typing import NDArray
 
-Stage = Literal["internal", "force", "tie", "close", "constrain"]
+Stage = Literal["velocity", "internal", "force", "tie", "close", "constrain"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

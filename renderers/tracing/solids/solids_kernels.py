@@ -6,6 +6,8 @@ import numpy as np
 from renderers.tracing.scene_kernels import part
 
 NONE = np.inf
+EDGE = 1e-9
+"""Part of a triangle by which a ray may pass beside it: rounding of rays from a million of its sizes away."""
 
 
 @part
@@ -153,7 +155,10 @@ def ball(px, py, pz, dx, dy, dz, dd, radius2):
 
 @part
 def triangle(m, k, ox, oy, oz, dx, dy, dz, near, far):
-    """Crossing of a triangle, either side (Moeller and Trumbore 1997)."""
+    """Crossing of a triangle, either side (Moeller and Trumbore 1997); by EDGE beyond its edges, too.
+
+    Rounding is not the same in two triangles with a common edge: a ray through that edge would miss both.
+    """
     ax = m[k + 3]
     ay = m[k + 4]
     az = m[k + 5]
@@ -170,13 +175,13 @@ def triangle(m, k, ox, oy, oz, dx, dy, dz, near, far):
     sy = oy - m[k + 1]
     sz = oz - m[k + 2]
     u = (sx * px + sy * py + sz * pz) / volume
-    if u < 0.0 or u > 1.0:
+    if u < -EDGE or u > 1.0 + EDGE:
         return NONE
     qx = sy * az - sz * ay
     qy = sz * ax - sx * az
     qz = sx * ay - sy * ax
     v = (dx * qx + dy * qy + dz * qz) / volume
-    if v < 0.0 or u + v > 1.0:
+    if v < -EDGE or u + v > 1.0 + EDGE:
         return NONE
     t = (bx * qx + by * qy + bz * qz) / volume
     return t if near < t < far else NONE

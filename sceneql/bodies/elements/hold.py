@@ -259,7 +259,8 @@ def _pose(hold: Hold, by: float, assembly: Assembly) -> tuple[int, int]:
                 found.append(assembly.floats(rest))
     except ValueError as error:
         message = f"a hold follows an object that moves by functions of time: {error}"
-        raise ScriptError([Diagnostic("unsupported-link", message, ref.span)]) from None
+        help = "move it by keys or a formula of `time`"
+        raise ScriptError([Diagnostic("unsupported-link", message, ref.span, help)]) from None
     return found[0], found[1]
 
 

@@ -1,12 +1,14 @@
-"""Outer edges of tetrahedra that still cut off a crease are split on it. Imports numpy.
+"""Notches that outer edges of tetrahedra leave in a crease are filled, or the edges split on it. Imports numpy.
 
-What `creases_kept` cannot move onto a crease without spoiling a tetrahedron leaves notches there. An outer edge whose
-ends stand on no surface of the object together gets a new corner where two of theirs meet, and each tetrahedron around
-it becomes two.
+What `creases_kept` cannot move onto a crease without spoiling a tetrahedron leaves notches there. Between two outer
+triangles with such an edge, whose other corners are both on the crease, one more tetrahedron fills the notch. Any other
+outer edge whose ends stand on no surface of the object together gets a new corner where two of theirs meet, and each
+tetrahedron around it becomes two.
 """
 
 from __future__ import annotations
 
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,13 +24,13 @@ from sceneql.bodies.filling.kept_creases import (
     onto_planes,
     shapes,
 )
-from sceneql.bodies.filling.tetrahedra import boundary
+from sceneql.bodies.filling.tetrahedra import boundary, edges
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 PASSES = 12
-FARTHEST_NEW = 1.0
+FARTHEST_NEW = 1.5
 """Spacings from the middle of an edge at most to its new corner."""
 NOWHERE = [np.nan] * 3
 LEAST_SHAPES = (0.08, 0.06, 0.04)
@@ -39,7 +41,7 @@ where no edge is left that can be split by the last."""
 def creases_split(
     kept: Kept, tetrahedra: Ints, spacing: float, holds: Holds, crossing: Crossing
 ) -> tuple[Floats, Ints]:
-    """Points (n, 3) and tetrahedra (t, 4), of which those on creases that are cut off are split."""
+    """Points (n, 3) and tetrahedra (t, 4), with more of them where creases were cut off."""
     points, planes = kept.points, kept.normals
     cells: Any = tetrahedra.astype(np.int64)
     level = 0
@@ -50,6 +52,10 @@ def creases_split(
         sides, chosen = _cut_off(points, planes, sides)
         if not len(sides):
             break
+        more = _filling(points, planes, cells, faces, sides, chosen)
+        if len(more):
+            cells = np.concatenate([cells, more])
+            continue
         places, good = _places(points[sides], chosen, spacing, holds, crossing)
         touched = np.zeros(len(cells), dtype=bool)
         new: list[Any] = []
@@ -100,6 +106,38 @@ def _cut_off(points: Floats, planes: Floats, sides: Any) -> tuple[Any, Floats]:
             if move < least:
                 least, chosen[k] = move, pair
     return sides[which], chosen
+
+
+def _filling(points: Floats, planes: Floats, cells: Any, faces: Any, sides: Any, chosen: Floats) -> Any:
+    """(m, 4) tetrahedra that fill notches: over outer edges (s, 2) that cut off a crease, between two of the faces.
+
+    ``chosen`` (s, 2, 3): normals of the surfaces that meet in the crease.
+    """
+    size = np.array([len(points), 1])
+    ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1) @ size
+    order = np.argsort(ends, kind="stable")
+    first, last = (np.searchsorted(ends[order], sides @ size, side) for side in ("left", "right"))
+    two = last - first == 2
+    one, other = (order[first[two] + k] for k in (0, 1))
+    across = np.concatenate([faces[:, 2], faces[:, 0], faces[:, 1]])
+    tips = np.sort(np.stack([across[one], across[other]], axis=1), axis=1)
+    new = ~np.isin(tips @ size, edges(cells)[0] @ size)
+    found: list[list[int]] = []
+    taken: set[tuple[int, int]] = set()
+    for k in np.flatnonzero(new).tolist():
+        cell = [*faces[one[k] % len(faces)].tolist(), int(across[other[k]])]
+        own = set(combinations(sorted(cell), 2))
+        on = all(_is_on(planes[tip], chosen[two][k]) for tip in tips[k])
+        if on and not own & taken and shapes(points[[cell]])[0] >= LEAST_SHAPES[0]:
+            found.append(cell)
+            taken |= own
+    return np.array(found, dtype=np.int64).reshape(-1, 4)
+
+
+def _is_on(planes: Floats, normals: Floats) -> bool:
+    """Whether a point that is on surfaces with normals ``planes`` (3, 3) is on those of about the normals (k, 3)."""
+    with np.errstate(invalid="ignore"):
+        return bool((planes @ normals.T >= CREASE).any(axis=0).all())
 
 
 def _places(ends: Floats, planes: Floats, spacing: float, holds: Holds, crossing: Crossing) -> tuple[Floats, Any]:

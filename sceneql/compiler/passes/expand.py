@@ -16,13 +16,22 @@ from sceneql.quantities.expression import Link, Number, Type
 
 
 def expand(
-    tasks: Mapping[str, Task], catalogue: Catalogue, *, without: Collection[str] = (), background: bool = False
+    tasks: Mapping[str, Task],
+    catalogue: Catalogue,
+    *,
+    without: Collection[str] = (),
+    implied: Collection[str] = (),
+    background: bool = False,
 ) -> dict[str, Task]:
     """The parts with those that the defaults add; objects that a model drives are linked to it.
 
-    ``without``: names of defaults that the script does not want. ``background``: it has one of its own.
+    ``without``: names of defaults that the script does not want; ``implied``: that it names and does not write, such as
+    a floor, which then lies where the default does. ``background``: it has one of its own.
     """
     result = dict(tasks)
+    for name in implied:
+        at_level = result[name].kind.model_copy(update={"height": _level(result)})
+        result[name] = replace(result[name], kind=at_level)
 
     def has(family: type[Kind]) -> bool:
         return any(isinstance(task.kind, family) for task in result.values())
@@ -85,6 +94,10 @@ def _staged(tasks: Mapping[str, Task]) -> bool:
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
     """A map of each field that no object reads, in the name of its model, and in place of what would hide it."""
     read = {need for task in tasks.values() if isinstance(task.kind, Object) for need in task.needs}
+    carriers = [task.kind.carrier() for task in tasks.values() if isinstance(task.kind, Interaction)]
+    for flow in carriers:  # a map of a deep flow's box would hide the skins in it
+        if flow is not None and len(getattr(tasks[flow.name].kind, "size", ())) == 3:
+            read.add(flow.name)
     for model in [task for task in tasks.values() if task.name not in read]:
         of = model.kind.shows(model.name) if isinstance(model.kind, Model) else None
         cls = None if of is None else catalogue.load("objects", "field_map")

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from sceneql.compiler.passes.reads import reads
 from sceneql.compiler.passes.touchable import no_collider, touchable
+from sceneql.compiler.passes.uncarried import report_carried
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Interaction, Model, Object, Solver, Tie
 from sceneql.quantities.diagnostic import Diagnostics, Note
@@ -32,9 +33,13 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
 
     forces = {t.name: acts_on(t, models, tasks) for t in tasks.values() if isinstance(t.kind, Interaction)}
     for force, targets in forces.items():
+        kind = tasks[force].kind
+        if isinstance(kind, Interaction) and kind.carrier() is not None:
+            continue
         if targets and not any(getattr(tasks[name].kind, "has_bodies", False) for name in targets):
             text = f"{tasks[force].word} acts on masses, and there are none in {' and '.join(targets)}"
             found.error("no-mass", text, tasks[force].span)
+    report_carried(models, forces, tasks, found)
     driver = {name: t.name for t in models if isinstance(t.kind, Model) for name in t.kind.drives()}
     inside = {ref.name: t.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
     for task in models:

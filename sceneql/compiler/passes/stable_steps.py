@@ -70,8 +70,12 @@ def _modes(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, tup
         yield name, _known(partial(model.fastest, name))
     known = {name: model.static_masses() for name, model in models.items()}
     for force in dict.fromkeys(force for force, _ in island.forces):
-        on = {model: known[model] for other, model in island.forces if other == force}
-        yield force, _known(partial(cast(Interaction, tasks[force].kind).fastest, force, on))
+        kind, on = cast(Interaction, tasks[force].kind), [model for other, model in island.forces if other == force]
+        flow = kind.carrier()
+        if flow is not None:
+            yield force, _known(partial(kind.fastest_carried, {name: models[name] for name in on}, models[flow.name]))
+            continue
+        yield force, _known(partial(kind.fastest, force, {model: known[model] for model in on}))
 
 
 def _known(modes: Callable[[], Iterable[Oscillation]]) -> tuple[Oscillation, ...]:

@@ -1,4 +1,4 @@
-"""The contacts of elastic solids, whose skins nothing passes. Imports numpy."""
+"""The contacts of elastic solids, whose skins nothing passes, and of rigid bodies beside them. Imports numpy."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.contacts.barrier.skin_pairs import add_pairs
-from sceneql.contacts.barrier.standing import add_objects
+from sceneql.contacts.barrier.standing import add_objects, add_objects_to_body
+from sceneql.contacts.barrier.surfaces_of import FIXED, elastic_surfaces, rigid_surfaces
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
@@ -19,35 +20,39 @@ GAP = 0.05
 """The gap, where the script tells none: part of the mean side of the triangles of the skins."""
 SLIP = 1e-4
 """Speed of slip below which friction is smooth: part of the size of the solids, a second."""
+COARSER = 3.0
+"""Longest edges of the triangles of rigid bodies, in mean sides of those of the skins."""
 
 
 def assemble(
     assembly: Assembly, everyone: Sequence[Bodies], refs: Sequence[Ref], friction: Value, gap: float | None
 ) -> tuple[int, ...]:
-    """Add the barriers of all skins; what the word remembers: -3, offset of gap and slip in the floats.
+    """Add the barriers of all elastic solids and rigid bodies; what the word remembers: -3, offset of gap and slip in
+    the floats.
 
-    Raises ScriptError for masses without skins, and for what starts too near.
+    Raises ScriptError for masses without surfaces, and for what starts too near.
     """
     for bodies in everyone:
-        if bodies.skin is None:
+        if bodies.skin is None and bodies.turning is None:
             message = f"'{bodies.model}' does not collide together with elastic solids yet"
             help = "name under `between` what may touch, without it"
             raise ScriptError([Diagnostic("no-collider", message, assembly.line(), help)])
-    sides, places = [], []
-    for bodies in everyone:
-        assert bodies.skin is not None
-        own = assembly.start()[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)
-        corners = own[bodies.skin.triangles]
-        sides.append(np.linalg.norm(corners - corners[:, [1, 2, 0]], axis=2).ravel())
-        places.append(corners.reshape(-1, 3))
+    elastic = [bodies for bodies in everyone if bodies.skin is not None]
+    surfaces = elastic_surfaces(elastic, assembly)
+    corners = [one.at[one.triangles] for one in surfaces]
+    sides = [np.linalg.norm(each - each[:, [1, 2, 0]], axis=2).ravel() for each in corners]
     side = float(np.concatenate(sides).mean())
     gap = GAP * side if gap is None else gap
-    slip = SLIP * float(np.linalg.norm(np.ptp(np.concatenate(places), axis=0)))
+    slip = SLIP * float(np.linalg.norm(np.ptp(np.concatenate(corners).reshape(-1, 3), axis=0)))
     rubs = not friction.constant or assembly.initial(friction) > 0.0
     told, friction_at = assembly.floats([gap, slip]), assembly.value(friction)
-    for bodies in everyone:
+    rigid = rigid_surfaces([one for one in everyone if one.turning is not None], COARSER * side, assembly)
+    stiffest = max(one.stiffness for one in surfaces)
+    for bodies in elastic if refs else ():
         assert bodies.skin is not None
-        if refs:
-            add_objects(assembly, bodies, refs, friction_at, (bodies.skin.stiffness, gap, slip), rubs)
-    add_pairs(assembly, everyone, friction_at, gap, slip, side, rubs)
+        add_objects(assembly, bodies, refs, friction_at, (bodies.skin.stiffness, gap, slip), rubs)
+    for one in rigid if refs else ():
+        if one.number != FIXED:
+            add_objects_to_body(assembly, one, refs, friction_at, (stiffest, gap, slip), rubs)
+    add_pairs(assembly, [*surfaces, *rigid], friction_at, gap, slip, side, rubs)
     return -3, told

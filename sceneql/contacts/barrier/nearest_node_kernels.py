@@ -14,7 +14,7 @@ def nearest(y, floats, ints):
     """(least distance of a node [m], its place in the list, object)."""
     least, node, other = 1e300, -1, -1
     for p in range(ints[layout.NODES]):
-        px, py, pz = place(y, ints, ints[layout.POSITION], p)
+        px, py, pz = place(y, floats, ints, p)
         for j in range(ints[layout.OBJECTS]):
             d = distance(floats, ints, p, j, px, py, pz, 0.0)[0]
             if d < least:

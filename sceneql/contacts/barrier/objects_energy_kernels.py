@@ -19,7 +19,7 @@ def energy(t, y, floats, ints):
     friction, slip, total = floats[ints[layout.FRICTION]], floats[numbers + layout.SLIP], 0.0
     a = floats[channels.STAGE]
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
-        px, py, pz = place(y, ints, ints[layout.POSITION], p)
+        px, py, pz = place(y, floats, ints, p)
         for j in range(objects):
             d = distance(floats, ints, p, j, px, py, pz, gap)[0]
             if d < gap:

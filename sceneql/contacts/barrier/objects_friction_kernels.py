@@ -13,6 +13,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import mobilized, slowed
 from sceneql.contacts.barrier.objects_kernels import distance, ends, load, place, sliding
+from sceneql.contacts.barrier.on_bodies_kernels import lightness_of_body, strike_body
 from sceneql.system.signatures_kernels import AFTER_STEP
 
 TURNS = 30
@@ -24,6 +25,9 @@ ENOUGH = 1e-4
 @lean_inlined
 def strike(y, floats, ints, p, x, y_, z):
     """Change the velocities of a point's nodes by an impulse, and take its energy as work."""
+    if ints[layout.ARMS] >= 0:
+        strike_body(y, floats, ints, ints[layout.ARMS] + 8 * p, x, y_, z)
+        return
     held = ints[layout.LIST] + ints[layout.NODES] + 2 * ints[layout.EDGES]
     i, j = ends(ints, p)
     for node in (i, j):
@@ -41,6 +45,8 @@ def strike(y, floats, ints, p, x, y_, z):
 @lean_inlined
 def lightness(floats, ints, p):
     """The inverse mass of a point."""
+    if ints[layout.ARMS] >= 0:
+        return lightness_of_body(floats, ints, ints[layout.ARMS] + 8 * p)
     i, j = ends(ints, p)
     at, first = ints[layout.INVERSE], ints[layout.LIST]
     if i == j:
@@ -57,7 +63,7 @@ def rub(t0, t1, y0, rate0, y1, floats, ints):
     if h <= 0.0:
         return False
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
-        px, py, pz = place(y1, ints, ints[layout.POSITION], p)
+        px, py, pz = place(y1, floats, ints, p)
         for j in range(objects):
             at = first + layout.LAG * (objects * p + j)
             d, a, b, c = distance(floats, ints, p, j, px, py, pz, gap)

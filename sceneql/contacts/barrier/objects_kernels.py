@@ -9,6 +9,7 @@ from sceneql.contacts import layout as surfaces
 from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import mobilized, push
 from sceneql.contacts.barrier.friction_slopes_kernels import direction
+from sceneql.contacts.barrier.on_bodies_kernels import on_body, push_body, speed_on_body
 from sceneql.contacts.shape_kernels import facing, surface, velocity
 from sceneql.system.signatures_kernels import TERM
 
@@ -28,8 +29,24 @@ def ends(ints, p):
 
 
 @lean_inlined
-def place(y, ints, start, p):
-    """A component triple of a point, from ``start`` in y on: its position or its velocity."""
+def place(y, floats, ints, p):
+    """The position of a point."""
+    if ints[layout.ARMS] >= 0:
+        return on_body(y, floats, ints, ints[layout.ARMS] + 8 * p)
+    return middle(y, ints, ints[layout.POSITION], p)
+
+
+@lean_inlined
+def speed(y, floats, ints, p):
+    """The velocity of a point."""
+    if ints[layout.ARMS] >= 0:
+        return speed_on_body(y, floats, ints, ints[layout.ARMS] + 8 * p)
+    return middle(y, ints, ints[layout.VELOCITY], p)
+
+
+@lean_inlined
+def middle(y, ints, start, p):
+    """A component triple of a point of an elastic skin, from ``start`` in y on: its position or its velocity."""
     i, j = ends(ints, p)
     a, b = start + 3 * ints[ints[layout.LIST] + i], start + 3 * ints[ints[layout.LIST] + j]
     return 0.5 * (y[a] + y[b]), 0.5 * (y[a + 1] + y[b + 1]), 0.5 * (y[a + 2] + y[b + 2])
@@ -58,9 +75,9 @@ def distance(floats, ints, p, j, x, y, z, reach):
 def sliding(y, floats, ints, p, j, a, b, c):
     """The velocity of point p across a normal, relative to object j, at the place that y tells."""
     at = layout.HEAD + surfaces.OBJECT * j
-    u, v, w = place(y, ints, ints[layout.VELOCITY], p)
+    u, v, w = speed(y, floats, ints, p)
     if ints[at + surfaces.MOVING] != 0:
-        x, y_, z = place(y, ints, ints[layout.POSITION], p)
+        x, y_, z = place(y, floats, ints, p)
         d, e, f = velocity(floats, ints, at, x, y_, z)
         u, v, w = u - d, v - e, w - f
     along = a * u + b * v + c * w
@@ -96,7 +113,7 @@ def lag(n, floats, ints):
     start = floats[floats.size - channels.BEFORE * n : floats.size - channels.BEFORE * n + n]
     total = changed = 0.0
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
-        x, y, z = place(start, ints, ints[layout.POSITION], p)
+        x, y, z = place(start, floats, ints, p)
         for j in range(ints[layout.OBJECTS]):
             at = first + layout.LOADS + layout.LAG * (ints[layout.OBJECTS] * p + j)
             d, a, b, c = distance(floats, ints, p, j, x, y, z, gap)
@@ -112,8 +129,11 @@ def lag(n, floats, ints):
 
 
 @lean_inlined
-def add(rate, y, ints, p, x, y_, z):
-    """Add a force to the two nodes of a point, and take its power from the work."""
+def add(rate, y, floats, ints, p, x, y_, z):
+    """Add a force to the two nodes of a point, or to its body, and take its power from the work."""
+    if ints[layout.ARMS] >= 0:
+        rate[ints[layout.WORK]] -= push_body(y, rate, floats, ints, ints[layout.ARMS] + 8 * p, x, y_, z)
+        return
     i, j = ends(ints, p)
     for node in (i, j):
         at = ints[layout.VELOCITY] + 3 * ints[ints[layout.LIST] + node]
@@ -134,19 +154,19 @@ def force(t, y, rate, floats, ints):
         lag(y.size, floats, ints)
     holds = floats[channels.STAGE] == channels.NO_SLOPES
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
-        px, py, pz = place(y, ints, ints[layout.POSITION], p)
+        px, py, pz = place(y, floats, ints, p)
         for j in range(objects):
             d, a, b, c = distance(floats, ints, p, j, px, py, pz, gap)
             pressed = 0.0
             if d < gap:
                 pressed = load(floats, ints, p, d)
-                add(rate, y, ints, p, pressed * a, pressed * b, pressed * c)
+                add(rate, y, floats, ints, p, pressed * a, pressed * b, pressed * c)
             if friction == 0.0:
                 continue
             if holds:
                 at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j) + layout.HELD
                 if floats[at] != 0.0 or floats[at + 1] != 0.0 or floats[at + 2] != 0.0:
-                    add(rate, y, ints, p, floats[at], floats[at + 1], floats[at + 2])
+                    add(rate, y, floats, ints, p, floats[at], floats[at + 1], floats[at + 2])
                 continue
             if lagged:
                 at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j)
@@ -154,4 +174,4 @@ def force(t, y, rate, floats, ints):
             if pressed > 0.0:
                 u, v, w = sliding(y, floats, ints, p, j, a, b, c)
                 drag = -friction * pressed * mobilized(math.sqrt(u * u + v * v + w * w), slip)
-                add(rate, y, ints, p, drag * u, drag * v, drag * w)
+                add(rate, y, floats, ints, p, drag * u, drag * v, drag * w)

@@ -1,7 +1,7 @@
 """The integers of a barrier between a skin and what stands: indices by name."""
 
-POSITION, VELOCITY, WORK, INVERSE, NODES, EDGES, LIST, NUMBERS, FRICTION, AREAS, LAGGED, KNOWN, OBJECTS, HEAD = range(
-    14
+POSITION, VELOCITY, WORK, INVERSE, NODES, EDGES, LIST, NUMBERS, FRICTION, AREAS, LAGGED, KNOWN, OBJECTS, ARMS, HEAD = (
+    range(15)
 )
 """Offsets of the bodies in y, and of their inverse masses in the floats; numbers of the skin's NODES and EDGES; at
 LIST, in these integers: the nodes, then two places in that list for each edge, then whether each component of each node
@@ -9,7 +9,8 @@ is held; offsets in the floats of NUMBERS, of the coefficient of friction, of th
 friction has LAGGED, and of what is KNOWN of distances; number of objects, which follow from HEAD on
 (contacts/layout.py).
 
-The points of a skin are its nodes and the middles of its edges."""
+The points of a skin are its nodes and the middles of its edges. Of a rigid body they are NODES alone: there is no LIST,
+and the system.Place of each stands in these integers from ARMS on, which else is -1."""
 
 STIFFNESS, GAP, SLIP = range(3)
 """NUMBERS: stiffness [Pa], gap [m], speed of slip [m/s]."""

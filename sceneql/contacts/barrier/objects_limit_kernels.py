@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""How far points of a skin may go before they reach objects, by conservative advancement."""
+"""How far points of a skin or a rigid body may go before they reach objects, by conservative advancement."""
 
 import math
 
@@ -7,6 +7,7 @@ from sceneql.compiled.kernels import lean
 from sceneql.contacts import layout as surfaces
 from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.objects_kernels import distance, place
+from sceneql.contacts.barrier.on_bodies_kernels import swept, turned
 from sceneql.system.signatures_kernels import LIMIT
 
 LEFT = 0.01
@@ -23,10 +24,16 @@ def limit(t, y, changed, floats, ints):
     """
     part = 1.0
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
-        px, py, pz = place(y, ints, ints[layout.POSITION], p)
-        qx, qy, qz = place(changed, ints, ints[layout.POSITION], p)
+        px, py, pz = place(y, floats, ints, p)
+        qx, qy, qz = place(changed, floats, ints, p)
         u, v, w = qx - px, qy - py, qz - pz
-        way = math.sqrt(u * u + v * v + w * w)
+        arm, turning = ints[layout.ARMS] + 8 * p, 0.0
+        if ints[layout.ARMS] >= 0:
+            turning = turned(y, changed, floats, ints, arm)
+        if turning > 0.0:
+            c = ints[layout.POSITION]
+            u, v, w = changed[c] - y[c], changed[c + 1] - y[c + 1], changed[c + 2] - y[c + 2]
+        way = math.sqrt(u * u + v * v + w * w) + turning
         if not way < math.inf:
             return 0.0
         if way == 0.0:
@@ -38,7 +45,7 @@ def limit(t, y, changed, floats, ints):
                     return 0.0
                 continue
             least, done = LEFT * d, 0.0
-            if ints[layout.HEAD + surfaces.OBJECT * j + surfaces.FLAT] != 0:
+            if ints[layout.HEAD + surfaces.OBJECT * j + surfaces.FLAT] != 0 and turning == 0.0:
                 end = distance(floats, ints, p, j, qx, qy, qz, 0.0)[0]
                 if end < least:
                     part = min(part, (d - least) / (d - end))
@@ -49,7 +56,10 @@ def limit(t, y, changed, floats, ints):
                     break
                 # A place so near the end of the way that rounding alone is left ends it.
                 done += (d - least) / way
-                d = distance(floats, ints, p, j, px + done * u, py + done * v, pz + done * w, way * (part - done))[0]
+                x, y_, z = px + done * u, py + done * v, pz + done * w
+                if turning > 0.0:
+                    x, y_, z = swept(y, changed, floats, ints, arm, done)
+                d = distance(floats, ints, p, j, x, y_, z, way * (part - done))[0]
                 if d <= 2.0 * least:
                     break
             part = min(part, done)

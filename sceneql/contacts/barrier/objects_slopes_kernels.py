@@ -41,11 +41,42 @@ def spread(entries, ints, first, p, weight, xx, xy, xz, yy, yz, zz):
         add_block(entries, 9 * block, 0.25 * weight, xx, xy, xz, yy, yz, zz)
 
 
+@lean_inlined
+def pressing(y, floats, ints, p, j, lagged):
+    """(load [N] and normal (3) of friction on object j; minus the stiffness [N/m], and its normal (3)) of a point."""
+    numbers = ints[layout.NUMBERS]
+    gap = floats[numbers + layout.GAP]
+    px, py, pz = place(y, floats, ints, p)
+    d, a, b, c = distance(floats, ints, p, j, px, py, pz, gap)
+    pressed = steep = 0.0
+    if d < gap:
+        pressed = load(floats, ints, p, d)
+        steep = -floats[ints[layout.AREAS] + p] * floats[numbers + layout.STIFFNESS] / gap * steepness(d / gap)
+    if lagged:
+        at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (ints[layout.OBJECTS] * p + j)
+        return floats[at], floats[at + 1], floats[at + 2], floats[at + 3], steep, a, b, c
+    return pressed, a, b, c, steep, a, b, c
+
+
+@lean_inlined
+def rubbed(y, old, new, floats, ints, p, j, a, b, c, lagged, slip):
+    """The derivative of a point's friction over its load (friction_slopes_kernels.resistance)."""
+    u, v, w = sliding(y, floats, ints, p, j, a, b, c)
+    if lagged:
+        at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (ints[layout.OBJECTS] * p + j) + layout.HELD
+        ou, ov, ow = sliding(old, floats, ints, p, j, a, b, c)
+        nu, nv, nw = sliding(new, floats, ints, p, j, a, b, c)
+        q, r, s = foreseen(floats[at], floats[at + 1], floats[at + 2], ou, ov, ow, nu, nv, nw, slip)
+        floats[at], floats[at + 1], floats[at + 2] = q, r, s
+    else:
+        q, r, s = direction(u, v, w, slip)
+    return resistance(a, b, c, u, v, w, q, r, s, slip)
+
+
 @lean(TERM, inner=True)
 def slopes(t, y, entries, floats, ints):
     """The blocks; rows of held components are 0."""
     numbers, objects, nodes = ints[layout.NUMBERS], ints[layout.OBJECTS], ints[layout.NODES]
-    stiffness, gap = floats[numbers + layout.STIFFNESS], floats[numbers + layout.GAP]
     friction, slip = floats[ints[layout.FRICTION]], floats[numbers + layout.SLIP]
     lagged = friction > 0.0 and floats[channels.STAGE] > 0.0
     blocks = nodes + 2 * ints[layout.EDGES]
@@ -54,32 +85,13 @@ def slopes(t, y, entries, floats, ints):
         before = after = 0
     old, new = floats[before : before + y.size], floats[after : after + y.size]
     for p in range(nodes + ints[layout.EDGES]):
-        px, py, pz = place(y, ints, ints[layout.POSITION], p)
         for j in range(objects):
-            d, a, b, c = distance(floats, ints, p, j, px, py, pz, gap)
-            pressed = 0.0
-            if d < gap:
-                pressed = load(floats, ints, p, d)
-                steep = floats[ints[layout.AREAS] + p] * stiffness / gap * steepness(d / gap)
-                spread(entries, ints, 0, p, -steep, a * a, a * b, a * c, b * b, b * c, c * c)
-            if friction == 0.0:
-                continue
-            at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (objects * p + j)
-            if lagged:
-                pressed, a, b, c = floats[at], floats[at + 1], floats[at + 2], floats[at + 3]
-            if not pressed > 0.0:
-                continue
-            u, v, w = sliding(y, floats, ints, p, j, a, b, c)
-            if lagged:
-                k = at + layout.HELD
-                ou, ov, ow = sliding(old, floats, ints, p, j, a, b, c)
-                nu, nv, nw = sliding(new, floats, ints, p, j, a, b, c)
-                q, r, s = foreseen(floats[k], floats[k + 1], floats[k + 2], ou, ov, ow, nu, nv, nw, slip)
-                floats[k], floats[k + 1], floats[k + 2] = q, r, s
-            else:
-                q, r, s = direction(u, v, w, slip)
-            xx, xy, xz, yy, yz, zz = resistance(a, b, c, u, v, w, q, r, s, slip)
-            spread(entries, ints, blocks, p, -friction * pressed, xx, xy, xz, yy, yz, zz)
+            pressed, a, b, c, steep, x, y_, z = pressing(y, floats, ints, p, j, lagged)
+            if steep != 0.0:
+                spread(entries, ints, 0, p, steep, x * x, x * y_, x * z, y_ * y_, y_ * z, z * z)
+            if friction > 0.0 and pressed > 0.0:
+                xx, xy, xz, yy, yz, zz = rubbed(y, old, new, floats, ints, p, j, a, b, c, lagged, slip)
+                spread(entries, ints, blocks, p, -friction * pressed, xx, xy, xz, yy, yz, zz)
     held = ints[layout.LIST] + blocks
     for k in range(2 * blocks):
         row = k % blocks

@@ -42,9 +42,9 @@ def square(x, a, b):
     return u * u + v * v + w * w
 
 
-@lean(TWELVE(A, A, I, N, types.boolean))
-def stencil(y, floats, ints, m, edges):
-    """(distance, normal (3), weights (4), gap, stiffness times area, share, its slope) of pair m.
+@lean(TWELVE(A, I, N, types.boolean))
+def stencil(floats, ints, m, edges):
+    """(distance, normal (3), weights (4), gap, stiffness times area, share, its slope) of pair m of vertices NOW.
 
     The distance is infinite where it is beyond the gap. Of edges that are nearly parallel the share of the barrier is
     below 1; its slope is that by the square of their vector product.
@@ -55,15 +55,15 @@ def stencil(y, floats, ints, m, edges):
         node(floats, ints, m, edges, 2),
         node(floats, ints, m, edges, 3),
     )
-    a, b, c, d = vertex(ints, i), vertex(ints, j), vertex(ints, k), vertex(ints, n)
-    p, q, r, s = ints[a], ints[b], ints[c], ints[d]
+    a, c, now = vertex(ints, i), vertex(ints, k), ints[layout.NOW]
+    p, q, r, s = now + 3 * i, now + 3 * j, now + 3 * k, now + 3 * n
     gap = floats[ints[layout.NUMBERS] + layout.GAP]
     rest = ints[layout.REST]
     if edges:
-        found, nx, ny, nz, u, v = edge_edge(y, p, q, r, s)
+        found, nx, ny, nz, u, v = edge_edge(floats, p, q, r, s)
         w0, w1, w2, w3 = 1.0 - u, u, v - 1.0, -v
     else:
-        found, nx, ny, nz, w1, w2, w3 = point_triangle(y, p, q, r, s)
+        found, nx, ny, nz, w1, w2, w3 = point_triangle(floats, p, q, r, s)
         w0, w1, w2, w3 = 1.0, -w1, -w2, -w3
     if found < gap and ints[a + layout.BODY] == ints[c + layout.BODY]:
         i, j, k, n = rest + 3 * i, rest + 3 * j, rest + 3 * k, rest + 3 * n
@@ -79,8 +79,8 @@ def stencil(y, floats, ints, m, edges):
         at = ints[layout.EDGES_AT] + 2 * m
         areas += ints[layout.VERTICES]
         area = 0.25 * (floats[areas + int(floats[at])] + floats[areas + int(floats[at + 1])])
-        x, y_, z = product(y, p, q, r, s)
-        across = x * x + y_ * y_ + z * z
+        x, y, z = product(floats, p, q, r, s)
+        across = x * x + y * y + z * z
         i, j, k, n = (
             node(floats, ints, m, edges, 0),
             node(floats, ints, m, edges, 1),

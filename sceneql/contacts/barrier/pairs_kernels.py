@@ -11,12 +11,16 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
+from sceneql.contacts.barrier.distance_kernels import edge_edge, point_triangle
+from sceneql.contacts.barrier.on_bodies_kernels import on_body
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MARGIN = 0.1
 """The margin in mean sides of triangles, where nothing moves further."""
 FREE = 0.9
 """Part of the distance at the start between parts of one solid that counts as a gap where it is less than the gap."""
+WIDE = 2.0
+"""Margins from which on those beside rigid bodies are looked for anew."""
 LEAST = 1e-3
 """Margin in gaps below which no room for the pairs is a failure."""
 
@@ -40,29 +44,41 @@ def end(ints, e, c):
     return ints[first + 2 * e + c]
 
 
+@lean(types.void(A, A, I, N))
+def stand(y, floats, ints, first):
+    """Write where the vertices are at a state to floats[first:]."""
+    for k in range(ints[layout.VERTICES]):
+        at, to = vertex(ints, k), first + 3 * k
+        if ints[at + layout.ARM] < 0:
+            p = ints[at]
+            floats[to], floats[to + 1], floats[to + 2] = y[p], y[p + 1], y[p + 2]
+        else:
+            floats[to], floats[to + 1], floats[to + 2] = on_body(y, floats, ints, at)
+
+
 @lean_inlined
-def mean_motion(y, floats, ints):
+def mean_motion(floats, ints, first):
     """Of all vertices since pairs were looked for."""
     u = v = w = 0.0
     at, count = ints[layout.MEMORY] + layout.AT, ints[layout.VERTICES]
     for k in range(count):
-        p = ints[vertex(ints, k)]
-        u += y[p] - floats[at + 3 * k]
-        v += y[p + 1] - floats[at + 3 * k + 1]
-        w += y[p + 2] - floats[at + 3 * k + 2]
+        p = first + 3 * k
+        u += floats[p] - floats[at + 3 * k]
+        v += floats[p + 1] - floats[at + 3 * k + 1]
+        w += floats[p + 2] - floats[at + 3 * k + 2]
     return u / count, v / count, w / count
 
 
-@lean(F(A, A, I))
-def gone(y, floats, ints):
-    """How far a vertex has gone since pairs were looked for, at most [m]."""
-    u, v, w = mean_motion(y, floats, ints)
+@lean(F(A, I, N))
+def gone(floats, ints, first):
+    """How far a vertex has gone since pairs were looked for, at most [m]; they are where floats[first:] say."""
+    u, v, w = mean_motion(floats, ints, first)
     at, most = ints[layout.MEMORY] + layout.AT, 0.0
     for k in range(ints[layout.VERTICES]):
-        p = ints[vertex(ints, k)]
-        a = y[p] - floats[at + 3 * k] - u
-        b = y[p + 1] - floats[at + 3 * k + 1] - v
-        c = y[p + 2] - floats[at + 3 * k + 2] - w
+        p = first + 3 * k
+        a = floats[p] - floats[at + 3 * k] - u
+        b = floats[p + 1] - floats[at + 3 * k + 1] - v
+        c = floats[p + 2] - floats[at + 3 * k + 2] - w
         square = a * a + b * b + c * c
         if not square <= most:
             most = square
@@ -120,16 +136,27 @@ def fill(floats, ints, size, edges):
 
 
 @lean_inlined
-def meets(floats, ints, at, edges, f, m, a, b, c, box):
-    """Whether a vertex or edge m is none of triangle or edge f (a, b, c), comes behind it, and meets its box."""
+def meets(floats, ints, at, edges, f, m, a, b, c, box, reach):
+    """Whether a vertex or edge m is none of triangle or edge f (a, b, c), comes behind it, and meets its box.
+
+    No two places of one rigid body ever meet. Those of a round one are so many beside the skins' triangles that their
+    distances are looked at, too.
+    """
     d, e = end(ints, m, 0) if edges else m, end(ints, m, 1) if edges else m
     if (edges and m <= f) or d == a or d == b or d == c or e == a or e == b or e == c:
+        return False
+    own, other = vertex(ints, d), vertex(ints, a)
+    if ints[own + layout.BODY] < 0 and ints[own + layout.BODY] == ints[other + layout.BODY]:
         return False
     u, v = at + 3 * d, at + 3 * e
     for k in range(3):
         if max(floats[u + k], floats[v + k]) < box[2 * k] or min(floats[u + k], floats[v + k]) > box[2 * k + 1]:
             return False
-    return True
+    if ints[own + layout.BODY] >= 0 and ints[other + layout.BODY] >= 0:
+        return True
+    if edges:
+        return edge_edge(floats, at + 3 * a, at + 3 * b, u, v)[0] <= reach
+    return point_triangle(floats, u, at + 3 * a, at + 3 * b, at + 3 * c)[0] <= reach
 
 
 @lean(N(A, I, F, types.boolean))
@@ -163,7 +190,7 @@ def gather(floats, ints, reach, edges):
         if not wide * (1.0 + (z1 - z0 + 2.0 * longest) / size) < count:
             # A triangle that a stage's state has torn wide open spans more cells than there are vertices.
             for m in range(count):
-                if meets(floats, ints, at, edges, f, m, a, b, c, box):
+                if meets(floats, ints, at, edges, f, m, a, b, c, box, reach):
                     if found == most:
                         return -1
                     floats[first + 2 * found] = f
@@ -188,7 +215,7 @@ def gather(floats, ints, reach, edges):
                         # A place in another cell of the same hash is found there.
                         if math.floor(mx / size) != p or math.floor(my / size) != q or math.floor(mz / size) != r:
                             continue
-                        if not meets(floats, ints, at, edges, f, m, a, b, c, box):
+                        if not meets(floats, ints, at, edges, f, m, a, b, c, box, reach):
                             continue
                         if found == most:
                             return -1
@@ -199,17 +226,15 @@ def gather(floats, ints, reach, edges):
     return found
 
 
-@lean(F(A, A, I, F))
-def look(y, floats, ints, margin):
-    """List the pairs that are near at a state; the margin that there was room for."""
-    memory = ints[layout.MEMORY]
-    for k in range(ints[layout.VERTICES]):
-        p = ints[vertex(ints, k)]
-        for c in range(3):
-            floats[memory + layout.AT + 3 * k + c] = y[p + c]
-            if not abs(y[p + c]) < 1e30:
-                floats[memory + layout.BUILT] = 0.0
-                return 0.0
+@lean(F(A, I, F))
+def look(floats, ints, margin):
+    """List the pairs that are near where vertices are NOW; the margin that there was room for."""
+    memory, now = ints[layout.MEMORY], ints[layout.NOW]
+    for k in range(3 * ints[layout.VERTICES]):
+        floats[memory + layout.AT + k] = floats[now + k]
+        if not abs(floats[now + k]) < 1e30:
+            floats[memory + layout.BUILT] = 0.0
+            return 0.0
     gap = floats[ints[layout.NUMBERS] + layout.GAP]
     while margin > LEAST * gap:
         points = gather(floats, ints, gap + 2.0 * margin, False)
@@ -228,8 +253,13 @@ def look(y, floats, ints, margin):
 
 @lean(types.boolean(A, A, I))
 def known(y, floats, ints):
-    """See to it that the list of pairs holds at a state; False where there is no room, or the state is not finite."""
-    memory = ints[layout.MEMORY]
-    if floats[memory + layout.BUILT] == 1.0 and gone(y, floats, ints) <= floats[memory + layout.MARGIN]:
-        return True
-    return look(y, floats, ints, MARGIN * floats[ints[layout.NUMBERS] + layout.SIDE]) > 0.0
+    """See to it that vertices are NOW where they are at a state, and that the list of pairs holds there; False where
+    there is no room, or the state is not finite."""
+    memory, now = ints[layout.MEMORY], ints[layout.NOW]
+    margin = MARGIN * floats[ints[layout.NUMBERS] + layout.SIDE]
+    stand(y, floats, ints, now)
+    if floats[memory + layout.BUILT] == 1.0 and gone(floats, ints, now) <= floats[memory + layout.MARGIN]:
+        # The list of a long way would stay for many steps: of round bodies, whose triangles are many, it is a long one.
+        if ints[layout.RIGID] == 0 or floats[memory + layout.MARGIN] <= WIDE * margin:
+            return True
+    return look(floats, ints, margin) > 0.0

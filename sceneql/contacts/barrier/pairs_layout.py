@@ -13,23 +13,29 @@ VERTICES, TRIANGLES, EDGES, LIST, NUMBERS, FRICTION, AREAS, STIFFNESS, REST = ra
     MOST_LAGGED,
     LAGGED_BEFORE,
     LOADS,
+    NOW,
+    RIGID,
     PLACES,
     HEAD,
-) = range(9, 22)
+) = range(9, 24)
 """Numbers of VERTICES, TRIANGLES, EDGES of all skins; at LIST, in these integers: VERTEX integers for a vertex, three
 vertices for each triangle, two for each edge.
 
 Offsets in the floats: of NUMBERS, of the coefficient of friction, of the AREAS [m^2] of vertices, then edges, of the
 STIFFNESS [Pa] of vertices, of the places of vertices at the start (3), of the MEMORY; of pairs of a vertex and a
 triangle, and how many there is room for; likewise of two edges; of the scratch of the grid, and its number of CELLS; of
-what friction has lagged, for how many pairs there is room, of those of the step before, and of the loads on the
-vertices (behind those before).
+what friction has lagged, for how many pairs there is room, of those of the step before, of the loads on the
+vertices (behind those before), and of where vertices are (3) at the state that is looked at: NOW; behind that (3) at
+the end of a change, and how far (1) its turning takes the vertex at most [m].
 
-At PLACES, in these integers: the first place of each vertex's row and the end, then the column of each place."""
+RIGID: the number of vertices of rigid bodies.
 
-POSITION, VELOCITY, WORK, INVERSE, BODY, HELD, VERTEX = 0, 1, 2, 3, 4, 5, 8
-"""A vertex: offsets of position, velocity and work in y, of its inverse mass in the floats, its solid, whether each
-component is held."""
+At PLACES, in these integers: the first place of each vertex's row and the end, then the column of each place; where
+there are rigid bodies, of each carrier (carried_slopes_kernels.py)."""
+
+POSITION, VELOCITY, WORK, INVERSE, ROTATION, MOMENTUM, INERTIA, ARM, BODY, HELD, VERTEX = *range(10), 12
+"""A vertex: the integers of its system.Place, with an ARM on a rigid body; its solid, whether each component is
+held."""
 
 GAP, SLIP, SIDE = range(3)
 """NUMBERS: the gap, speed of slip, mean side of the triangles."""

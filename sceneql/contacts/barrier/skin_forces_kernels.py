@@ -9,15 +9,19 @@ from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import barrier, mobilized, push
 from sceneql.contacts.barrier.friction_slopes_kernels import direction
 from sceneql.contacts.barrier.objects_kernels import stale
+from sceneql.contacts.barrier.on_bodies_kernels import push_body, speed_on_body
 from sceneql.contacts.barrier.pair_weights_kernels import listed, node, product, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
 from sceneql.system.signatures_kernels import TERM
 
 
 @lean_inlined
-def add(rate, y, ints, k, x, y_, z):
+def add(rate, y, floats, ints, k, x, y_, z):
     """Add a force to a vertex, and take its power from the work."""
     at = vertex(ints, k)
+    if ints[at + layout.ARM] >= 0:
+        rate[ints[at + layout.WORK]] -= push_body(y, rate, floats, ints, at, x, y_, z)
+        return
     v = ints[at + layout.VELOCITY]
     rate[v] += x
     rate[v + 1] += y_
@@ -26,12 +30,22 @@ def add(rate, y, ints, k, x, y_, z):
 
 
 @lean_inlined
+def speed(y, floats, ints, at):
+    """The velocity of the vertex of ints[at:]."""
+    if ints[at + layout.ARM] >= 0:
+        return speed_on_body(y, floats, ints, at)
+    p = ints[at + layout.VELOCITY]
+    return y[p], y[p + 1], y[p + 2]
+
+
+@lean_inlined
 def sliding(y, floats, ints, at):
     """The velocity of a lagged pair across its normal."""
     u = v = w = 0.0
     for k in range(4):
-        p, weight = ints[vertex(ints, int(floats[at + k])) + layout.VELOCITY], floats[at + layout.WEIGHTS + k]
-        u, v, w = u + weight * y[p], v + weight * y[p + 1], w + weight * y[p + 2]
+        own, weight = vertex(ints, int(floats[at + k])), floats[at + layout.WEIGHTS + k]
+        x, y_, z = speed(y, floats, ints, own)
+        u, v, w = u + weight * x, v + weight * y_, w + weight * z
     a, b, c = floats[at + layout.NORMAL], floats[at + layout.NORMAL + 1], floats[at + layout.NORMAL + 2]
     along = a * u + b * v + c * w
     return u - along * a, v - along * b, w - along * c
@@ -77,7 +91,7 @@ def keep_all(y, floats, ints):
         return
     for edges in (False, True):
         for m in range(listed(floats, ints, edges)):
-            found = stencil(y, floats, ints, m, edges)
+            found = stencil(floats, ints, m, edges)
             if 0.0 < found[0] < math.inf:
                 keep(y, floats, ints, m, edges, found)
     total = changed = 0.0
@@ -94,7 +108,16 @@ def hold_on(y, rate, floats, ints):
         f = at + layout.FRICTION_OF
         for k in range(4):
             weight = floats[at + layout.WEIGHTS + k]
-            add(rate, y, ints, int(floats[at + k]), weight * floats[f], weight * floats[f + 1], weight * floats[f + 2])
+            add(
+                rate,
+                y,
+                floats,
+                ints,
+                int(floats[at + k]),
+                weight * floats[f],
+                weight * floats[f + 1],
+                weight * floats[f + 2],
+            )
 
 
 @lean(TERM, inner=True)
@@ -117,29 +140,30 @@ def force(t, y, rate, floats, ints):
         return
     for edges in (False, True):
         for m in range(listed(floats, ints, edges)):
-            found = stencil(y, floats, ints, m, edges)
+            found = stencil(floats, ints, m, edges)
             d = found[0]
             if d == math.inf:
                 continue
             pressed = found[9] * found[10] * push(d / found[8])
             for k in range(4):
                 f = pressed * found[4 + k]
-                add(rate, y, ints, node(floats, ints, m, edges, k), f * found[1], f * found[2], f * found[3])
+                add(rate, y, floats, ints, node(floats, ints, m, edges, k), f * found[1], f * found[2], f * found[3])
             if found[11] > 0.0:
                 i, j = node(floats, ints, m, edges, 0), node(floats, ints, m, edges, 1)
                 k, n = node(floats, ints, m, edges, 2), node(floats, ints, m, edges, 3)
-                p, q, r, s = ints[vertex(ints, i)], ints[vertex(ints, j)], ints[vertex(ints, k)], ints[vertex(ints, n)]
-                a, b, c = product(y, p, q, r, s)
+                now = ints[layout.NOW]
+                p, q, r, s = now + 3 * i, now + 3 * j, now + 3 * k, now + 3 * n
+                a, b, c = product(floats, p, q, r, s)
                 # The slope of |u x v|^2 is 2 v x (u x v) by u, and 2 (u x v) x u by v.
                 less = 2.0 * found[9] * found[8] * barrier(d / found[8]) * found[11]
-                u, v, w = y[s] - y[r], y[s + 1] - y[r + 1], y[s + 2] - y[r + 2]
+                u, v, w = floats[s] - floats[r], floats[s + 1] - floats[r + 1], floats[s + 2] - floats[r + 2]
                 x, y_, z = less * (v * c - w * b), less * (w * a - u * c), less * (u * b - v * a)
-                add(rate, y, ints, i, x, y_, z)
-                add(rate, y, ints, j, -x, -y_, -z)
-                u, v, w = y[q] - y[p], y[q + 1] - y[p + 1], y[q + 2] - y[p + 2]
+                add(rate, y, floats, ints, i, x, y_, z)
+                add(rate, y, floats, ints, j, -x, -y_, -z)
+                u, v, w = floats[q] - floats[p], floats[q + 1] - floats[p + 1], floats[q + 2] - floats[p + 2]
                 x, y_, z = less * (b * w - c * v), less * (c * u - a * w), less * (a * v - b * u)
-                add(rate, y, ints, k, x, y_, z)
-                add(rate, y, ints, n, -x, -y_, -z)
+                add(rate, y, floats, ints, k, x, y_, z)
+                add(rate, y, floats, ints, n, -x, -y_, -z)
     if friction == 0.0 or floats[channels.STAGE] == channels.NO_SLOPES:
         return
     for m in range(int(floats[memory + layout.LAGGED])):
@@ -148,4 +172,4 @@ def force(t, y, rate, floats, ints):
         drag = -friction * floats[at + layout.LOAD] * mobilized(math.sqrt(u * u + v * v + w * w), slip)
         for k in range(4):
             f = drag * floats[at + layout.WEIGHTS + k]
-            add(rate, y, ints, int(floats[at + k]), f * u, f * v, f * w)
+            add(rate, y, floats, ints, int(floats[at + k]), f * u, f * v, f * w)

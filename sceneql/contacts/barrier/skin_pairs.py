@@ -1,4 +1,4 @@
-"""The barrier between skins: of several solids, and of one with itself. Imports numpy."""
+"""The barrier between surfaces: of several solids, and of an elastic one with itself. Imports numpy."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from sceneql.contacts.barrier.surfaces_of import Surface
     from sceneql.frame import Floats
-    from sceneql.system import Assembly, Bodies, Slopes
+    from sceneql.system import Assembly, Slopes
 
 KERNELS = "sceneql.contacts.barrier.skin_forces_kernels:force"
 ENERGY = "sceneql.contacts.barrier.skins_energy_kernels:energy"
@@ -38,6 +39,8 @@ class Places:
     count: int
     keys: NDArray[int64]
     """Ascending, i * count + j."""
+    rows: NDArray[int64]
+    """(n, VERTEX) of pairs_layout."""
 
     def add(self, vertices: Any) -> bool:
         """Add all pairs among rows of four vertices (k, 4); whether any is new."""
@@ -47,46 +50,46 @@ class Places:
         self.keys = np.union1d(self.keys, more)
         return len(self.keys) > before
 
+    def slopes(self, ints: NDArray[int64]) -> Slopes:
+        """The blocks of all these pairs; ``ints``: the integers of the term."""
+        from sceneql.system import Slopes
+
+        row, column = np.divmod(self.keys, self.count)
+        starts = np.searchsorted(row, np.arange(self.count + 1))
+        by = [self.rows[column, which] for which in (layout.POSITION, layout.VELOCITY)]
+        own = np.concatenate([ints, starts, column])
+        return Slopes(SLOPES, np.tile(self.rows[row, layout.VELOCITY], 2), np.concatenate(by), own, blocks=True)
+
 
 def add_pairs(
     assembly: Assembly,
-    everyone: Sequence[Bodies],
+    surfaces: Sequence[Surface],
     friction_at: int,
     gap: float,
     slip: float,
     side: float,
     rubs: bool,
 ) -> None:
-    """Add the barrier between the skins of ``everyone``; ``side``: the mean side of their triangles [m]; ``rubs``:
-    whether there may be friction.
+    """Add the barrier between surfaces; ``side``: the mean side of the triangles of elastic ones [m]; ``rubs``: whether
+    there may be friction.
 
-    Raises ScriptError where skins cross or touch at the start.
+    Raises ScriptError where they cross or touch at the start.
     """
-    vertices, triangles, held, stiffness, places = [], [], [], [], []
-    first = 0
-    for number, bodies in enumerate(everyone):
-        skin = bodies.skin
-        assert skin is not None
-        nodes, which = np.unique(skin.triangles, return_inverse=True)
-        triangles.append(first + which.reshape(-1, 3))
-        first += len(nodes)
-        own = [bodies.position_at + 3 * nodes, bodies.velocity_at + 3 * nodes]
-        vertices.append(
-            np.column_stack(
-                [*own, np.full_like(nodes, bodies.work_at), bodies.inverse_at + nodes, np.full_like(nodes, number)]
-            )
-        )
-        held.append(skin.held[nodes])
-        stiffness.append(np.full(len(nodes), skin.stiffness))
-        places.append(assembly.start()[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)[nodes])
-    rest, corners = np.concatenate(places), np.concatenate(triangles)
+    firsts = np.cumsum([0, *(len(one.at) for one in surfaces)])
+    corners = np.concatenate([first + one.triangles for first, one in zip(firsts, surfaces, strict=False)])
+    stiffest = max(one.stiffness for one in surfaces if not one.rigid)
+    stiffness = [np.full(len(one.at), min(one.stiffness, stiffest)) for one in surfaces]
+    solid = np.repeat([one.number for one in surfaces], np.diff(firsts))
+    rest = np.concatenate([one.at for one in surfaces])
     sides = np.sort(corners[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     edges, of_side = np.unique(sides, axis=0, return_inverse=True)
     thirds = np.repeat(areas_of(rest[corners]) / 3.0, 3)
     areas = [np.bincount(corners.ravel(), thirds, len(rest)), np.bincount(of_side.ravel(), thirds, len(edges))]
     points_most, edges_most, lagged_most = ROOM * len(rest), ROOM * len(edges), ROOM // 4 * len(edges)
     cells = 2 * len(edges) + 1
-    rows = np.column_stack([np.concatenate(vertices), np.concatenate(held).astype(np.int64)])
+    rows = np.column_stack(
+        [np.concatenate([one.places for one in surfaces]), solid, np.concatenate([one.held for one in surfaces])]
+    ).astype(np.int64)
     lists = np.concatenate([rows.ravel(), corners.ravel(), edges.ravel()]).astype(np.int64)
     head = [
         *(len(rest), len(corners), len(edges), layout.HEAD),
@@ -102,30 +105,28 @@ def add_pairs(
         *(assembly.floats(np.zeros(layout.LAG * lagged_most)), lagged_most),
         assembly.floats(np.zeros(layout.BEFORE * lagged_most)),
         assembly.floats(np.zeros(2 * len(rest))),
+        assembly.floats(np.zeros(7 * len(rest))),
+        int((solid < 0).sum()),
         layout.HEAD + len(lists),
     ]
     ints = np.concatenate([np.array(head, dtype=np.int64), lists])
-    known = Places(len(rest), np.arange(len(rest), dtype=np.int64) * (len(rest) + 1))
-    velocities = rows[:, layout.VELOCITY]
+    if any(one.rigid for one in surfaces):
+        from sceneql.contacts.barrier.carriers import Carriers
+
+        known: Places = Carriers.of(surfaces, rows)
+    else:
+        known = Places(len(rest), np.arange(len(rest), dtype=np.int64) * (len(rest) + 1), rows)
 
     def grow(floats: Floats) -> bool:
         near = listed(floats, ints)
         soon = near[near[:, 0] < gap + AHEAD * side]
         return known.add(soon[:, 1:]) or known.add(near[:, 1:])
 
-    def slopes() -> Slopes:
-        from sceneql.system import Slopes
-
-        row, column = np.divmod(known.keys, known.count)
-        starts = np.searchsorted(row, np.arange(known.count + 1))
-        by = [rows[column, which] for which in (layout.POSITION, layout.VELOCITY)]
-        own = np.concatenate([ints, starts, column])
-        return Slopes(SLOPES, np.tile(velocities[row], 2), np.concatenate(by), own, blocks=True)
-
     start = assembly.start(), assembly.numbers()
-    _must_be_apart(start, ints, rows, rest, everyone, assembly)
-    _must_not_cross(rest, corners, edges, rows, everyone, assembly)
-    assembly.term("force", KERNELS, ints.tolist(), slopes, energy=ENERGY)
+    names = np.repeat([one.model for one in surfaces], np.diff(firsts))
+    _must_be_apart(start, ints, rest, names, assembly)
+    _must_not_cross(rest, corners, edges, rows, names, assembly)
+    assembly.term("force", KERNELS, ints.tolist(), lambda: known.slopes(ints), energy=ENERGY)
     assembly.limit(LIMIT, ints.tolist())
     if rubs:
         assembly.after_step(AFTER, ints.tolist())
@@ -143,25 +144,21 @@ def listed(floats: Floats, ints: Any) -> Floats:
     return found
 
 
-def _must_be_apart(
-    start: tuple[Floats, Floats], ints: Any, rows: Any, rest: Floats, everyone: Sequence[Bodies], assembly: Assembly
-) -> None:
-    """Raise ScriptError where two skins touch or cross at the start."""
+def _must_be_apart(start: tuple[Floats, Floats], ints: Any, rest: Floats, names: Any, assembly: Assembly) -> None:
+    """Raise ScriptError where two surfaces touch or cross at the start."""
     from sceneql.contacts.barrier.pairs_kernels import known
 
     y, floats = start
     known(y, floats, ints)
     near = listed(floats, ints)
-    body = rows[:, layout.BODY]
     touching = near[near[:, 0] <= 1e-9 * float(np.abs(rest).max())]
     if len(touching):
-        _refuse("touches", int(touching[0, 1]), int(touching[0, 3]), rest, body, everyone, assembly)
+        _refuse("touches", int(touching[0, 1]), int(touching[0, 3]), rest, names, assembly)
 
 
-def _must_not_cross(
-    rest: Floats, corners: Any, edges: Any, rows: Any, everyone: Sequence[Bodies], assembly: Assembly
-) -> None:
-    """Raise ScriptError where an edge of the skins passes through a triangle at the start: each pair that is near."""
+def _must_not_cross(rest: Floats, corners: Any, edges: Any, rows: Any, names: Any, assembly: Assembly) -> None:
+    """Raise ScriptError where an edge passes through a triangle at the start: each pair that is near, but those of one
+    rigid body and of what is fixed."""
     from scipy.spatial import cKDTree
 
     a, b, c = (rest[corners[:, k]] for k in range(3))
@@ -174,6 +171,8 @@ def _must_not_cross(
     face = np.concatenate([np.asarray(some, dtype=np.int64) for some in near])
     first, last = (np.einsum("ij,ij->i", end[edge] - a[face], across[face]) for end in (p, q))
     shared = (corners[face][:, :, None] == edges[edge][:, None, :]).any(axis=(1, 2))
+    own, other = rows[edges[edge, 0], layout.BODY], rows[corners[face, 0], layout.BODY]
+    shared |= (own < 0) & (own == other)
     some = np.flatnonzero((first * last < 0.0) & ~shared)
     edge, face, part = edge[some], face[some], first[some] / (first[some] - last[some])
     hit = p[edge] + part[:, None] * (q[edge] - p[edge])
@@ -183,15 +182,13 @@ def _must_not_cross(
     if inside.any():
         k = np.flatnonzero(inside)[0]
         one, other = int(edges[edge[k], 0]), int(corners[face[k], 0])
-        _refuse("crosses", one, other, rest, rows[:, layout.BODY], everyone, assembly)
+        _refuse("crosses", one, other, rest, names, assembly)
 
 
-def _refuse(
-    what: str, one: int, other: int, rest: Floats, body: Any, everyone: Sequence[Bodies], assembly: Assembly
-) -> None:
+def _refuse(what: str, one: int, other: int, rest: Floats, names: Any, assembly: Assembly) -> None:
     """Raise the ScriptError that skins touch or cross at a vertex."""
     x, y, z = rest[one]
-    names = [everyone[int(body[k])].model for k in (one, other)]
-    told = f"'{names[0]}' {what} itself" if names[0] == names[1] else f"'{names[0]}' {what} '{names[1]}'"
+    first, second = str(names[one]), str(names[other])
+    told = f"'{first}' {what} itself" if first == second else f"'{first}' {what} '{second}'"
     text = f"{told} at the start, at ({x:.4g}, {y:.4g}, {z:.4g}) m"
     raise ScriptError([Diagnostic("starts-inside", text, assembly.line(), "leave a distance between them")])

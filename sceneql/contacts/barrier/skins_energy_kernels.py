@@ -22,7 +22,7 @@ def energy(t, y, floats, ints):
     a, total = floats[channels.STAGE], 0.0
     for edges in (False, True):
         for m in range(listed(floats, ints, edges)):
-            found = stencil(y, floats, ints, m, edges)
+            found = stencil(floats, ints, m, edges)
             if found[0] < math.inf:
                 total += found[9] * found[8] * found[10] * barrier(found[0] / found[8])
     if friction > 0.0 and a > 0.0:

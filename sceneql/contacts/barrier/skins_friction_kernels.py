@@ -7,6 +7,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import mobilized, slowed
 from sceneql.contacts.barrier.objects_friction_kernels import ENOUGH, TURNS
+from sceneql.contacts.barrier.on_bodies_kernels import lightness_of_body, strike_body
 from sceneql.contacts.barrier.pairs_kernels import vertex
 from sceneql.contacts.barrier.skin_forces_kernels import keep_all, sliding
 from sceneql.system.signatures_kernels import AFTER_STEP
@@ -17,6 +18,9 @@ def strike(y, floats, ints, at, x, y_, z):
     """Change the velocities of a pair's vertices by an impulse, and take its energy as work."""
     for k in range(4):
         own, weight = vertex(ints, int(floats[at + k])), floats[at + layout.WEIGHTS + k]
+        if ints[own + layout.ARM] >= 0:
+            strike_body(y, floats, ints, own, weight * x, weight * y_, weight * z)
+            continue
         inverse = floats[ints[own + layout.INVERSE]]
         for c in range(3):
             part = weight * (x if c == 0 else y_ if c == 1 else z)
@@ -75,7 +79,11 @@ def rub(t0, t1, y0, rate0, y1, floats, ints):
             f, n, light = at + layout.FRICTION_OF, at + layout.NORMAL, 0.0
             for k in range(4):
                 weight = floats[at + layout.WEIGHTS + k]
-                light += weight * weight * floats[ints[vertex(ints, int(floats[at + k])) + layout.INVERSE]]
+                own = vertex(ints, int(floats[at + k]))
+                if ints[own + layout.ARM] >= 0:
+                    light += weight * weight * lightness_of_body(floats, ints, own)
+                else:
+                    light += weight * weight * floats[ints[own + layout.INVERSE]]
             light *= h
             a, b, c = floats[n], floats[n + 1], floats[n + 2]
             along = a * floats[f] + b * floats[f + 1] + c * floats[f + 2]

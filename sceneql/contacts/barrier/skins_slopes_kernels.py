@@ -34,6 +34,22 @@ def place(ints, i, j):
 
 
 @lean_inlined
+def rubbed(y, old, new, floats, ints, at, lagged, slip):
+    """The derivative of a lagged pair's friction over its load (friction_slopes_kernels.resistance)."""
+    u, v, w = sliding(y, floats, ints, at)
+    if lagged:
+        f = at + layout.FRICTION_OF
+        ou, ov, ow = sliding(old, floats, ints, at)
+        nu, nv, nw = sliding(new, floats, ints, at)
+        p, q, r = foreseen(floats[f], floats[f + 1], floats[f + 2], ou, ov, ow, nu, nv, nw, slip)
+        floats[f], floats[f + 1], floats[f + 2] = p, q, r
+    else:
+        p, q, r = direction(u, v, w, slip)
+    a, b, c = floats[at + layout.NORMAL], floats[at + layout.NORMAL + 1], floats[at + layout.NORMAL + 2]
+    return resistance(a, b, c, u, v, w, p, q, r, slip)
+
+
+@lean_inlined
 def add(entries, floats, ints, first, i, j, weight, xx, xy, xz, yy, yz, zz):
     """Add a symmetric 3x3 to the block of two vertices; ask for it where there is none."""
     at = place(ints, i, j)
@@ -53,7 +69,7 @@ def slopes(t, y, entries, floats, ints):
     blocks = ints[rows + count]
     for edges in (False, True):
         for m in range(listed(floats, ints, edges)):
-            found = stencil(y, floats, ints, m, edges)
+            found = stencil(floats, ints, m, edges)
             if found[0] == math.inf:
                 continue
             a, b, c = found[1], found[2], found[3]
@@ -73,18 +89,8 @@ def slopes(t, y, entries, floats, ints):
         old, new = floats[before : before + y.size], floats[after : after + y.size]
         for m in range(int(floats[ints[layout.MEMORY] + layout.LAGGED])):
             at = ints[layout.LAG_AT] + layout.LAG * m
-            u, v, w = sliding(y, floats, ints, at)
-            a, b, c = floats[at + layout.NORMAL], floats[at + layout.NORMAL + 1], floats[at + layout.NORMAL + 2]
-            if lagged:
-                f = at + layout.FRICTION_OF
-                ou, ov, ow = sliding(old, floats, ints, at)
-                nu, nv, nw = sliding(new, floats, ints, at)
-                p, q, r = foreseen(floats[f], floats[f + 1], floats[f + 2], ou, ov, ow, nu, nv, nw, slip)
-                floats[f], floats[f + 1], floats[f + 2] = p, q, r
-            else:
-                p, q, r = direction(u, v, w, slip)
             load = -friction * floats[at + layout.LOAD]
-            xx, xy, xz, yy, yz, zz = resistance(a, b, c, u, v, w, p, q, r, slip)
+            xx, xy, xz, yy, yz, zz = rubbed(y, old, new, floats, ints, at, lagged, slip)
             for k in range(4):
                 for n in range(4):
                     i, j = int(floats[at + k]), int(floats[at + n])

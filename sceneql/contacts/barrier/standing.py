@@ -1,8 +1,8 @@
-"""A barrier between the skin of a solid and what stands. Imports numpy."""
+"""A barrier between what moves, the skin of a solid or a rigid body, and what stands. Imports numpy."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from sceneql.contacts.colliders import surfaces
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
+    from sceneql.contacts.barrier.surfaces_of import Surface
     from sceneql.frame import Floats
     from sceneql.kinds import Ref
     from sceneql.system import Assembly, Bodies, Slopes
@@ -21,6 +22,7 @@ ENERGY = "sceneql.contacts.barrier.objects_energy_kernels:energy"
 LIMIT = "sceneql.contacts.barrier.objects_limit_kernels:limit"
 AFTER = "sceneql.contacts.barrier.held_friction_kernels:rub_objects"
 SLOPES = "sceneql.contacts.barrier.objects_slopes_kernels:slopes"
+BODY_SLOPES = "sceneql.contacts.barrier.body_on_objects_slopes_kernels:slopes"
 
 
 def add_objects(
@@ -58,9 +60,10 @@ def add_objects(
         assembly.floats(np.zeros(layout.LOADS + layout.LAG * points * len(refs))),
         assembly.floats(np.full(layout.KNOW * points * len(refs), -1.0)),
         len(refs),
+        -1,
     )
     ints = (*head, *objects, *nodes.tolist(), *edges.ravel().tolist(), *np.ravel(skin.held[nodes]).astype(int).tolist())
-    _must_be_apart(bodies, refs, places[nodes], nodes, ints, numbers[layout.GAP], assembly)
+    _must_be_apart(bodies.model, refs, places[nodes], ints, numbers[layout.GAP], assembly)
 
     def slopes() -> Slopes:
         from sceneql.system import Slopes
@@ -70,6 +73,46 @@ def add_objects(
         by = [start + 3 * nodes[columns] for start in (bodies.position_at, bodies.velocity_at)]
         return Slopes(SLOPES, np.concatenate(at), np.concatenate(by), blocks=True)
 
+    _add(assembly, ints, slopes, rubs)
+
+
+def add_objects_to_body(
+    assembly: Assembly,
+    surface: Surface,
+    refs: Sequence[Ref],
+    friction_at: int,
+    numbers: tuple[float, float, float],
+    rubs: bool,
+) -> None:
+    """Add the barrier between a rigid body and objects, as `add_objects`: at its vertices."""
+    thirds = np.repeat(areas_of(surface.at[surface.triangles]) / 3.0, 3)
+    count = len(surface.at)
+    position, velocity, work, inverse = surface.places[0, :4].tolist()
+    objects = surfaces(refs, assembly, layout.HEAD)
+    head = (
+        *(position, velocity, work, inverse, count, 0, -1),
+        assembly.floats(numbers),
+        friction_at,
+        assembly.floats(np.bincount(surface.triangles.ravel(), thirds, count)),
+        assembly.floats(np.zeros(layout.LOADS + layout.LAG * count * len(refs))),
+        assembly.floats(np.full(layout.KNOW * count * len(refs), -1.0)),
+        len(refs),
+        layout.HEAD + len(objects),
+    )
+    ints = (*head, *objects, *surface.places.ravel().tolist())
+    _must_be_apart(surface.model, refs, surface.at, ints, numbers[layout.GAP], assembly)
+
+    def slopes() -> Slopes:
+        from sceneql.bodies.rigid.place_slopes import force_places
+        from sceneql.system import Slopes
+
+        place = surface.places[0].tolist()
+        return Slopes(BODY_SLOPES, *force_places([(place, place)]))
+
+    _add(assembly, ints, slopes, rubs)
+
+
+def _add(assembly: Assembly, ints: tuple[int, ...], slopes: Callable[[], Slopes], rubs: bool) -> None:
     assembly.term("force", KERNELS, ints, slopes, energy=ENERGY)
     assembly.limit(LIMIT, ints)
     if rubs:
@@ -83,9 +126,7 @@ def areas_of(corners: Floats) -> Floats:
     return found
 
 
-def _must_be_apart(
-    bodies: Bodies, refs: Sequence[Ref], places: Floats, nodes: Any, ints: Any, gap: float, assembly: Assembly
-) -> None:
+def _must_be_apart(model: str, refs: Sequence[Ref], places: Floats, ints: Any, gap: float, assembly: Assembly) -> None:
     """Raise ScriptError where a node of the skin starts on or in an object."""
     from sceneql.contacts.barrier.nearest_node_kernels import nearest
 
@@ -95,7 +136,7 @@ def _must_be_apart(
     x, y, z = places[node]
     where = f"{-d:.3g} m deep" if d < -1e-9 * float(np.abs(places).max()) else "on its surface"
     ref = refs[other]
-    text = f"'{bodies.model}' starts inside '{ref.name}', {where} at ({x:.4g}, {y:.4g}, {z:.4g}) m"
-    text = text if "deep" in where else f"'{bodies.model}' starts on '{ref.name}' at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+    text = f"'{model}' starts inside '{ref.name}', {where} at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+    text = text if "deep" in where else f"'{model}' starts on '{ref.name}' at ({x:.4g}, {y:.4g}, {z:.4g}) m"
     help = f"leave a distance: forces begin at the gap of {gap:.3g} m"
     raise ScriptError([Diagnostic("starts-inside", text, ref.span or assembly.line(), help)])

@@ -37,10 +37,11 @@ CALM, STEEP, DECADES = 50.0, 15.0, 6.0
 """Level up to which events are not crowded; what it rises by for this height to be tenfold; how often it may be."""
 TIRED = 200.0
 """Level from which impacts have no restitution."""
-
-
 ENDLESS = 3000.0
 """Level from which they have no end."""
+OFTEN, LIES = 20.0, 3e-5
+"""Level from which a circle that rocks on a face, or runs round on it, comes to lie there; the most that it is tilted
+and rises then, in parts of its size: what rocks so often is tilted by about 0.01 over the level's square."""
 
 
 @lean(F(A, I, N))
@@ -79,6 +80,12 @@ def count_event(t, floats, ints, pair):
 def level(floats, ints, pair):
     """How crowded the events of a pair were at its latest."""
     return floats[ints[KEPT_AT] + spots(ints) + 2 * pair]
+
+
+@lean(types.boolean(A, I, N))
+def rocks_often(floats, ints, pair):
+    """Whether a circle that rocks comes to lie, if it is low, at an event of a pair."""
+    return level(floats, ints, pair) > OFTEN
 
 
 @lean(F(A, I, N))

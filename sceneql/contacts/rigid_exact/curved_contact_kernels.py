@@ -120,7 +120,7 @@ def follow_on_face(floats, at, a, b):
             # On its way through the face's plane: the point stays.
             on = 0.0
             px, py, pz = out_of(floats, shape, FLAT * u, y, FLAT * w)
-        elif x * u + z * w < 0.0:
+        elif x * u + z * w < -0.5 * math.sqrt(x * x + z * z):
             turn = on = -1.0
     rx, ry, rz = turned(floats, a + AT_TURN, *farthest(floats, shape, px, py, pz, floats[at + SIGN], turn))
     qx, qy, qz = turned(floats, b + AT_TURN, *three(floats, at + OWN_B))

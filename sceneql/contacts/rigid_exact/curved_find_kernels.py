@@ -46,10 +46,11 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
+from sceneql.contacts.rigid_exact.crowd_kernels import LIES
 from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FORM, RING, SIZES
 from sceneql.contacts.rigid_exact.curved_contact_kernels import FLAT, ON_CORNER, ON_EDGE, ON_FACE, own
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, into, slant
-from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT, core_at
+from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT, core_at, pull_at
 from sceneql.contacts.rigid_exact.rim_kernels import on_circle
 from sceneql.system.signatures_kernels import A, F, I, N
 
@@ -62,10 +63,10 @@ PARALLEL = 1e-7
 PIECES = 8
 """Pieces of an edge that are looked at for places that are nearest."""
 HALVINGS = 60
-PAIR_NAME, FIRST, SECOND, SHAPE_OF_A, SHAPE_OF_B, MOVER_A, MOVER_B, COLUMN_B, CORE_OF_A, WHO = range(10)
+PAIR_NAME, FIRST, SECOND, SHAPE_OF_A, SHAPE_OF_B, MOVER_A, MOVER_B, COLUMN_B, CORE_OF_A, ROCKS, WHO = range(11)
 """Integers of a question: the pair, numbers of both shapes, where these begin among the integers, and where both movers
 begin among the floats; where the shape of b begins if it is a column, of which SHAPE_OF_B is the axis (else -1), and
-that of a's axis."""
+that of a's axis; whether a circle of a may have rocked so often that it comes to lie (crowd_kernels)."""
 
 
 @lean_inlined
@@ -78,6 +79,7 @@ def is_curved(ints, a):
 def ask(ints, pair, a, b, ma, mb):
     """Write a question about a pair of shapes, whose movers begin at ma and mb; where it stands."""
     who = ints[WHO_AT]
+    ints[who + ROCKS] = 0
     ints[who + PAIR_NAME], ints[who + FIRST], ints[who + SECOND] = pair, a, b
     ints[who + MOVER_A], ints[who + MOVER_B] = ma, mb
     ints[who + SHAPE_OF_A], ints[who + SHAPE_OF_B] = ints[SHAPES_AT] + SHAPE * a, core_at(ints, b)
@@ -144,6 +146,19 @@ def over_face(floats, ints, shape, face, x, y, z):
     return True
 
 
+@lean(types.boolean(A, I, N, F, F, F, F))
+def comes_to_lie(floats, ints, who, sine, nx, ny, nz):
+    """Whether a circle that is tilted against a face rocks so low, and so often, that it comes to lie there."""
+    if ints[who + ROCKS] == 0 or sine > LIES:
+        return False
+    ax, ay, az = three(floats, ints[who + MOVER_A] + AT_W)
+    bx, by, bz = three(floats, ints[who + MOVER_B] + AT_W)
+    x, y, z = cross(nx, ny, nz, ax - bx, ay - by, az - bz)
+    p, q, r = three(floats, pull_at(ints, ints[who + FIRST]))
+    radius = floats[ints[ints[who + SHAPE_OF_A] + FLOATS] + SIZES]
+    return 2.0 * radius * (x * x + y * y + z * z) <= math.sqrt(p * p + q * q + r * r) * LIES
+
+
 FOUND = types.Tuple((N, F))(A, I, N, F, N, N)
 
 
@@ -171,7 +186,8 @@ def on_faces(floats, ints, who, margin, next, most):
         nx, ny, nz = turned(floats, mb + AT_TURN, mx, my, mz)
         dx, dy, dz = own(floats, ma, -nx, -ny, -nz)
         sine = slant(floats, fa, dx, dy, dz)
-        flat = sine <= FLAT
+        flat = sine <= FLAT or comes_to_lie(floats, ints, who, sine, nx, ny, nz)
+        within = margin + (2.1 * floats[fa + SIZES] * sine if sine > FLAT and flat else 0.0)
         ux, uz = first_point(floats, fa, ma, mb, nx, ny, nz, dx, dy, dz, most > 0) if flat else (1.0, 0.0)
         for side in range(2 if floats[fa + FORM] == COLUMN else 1):
             for spot in range(4 if flat else 1):
@@ -191,7 +207,7 @@ def on_faces(floats, ints, who, margin, next, most):
                 if solid and not over_face(floats, ints, sb, k, x, y, z):
                     continue
                 least = min(least, gap)
-                if gap > margin or count == most:
+                if gap > within or count == most:
                     continue
                 rec = next + RECORD * count
                 begin_record(floats, ints, rec, who, CORNER_FACE if flat else ON_FACE, radius, fa)

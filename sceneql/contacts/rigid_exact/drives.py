@@ -68,4 +68,4 @@ def _rates(tie: Tied, drive: Drive, assembly: Assembly) -> tuple[int, int]:
         return assembly.value(Value(first, target.span)), assembly.value(Value(rate(first), target.span))
     except ValueError as error:
         message = f"it cannot be told how what the motor of '{tie.name}' follows changes: {error}"
-        raise ScriptError([Diagnostic("no-velocity", message, target.span, "mode: local takes it")]) from None
+        raise ScriptError([Diagnostic("no-velocity", message, target.span, "`mode: local` takes it")]) from None

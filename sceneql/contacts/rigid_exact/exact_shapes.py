@@ -140,7 +140,7 @@ def led_by(ref: Ref, assembly: Assembly) -> Led | None:
     if isinstance(height, Value) and not height.constant:
         message = f"the height of '{ref.name}' varies, by which mode `exact` does not follow it"
         raise ScriptError(
-            [Diagnostic("no-collider", message, height.span, "mode: local does; a plane moves by `position`, too")]
+            [Diagnostic("no-collider", message, height.span, "`mode: local` does; a plane moves by `position`, too")]
         )
     mover = led_side(ref, kind, assembly).mover
     assert isinstance(mover, Led)

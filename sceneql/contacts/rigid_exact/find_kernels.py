@@ -33,9 +33,10 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as KIND_OF
+from sceneql.contacts.rigid_exact.crowd_kernels import rocks_often
 from sceneql.contacts.rigid_exact.curved_ahead_kernels import meet_ahead
 from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
-from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved
+from sceneql.contacts.rigid_exact.curved_find_kernels import ROCKS, ask, is_curved
 from sceneql.contacts.rigid_exact.exact_hold_kernels import CREEP, STILL, still
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
@@ -237,6 +238,8 @@ def find(t, y, floats, ints, points, names, goes_on):
             continue
         if is_curved(ints, sa):
             who = ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b))
+            # What rocks, or runs round its circle, again and again and lower than is seen comes to lie.
+            ints[who + ROCKS] = not goes_on and rocks_often(floats, ints, pair)
             count += meet_ahead(floats, ints, who, margin, next + RECORD * count, most - count)
             continue
         more = touching(floats, ints, pair, a, b, margin, next + RECORD * count, most - count, points, names)

@@ -67,7 +67,7 @@ def assemble(
     n = len(found.moving)
     if n > MOST:
         message = f"{n} rigid bodies are too many for contacts in mode `exact`: at most {MOST}"
-        raise ScriptError([Diagnostic("invalid", message, assembly.line(), "mode: local takes more")])
+        raise ScriptError([Diagnostic("invalid", message, assembly.line(), "`mode: local` takes more")])
     if gives_way and n > 1 and any(is_column(shape) for shape in found.shapes):
         # One that stands and is struck has made energy, where its rim is near to be let go.
         message = "a cylinder that other bodies strike is in `exact` by name alone"

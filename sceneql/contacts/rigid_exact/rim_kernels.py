@@ -340,13 +340,17 @@ def tilt(floats, ints, rec):
 
 @lean(F(A, I, N))
 def lying(floats, ints, rec):
-    """How far a contact is from lying flat [m]: below 0 once it has fallen over to the other side of its circle."""
+    """How far a contact is from lying flat [m]: below 0 once its place on the circle has turned by 60 degrees.
+
+    One that falls through the flat is on the other side of its circle at once. One that falls past it runs round its
+    circle, the faster the nearer it is to the flat: it is followed by such events.
+    """
     tilted = floats[rec + OWN_A] != 0.0 or floats[rec + OWN_A + 2] != 0.0
     if floats[rec + KIND] != ON_FACE or not tilted:
         return math.inf
     size = smaller(floats, ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
     x, _, z = tilt(floats, ints, rec)
-    return size * (x * floats[rec + OWN_A] + z * floats[rec + OWN_A + 2])
+    return size * (x * floats[rec + OWN_A] + z * floats[rec + OWN_A + 2] - 0.5 * math.sqrt(x * x + z * z))
 
 
 @lean(types.boolean(A, I, N))

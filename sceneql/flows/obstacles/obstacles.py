@@ -73,7 +73,8 @@ class Solids:
                 self.levels.append(inside(ref, faces.axes == 2, cast("Moment", Start(assembly)))[0])
             except (TypeError, ValueError) as error:
                 message = f"'{ref.name}' cannot stand in a flow: {error}"
-                raise ScriptError([Diagnostic("no-domain", message, ref.span)]) from error
+                help = "take an object with an inside: a mesh that is closed, an outline"
+                raise ScriptError([Diagnostic("no-domain", message, ref.span, help)]) from error
         if domain is not None:
             self.levels.append(around(domain, faces, named, assembly))
         axes, centers = list(range(faces.axes)), self._centers()

@@ -36,7 +36,7 @@ class SkinVelocities:
         for number, formula in self.formulas:
             if timed(formula.expr):
                 text = "the velocity of a solid's wall does not vary in time"
-                raise ScriptError([Diagnostic("invalid", text, formula.span)])
+                raise ScriptError([Diagnostic("invalid", text, formula.span, "write it by place alone: `[-y, x]`")])
             if formula.expr.type.shape != (axes,):
                 text = f"this velocity needs {axes} components, one for each side of the box"
                 raise ScriptError([Diagnostic("wrong-shape", text, formula.span)])

@@ -18,6 +18,7 @@ import math
 
 from numba import types
 
+import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.flows.fourier_kernels import transform
@@ -229,9 +230,9 @@ def tally(op, y0, y1, floats):
 
 
 @lean_inlined
-def remember(t, y0, latest, n_before, start, before, end, settings, numbers):
+def remember(t, y0, latest, n_before, start, before, end, settings, numbers, settled):
     """Whether this step goes on from the latest, whose start and rates are then those before, or repeats it."""
-    if t == settings[END] and same(y0, end):
+    if t == settings[END] and (settled or same(y0, end)):
         for k in range(y0.size):
             before[k], n_before[k] = start[k], latest[k]
         settings[LENGTH] = settings[END] - settings[START]
@@ -254,7 +255,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     q = floats[one[PRESSURE] : one[PRESSURE] + cells]
     scheme = numbers[SCHEME]
     rate = rate_at(functions[AT_RATE])
-    remember(t, y0, latest, n_before, start, before, end, settings, numbers)
+    settled = floats[channels.SETTLED] != 0.0
+    remember(t, y0, latest, n_before, start, before, end, settings, numbers, settled)
     has_before = numbers[HAS_BEFORE] == 1
     if not has_before and t != settings[START]:  # the pressure of the start, or after a change from outside
         rate(t, y0, latest, floats, ints)

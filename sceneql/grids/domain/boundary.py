@@ -114,6 +114,8 @@ def shares(
             known = ", ".join((*cells.names, "rest"))
             text = f"the boundary has no part '{name}'"
             raise ScriptError([Diagnostic("unknown-boundary", text, part.span or line, f"it has {known}")])
+        if part.periodic and name in SIDES and periodic[cells.names.index(name) // 2]:
+            continue  # the side across from it has said so of both
         mine = _faces_of(name, part, cells, taken)
         both = mine & taken
         if both.any():

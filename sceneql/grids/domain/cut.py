@@ -278,7 +278,12 @@ def _held_faces(level: Level, grid: Frame, phi: Floats, cells: Any, areas: list[
         after = _after(areas[axis], grid, axis)
         for area, way in ((areas[axis], 1), (after, -1)):
             mine = np.flatnonzero(cells & (area == 0.0))
-            other = phi[np.roll(index, way, axis=2 - axis).ravel()[mine]]
+            beyond = np.roll(index, way, axis=2 - axis).ravel()[mine]
+            other = phi[beyond]
+            last = np.flatnonzero((mine - beyond) * way < 0)  # the grid ends here, and its other end is no neighbor
+            outer = centers[mine[last]]
+            outer[:, axis] -= way * grid.spacing[axis]
+            other[last] = level.values(outer)
             share = np.where(other > 0.0, phi[mine] / np.where(other > 0.0, phi[mine] - other, 1.0), 0.5)
             distance = np.clip(share, NEAREST_HELD, 1.0) * grid.spacing[axis]
             points = centers[mine]

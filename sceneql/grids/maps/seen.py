@@ -91,6 +91,14 @@ def seen(of: Value, moment: Moment) -> Seen:
     return Seen(model, layout, between, between.filled(values), float(values.min()), float(values.max()))
 
 
+def swings(of: Value, moment: Moment) -> bool:
+    """Whether a value is a field that swings about 0, as its model says of its outputs."""
+    if not isinstance(of.expr, Link):
+        return False
+    model: Any = moment.object(Ref(of.expr.task, of.span))
+    return of.expr.output in getattr(model, "swinging", ())
+
+
 class AtStart:
     """The part of kinds.Moment that an object's field and extent may read, at the start of the run.
 

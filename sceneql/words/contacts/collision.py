@@ -89,7 +89,11 @@ class Collision(Contact):
     Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
     no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There
     is no restitution; friction is Coulomb's but below a slip of 0.01 % of the solids' size a second. An edge of an
-    object that is sharper than the elements may enter between these places.
+    object that is sharper than the elements may enter between these places. Rigid bodies that collide with elastic
+    solids do so by the barrier, too, and with one another and with objects there: by triangles of up to 3 sides of the
+    skins, of a ball by 1,280 that lie within half a hundredth of its radius. What they keep apart is no smaller than
+    the gap; friction acts on both sides of it, and so may turn them a little by that arm. `points`, `normals` and
+    `forces` do not tell of the barrier, and bodies that ties hold do not collide with elastic solids.
 
     Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
     at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
@@ -240,26 +244,31 @@ class Collision(Contact):
             yield Problem(f"mode {self.mode} has no gap: the mode barrier of elastic solids has", ("gap",), at_key=True)
 
     def refusals(self, models: Mapping[str, Model]) -> Iterator[Diagnostic]:
-        """Masses and rigid bodies beside elastic solids; a moment against rolling that nothing would have."""
+        """Masses beside elastic solids; a moment against rolling that nothing would have."""
         soft = self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values())
-        hard = next((name for name, model in models.items() if not model.has_skin), None)
+        hard = next((name for name, model in models.items() if not (model.has_skin or model.turns)), None)
         if soft and hard is not None:
             message = f"'{hard}' does not collide together with elastic solids yet"
             written = next((ref.span for ref in self.between or () if ref.name == hard), None)
             yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
-        if self.rolling.span is None or not models or any(model.turns for model in models.values()):
+        if self.rolling.span is None or not models:
+            return
+        turning = any(model.turns for model in models.values())
+        if turning and not soft:
             return
         if soft:
             why = "elastic solids roll by their own elasticity"
         else:
             why = f"'{next(iter(models))}' has masses, which do not turn"
         message = f"{why}: there is no moment against rolling"
-        yield Diagnostic("no-rolling", message, self.rolling.span, "rigid bodies have")
+        help = "rigid bodies have, in a collision of their own" if turning else "rigid bodies have"
+        yield Diagnostic("no-rolling", message, self.rolling.span, help)
 
     def assemble_skins(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> bool:
-        """Add the barrier between elastic solids and objects, unless the script asks for masses that collide."""
+        """Add the barrier between elastic solids, rigid bodies and objects, unless the script asks for masses that
+        collide."""
         if self.mode in ("exact", "local"):
             return False
         from sceneql.contacts.barrier.barrier_contact import assemble
@@ -275,7 +284,7 @@ class Collision(Contact):
         return True
 
     def remark(self, state: ModelState) -> str:
-        """The gap of elastic solids."""
+        """The gap of elastic solids, and of rigid bodies beside them."""
         if self.mode in ("exact", "local") or BARRIER not in state.ints:
             return ""
         gap, slip = state.floats[state.ints[state.ints.index(BARRIER) + 1] :][:2]

@@ -101,6 +101,8 @@ class Wind(Force):
 
         flow = assembly.flow_of(ref.name)
         if flow is None:
+            if getattr(assembly.object(ref), "flows", False):
+                return  # its own assembly has failed
             text = f"'{ref.name}' is no flow"
             raise ScriptError([Diagnostic("no-flow", text, ref.span, "name a model `flow`")])
         box = assembly.floats([*flow.low, *flow.spacing])

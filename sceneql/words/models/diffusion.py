@@ -6,16 +6,15 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.grids.medium import (
-    COEFFICIENT,
     SOURCE,
     START,
     Boundary,
     FieldLayout,
-    Medium,
     Picture,
     gives_of,
     layout_of,
 )
+from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
 from sceneql.kinds import Formula, Gives, Value, field
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
@@ -36,7 +35,7 @@ def _names(what: str) -> tuple[str, ...]:
     return ("temperature", "concentration") if what == "temperature" else ("concentration",)
 
 
-class Diffusion(Medium):
+class Diffusion(SpreadingMedium):
     """Diffusion dc/dt = div(D grad c) + source by finite volumes on a grid of cells, which conserve what there is.
 
     A face between two cells carries D area (difference)/(distance); D there is the harmonic mean of the cells' where it

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql import kinds
 from sceneql.flows.parts import FORCE, MOST_FACTORED, Buoyancy, Side, Start, fastest_turn
@@ -44,6 +44,8 @@ class Flow(Model):
 
     has_bodies = False
     flows = True
+    swinging: ClassVar[tuple[str, ...]] = ("vorticity",)
+    """Fields among its outputs that are of both signs."""
 
     size: SIZES | None = field("Sides of the box: two for a flat one, three for a deep one.", None, above=0)
     domain: kinds.ObjectRef | None = field(

@@ -8,7 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
 from sceneql.formulas.formula_rows import TIMES, Rows
-from sceneql.grids.medium import COEFFICIENT, SOURCE, Boundary, FieldLayout, Medium, gives_of, layout_of
+from sceneql.grids.medium import SOURCE, Boundary, FieldLayout, gives_of, layout_of
+from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
 from sceneql.kinds import Formula, Gives, Problem, Record, Symbols, Value, field
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
@@ -54,7 +55,7 @@ class Species(Record):
         return False
 
 
-class ReactionDiffusion(Medium):
+class ReactionDiffusion(SpreadingMedium):
     """Reaction and diffusion of species: dc_i/dt = div(D_i grad c_i) + f_i(c_1, c_2, ..., x, y, z, t).
 
     The rates f_i are formulas in which the species stand by their names and `where` by its own; x, y, z and t (or

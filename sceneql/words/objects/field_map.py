@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import nullcontext
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from sceneql import kinds
 from sceneql.failure import RunFailure
 from sceneql.grids.maps.map_names import ColorMap
-from sceneql.grids.maps.seen import Bounds, Field, Levels, seen, unfit
+from sceneql.grids.maps.seen import Bounds, Field, Levels, seen, swings, unfit
 from sceneql.kinds import Moment, Object, Problem, Quantity, Ref, Value, field
 from sceneql.quantities.dimension import LENGTH, PLAIN
 from sceneql.quantities.expression import Call, Type
@@ -42,10 +42,14 @@ class FieldMap(Object):
     """
 
     of: Field = field("The field: `lake.concentration`.")
-    colors: ColorMap = field("The map of colors, from the low to the high end; coolwarm has a middle.", "viridis")
+    colors: ColorMap | Literal["none"] | None = field(
+        "The map of colors, from the low to the high end, by default viridis; coolwarm, that of what swings about 0, "
+        "has a middle; with `none` it has those of its material alone, as a surface of water.",
+        None,
+    )
     range: Bounds | None = field(
         "The values at the ends of the map; by default the least and the largest at the start, where all is even then "
-        "those of the whole run.",
+        "those of the whole run; of what swings about 0 as far on both sides.",
         None,
     )
     height: Annotated[Value, Quantity(None)] | None = field(
@@ -94,6 +98,8 @@ class FieldMap(Object):
         if high == low:
             low, high = (float(pick(moment.course(end)[1])) for end, pick in zip(self._ends, (min, max), strict=True))
             low, high = (0.0 if abs(end) < ROUNDING * (high - low) else end for end in (low, high))
+        if swings(self.of, moment):
+            low, high = min(low, -high), max(high, -low)
         return (low, high) if high - low > ROUNDING * max(abs(low), abs(high)) else (low, low + 1.0)
 
     @cached_property
@@ -115,7 +121,13 @@ class FieldMap(Object):
         from sceneql.grids.maps.key import ColorKey
 
         dimension = self.of.expr.type.dimension or PLAIN
-        return ColorKey(self.colors, *self.scale(moment), dimension, self._levels(moment))
+        return ColorKey(self._map(moment) or "gray", *self.scale(moment), dimension, self._levels(moment))
+
+    def _map(self, moment: Moment) -> str | None:
+        """The name of its map of colors; None: its material's color alone."""
+        if self.colors is None:
+            return "coolwarm" if swings(self.of, moment) else "viridis"
+        return None if self.colors == "none" else self.colors
 
     def _levels(self, moment: Moment) -> tuple[float, ...]:
         import numpy as np
@@ -147,7 +159,8 @@ class FieldMap(Object):
         made = placed(sheet, place) if self.height is not None else still(sheet, name, place, moment)
         matte = Surface(color=(1.0, 1.0, 1.0), roughness=1.0, specular=0.0)
         look = matte if self.material is None else moment.surface(name, self.material, None)
-        colors = colored(values, self.scale(moment), self.colors)
+        chosen = self._map(moment)
+        colors = None if chosen is None else colored(values, self.scale(moment), chosen)
         yield Mesh(name, look, made.vertices, made.triangles, made.normals, colors)
         lines = [contour(sheet, values, level) for level in self._levels(moment)]
         if sum(map(len, lines)):

@@ -21,17 +21,19 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Mesh, Shape
     from sceneql.grids.maps.key import ColorKey
     from sceneql.words.models.elastic import Elastic
+    from sceneql.words.models.membrane import Membrane
 
 
 class Surface(Object):
     """The sheet of a cloth as a closed slab, smooth on both sides; cells with a torn side are left open.
 
-    Of a solid of tetrahedra the outer faces, smooth; those with a torn edge are left out. With `shows` it has the
-    colors of a number of each mass, or of each node of an `elastic` solid, which a `legend` explains. An `elastic`
-    solid may have colors that stick to its material (`paint`), and be cut open to be seen inside.
+    Of a flat `membrane` a line of the thickness. Of a solid of tetrahedra the outer faces, smooth; those with a torn
+    edge are left out. With `shows` it has the colors of a number of each mass, or of each node of an `elastic` solid,
+    which a `legend` explains. An `elastic` solid may have colors that stick to its material (`paint`), and be cut open
+    to be seen inside.
     """
 
-    of: ModelRef = field("The cloth, or the solid.")
+    of: ModelRef = field("The cloth, the solid, or the membrane.")
     thickness: Length = field("Thickness of a sheet.", "5 mm", above=0)
     shows: Field | None = field("What its colors show, a number for each of its masses: `beam.von_mises`.", None)
     colors: ColorMap = field("The map of colors, from the low to the high end.", "viridis")
@@ -93,8 +95,11 @@ class Surface(Object):
         from sceneql.grids.maps.colors import colored
 
         cloth: Any = moment.object(self.of)
+        if getattr(cloth, "carried", False):
+            yield from self._carried(cloth, name, place, moment)
+            return
         if "triangles" not in cloth.gives:
-            raise ValueError(f"'{self.of.name}' has no surface; a cloth and a solid have one")
+            raise ValueError(f"'{self.of.name}' has no surface; a cloth, a solid and a membrane have one")
         if getattr(cloth, "has_skin", False):
             yield from self._elastic(cloth, name, place, moment)
             return
@@ -110,6 +115,14 @@ class Surface(Object):
                 values = np.resize(self._values(len(points), moment), len(drawn.vertices))
                 drawn = replace(drawn, colors=colored(values, self.scale(moment), self.colors))
             yield drawn
+
+    def _carried(self, skin: Membrane, name: str, place: Floats, moment: Moment) -> Iterator[Shape]:
+        """A skin that a flow carries."""
+        if self.shows is not None or self.paint is not None or self.cut:
+            raise ValueError(f"'{self.of.name}' has one color, and is not cut: it is a skin that a flow carries")
+        look = moment.surface(name, self.material, self.color)
+        thick = positive(moment, self.thickness, "thickness")
+        yield from skin.drawn(name, look, moment.state(self.of.name), thick, place)
 
     def _elastic(self, solid: Elastic, name: str, place: Floats, moment: Moment) -> Iterator[Mesh]:
         """Its skin, and the faces of what is cut open."""

@@ -70,11 +70,14 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     positions = np.concatenate([np.arange(x, x + n) for x, _, n in pairs] or [np.zeros(0, dtype=int)])
     velocities = system.partner[positions]
     others = np.setdiff1d(np.flatnonzero(system.partner < 0), velocities)
-    alike = np.concatenate([np.arange(at, at + n) for at, n in system.alike] or [np.zeros(0, dtype=int)])
+    paired = {entry for x, v, _ in pairs for entry in (x, v)}
+    loose = [(at, n) for at, n in system.alike if at not in paired]
+    whole = {at for at, _ in system.alike}
+    alike = np.concatenate([np.arange(at, at + n) for at, n in loose] or [np.zeros(0, dtype=int)])
     pushed = np.concatenate([velocities, alike, np.setdiff1d(others, alike)])
-    # A body's three components share one time scale; states of equations share that of all of their copy.
-    sizes = [size for _, _, n in pairs for size in ([3] * (n // 3) if n % 3 == 0 else [n])]
-    sizes = sizes + [n for _, n in system.alike] or [len(pushed)]
+    # A body's components share one time scale; states of equations that of all of their copy, fields of all cells.
+    sizes = [size for _, v, n in pairs for size in ([3] * (n // 3) if n % 3 == 0 and v not in whole else [n])]
+    sizes = sizes + [n for _, n in loose] or [len(pushed)]
     numbers = np.concatenate(
         [(int(stepper.control.adaptive), len(pushed), len(positions), len(sizes)), pushed, positions, np.cumsum(sizes)]
     )

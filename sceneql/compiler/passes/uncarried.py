@@ -1,0 +1,44 @@
+"""Skins without inertia move as the one flow that carries them: refused before anything runs where there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from sceneql.graph import Task
+from sceneql.kinds import Force, Model
+from sceneql.quantities.diagnostic import Diagnostics, Note
+
+
+def report_carried(
+    models: Iterable[Task], forces: Mapping[str, Sequence[str]], tasks: Mapping[str, Task], found: Diagnostics
+) -> None:
+    """Report skins that no force has a flow carry, or two, and such forces on other models.
+
+    ``forces``: by force and tie the models that it acts on.
+    """
+    carriers: dict[str, list[Task]] = {}
+    for name, targets in forces.items():
+        kind = tasks[name].kind
+        flow = kind.carrier() if isinstance(kind, Force) else None
+        if flow is None:
+            continue
+        if not getattr(tasks[flow.name].kind, "flows", False):
+            found.error("no-flow", f"'{flow.name}' is no flow", flow.span, help="name a model `flow`")
+        places = {ref.name: ref.span for ref in getattr(kind, "on", None) or ()}
+        for target in dict.fromkeys(targets):
+            other = tasks[target].kind
+            if isinstance(other, Model) and not other.carried:
+                text = f"'{target}' is no skin that a flow can carry: a `membrane` is one"
+                found.error("no-skin", text, places.get(target) or tasks[name].span)
+            carriers.setdefault(target, []).append(tasks[name])
+    for task in models:
+        if not (isinstance(task.kind, Model) and task.kind.carried):
+            continue
+        by = carriers.get(task.name, [])
+        if not by:
+            text = f"no flow carries '{task.name}', and by itself it does not move"
+            help = f"write `forces: [{{immersion: {{on: [{task.name}], in: ...}}}}]` with the name of a flow"
+            found.error("not-carried", text, task.span, help=help)
+        elif len(by) > 1:
+            notes = [Note("the other is here", by[0].span)] if by[0].span else []
+            found.error("carried-twice", f"'{task.name}' is carried by two forces", by[1].span, notes=notes)

@@ -1,0 +1,1 @@
+"""Elastic skins full of fluid, that a flow carries."""

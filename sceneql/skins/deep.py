@@ -1,0 +1,173 @@
+"""A deep skin, a closed sheet of triangles around fluid, as state, numbers and terms of an island."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.skins.closed_surface import closed_surface
+from sceneql.system import Membrane
+
+if TYPE_CHECKING:
+    from numpy import bool_, int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.kinds import Ref
+    from sceneql.skins.law import Elasticity
+    from sceneql.system import Assembly, Flow
+
+KERNELS = "sceneql.skins.sheet_kernels"
+EVEN = 2.0 / 3.0
+"""Of the stretch of a sheet: what springs along sides have, k = EVEN stretch (areas beside)/length^2, so that the
+tension of an even stretch is stretch times it (after Van Gelder 1998, J. Graphics Tools 3, 21-41)."""
+ASIDE = 1e-7 * np.array([1.0, 0.6180339887])
+"""How far off the middles of cells, in cells, the lines run along which the inside is told: past vertices there."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sheet:
+    """A closed sheet of vertices (n, 3) in a deep flow."""
+
+    flow: Flow
+    membrane: Membrane
+    triangles: NDArray[int64]
+    """(m, 3) counterclockwise from outside."""
+    sides: NDArray[int64]
+    """(k, 2)."""
+    lengths: Floats
+    """(k,) of the sides at the start [m]."""
+    stiffness: Floats
+    """(k,) of their springs [N/m]."""
+    rest: Floats
+    """(m, 4) of each triangle the inverse of its sides at the start, in its plane, (p, q; 0, r), and its area."""
+    law: Elasticity
+
+    def volume(self, points: Floats) -> float:
+        """What it holds [m^3]."""
+        a, b, c = self._corners(points - points[0])
+        return float((a * np.cross(b, c)).sum() / 6.0)
+
+    def area(self, points: Floats) -> float:
+        """Its own [m^2]."""
+        return float(_areas(points, self.triangles).sum())
+
+    def potential(self, points: Floats) -> float:
+        """The energy of its tension and law [J], 0 at the start."""
+        found = self.law.tension * (self.area(points) - float(self.rest[:, 3].sum()))
+        if self.law.stretch > 0.0:
+            more = self.sides_of(points) - self.lengths
+            found += float(0.5 * (self.stiffness * more**2).sum())
+        if self.law.modulus > 0.0:
+            a, b, c = self._corners(points)
+            p, q, r, areas = self.rest.T[:, :, None]
+            u, v = p * (b - a), q * (b - a) + r * (c - a)
+            uu, uv, vv = (u * u).sum(axis=1), (u * v).sum(axis=1), (v * v).sum(axis=1)
+            dense = uu + vv + 1.0 / (uu * vv - uv**2) - 3.0
+            found += float(0.5 * self.law.modulus * (areas[:, 0] * dense).sum())
+        return found
+
+    def moments(self, points: Floats) -> tuple[Floats, Floats]:
+        """The center (3,) [m] of what it holds, and the mean products (3, 3) of places from there [m^2]."""
+        base = points.mean(axis=0)
+        a, b, c = self._corners(points - base)
+        parts = (a * np.cross(b, c)).sum(axis=1) / 6.0
+        whole, sums = parts.sum(), a + b + c
+        center = parts @ sums / (4.0 * whole)
+        second = sum(np.einsum("k,ki,kj->ij", parts, one, one) for one in (a, b, c, sums))
+        return base + center, second / (20.0 * whole) - np.outer(center, center)
+
+    def holds(self, places: Floats, points: Floats) -> NDArray[bool_]:
+        """(k,) whether it holds the centers (k, 3) of cells, by what it crosses on lines along x to them."""
+        low, spacing = np.array(self.flow.low), np.array(self.flow.spacing)
+        lines = (points - low)[:, 1:] / spacing[1:] - 0.5 - ASIDE  # in cells from the first one's center
+        corners = lines[self.triangles]
+        first = np.ceil(corners.min(axis=1)).astype(np.int64)
+        reach = np.floor(corners.max(axis=1)).astype(np.int64) - first
+        keys, crossed = [], []
+        for j in range(int(reach[:, 0].max()) + 1):
+            for k in range(int(reach[:, 1].max()) + 1):
+                mine = np.flatnonzero((reach >= (j, k)).all(axis=1))
+                line = first[mine] + (j, k)
+                a, b, c = (corners[mine, n] - line for n in range(3))
+                parts = np.column_stack([_turn(b, c), _turn(c, a), _turn(a, b)])
+                through = (parts > 0.0).all(axis=1) | (parts < 0.0).all(axis=1)
+                weights = parts[through] / parts[through].sum(axis=1)[:, None]
+                keys.append(line[through])
+                crossed.append((weights * points[self.triangles[mine[through]], 0]).sum(axis=1))
+        own = np.round((places - low)[:, 1:] / spacing[1:] - 0.5).astype(np.int64)
+        count = sum(map(len, crossed))
+        where = np.concatenate([*keys, own])
+        order = np.lexsort((np.concatenate([*crossed, places[:, 0]]), where[:, 0], where[:, 1]))
+        is_crossing: Any = order < count
+        before = np.cumsum(is_crossing)
+        fresh = np.append(True, (np.diff(where[order], axis=0) != 0).any(axis=1))
+        begun = np.maximum.accumulate(np.where(fresh, before - is_crossing, 0))
+        found = np.zeros(len(places), dtype=bool)
+        found[order[~is_crossing] - count] = ((before - begun)[~is_crossing] % 2).astype(bool)
+        return found
+
+    def sides_of(self, points: Floats) -> Floats:
+        """(k,) the lengths of its sides [m]."""
+        found: Floats = np.linalg.norm(points[self.sides[:, 1]] - points[self.sides[:, 0]], axis=1)
+        return found
+
+    def _corners(self, points: Floats) -> tuple[Floats, Floats, Floats]:
+        a, b, c = (points[self.triangles[:, k]] for k in range(3))
+        return a, b, c
+
+
+def _turn(a: Floats, b: Floats) -> Floats:
+    """(k,) cross products of vectors (k, 2)."""
+    found: Floats = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    return found
+
+
+def _areas(points: Floats, triangles: NDArray[int64]) -> Floats:
+    """(m,) [m^2]."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    found: Floats = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    return found
+
+
+def add_sheet(of: Ref, spacing: float, law: Elasticity, kept: bool, flow: Flow, assembly: Assembly) -> Sheet:
+    """Reserve the vertices of an object's surface, and add its tension and its law; ``kept``: its volume is.
+
+    Raises ScriptError.
+    """
+    points, triangles = closed_surface(of, spacing, assembly)
+    count, areas = len(points), _areas(points, triangles)
+    at = assembly.state(np.append(points.ravel(), 0.0))
+    skin = Membrane(count, at, assembly.floats(np.zeros(3 * count)))
+    ends = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    sides, which = np.unique(ends, axis=0, return_inverse=True)
+    lengths = np.linalg.norm(points[sides[:, 1]] - points[sides[:, 0]], axis=1)
+    beside = np.bincount(which.ravel(), np.repeat(areas, 3))
+    made = Sheet(
+        flow, skin, triangles, sides, lengths, EVEN * law.stretch * beside / lengths**2,
+        _inverses(points, triangles, areas), law,
+    )  # fmt: skip
+    head, faces = (skin.count, skin.position_at, skin.force_at), tuple(triangles.ravel().tolist())
+    if law.tension > 0.0:
+        assembly.term("internal", f"{KERNELS}:tension", (*head, assembly.floats([law.tension]), 0, 0, 0, *faces))
+    if law.stretch > 0.0:
+        numbers = assembly.floats(made.stiffness), assembly.floats(lengths)
+        assembly.term("internal", f"{KERNELS}:springs", (*head, *numbers, *sides.ravel().tolist()))
+    if law.modulus > 0.0:
+        numbers = assembly.floats([law.modulus]), assembly.floats(made.rest)
+        assembly.term("internal", f"{KERNELS}:neo_hookean", (*head, *numbers, 0, 0, *faces))
+    if kept:
+        volume, room = assembly.floats([made.volume(points)]), assembly.floats(np.zeros(3 * count))
+        ints = (*head, volume, room, at + 3 * count, 0, *faces)
+        assembly.after_step(f"{KERNELS}:keep_volume", ints, samples=True)
+    return made
+
+
+def _inverses(points: Floats, triangles: NDArray[int64], areas: Floats) -> Floats:
+    """(m, 4) of each triangle p, q, r so that (p, q; 0, r) is the inverse of its sides in its plane; its area."""
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    length = np.linalg.norm(b - a, axis=1)
+    along, height = ((b - a) * (c - a)).sum(axis=1) / length, 2.0 * areas / length
+    return np.column_stack([1.0 / length, -along / (length * height), 1.0 / height, areas])

@@ -1,0 +1,54 @@
+"""Whether a skin fits its flow."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+if TYPE_CHECKING:
+    from sceneql.kinds import Ref
+    from sceneql.skins.deep import Sheet
+    from sceneql.skins.flat import Line
+    from sceneql.system import Assembly, Flow
+
+APART = {2: 0.25, 3: 0.5}
+"""Distance of vertices in cells, by the flow's axes. What a curve through them holds is then kept to 1e-7 where it has
+25 cells across; twice as far apart it loses ten times as much."""
+WIDE = 4.0
+"""Cells that a skin is wide, at least: its forces are spread over as many."""
+
+
+def spacing_in(flow: Flow, spacing: float | None, of: Ref, assembly: Assembly) -> float:
+    """Its vertices' distance [m], at most a cell. Raises ScriptError where that leaves gaps, and around solids."""
+    cell = min(flow.spacing[: len(flow.areas)])
+    apart = APART[len(flow.areas)] * cell
+    if flow.fractions is not None:
+        text = "the flow has solids in it, and nothing keeps a skin from them"
+        raise ScriptError([Diagnostic("invalid", text, assembly.line(), "let the flow be without `around`")])
+    if spacing is not None and spacing > cell:
+        text = f"vertices {spacing:g} m apart are too coarse for cells of {cell:g} m: fluid would pass between them"
+        raise ScriptError([Diagnostic("invalid", text, assembly.line(), f"let `spacing` be {apart:.3g} m")])
+    return apart if spacing is None else spacing
+
+
+def must_fit(skin: Line | Sheet, of: Ref, assembly: Assembly) -> None:
+    """Raises ScriptError where a skin stands outside its flow, or is smaller than what its cells tell."""
+    flow, membrane = skin.flow, skin.membrane
+    axes = len(flow.areas)
+    points = assembly.start()[membrane.position_at : membrane.position_at + 3 * membrane.count].reshape(-1, 3)
+    low, high = points[:, :axes].min(axis=0), points[:, :axes].max(axis=0)
+    cell = min(flow.spacing[:axes])
+    if (high - low).min() < WIDE * cell:
+        text = f"'{of.name}' is {(high - low).min():.3g} m wide: its flow's cells of {cell:g} m are too coarse for it"
+        raise ScriptError([Diagnostic("invalid", text, of.span, f"let `cell` be {(high - low).min() / 16:.2g} m")])
+    for axis in range(axes):
+        first, last = flow.low[axis], flow.low[axis] + flow.cells.shape[axis] * flow.spacing[axis]
+        if flow.cells.periodic[axis]:
+            if high[axis] - low[axis] > (last - first) - WIDE * cell:
+                text = f"'{of.name}' is as long as its flow is periodic: it would touch itself"
+                raise ScriptError([Diagnostic("invalid", text, of.span, "take a larger `size` of the flow")])
+        elif low[axis] < first or high[axis] > last:
+            text = f"'{of.name}' stands outside its flow, which ends at {'xyz'[axis]} = "
+            text += f"{first if low[axis] < first else last:g} m"
+            raise ScriptError([Diagnostic("invalid", text, of.span, "move it inside, or take a larger `size`")])

@@ -1,0 +1,105 @@
+"""A flat skin, a closed line around fluid, as state, numbers and terms of an island."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.skins.closed_line import closed_line, signed_area
+from sceneql.system import Membrane
+
+if TYPE_CHECKING:
+    from numpy import bool_, int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.kinds import Ref
+    from sceneql.skins.law import Elasticity
+    from sceneql.system import Assembly, Flow
+
+KERNELS = "sceneql.skins.line_kernels"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Line:
+    """A closed line of vertices (n, 2) in a flat flow."""
+
+    flow: Flow
+    membrane: Membrane
+    lengths: Floats
+    """(n,) of its sides at the start [m]."""
+    law: Elasticity
+
+    @property
+    def triangles(self) -> NDArray[int64]:
+        """(0, 3): none."""
+        return np.zeros((0, 3), dtype=np.int64)
+
+    @property
+    def depth(self) -> float:
+        """Of the flow [m]."""
+        return self.flow.spacing[2]
+
+    def volume(self, points: Floats) -> float:
+        """What it holds [m^3]."""
+        return self.depth * signed_area(points[:, :2])
+
+    def area(self, points: Floats) -> float:
+        """Its own [m^2]."""
+        return self.depth * float(self.sides_of(points).sum())
+
+    def potential(self, points: Floats) -> float:
+        """The energy of its tension [J], 0 at the start."""
+        law, s = self.law, self.sides_of(points) / self.lengths
+        dense = law.tension * (s - 1.0) + 0.5 * law.stretch * (s - 1.0) ** 2
+        dense += 0.5 * law.modulus * (s**2 + 1.0 / s**2 - 2.0)
+        return self.depth * float((dense * self.lengths).sum())
+
+    def moments(self, points: Floats) -> tuple[Floats, Floats]:
+        """The center (3,) [m] of what it holds, and the mean products (2, 2) of places from there [m^2]."""
+        base = points[:, :2].mean(axis=0)
+        a = points[:, :2] - base
+        b = np.roll(a, -1, axis=0)
+        parts = a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]
+        whole = 0.5 * parts.sum()
+        center = (parts @ (a + b)) / (6.0 * whole)
+        products = np.einsum("k,ki,kj->ij", parts, a, a) + np.einsum("k,ki,kj->ij", parts, b, b)
+        crossed = np.einsum("k,ki,kj->ij", parts, a, b)
+        second = (products + 0.5 * (crossed + crossed.T)) / (12.0 * whole) - np.outer(center, center)
+        return np.append(base + center, points[0, 2]), second
+
+    def holds(self, places: Floats, points: Floats) -> NDArray[bool_]:
+        """(k,) whether it holds places (k, 3), by what it crosses on the way to the left."""
+        found = np.zeros(len(places), dtype=bool)
+        ends = np.roll(points, -1, axis=0)
+        for height in np.unique(places[:, 1]):
+            row = np.flatnonzero(places[:, 1] == height)
+            over = (points[:, 1] > height) != (ends[:, 1] > height)
+            part = (height - points[over, 1]) / (ends[over, 1] - points[over, 1])
+            crossed = np.sort(points[over, 0] + part * (ends[over, 0] - points[over, 0]))
+            found[row] = np.searchsorted(crossed, places[row, 0]) % 2 == 1
+        return found
+
+    def sides_of(self, points: Floats) -> Floats:
+        """(n,) the lengths of its sides [m]."""
+        found: Floats = np.hypot(*(np.roll(points, -1, axis=0) - points)[:, :2].T)
+        return found
+
+
+def add_line(of: Ref, spacing: float, law: Elasticity, kept: bool, flow: Flow, assembly: Assembly) -> Line:
+    """Reserve the vertices of an object's outline, and add its tension; ``kept``: its area is. Raises ScriptError."""
+    points = closed_line(of, spacing, assembly)
+    count, depth = len(points), flow.spacing[2]
+    at = assembly.state(np.append(np.column_stack([points, np.zeros(count)]).ravel(), 0.0))
+    skin = Membrane(count, at, assembly.floats(np.zeros(3 * count)))
+    head = (skin.count, skin.position_at, skin.force_at)
+    lengths = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
+    tension, stretch, modulus = (assembly.floats([one * depth]) for one in (law.tension, law.stretch, law.modulus))
+    assembly.term("internal", f"{KERNELS}:tension", (*head, tension, stretch, assembly.floats(lengths), modulus))
+    if kept:
+        volume, room = assembly.floats([signed_area(points) * depth]), assembly.floats(np.zeros(3 * count))
+        ints = (*head, volume, room, at + 3 * count, assembly.floats([depth]))
+        assembly.after_step(f"{KERNELS}:keep_area", ints, samples=True)
+    return Line(flow, skin, lengths, law)

@@ -1,0 +1,17 @@
+"""How skins pull, in numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Elasticity:
+    """What a skin resists with; none of it is 0 or more of it."""
+
+    tension: float = 0.0
+    """The same always [N/m]."""
+    stretch: float = 0.0
+    """Tension of springs for a relative stretch [N/m]."""
+    modulus: float = 0.0
+    """Shear modulus of a neo-Hookean sheet, over its thickness [N/m]."""

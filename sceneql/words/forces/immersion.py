@@ -1,0 +1,52 @@
+"""immersion: skins in a flow, which carries them and feels them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from sceneql.grids.domain.cells import counts
+from sceneql.kinds import Force, ModelRef, Problem, Ref, field
+from sceneql.kinds.stable_step import Oscillation
+
+if TYPE_CHECKING:
+    from sceneql.system import Assembly
+
+
+class Immersion(Force):
+    """A skin (`membrane`) in a `flow`, both ways: each vertex moves as the fluid there, which gets its force.
+
+    Velocities are read from faces and forces spread to them by the same composite B-splines, of order 4 along a
+    component and 3 across, so that what is read is free of divergence, and no fluid passes the skin. Beside walls faces
+    are continued by reflection. The density of the fluid is that of the flow on both sides of the skin. Sources: Peskin
+    (2002), Acta Numerica 11, 479-517; Gruninger & Griffith (2025).
+
+    `forces: [{immersion: {on: [balloon], in: air}}]`
+    """
+
+    in_: ModelRef = field("The `flow`.")
+
+    def problems(self) -> Iterator[Problem]:
+        """No skin."""
+        if not self.on:
+            yield Problem("an immersion names the skins in the flow: `on: [balloon]`")
+
+    def carrier(self) -> Ref:
+        """The flow."""
+        return self.in_
+
+    def fastest_carried(self, skins: Mapping[str, Any], flow: Any) -> Iterator[Oscillation]:
+        """The fastest waves of each skin that the flow's cells know; viscosity takes a quarter of its largest rate."""
+        cell = min(side / count for side, count in zip(flow.size, counts(flow.size, flow.cell), strict=False))
+        decay = flow.viscosity / flow.density * len(flow.size) / cell**2
+        for name, skin in skins.items():
+            turn = (skin.largest_tension() / (flow.density * cell**3)) ** 0.5
+            yield Oscillation(0.0, decay, f"the skin '{name}' in cells of {cell:g} m", ("on",), turn)
+
+    def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:
+        """Have the flow carry a skin; where one of them could not be made nothing is to do."""
+        from sceneql.skins.immersed import immerse
+
+        skin, flow = assembly.membrane_of(model), assembly.flow_of(self.in_.name)
+        if skin is not None and flow is not None:
+            immerse(flow, skin, assembly)

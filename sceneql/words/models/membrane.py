@@ -1,0 +1,213 @@
+"""membrane: an elastic skin full of fluid."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+from pydantic import PrivateAttr
+
+from sceneql import kinds
+from sceneql.kinds import Gives, Model, Problem, Record, Ref, field, quantity_type
+from sceneql.quantities import dimension as dim
+from sceneql.quantities.expression import Type
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats, Shape, Surface
+    from sceneql.kinds import Moment
+    from sceneql.skins.deep import Sheet
+    from sceneql.skins.flat import Line
+    from sceneql.system import Assembly, ModelState
+
+
+ACROSS, ALONG = 0.55, 0.2
+"""Of the largest tension of waves (Membrane.largest_tension): of tension, of stretch."""
+
+
+class Springs(Record):
+    """Springs along the sides of its triangles, or line: tension = prestress + stretch times the relative stretch."""
+
+    stretch: kinds.FixedStiffness = field("How much its tension grows for a relative stretch.", above=0)
+
+
+class NeoHookean(Record):
+    """A thin sheet of rubber that keeps its own volume: energy G/2 (tr C + 1/det C - 3) a square meter at the start."""
+
+    modulus: kinds.FixedStiffness = field("Its shear modulus G, times its thickness.", above=0)
+
+
+class Law(Record):
+    """How a skin pulls: one of these."""
+
+    springs: Springs | None = field("Springs between its vertices.", None)
+    neo_hookean: NeoHookean | None = field("A sheet of rubber.", None)
+    tension: kinds.FixedStiffness | None = field("The same tension always, as that of a bubble.", None, above=0)
+
+    def problems(self) -> Iterable[Problem]:
+        """Several, or none."""
+        if sum(one is not None for one in (self.springs, self.neo_hookean, self.tension)) != 1:
+            yield Problem("a skin has one of `springs`, `neo_hookean` and `tension`")
+
+
+class Membrane(Model):
+    """A closed elastic skin without mass, full of fluid, that a `flow` carries and that pushes it (`immersion`).
+
+    In a flat flow it is the outline of an object in the plane z = 0, in a deep one its surface in triangles, with
+    vertices evenly apart that move as the fluid does. What it holds stays: the fluid is incompressible, and after each
+    step one number moves all vertices along the slope of the volume, X += s dV/dX, so that what is drawn keeps it
+    exactly; `volume_correction` sums what that put back.
+
+    `models: {air: {flow: {size: 3 3 m, cell: 3/64 m, density: 1 kg/m^3, viscosity: 0.1 Pa*s}}, balloon: {membrane: {of:
+    egg, law: {springs: {stretch: 10 N/m}}, prestress: 2 N/m}}}`, `forces: [{immersion: {on: [balloon], in: air}}]`,
+    `objects: {egg: {implicit: {field: "x^2/0.75^2 + y^2/0.5^2 - 1", position: 1.5 1.5 0 m}}}`.
+    """
+
+    has_bodies = False
+    carried = True
+
+    of: kinds.ObjectRef = field("The object whose outline, or surface, it is.")
+    law: Law = field("How it pulls.")
+    prestress: kinds.FixedStiffness = field("A tension that it has besides, always.", "0 N/m", at_least=0)
+    spacing: kinds.FixedLength | None = field(
+        "How far its vertices are apart at the start; by default a quarter of a flat flow's cell, half a deep one's.",
+        None,
+        above=0,
+    )
+    volume: Literal["kept", "free"] = field("Whether what is drawn keeps its volume exactly.", "kept")
+    thickness: kinds.FixedLength | None = field(
+        "Of the line that draws a flat one; by default as `spacing`.", None, above=0
+    )
+    filled: bool = field("Whether what a flat one holds is drawn, too.", False)
+    material: kinds.MaterialRef | None = field("How it looks where no object draws it.", None)
+    color: kinds.Color | None = field("Color in place of the material's.", None)
+
+    gives: ClassVar = {
+        "positions": Gives(quantity_type(dim.LENGTH, (None, 3)), "Where its vertices are."),
+        "volume": Gives(quantity_type(dim.VOLUME), "What it holds; of a flat one area times depth.", computed=True),
+        "area": Gives(quantity_type(dim.AREA), "Its own; of a flat one length times depth.", computed=True),
+        "center": Gives(quantity_type(dim.LENGTH, (3,)), "The center of what it holds.", computed=True),
+        "deformation": Gives(
+            Type(),
+            "Taylor's (a - b)/(a + b) of the half axes of the ellipse with the same second moments.",
+            computed=True,
+        ),
+        "pressure_jump": Gives(
+            quantity_type(dim.PRESSURE),
+            "The mean pressure of what it holds less that around it, three cells off the skin.",
+            computed=True,
+        ),
+        "stretch": Gives(Type(), "The largest length of a side over that at the start.", computed=True),
+        "potential": Gives(quantity_type(dim.ENERGY), "Energy of its tension, 0 at the start.", computed=True),
+        "volume_correction": Gives(
+            quantity_type(dim.VOLUME), "The volume that was put back so far, in sum without signs.", tally=True
+        ),
+        "triangles": Gives(Type((None, 3)), "Of a deep one: its triangles by numbers of vertices.", computed=True),
+        "count": Gives(Type(), "Number of vertices.", computed=True),
+    }
+
+    _made: Line | Sheet | None = PrivateAttr(None)
+
+    def problems(self) -> Iterator[Problem]:
+        """A prestress of a tension."""
+        if self.law.tension is not None and self.prestress > 0.0:
+            yield Problem("a `tension` is all the tension that there is", ("prestress",), at_key=True)
+
+    def insides(self) -> Iterable[Ref]:
+        """The object."""
+        return (self.of,)
+
+    def standing(self) -> Iterable[Ref]:
+        """The object: it is taken as it is at the start."""
+        return (self.of,)
+
+    def shown_in_place_of(self) -> Iterable[Ref]:
+        """The object."""
+        return (self.of,)
+
+    def assemble(self, name: str, assembly: Assembly) -> None:
+        """Reserve its vertices, add its tension and what keeps its volume. Raises ScriptError."""
+        from sceneql.skins.fitting import must_fit, spacing_in
+        from sceneql.skins.law import Elasticity
+
+        flow = assembly.flow_of()
+        if flow is None:  # it could not be made, which is told
+            return
+        spacing = spacing_in(flow, self.spacing, self.of, assembly)
+        law = Elasticity(
+            self.law.tension or self.prestress,
+            0.0 if self.law.springs is None else self.law.springs.stretch,
+            0.0 if self.law.neo_hookean is None else self.law.neo_hookean.modulus,
+        )
+        made: Line | Sheet
+        if len(flow.areas) == 2:
+            from sceneql.skins.flat import add_line
+
+            made = add_line(self.of, spacing, law, self.volume == "kept", flow, assembly)
+        else:
+            from sceneql.skins.deep import add_sheet
+
+            made = add_sheet(self.of, spacing, law, self.volume == "kept", flow, assembly)
+        must_fit(made, self.of, assembly)
+        assembly.membrane(made.membrane)
+        self._made = made
+
+    @property
+    def made(self) -> Line | Sheet:
+        """Its vertices and numbers in the run; there are none before the island is assembled."""
+        assert self._made is not None
+        return self._made
+
+    def read(self, output: str, state: ModelState) -> Any:
+        """Any output of the manual."""
+        from sceneql.skins.skin_outputs import measure
+
+        return measure(output, self.made, state)
+
+    def trouble(self, state: ModelState) -> tuple[str, str]:
+        """Vertices that have gone so far apart that fluid passes between them."""
+        from sceneql.skins.skin_outputs import widest
+
+        apart = widest(self.made, state)
+        text = f"the vertices of its skin are {apart:.2g} cells apart at the end: fluid passes between them"
+        return (text, "take a smaller `spacing`") if apart > 1.0 else ("", "")
+
+    def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
+        """Of its vertices."""
+        import numpy as np
+
+        skin = self.made.membrane
+        rows = skin.position_at + np.arange(3 * skin.count).reshape(-1, 3)
+        if output == "volume_correction":
+            return np.array(skin.position_at + 3 * skin.count)
+        return rows if output == "positions" else None
+
+    def largest_tension(self) -> float:
+        """Times k^3/density, k one over the side of a flow's cell, the square of its fastest wave's angular velocity.
+
+        That of waves across it follows from its tension, of those along it from its stretch, both as the splines leave
+        them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py).
+        """
+        stretch = 0.0 if self.law.springs is None else self.law.springs.stretch
+        if self.law.neo_hookean is not None:
+            stretch = 4.0 * self.law.neo_hookean.modulus
+        return max(ACROSS * (self.law.tension or self.prestress), ALONG * stretch)
+
+    def remark(self, state: ModelState) -> str:
+        """Its vertices."""
+        lengths = self.made.lengths
+        return f"{self.made.membrane.count} vertices, {lengths.min():.3g} to {lengths.max():.3g} m apart"
+
+    def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
+        """A closed line, filled where asked for."""
+        yield from self.drawn(name, moment.surface(name, self.material, self.color), state, self.thickness)
+
+    def drawn(
+        self, name: str, surface: Surface, state: ModelState, thickness: float | None, place: Floats | None = None
+    ) -> Iterable[Shape]:
+        """A closed line of a thickness [m], mapped by ``place`` (3, 4)."""
+        from sceneql.skins.drawn_skins import drawn
+
+        return drawn(name, surface, self.made, thickness, self.filled, state, place)
