@@ -100,7 +100,7 @@ RING = "it: {torus: {radius: 0.1 m, tube: 0.03 m, position: 0.3 0.03 0 m}}"
         (
             COLUMN,
             "cylinder: {radius: 0.2 m, height: 0.1 m, position: 0.3 0.25 0 m}",
-            "'it' and 'other' touch by an end",
+            "'it' and 'other' touch where one is flat: two curved bodies meet in mode `exact` by",
         ),
     ],
 )

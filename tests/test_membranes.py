@@ -250,7 +250,7 @@ def test_an_outline_is_a_skin_with_even_sides():
         ({"law": "law: {tension: 1 N/m}, prestress: 1 N/m"}, "all the tension that there is"),
         (
             {"law": "law: {tension: 1 N/m, springs: {stretch: 1 N/m}}"},
-            "has one of `springs`, `neo_hookean` and `tension`",
+            "has one of `springs`, `neo_hookean`, `skalak` and `tension`",
         ),
         ({"forces": "forces: [{gravity: {}}]\n"}, "no flow carries 'balloon'"),
         ({"forces": "forces: [{immersion: {in: air}}]\n"}, "names the skins"),

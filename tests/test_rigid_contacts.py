@@ -5,6 +5,7 @@ import pytest
 from click.testing import CliRunner
 
 import cube_pile
+import rigid_scenes
 import runs
 from runs import complaint
 from sceneql.cli import cli
@@ -12,25 +13,9 @@ from sceneql.cli import cli
 SOLVER = "semi_implicit_euler: {step: 5 ms}"
 
 
-def watch(folder, objects, bodies, times, *outputs, more="", solver=SOLVER, law="restitution: 0, friction: 0.5"):
+def watch(*where, law="restitution: 0, friction: 0.5", solver=SOLVER, **how):
     """Outputs of the model `it` of these bodies over a floor, unless the objects have one."""
-    lines = "\n".join(f"  {name}: {what}" for name, what in objects.items())
-    each = "\n".join(f"        {name}: {what}" for name, what in bodies.items())
-    script = f"""
-clock: {{end: {max(times)} s}}
-objects:
-{lines}
-models:
-  it:
-    rigid:
-      bodies:
-{each}
-forces: [gravity]
-contacts: {{touch: {{collision: {{{law}}}}}}}
-solvers: {{main: {{{solver}}}}}
-{more}
-"""
-    return runs.watch(folder, script, times, *outputs, pruned=False)
+    return rigid_scenes.watch(*where, law=law, solver=solver, **how)
 
 
 def stack(masses, gap=0.0):

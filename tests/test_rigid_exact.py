@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import rigid_scenes
 import runs
 from sceneql.pipeline import load
 from sceneql.report.explain import explain, text
@@ -10,25 +11,9 @@ from sceneql.report.explain import explain, text
 SOLVER = "dop853: {tolerance: 1e-12}"
 
 
-def watch(folder, objects, bodies, times, *outputs, law="restitution: 0", forces="[gravity]", more="", solver=SOLVER):
+def watch(*where, law="restitution: 0", **how):
     """Outputs of the model `it` of these bodies among these objects."""
-    lines = "\n".join(f"  {name}: {what}" for name, what in objects.items())
-    each = "\n".join(f"        {name}: {what}" for name, what in bodies.items())
-    script = f"""
-clock: {{end: {max(times)} s}}
-objects:
-{lines}
-models:
-  it:
-    rigid:
-      bodies:
-{each}
-forces: {forces}
-contacts: {{touch: {{collision: {{mode: exact, {law}}}}}}}
-solvers: {{main: {{{solver}}}}}
-{more}
-"""
-    return runs.watch(folder, script, times, *outputs, pruned=False)
+    return rigid_scenes.watch(*where, law=f"mode: exact, {law}", **how)
 
 
 def row(folder, speeds, masses=(1, 1, 1, 1, 1), restitution=1, more="", times=(1,)):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-import runs
+import rigid_scenes
 
 GRAVITY = 9.81
 BALL, LOG = "sphere: {radius: 0.5 m}", "cylinder: {radius: 0.5 m, height: 1 m, rotation: {about: x, angle: 90 deg}}"
@@ -15,23 +15,10 @@ AT = f"position: {0.6 * np.sin(START)} {0.6 * np.cos(START)} 0.1 m"
 
 
 def watch(folder, objects, bodies, times, *outputs, law, forces="[gravity]"):
-    """Outputs of the model `it` of these bodies among these objects."""
-    lines = "\n".join(f"  {name}: {{{what}}}" for name, what in objects.items())
-    each = "\n".join(f"        {name}: {{of: {name}, {motion}}}" for name, motion in bodies.items())
-    script = f"""
-clock: {{end: {max(times)} s}}
-objects:
-{lines}
-models:
-  it:
-    rigid:
-      bodies:
-{each}
-forces: {forces}
-contacts: {{touch: {{collision: {{mode: exact, {law}}}}}}}
-solvers: {{main: {{dop853: {{tolerance: 1e-12}}}}}}
-"""
-    return runs.watch(folder, script, times, *outputs, pruned=False)
+    """Outputs of the model `it` of the bodies of these objects, by how they move, among all."""
+    objects = {name: f"{{{what}}}" for name, what in objects.items()}
+    bodies = {name: f"{{of: {name}, {motion}}}" for name, motion in bodies.items()}
+    return rigid_scenes.watch(folder, objects, bodies, times, *outputs, law=f"mode: exact, {law}", forces=forces)
 
 
 @pytest.mark.parametrize("friction", [0, 1000])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-import runs
+import rigid_scenes
 from sceneql.failure import RunFailure
 
 GRAVITY = 9.81
@@ -14,17 +14,9 @@ HALF = np.array([0.5, 0.1, 0.5])
 
 def watch(folder, objects, motion, times, *outputs, law, solver="auto"):
     """Outputs of the body `it` of the object `it` among these objects."""
-    lines = "\n".join(f"  {name}: {what}" for name, what in objects.items())
-    script = f"""
-clock: {{end: {max(times)} s}}
-objects:
-{lines}
-models: {{body: {{rigid: {{bodies: {{it: {{of: it, density: 1000 kg/m^3, {motion}}}}}}}}}}}
-forces: [gravity]
-contacts: {{touch: {{collision: {{mode: exact, {law}}}}}}}
-solvers: {{main: {{{solver}}}}}
-"""
-    return runs.watch(folder, script, times, *outputs, pruned=False)
+    bodies = {"it": f"{{of: it, density: 1000 kg/m^3, {motion}}}"}
+    law = f"mode: exact, {law}"
+    return rigid_scenes.watch(folder, objects, bodies, times, *outputs, law=law, solver=solver, model="body")
 
 
 def gap(centers, middle=(0, -0.1, 0), half=HALF):

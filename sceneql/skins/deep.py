@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.kinds import Ref
-    from sceneql.skins.law import Elasticity
+    from sceneql.skins.elasticity import Elasticity
     from sceneql.system import Assembly, Flow
 
-KERNELS = "sceneql.skins.sheet_kernels"
+KERNELS = "sceneql.skins.closed_sheet_kernels"
 EVEN = 2.0 / 3.0
 """Of the stretch of a sheet: what springs along sides have, k = EVEN stretch (areas beside)/length^2, so that the
 tension of an even stretch is stretch times it (after Van Gelder 1998, J. Graphics Tools 3, 21-41)."""
@@ -60,13 +60,16 @@ class Sheet:
         if self.law.stretch > 0.0:
             more = self.sides_of(points) - self.lengths
             found += float(0.5 * (self.stiffness * more**2).sum())
-        if self.law.modulus > 0.0:
+        if max(self.law.modulus, self.law.shear) > 0.0:
             a, b, c = self._corners(points)
             p, q, r, areas = self.rest.T[:, :, None]
             u, v = p * (b - a), q * (b - a) + r * (c - a)
-            uu, uv, vv = (u * u).sum(axis=1), (u * v).sum(axis=1), (v * v).sum(axis=1)
-            dense = uu + vv + 1.0 / (uu * vv - uv**2) - 3.0
-            found += float(0.5 * self.law.modulus * (areas[:, 0] * dense).sum())
+            trace, square = ((u * u) + (v * v)).sum(axis=1), (u * u).sum(axis=1) * (v * v).sum(axis=1)
+            square -= (u * v).sum(axis=1) ** 2
+            dense = 0.5 * self.law.modulus * (trace + 1.0 / square - 3.0)
+            i, k = trace - 2.0, square - 1.0
+            dense += 0.25 * self.law.shear * (i**2 + 2.0 * i - 2.0 * k + self.law.area * k**2)
+            found += float((areas[:, 0] * dense).sum())
         return found
 
     def moments(self, points: Floats) -> tuple[Floats, Floats]:
@@ -158,6 +161,9 @@ def add_sheet(of: Ref, spacing: float, law: Elasticity, kept: bool, flow: Flow, 
     if law.modulus > 0.0:
         numbers = assembly.floats([law.modulus]), assembly.floats(made.rest)
         assembly.term("internal", f"{KERNELS}:neo_hookean", (*head, *numbers, 0, 0, *faces))
+    if law.shear > 0.0:
+        numbers = assembly.floats([law.shear, law.area]), assembly.floats(made.rest)
+        assembly.term("internal", f"{KERNELS}:skalak", (*head, *numbers, 0, 0, *faces))
     if kept:
         volume, room = assembly.floats([made.volume(points)]), assembly.floats(np.zeros(3 * count))
         ints = (*head, volume, room, at + 3 * count, 0, *faces)

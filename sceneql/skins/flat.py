@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
     from sceneql.frame import Floats
     from sceneql.kinds import Ref
-    from sceneql.skins.law import Elasticity
+    from sceneql.skins.elasticity import Elasticity
     from sceneql.system import Assembly, Flow
 
-KERNELS = "sceneql.skins.line_kernels"
+KERNELS = "sceneql.skins.closed_line_kernels"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +54,7 @@ class Line:
         """The energy of its tension [J], 0 at the start."""
         law, s = self.law, self.sides_of(points) / self.lengths
         dense = law.tension * (s - 1.0) + 0.5 * law.stretch * (s - 1.0) ** 2
-        dense += 0.5 * law.modulus * (s**2 + 1.0 / s**2 - 2.0)
+        dense += 0.5 * law.modulus * (s**2 + 1.0 / s**2 - 2.0) + 0.25 * law.shear * (1.0 + law.area) * (s**2 - 1.0) ** 2
         return self.depth * float((dense * self.lengths).sum())
 
     def moments(self, points: Floats) -> tuple[Floats, Floats]:
@@ -96,8 +96,10 @@ def add_line(of: Ref, spacing: float, law: Elasticity, kept: bool, flow: Flow, a
     skin = Membrane(count, at, assembly.floats(np.zeros(3 * count)))
     head = (skin.count, skin.position_at, skin.force_at)
     lengths = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
-    tension, stretch, modulus = (assembly.floats([one * depth]) for one in (law.tension, law.stretch, law.modulus))
-    assembly.term("internal", f"{KERNELS}:tension", (*head, tension, stretch, assembly.floats(lengths), modulus))
+    sheets = [law.modulus * depth, law.shear * (1.0 + law.area) * depth]
+    tension, stretch = (assembly.floats([one * depth]) for one in (law.tension, law.stretch))
+    ints = (*head, tension, stretch, assembly.floats(lengths), assembly.floats(sheets))
+    assembly.term("internal", f"{KERNELS}:tension", ints)
     if kept:
         volume, room = assembly.floats([signed_area(points) * depth]), assembly.floats(np.zeros(3 * count))
         ints = (*head, volume, room, at + 3 * count, assembly.floats([depth]))

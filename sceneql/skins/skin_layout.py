@@ -9,14 +9,15 @@ BOX_AT, DENSITY_AT, FLOW = 3, 4, 5
 
 PRETENSION_AT, STIFFNESS_AT, LENGTHS_AT, MODULUS_AT = 3, 4, 5, 6
 """Of the tension of a closed line: its tension where it has its own lengths, by how much it grows for a relative
-stretch [N]; these lengths [m], of the side from each vertex to the next; a neo-Hookean modulus [N]."""
+stretch [N]; these lengths [m], of the side from each vertex to the next; two more numbers, of rubber and of Skalak's
+law [N]."""
 
 VOLUME_AT, NORMALS_AT, TALLY_AT, DEPTH_AT = 3, 4, 5, 6
 """Of what keeps its volume: that volume [m^3]; room for three floats a vertex; the entry of y that sums what was put
 back [m^3]; the depth of a flat flow [m]."""
 
 REST_AT, SIDES, CORNERS = 4, 5, 7
-"""Of the laws of a sheet: at PRETENSION_AT its tension [N/m], the stiffness [N/m] of each side, or the modulus [N/m];
-at REST_AT of each side its own length [m], or of each triangle the inverse of its sides in its own plane (p, q; 0, r)
-[1/m] and its area [m^2], at the start. From SIDES on the two vertices of each side, from CORNERS on the three of each
-triangle, of what keeps its volume too."""
+"""Of the laws of a sheet: at PRETENSION_AT its tension, the stiffness of each side, or the modulus (and how much it
+resists a change of area) [N/m]; at REST_AT of each side its own length [m], or of each triangle the inverse of its
+sides in its own plane (p, q; 0, r) [1/m] and its area [m^2], at the start. From SIDES on the two vertices of each side,
+from CORNERS on the three of each triangle, of what keeps its volume too."""

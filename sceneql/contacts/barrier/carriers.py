@@ -1,4 +1,4 @@
-"""Where the derivatives of a barrier stand that rigid bodies feel, too (carried_slopes_kernels.py). Imports numpy."""
+"""Where the derivatives of a barrier stand: of solids alone, or with rigid bodies, too. Imports numpy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.contacts.barrier import pairs_layout as layout
-from sceneql.contacts.barrier.skin_pairs import Places
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -18,7 +17,37 @@ if TYPE_CHECKING:
     from sceneql.contacts.barrier.surfaces_of import Surface
     from sceneql.system import Slopes
 
+SLOPES = "sceneql.contacts.barrier.skins_slopes_kernels:slopes"
 KERNEL = "sceneql.contacts.barrier.carried_slopes_kernels:slopes"
+
+
+@dataclass
+class Places:
+    """The pairs of vertices that have been near so far."""
+
+    count: int
+    keys: NDArray[int64]
+    """Ascending, i * count + j."""
+    rows: NDArray[int64]
+    """(n, VERTEX) of pairs_layout."""
+
+    def add(self, vertices: Any) -> bool:
+        """Add all pairs among rows of four vertices (k, 4); whether any is new."""
+        fours = np.asarray(vertices, dtype=np.int64).reshape(-1, 4)
+        more = (fours[:, :, None] * self.count + fours[:, None, :]).ravel()
+        before = len(self.keys)
+        self.keys = np.union1d(self.keys, more)
+        return len(self.keys) > before
+
+    def slopes(self, ints: NDArray[int64]) -> Slopes:
+        """The blocks of all these pairs; ``ints``: the integers of the term."""
+        from sceneql.system import Slopes
+
+        row, column = np.divmod(self.keys, self.count)
+        starts = np.searchsorted(row, np.arange(self.count + 1))
+        by = [self.rows[column, which] for which in (layout.POSITION, layout.VELOCITY)]
+        own = np.concatenate([ints, starts, column])
+        return Slopes(SLOPES, np.tile(self.rows[row, layout.VELOCITY], 2), np.concatenate(by), own, blocks=True)
 
 
 @dataclass

@@ -3,62 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sceneql.contacts.barrier import pairs_layout as layout
+from sceneql.contacts.barrier.carriers import Carriers, Places
 from sceneql.contacts.barrier.standing import areas_of
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
-    from numpy import int64
-    from numpy.typing import NDArray
-
     from sceneql.contacts.barrier.surfaces_of import Surface
     from sceneql.frame import Floats
-    from sceneql.system import Assembly, Slopes
+    from sceneql.system import Assembly
 
 KERNELS = "sceneql.contacts.barrier.skin_forces_kernels:force"
 ENERGY = "sceneql.contacts.barrier.skins_energy_kernels:energy"
 LIMIT = "sceneql.contacts.barrier.skins_limit_kernels:limit"
 AFTER = "sceneql.contacts.barrier.held_friction_kernels:rub_skins"
-SLOPES = "sceneql.contacts.barrier.skins_slopes_kernels:slopes"
 
 ROOM = 48
 """Pairs for each vertex that there is room for, and for each edge; of those that press, a quarter."""
 AHEAD = 0.3
 """Pairs within the gap and this part of the mean side of triangles get places together."""
-
-
-@dataclass
-class Places:
-    """The pairs of vertices that have been near so far."""
-
-    count: int
-    keys: NDArray[int64]
-    """Ascending, i * count + j."""
-    rows: NDArray[int64]
-    """(n, VERTEX) of pairs_layout."""
-
-    def add(self, vertices: Any) -> bool:
-        """Add all pairs among rows of four vertices (k, 4); whether any is new."""
-        fours = np.asarray(vertices, dtype=np.int64).reshape(-1, 4)
-        more = (fours[:, :, None] * self.count + fours[:, None, :]).ravel()
-        before = len(self.keys)
-        self.keys = np.union1d(self.keys, more)
-        return len(self.keys) > before
-
-    def slopes(self, ints: NDArray[int64]) -> Slopes:
-        """The blocks of all these pairs; ``ints``: the integers of the term."""
-        from sceneql.system import Slopes
-
-        row, column = np.divmod(self.keys, self.count)
-        starts = np.searchsorted(row, np.arange(self.count + 1))
-        by = [self.rows[column, which] for which in (layout.POSITION, layout.VELOCITY)]
-        own = np.concatenate([ints, starts, column])
-        return Slopes(SLOPES, np.tile(self.rows[row, layout.VELOCITY], 2), np.concatenate(by), own, blocks=True)
 
 
 def add_pairs(
@@ -111,8 +78,6 @@ def add_pairs(
     ]
     ints = np.concatenate([np.array(head, dtype=np.int64), lists])
     if any(one.rigid for one in surfaces):
-        from sceneql.contacts.barrier.carriers import Carriers
-
         known: Places = Carriers.of(surfaces, rows)
     else:
         known = Places(len(rest), np.arange(len(rest), dtype=np.int64) * (len(rest) + 1), rows)

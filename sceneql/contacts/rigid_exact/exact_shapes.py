@@ -192,7 +192,8 @@ def apart_exactly(
             continue
         gap, met = gap_of(shapes[first], places[first], shapes[second], places[second], assembly.numbers())
         if both_curved and not met and gap < DEEP * min(shapes[a].reach, shapes[b].reach):
-            message = f"{said(one)} and {said(other)} touch by an end, which mode `exact` knows of no two curved bodies"
+            sides = "two curved bodies meet in mode `exact` by round sides and rims alone"
+            message = f"{said(one)} and {said(other)} touch where one is flat: {sides}"
             found.error("no-collider", message, _place(one, assembly), help="mode `local` takes both")
             continue
         if -gap > DEEP * min(shapes[a].reach, shapes[b].reach):

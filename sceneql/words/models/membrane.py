@@ -39,17 +39,28 @@ class NeoHookean(Record):
     modulus: kinds.FixedStiffness = field("Its shear modulus G, times its thickness.", above=0)
 
 
+class Skalak(Record):
+    """The skin of a blood cell: energy G/4 (i^2 + 2 i - 2 k + A k^2) a square meter at the start.
+
+    i = tr C - 2, k = det C - 1 (Skalak, Tozeren, Zarda & Chien 1973).
+    """
+
+    modulus: kinds.FixedStiffness = field("Its shear modulus G, times its thickness.", above=0)
+    area: kinds.FixedScalar = field("A: how much it resists a change of its area.", "1", at_least=0)
+
+
 class Law(Record):
     """How a skin pulls: one of these."""
 
     springs: Springs | None = field("Springs between its vertices.", None)
     neo_hookean: NeoHookean | None = field("A sheet of rubber.", None)
+    skalak: Skalak | None = field("The skin of a blood cell.", None)
     tension: kinds.FixedStiffness | None = field("The same tension always, as that of a bubble.", None, above=0)
 
     def problems(self) -> Iterable[Problem]:
         """Several, or none."""
-        if sum(one is not None for one in (self.springs, self.neo_hookean, self.tension)) != 1:
-            yield Problem("a skin has one of `springs`, `neo_hookean` and `tension`")
+        if sum(one is not None for one in (self.springs, self.neo_hookean, self.skalak, self.tension)) != 1:
+            yield Problem("a skin has one of `springs`, `neo_hookean`, `skalak` and `tension`")
 
 
 class Membrane(Model):
@@ -129,8 +140,8 @@ class Membrane(Model):
 
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve its vertices, add its tension and what keeps its volume. Raises ScriptError."""
+        from sceneql.skins.elasticity import Elasticity
         from sceneql.skins.fitting import must_fit, spacing_in
-        from sceneql.skins.law import Elasticity
 
         flow = assembly.flow_of()
         if flow is None:  # it could not be made, which is told
@@ -140,6 +151,7 @@ class Membrane(Model):
             self.law.tension or self.prestress,
             0.0 if self.law.springs is None else self.law.springs.stretch,
             0.0 if self.law.neo_hookean is None else self.law.neo_hookean.modulus,
+            *((0.0, 0.0) if self.law.skalak is None else (self.law.skalak.modulus, self.law.skalak.area)),
         )
         made: Line | Sheet
         if len(flow.areas) == 2:
@@ -193,6 +205,8 @@ class Membrane(Model):
         stretch = 0.0 if self.law.springs is None else self.law.springs.stretch
         if self.law.neo_hookean is not None:
             stretch = 4.0 * self.law.neo_hookean.modulus
+        if self.law.skalak is not None:  # along a side that does not stretch across
+            stretch = 2.0 * self.law.skalak.modulus * (1.0 + self.law.skalak.area)
         return max(ACROSS * (self.law.tension or self.prestress), ALONG * stretch)
 
     def remark(self, state: ModelState) -> str:

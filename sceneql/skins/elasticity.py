@@ -15,3 +15,7 @@ class Elasticity:
     """Tension of springs for a relative stretch [N/m]."""
     modulus: float = 0.0
     """Shear modulus of a neo-Hookean sheet, over its thickness [N/m]."""
+    shear: float = 0.0
+    """That of Skalak's law [N/m]."""
+    area: float = 0.0
+    """How much it resists a change of area, in parts of that."""

@@ -27,10 +27,11 @@ ROUNDING = 2e-16
 
 @lean(TERM, inner=True)
 def tension(t, y, rate, floats, ints):
-    """Adds what each side pulls at its ends [N]: pretension + stiffness (s - 1) + modulus (s - 1/s^3), s = length over
-    own length, the last of a neo-Hookean sheet that does not stretch across."""
+    """Adds what each side pulls at its ends [N]: pretension + stiffness (s - 1) + modulus (s - 1/s^3) + skalak (s^3 -
+    s), s = length over own length, the last two of sheets that do not stretch across."""
     count, at, force = ints[COUNT], ints[POSITION_AT], ints[FORCE_AT]
-    pretension, stiffness, modulus = floats[ints[PRETENSION_AT]], floats[ints[STIFFNESS_AT]], floats[ints[MODULUS_AT]]
+    pretension, stiffness = floats[ints[PRETENSION_AT]], floats[ints[STIFFNESS_AT]]
+    modulus, skalak = floats[ints[MODULUS_AT]], floats[ints[MODULUS_AT] + 1]
     lengths = floats[ints[LENGTHS_AT] : ints[LENGTHS_AT] + count]
     for v in range(count):
         w = v + 1 if v < count - 1 else 0
@@ -38,7 +39,8 @@ def tension(t, y, rate, floats, ints):
         length = math.sqrt(dx * dx + dy * dy)
         if length > 0.0:
             s = length / lengths[v]
-            pull = (pretension + stiffness * (s - 1.0) + modulus * (s - 1.0 / (s * s * s))) / length
+            pull = pretension + stiffness * (s - 1.0) + modulus * (s - 1.0 / (s * s * s)) + skalak * (s * s * s - s)
+            pull /= length
             floats[force + 3 * v] += pull * dx
             floats[force + 3 * v + 1] += pull * dy
             floats[force + 3 * w] -= pull * dx

@@ -3,6 +3,8 @@
 
 import math
 
+from numba import types
+
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.skins.skin_layout import (
     CORNERS,
@@ -16,7 +18,7 @@ from sceneql.skins.skin_layout import (
     TALLY_AT,
     VOLUME_AT,
 )
-from sceneql.system.signatures_kernels import AFTER_STEP, TERM
+from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
 MOST = 20
 """Newton's updates of the volume."""
@@ -74,34 +76,49 @@ def springs(t, y, rate, floats, ints):
             add(floats, force + 3 * b, -pull, d)
 
 
-@lean(TERM, inner=True)
-def neo_hookean(t, y, rate, floats, ints):
-    """Adds the forces of W = G/2 (tr C + 1/det C - 3) on each square meter at the start, C = F^T F in the sheet.
+@lean(types.void(A, A, F, F, N, I), inner=True)
+def strained(y, floats, shear, area, rubber, ints):
+    """Adds the forces of an energy W of tr C and det C, C = F^T F in the sheet, on each square meter at the start.
 
     F has the columns (xj - xi, xk - xi) times the inverse of those at the start, an upper triangle (p, q; 0, r), and P
-    = G (F - F C^-1/det C) is dW/dF (Barthes-Biesel & Rallison 1981, J. Fluid Mech. 113, 251-267, incompressible).
+    = 2 dW/dtr F + 2 dW/ddet F cof C is dW/dF. ``rubber``: 1: W = shear (tr + 1/det - 3)/2, else W = shear ((i^2 + 2 i -
+    2 k)/4 + area k^2/4) with i = tr - 2, k = det - 1.
     """
-    at, force, modulus = ints[POSITION_AT], ints[FORCE_AT], floats[ints[PRETENSION_AT]]
+    at, force = ints[POSITION_AT], ints[FORCE_AT]
     for c in range(CORNERS, ints.size, 3):
         i, j, k = ints[c], ints[c + 1], ints[c + 2]
         ab, ac = away(y, at + 3 * i, at + 3 * j), away(y, at + 3 * i, at + 3 * k)
         rest = floats[ints[REST_AT] + 4 * ((c - CORNERS) // 3) :]
-        p, q, r, area = rest[0], rest[1], rest[2], rest[3]
+        p, q, r, whole = rest[0], rest[1], rest[2], rest[3]
         u = (p * ab[0], p * ab[1], p * ab[2])
         v = (q * ab[0] + r * ac[0], q * ab[1] + r * ac[1], q * ab[2] + r * ac[2])
         uu = u[0] * u[0] + u[1] * u[1] + u[2] * u[2]
         uv = u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
         vv = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
         square = uu * vv - uv * uv
-        over = 1.0 / (square * square)
-        pull = modulus * area
+        if rubber == 1:
+            by_trace, by_square = shear, -shear / (square * square)
+        else:
+            by_trace, by_square = shear * (uu + vv - 1.0), shear * (area * (square - 1.0) - 1.0)
         for d in range(3):
-            along = pull * (u[d] - over * (vv * u[d] - uv * v[d]))
-            across = pull * (v[d] - over * (uu * v[d] - uv * u[d]))
+            along = whole * (by_trace * u[d] + by_square * (vv * u[d] - uv * v[d]))
+            across = whole * (by_trace * v[d] + by_square * (uu * v[d] - uv * u[d]))
             first, second = p * along + q * across, r * across
             floats[force + 3 * j + d] -= first
             floats[force + 3 * k + d] -= second
             floats[force + 3 * i + d] += first + second
+
+
+@lean(TERM, inner=True)
+def neo_hookean(t, y, rate, floats, ints):
+    """A sheet of rubber that keeps its own volume (Barthes-Biesel & Rallison 1981, J. Fluid Mech. 113, 251-267)."""
+    strained(y, floats, floats[ints[PRETENSION_AT]], 0.0, 1, ints)
+
+
+@lean(TERM, inner=True)
+def skalak(t, y, rate, floats, ints):
+    """The skin of a blood cell, that resists a change of its area (Skalak et al. 1973, Biophys. J. 13, 245-264)."""
+    strained(y, floats, floats[ints[PRETENSION_AT]], floats[ints[PRETENSION_AT] + 1], 0, ints)
 
 
 @lean_inlined
