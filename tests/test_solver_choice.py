@@ -18,6 +18,7 @@ from sceneql.march.march import March
 from sceneql.stepping.tableau import Tableau
 from sceneql.system import Cells, Control, Fields, Grid, IslandFacts, Stepper
 from sceneql.words.solvers.auto import Auto
+from sceneql.words.solvers.bdf2 import Bdf2
 from sceneql.words.solvers.implicit_euler import ImplicitEuler
 from sceneql.words.solvers.tr_bdf2 import TrBdf2
 from solver_words import EVERY, solver
@@ -127,6 +128,16 @@ def test_auto_takes_its_order_by_the_tolerance_and_by_what_acts_between_steps(to
 
 def test_auto_marches_a_field_by_another_word():
     assert type(Auto().choose(plate()).solver) is TrBdf2
+
+
+@pytest.mark.parametrize(("unknowns", "taken"), [(3 * 1999, Auto), (3 * 2000, Bdf2)])
+def test_auto_marches_large_solids_by_bdf2_with_a_larger_tolerance(unknowns, taken):
+    methods = Auto().choose(IslandFacts(2 * unknowns, in_solids=unknowns))
+    assert type(methods.solver) is taken
+    if taken is Bdf2:
+        assert methods.first.control.tolerance == 1e-4
+        assert methods.stiff is None
+        assert "6,000 unknowns" in methods.remark
 
 
 def test_a_drift_has_the_general_way_at_hand():

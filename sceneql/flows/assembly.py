@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Protocol
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,14 +19,15 @@ from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces
 from sceneql.grids.domain.boundary import shares
 from sceneql.grids.multigrid.layout import SINK
-from sceneql.kinds import Formula, Ref
+from sceneql.kinds import Formula
 from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import TIME_SYMBOL, Number, Symbol
 from sceneql.system import Cells, Flow, Grid
 
 if TYPE_CHECKING:
-    from sceneql.flows.parts import Side, Start
+    from sceneql.flows.flow_fields import Model
+    from sceneql.flows.parts import Side
     from sceneql.frame import Floats
     from sceneql.grids.domain.cells import Cells as Ground
     from sceneql.system import Assembly
@@ -38,50 +39,6 @@ ACROSS = 1e-9
 """Velocity of a wall across it, in parts of its largest, that counts as rounding."""
 TIMES = (0.0, 0.37, 1.0, 7.3)
 """Instants [s] at which inflows of a closed box are looked at."""
-
-
-class Model(Protocol):
-    """The fields of the word `flow` that its terms are made by."""
-
-    @property
-    def boundary(self) -> Mapping[str, Side]:
-        """What holds on its sides."""
-
-    @property
-    def density(self) -> float:
-        """[kg/m^3]"""
-
-    @property
-    def viscosity(self) -> float:
-        """[Pa s]"""
-
-    @property
-    def initial(self) -> Start | None:
-        """The flow at the start."""
-
-    @property
-    def advection(self) -> str:
-        """A name of SCHEMES."""
-
-    @property
-    def around(self) -> tuple[Ref, ...]:
-        """Solids in it."""
-
-    @property
-    def domain(self) -> Ref | None:
-        """The object that it fills, where it is no box."""
-
-    @property
-    def edges(self) -> str:
-        """How cells meet these."""
-
-    @property
-    def pressure(self) -> str:
-        """How it is solved for."""
-
-    @property
-    def force(self) -> Formula | None:
-        """On each cubic meter [N/m^3]."""
 
 
 def add_flow(model: Model, cells: Ground, assembly: Assembly) -> Flow:

@@ -76,6 +76,10 @@ ROUNDING = 1e-13
 NOISY = 1e5
 """Fall of a potential that the slope predicts, in rounding errors, from which on its value tells nothing: energies of
 stiff solids are small differences."""
+ULPS, UNTOLD = 1.0 + 4e-16, 100.0
+"""Factor by which a state is rounded another way; fall of a potential, over what that changes, up to which likewise."""
+LESS = 0.25
+"""Square of the part to which an update must bring down the residual where the potential tells nothing of it."""
 LOOSE = 3e-2
 """Last update, over the largest, with which a solution ends whose loads of friction are taken anew behind it."""
 UNMOVED = 1e-12
@@ -149,6 +153,15 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     foresee(y0, y0, floats)
     memory[FACTORED] = 0.0
     lowest, rounding = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
+    floor = 0.0
+    if has_limit and has_potential:
+        # At rest a potential is the small difference of large numbers: what another rounding of the state makes of it.
+        for k in range(n):
+            moved[k] = ULPS * y[k]
+        energies = energy_at(functions[AT_ENERGY])
+        floor = abs(energies(t, moved, floats, ints) - energies(t, y, floats, ints))
+        floor = UNTOLD / NOISY * floor if floor < math.inf else 0.0
+    rounding = max(rounding, floor)
     for k in range(n):
         best[k] = y[k]
     positive, searching = True, has_limit
@@ -176,8 +189,11 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         memory[ITERATIONS] += 1.0
         if not regular or not solve_stage(plan, a, jacobian, scales, store, change):
             break
+        left = along(plan, scales, residual, residual)
         slope = -along(plan, scales, residual, change) if has_potential else -2.0 * lowest
-        noisy = has_limit and -slope <= NOISY * rounding
+        # Beside energies of next to nothing all of an update may be rounding, however little that is.
+        tiny = has_limit and largest(change, y0, y, memory) <= NOISE
+        noisy = has_limit and (tiny or -slope <= NOISY * rounding)
         part = 1.0
         aim(y, change, floats)
         if has_limit:
@@ -191,7 +207,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         go(y, change, part, floats)
         leave(rate, t, a, base, y, residual, plan, floats, ints)
         value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
-        noisy = noisy and value <= lowest + NOISY * rounding
+        noisy = noisy and (tiny or value <= lowest + NOISY * rounding)
         if has_limit and not noisy and not value <= lowest + ENOUGH * part * slope + rounding:
             # Friction learns where the whole update led (friction_slopes_kernels), though only a part of it is taken.
             floats[channels.NEWTON] = a * a
@@ -208,6 +224,12 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             go(y, change, part, floats)
             leave(rate, t, a, base, y, residual, plan, floats, ints)
             value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
+        if part <= SHORTEST * longest and has_limit and has_potential:
+            # Where the potential tells nothing of an update, the forces that are left do.
+            go(y, change, longest, floats)
+            leave(rate, t, a, base, y, residual, plan, floats, ints)
+            if along(plan, scales, residual, residual) <= LESS * left:
+                part, value = longest, lowest
         if part <= SHORTEST * longest:
             if positive:
                 break
@@ -248,6 +270,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if value <= lowest + rounding:
             failing = 0
             lowest, rounding = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
+            rounding = max(rounding, floor)
             for k in range(n):
                 best[k] = y[k]
         else:

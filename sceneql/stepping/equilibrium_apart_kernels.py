@@ -111,12 +111,14 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         work[0] = h * min(0.5, max(ALONG * part, 0.1))
         return math.inf
     total = 0.0
-    for turn in range(PASSES):
+    for _ in range(PASSES):
         for k in range(n):
             rest[k] = y1[k]
         from_rest(rest, plan, base, y1)
         settings[CAREFUL] = settings[FACTORED] = 0.0
-        if not newton(functions, end, a, base, rest, y1, scratch, jacobian, store, scales, settings, plan, floats, ints):
+        if not newton(
+            functions, end, a, base, rest, y1, scratch, jacobian, store, scales, settings, plan, floats, ints
+        ):
             return math.inf
         at_rest(y1, y0, numbers)
         for k in range(n):

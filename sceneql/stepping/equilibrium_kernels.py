@@ -21,8 +21,7 @@ from numba import types
 
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_LIMIT, AT_RATE, jacobian_at, rate_at
+from sceneql.compiled.pointers_kernels import AT_JACOBIAN, AT_RATE, jacobian_at, rate_at
 from sceneql.linear.newton_kernels import (
     CAREFUL,
     FACTORED,
@@ -89,8 +88,6 @@ ROUNDING, STALLS = 100.0, 2
 forces tell of places where some are stiffer than others by many orders, as against a change of volume."""
 
 RELAX = types.int64(I, F, A, A, A, I, A, I)
-
-step_apart = lazy("sceneql.stepping.equilibrium_apart_kernels:step", STEP)
 
 
 @lean_inlined
@@ -245,8 +242,6 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
 
     Each update is one of rest itself: the inertia is that of a step from the state before the update, and vanishes.
     """
-    if functions[AT_LIMIT] != 0:
-        return step_apart(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints)
     n = y0.size
     base, rest, scratch = work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 7 * n]
     jacobian = work[ARRAYS * n : ARRAYS * n + numbers[ROOM]]

@@ -69,7 +69,7 @@ def assemble(
         message = f"{n} rigid bodies are too many for contacts in mode `exact`: at most {MOST}"
         raise ScriptError([Diagnostic("invalid", message, assembly.line(), "`mode: local` takes more")])
     if gives_way and n > 1 and any(is_column(shape) for shape in found.shapes):
-        # One that stands and is struck has made energy, where its rim is near to be let go.
+        # One that rocks on its rim takes thousands of short steps, and its rims meet no edges.
         message = "a cylinder that other bodies strike is in `exact` by name alone"
         raise ScriptError([Diagnostic("invalid", message, assembly.line(), "`mode: exact` takes it")])
     movers: list[tuple[int, ...]] = []

@@ -30,6 +30,10 @@ ORBITS = 1e-10
 IN_ORBITS = 1e-6
 APART = 1.0 / 240.0
 """Steps [s] where a barrier keeps surfaces apart."""
+MANY = 6000
+"""Unknowns in elastic solids from which on a step of radau, three stages at once in complex numbers, takes seconds."""
+COARSER = 100.0
+"""What the tolerance is times where a method of order 2 takes its place."""
 
 
 class Auto(Solver):
@@ -44,9 +48,9 @@ class Auto(Solver):
     tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty masses keep
     it with dopri5, and so do ties of rigid bodies that have exact contacts. A field on a grid is marched by tr_bdf2,
     and on a box whose coefficient and boundary do not vary by exact; a flow, with all that is solved with it, by ark3;
-    elastic solids that may touch by bdf2 in steps of 1/240 s. Errors are measured as those of `radau` are. Sources: see
-    these words; the sign of stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996),
-    IV.2.
+    elastic solids that may touch by bdf2 in steps of 1/240 s, others of 6,000 unknowns or more by bdf2 with 100 times
+    the tolerance. Errors are measured as those of `radau` are. Sources: see these words; the sign of stiffness is that
+    of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """
 
     tolerance: FixedScalar = field(
@@ -94,6 +98,13 @@ class Auto(Solver):
         if island.apart:
             there = "in steps of one length, since a barrier keeps surfaces apart, towards which others would creep"
             return replace(Bdf2(step=APART).choose(island), remark=there)
+        if island.in_solids >= MANY:
+            coarser = Bdf2(tolerance=round(min(COARSER * self.tolerance, 0.1), 16), absolute=self.absolute)
+            there = (
+                f"for solids with {island.in_solids:,} unknowns, of which each stage of radau would cost too much, "
+                f"at a tolerance of {coarser.tolerance:g}"
+            )
+            return replace(coarser.choose(island), remark=there)
         few = island.entries <= BY_DIFFERENCES
         if island.local_contacts and few:
             return Methods(self, self._order_5(), bounded_by=Dopri5(tolerance=self.tolerance))

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from sceneql.kinds import FixedScalar, FixedTime, Solver, field
+from sceneql.kinds import FixedScalar, FixedTime, Methods, Solver, field
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Stepper
+    from sceneql.system import IslandFacts, Stepper
+
+APART = "sceneql.stepping.equilibrium_apart_kernels:step"
 
 
 class Equilibrium(Solver):
@@ -17,6 +19,7 @@ class Equilibrium(Solver):
     It begins with the rest that the start goes down to, and follows it as loads and led places change in time, by
     Newton's method in steps of its own between frames. A limit load, beyond which no rest is near, and a rest that is
     unstable, as a column that would buckle, end the run with the time and the forces reached. Forces need slopes.
+    Where solids touch friction does not act, since nothing slides at rest.
     Sources: Riks (1979), Int. J. Solids Struct. 15, 529-551; Crisfield, Non-linear Finite Element Analysis (1991).
     """
 
@@ -57,6 +60,15 @@ class Equilibrium(Solver):
                 march="sceneql.march.equilibrium_march:EquilibriumMarch",
             ),
         )
+
+    def choose(self, island: IslandFacts) -> Methods:
+        """Steps down the potential where a barrier keeps surfaces apart, since paths bend where they meet."""
+        from dataclasses import replace
+
+        stepper = self.stepper()
+        if island.apart:
+            stepper = replace(stepper, method=replace(stepper.method, step=APART))
+        return Methods(self, stepper)
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """0: nothing of a motion is left."""
