@@ -64,11 +64,13 @@ def test_a_pipe_lets_through_where_it_meets_its_box(tmp_path):
         ("objects: {bowl: {sphere: {radius: 1 m, position: [1 m/s*time, 0 m, 0 m]}}}\n", {}, "and moves"),
         ("objects: {bowl: {sphere: {radius: 1 m}}}\n", {"size": "1 1 m"}, "one of `domain` and `size`"),
         ("objects: {bowl: {sphere: {radius: 1 mm}}}\n", {}, "no two cells"),
+        ("objects: {bowl: {sphere: {radius: 1 m}}}\n", {"corner": "1 1 1 m"}, "has no `corner`"),
+        ("", {"size": "1 1 m", "domain": None, "flat": "yes"}, "a box is flat where it has two sides"),
     ],
 )
 def test_what_cannot_be_filled_is_told(tmp_path, before, fields, text):
     with pytest.raises(ScriptError, match=text):
-        Air(tmp_path, before=before, domain="bowl", **{"size": None, **fields})
+        Air(tmp_path, before=before, **{"size": None, "domain": "bowl", **fields})
 
 
 def test_a_field_in_the_box_of_such_a_flow_is_carried_inside_and_told_its_numbers(tmp_path):

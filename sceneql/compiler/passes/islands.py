@@ -138,6 +138,9 @@ def _touching(
         if why is not None:
             help = f"name under `between` what may touch, without '{ref.name}'"
             found.error("no-collider", f"'{ref.name}': {why}", ref.span, help=help)
+        elif ref.name in models and not getattr(tasks[ref.name].kind, "has_bodies", False):
+            text = f"{task.word} acts on masses, and there are none in {ref.name}"
+            found.error("no-mass", text, ref.span, help=f"name under `between` what may touch, without '{ref.name}'")
     ties = list(dict.fromkeys(driver.get(name, name) for name in ties))
     targets = [name for name in ties if name in models]
     surfaces = [name for name in ties if isinstance(tasks[name].kind, Object)]

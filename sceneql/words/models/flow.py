@@ -144,6 +144,10 @@ class Flow(Model):
         if (self.size is None) == (self.domain is None):
             yield Problem("a flow fills one of `domain` and `size`")
             return
+        if self.corner is not None and self.size is None:
+            yield Problem("the box of a `domain` is the one around it, and has no `corner`", ("corner",), at_key=True)
+        if self.flat and self.size is not None:
+            yield Problem("`flat` is for a `domain`: a box is flat where it has two sides", ("flat",), at_key=True)
         yield from self._named()
         if self.size is None:
             return
