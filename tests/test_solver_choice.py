@@ -164,3 +164,10 @@ def test_the_linear_solver_that_is_named_is_compiled_beside(linear):
     beside = ImplicitEuler(linear=linear).choose(still).first.needs.beside
     assert beside[-1] == KERNELS[linear].partition(":")[0]
     assert all(find_spec(module) is not None for module in beside)
+
+
+def test_auto_takes_a_tolerance_that_is_written_at_its_word_beside_a_barrier():
+    apart = IslandFacts(600, apart=True)
+    assert Auto().choose(apart).first.control.adaptive is False
+    chosen = Auto(tolerance=1e-5).choose(apart).first.control
+    assert (chosen.adaptive, chosen.tolerance) == (True, 1e-5)

@@ -52,7 +52,8 @@ class EquilibriumMarch(March):
         if found == UNSTABLE:
             raise self._failure("the rest that was found is unstable: the least push would leave it")
         if found != REACHED:
-            raise self._failure("no rest was found: forces have none, or move on without end")
+            rubs = "; where solids touch friction does not act at rest" if self.system.structure.limits else ""
+            raise self._failure(f"no rest was found: forces have none, or move on without end{rubs}")
         self._y0[:] = self._y1[:] = y  # an instant that is asked for may lie an ulp before this one
         self._rate0[:] = self._rate1[:] = self.rate(t, y)
 

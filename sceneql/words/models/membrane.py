@@ -10,6 +10,7 @@ from pydantic import PrivateAttr
 from sceneql import kinds
 from sceneql.kinds import Gives, Model, Problem, Record, Ref, field, quantity_type
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -160,6 +161,11 @@ class Membrane(Model):
             made = add_line(self.of, spacing, law, self.volume == "kept", flow, assembly)
         else:
             from sceneql.skins.deep import add_sheet
+
+            if self.filled or self.thickness is not None:
+                what = "filled" if self.filled else "thickness"
+                text = f"`{what}` is of a flat skin, which is a line; a deep one is drawn as its surface"
+                raise ScriptError([Diagnostic("invalid", text, assembly.line(), f"leave `{what}` out")])
 
             made = add_sheet(self.of, spacing, law, self.volume == "kept", flow, assembly)
         must_fit(made, self.of, assembly)

@@ -95,6 +95,10 @@ class Auto(Solver):
             return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1), absolute=self.absolute).choose(island)
         if island.fields.flow is not None:
             return Ark3(tolerance=min(100.0 * self.tolerance, 0.1)).choose(island)
+        if island.apart and self.tolerance != type(self)().tolerance:
+            there = "by its tolerance, which is written, where a barrier keeps surfaces apart"
+            radau = Radau(tolerance=self.tolerance, absolute=self.absolute)
+            return replace(radau.choose(island), remark=there)
         if island.apart:
             there = "in steps of one length, since a barrier keeps surfaces apart, towards which others would creep"
             return replace(Bdf2(step=APART).choose(island), remark=there)
