@@ -100,6 +100,8 @@ def fill(y, floats, ints, component):
                     slope = floats[ints[own.NORMALS + axis] + f]
                     stride, count = (1 if axis == 0 else (nx if axis == 1 else nx * ny)), side(nx, ny, nz, axis)
                     here = side(i, j, k, axis)
+                    if here == (0 if slope < 0.0 else count - 1) and flow[layout.PERIODIC + axis] == 0:
+                        continue  # the box ends there
                     if slope < 0.0:
                         other = f - stride if here > 0 else f + (count - 1) * stride
                     else:
