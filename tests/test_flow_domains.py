@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from flows import Air
+from sceneql.pipeline import load
 from sceneql.quantities.diagnostic import ScriptError
 
 INNER, OUTER, SPEED = 0.4, 1.0, 1.5
@@ -84,3 +85,16 @@ def test_a_field_in_the_box_of_such_a_flow_is_carried_inside_and_told_its_number
     mass = air.read("mass", "dye")
     assert mass == pytest.approx(1.5 * np.pi * 0.25, rel=0.02)  # small cells count as larger ones
     assert air.at(0.1).read("mass", "dye") == pytest.approx(mass, rel=1e-12)
+
+
+@pytest.mark.parametrize(("step", "told"), [("0.75 ms", False), ("1 ms", True)])
+def test_the_step_of_an_outline_is_that_of_a_flat_flow(tmp_path, step, told):
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        "clock: {end: 0.01 s}\nobjects: {pool: {outline: {points: [0 0 m, 1 0 m, 1 1 m, 0 1 m]}}}\n"
+        "models: {air: {flow: {domain: pool, cell: 5 cm, density: 1 kg/m^3, viscosity: 1 Pa*s}}}\n"
+        f"solvers: {{main: {{rk4: {{step: {step}}}}}}}\noutputs: {{t: {{record: {{of: [air.largest_speed]}}}}}}\n",
+        encoding="utf-8",
+    )
+    codes = [warning.code for warning in load(path).warnings]
+    assert ("unstable-step" in codes) is told

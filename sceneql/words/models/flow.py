@@ -186,10 +186,7 @@ class Flow(Model):
 
     def fastest(self, name: str) -> Iterable[Oscillation]:
         """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann), and advection."""
-        if self.size is None:  # the object tells its box when it is assembled: as if it were a deep one
-            size = (self.cell,) * (2 if self.flat else 3)
-        else:
-            size = self.size
+        size = self.size or (self.cell, self.cell)  # of a flat domain; rates of a deep one are larger
         spacing = [side / n for side, n in zip(size, counts(size, self.cell), strict=False)]
         decay = 4.0 * self.viscosity / self.density * sum(1.0 / side**2 for side in spacing)
         if decay > 0.0:
