@@ -18,7 +18,7 @@ from renderers.tracing.solids.surface_kernels import normal_at
 from sceneql.field.tape.builder import TapeBuilder
 from sceneql.frame import Implicit
 from stage import WHITE, frame
-from test_waves import SKY, SOLIDS, pictures
+from test_ray_packets import SKY, SOLIDS, pictures
 
 
 def paint():

@@ -36,6 +36,7 @@ MODELS = {
     "mass_spring": "mass_spring: {masses: {a: {position: 1 2 3 m}, b: {fixed: yes}}, "
     "springs: [{between: [a, b], name: tie}]}",
     "mass_spring lattice": "mass_spring: {lattice: {count: 2 2 2, spacing: 0.1 m}, mass: 1 kg}",
+    "membrane": "membrane: {of: ball, law: {tension: 1 N/m}}",
     "particles": "particles: {list: {a: {mass: 1 kg, position: 0 1 0 m}, b: {velocity: 1 2 3 m/s}}}",
     "particles one": "particles: {list: {a: {mass: 2 kg, position: 0 1 0 m}}}",
     "particles of": "particles: {of: ball}",
@@ -45,7 +46,9 @@ MODELS = {
     "b: {mass: 1 kg, inertia: 1 1 1 kg*m^2, position: 1 0 0 m}}}",
     "reaction_diffusion": "reaction_diffusion: {size: 1 1 m, cell: 0.25 m, probes: {here: 0.4 0.6 m}, "
     "species: {u: {coefficient: 0.1, initial: x, rate: -u*v}, v: {initial: y}}}",
+    "wave": "wave: {size: 1 1 m, cell: 0.25 m, speed: 1 m/s, initial: x, velocity: y, probes: {here: 0.4 0.6 m}}",
 }
+AIR = "{flow: {size: 1 1 m, corner: -0.5 -0.5 m, cell: 0.01 m, density: 1 kg/m^3, viscosity: 0.1 Pa*s}}"
 COMPUTED_ALONE = {"flow"}
 """A flow's velocities stand at faces; all its outputs are means at centers."""
 COMPUTED = {"momentum"}
@@ -58,9 +61,11 @@ NOT_TOLD = {"center", "hook.position", "a.hook.position"}
 
 def run_of(folder: Path, model: str, force: str = "{mutual_gravity: {constant: 1}}") -> Run:
     path = folder / "scene.yaml"
+    carried = model.startswith("membrane")
+    force, air = ("{immersion: {on: [it], in: air}}", f"  air: {AIR}\n") if carried else (force, "")
     path.write_text(
         "clock: {end: 1 s}\nobjects: {ball: {sphere: {radius: 0.1 m, hidden: yes}}}\n"
-        f"models:\n  other: {{particles: {{list: {{o: {{position: 9 9 9 m}}}}}}}}\n  it: {{{model}}}\n"
+        f"models:\n{air}  other: {{particles: {{list: {{o: {{position: 9 9 9 m}}}}}}}}\n  it: {{{model}}}\n"
         f"forces: {{pull: {force}}}\n"
     )
     return Run(load(path, pruned=False))

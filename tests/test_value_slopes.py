@@ -64,7 +64,7 @@ FORCES = {
     "vortex": f"{{vortex: {{circulation: '2 m^2/s*{FACTOR}', updraft: 1 m/s, linear: 0.5 N*s/m}}}}",
     "wind": f"{{wind: {{velocity: '{V}*2', linear: 0.5 N*s/m, quadratic: 0.1 kg/m, gusts: 0.4, period: 0.2 s}}}}",
 }
-UNSLOPED = {"repulsion", "field_gradient", "emission", "torque", "impulse"}
+UNSLOPED = {"repulsion", "field_gradient", "emission", "torque", "impulse", "immersion"}
 """Forces whose own slopes are not known: differences of the whole rate are taken. (A blow has none.)"""
 GRID = "size: 1 1 m, cell: 0.25 m"
 MODELS = {

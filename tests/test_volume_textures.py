@@ -24,7 +24,7 @@ from sceneql.run.run import Run
 from sceneql.shapes.color import linear
 from sceneql.shapes.cut_open import Plane, clipped, cut_open
 from stage import WHITE, frame
-from test_waves import SKY, pictures
+from test_ray_packets import SKY, pictures
 
 BLOCK = Block(size=(1.0, 0.4, 0.6), cells=(4, 2, 3))
 SCENE = """
