@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 
-import runs
+import rigid_scenes
 from sceneql.shapes.placement import rotation_matrix
 
 COUNT = min(int(os.environ.get("SCENEQL_FUZZ", "1")), 1000)
@@ -17,23 +17,8 @@ WALLS = [(-1.2, 0), (1.2, 0), (0, -1.2), (0, 1.2)]
 
 
 def watch(folder, objects, bodies, times, *outputs, law, solver="auto"):
-    """Outputs of the model `it` of these bodies among these objects."""
-    lines = "\n".join(f"  {name}: {what}" for name, what in objects.items())
-    each = "\n".join(f"        {name}: {what}" for name, what in bodies.items())
-    script = f"""
-clock: {{end: {max(times)} s}}
-objects:
-{lines}
-models:
-  it:
-    rigid:
-      bodies:
-{each}
-forces: [gravity]
-contacts: {{touch: {{collision: {{mode: exact, {law}}}}}}}
-solvers: {{main: {{{solver}}}}}
-"""
-    return runs.watch(folder, script, times, *outputs, pruned=False)
+    """Outputs of these bodies among these objects, in mode `exact`."""
+    return rigid_scenes.watch(folder, objects, bodies, times, *outputs, law=f"mode: exact, {law}", solver=solver)
 
 
 def pit():
