@@ -23,14 +23,17 @@ def spacing_in(flow: Flow, spacing: float | None, of: Ref, assembly: Assembly) -
     """Its vertices' distance [m], at most a cell. Raises ScriptError where that leaves gaps, and around solids."""
     cell = min(flow.spacing[: len(flow.areas)])
     apart = APART[len(flow.areas)] * cell
-    if flow.fractions is not None:
-        text = "the flow has solids in it or around it, and nothing keeps a skin from them"
-        help = "let the flow be without `around` and `domain`"
-        raise ScriptError([Diagnostic("invalid", text, assembly.line(), help)])
     if spacing is not None and spacing > cell:
         text = f"vertices {spacing:g} m apart are too coarse for cells of {cell:g} m: fluid would pass between them"
         raise ScriptError([Diagnostic("invalid", text, assembly.line(), f"let `spacing` be {apart:.3g} m")])
     return apart if spacing is None else spacing
+
+
+def stiffness_in(flow: Flow, largest: float) -> tuple[float, float]:
+    """The pressure by which contacts push a skin off [Pa], and the side of a cell [m]; ``largest``: of
+    Membrane.largest_tension [N/m]."""
+    cell = min(flow.spacing[: len(flow.areas)])
+    return largest / cell, cell
 
 
 def must_fit(skin: Line | Sheet, of: Ref, assembly: Assembly) -> None:

@@ -31,8 +31,9 @@ RIGID = ("points", "normals", "forces")
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
 EXACT = "sceneql.contacts.collision_kernels"
-BARRIER, SPRINGS = -3, -4
-"""Where in the remembered integers those of a barrier begin, and that of the memory of masses beside rigid bodies."""
+BARRIER, SPRINGS, CARRIED = -3, -4, -5
+"""Where in the remembered integers those of a barrier begin, that of the memory of masses beside rigid bodies, and those
+of skins that a flow carries."""
 NO_RESTITUTION = "elastic solids have no restitution: they bounce by their own elasticity"
 LOCAL = "sceneql.contacts.back_off_kernels"
 SHAPES = "sceneql.contacts.shapes"
@@ -285,8 +286,23 @@ class Collision(Contact):
         assembly.remember(*assemble(assembly, everyone, touched, self.friction, self.gap))
         return True
 
+    def assemble_carried(
+        self, name: str, assembly: Assembly, skins: Sequence[str], everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add the contacts of skins that a flow carries, with one another and with objects."""
+        from sceneql.skins.touching import assemble
+
+        written = {ref.name: ref for ref in self.between or ()}
+        touched = [written.get(ref.name, ref) for ref in others]
+        made = [(skin, found) for skin in skins if (found := assembly.membrane_of(skin)) is not None]
+        if made:
+            assembly.remember(CARRIED, *assemble(assembly, made, touched, self.friction, self.gap))
+
     def remark(self, state: ModelState) -> str:
-        """The gap of elastic solids, and of rigid bodies beside them."""
+        """The gap of elastic solids, and of rigid bodies beside them; that of skins that a flow carries."""
+        if CARRIED in state.ints:
+            gap = state.floats[state.ints[state.ints.index(CARRIED) + 1]]
+            return f"skins in the flow are pushed off within a gap of {gap:.3g} m"
         if self.mode in ("exact", "local") or BARRIER not in state.ints:
             return ""
         gap, slip = state.floats[state.ints[state.ints.index(BARRIER) + 1] :][:2]
@@ -368,7 +384,7 @@ class Collision(Contact):
 
         if output in RIGID:
             return self._rigid(output, state)
-        marks = (k for k, each in enumerate(state.ints) if each in (-1, -2, BARRIER))
+        marks = (k for k, each in enumerate(state.ints) if each in (-1, -2, BARRIER, CARRIED))
         ints = state.ints[: next(marks, len(state.ints))]
         tallies = np.array([state.floats[at : at + len(TALLY)] for at in ints]).reshape(-1, len(TALLY))
         column = tallies[:, TALLY.index(output)]
