@@ -29,11 +29,11 @@ def spacing_in(flow: Flow, spacing: float | None, of: Ref, assembly: Assembly) -
     return apart if spacing is None else spacing
 
 
-def stiffness_in(flow: Flow, largest: float) -> tuple[float, float]:
-    """The pressure by which contacts push a skin off [Pa], and the side of a cell [m]; ``largest``: of
-    Membrane.largest_tension [N/m]."""
+def stiffness_in(flow: Flow, largest: float) -> tuple[float, float, float]:
+    """The pressure by which contacts push a skin off [Pa], the density around it, and the side of a cell [m];
+    ``largest``: of Membrane.largest_tension [N/m]."""
     cell = min(flow.spacing[: len(flow.areas)])
-    return largest / cell, cell
+    return largest / cell, flow.density, cell
 
 
 def must_fit(skin: Line | Sheet, of: Ref, assembly: Assembly) -> None:

@@ -11,3 +11,9 @@ does."""
 
 GRIP = objects_layout.SLIP
 """Of NUMBERS: how much friction grows by area with the distance from there, until it slides [Pa/m]."""
+
+BODIES = objects_layout.INVERSE
+"""Where in these integers those of the masses and rigid bodies begin that the objects are of; for each BODY of them:
+those of its system.Place, and RELATIVE."""
+RELATIVE, BODY = 8, 9
+"""Offset in the floats of the place of the surface in the axes of its body, from the center (7); -1 of a mass."""

@@ -296,7 +296,7 @@ class Collision(Contact):
         touched = [written.get(ref.name, ref) for ref in others]
         made = [(skin, found) for skin in skins if (found := assembly.membrane_of(skin)) is not None]
         if made:
-            assembly.remember(CARRIED, *assemble(assembly, made, touched, self.friction, self.gap))
+            assembly.remember(CARRIED, *assemble(assembly, made, everyone, touched, self.friction, self.gap))
 
     def remark(self, state: ModelState) -> str:
         """The gap of elastic solids, and of rigid bodies beside them; that of skins that a flow carries."""
