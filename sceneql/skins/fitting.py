@@ -29,13 +29,6 @@ def spacing_in(flow: Flow, spacing: float | None, of: Ref, assembly: Assembly) -
     return apart if spacing is None else spacing
 
 
-def stiffness_in(flow: Flow, largest: float) -> tuple[float, float, float]:
-    """The pressure by which contacts push a skin off [Pa], the density around it, and the side of a cell [m];
-    ``largest``: of Membrane.largest_tension [N/m]."""
-    cell = min(flow.spacing[: len(flow.areas)])
-    return largest / cell, flow.density, cell
-
-
 def must_fit(skin: Line | Sheet, of: Ref, assembly: Assembly) -> None:
     """Raises ScriptError where a skin stands outside its flow, or is smaller than what its cells tell."""
     flow, membrane = skin.flow, skin.membrane
@@ -56,3 +49,18 @@ def must_fit(skin: Line | Sheet, of: Ref, assembly: Assembly) -> None:
             text = f"'{of.name}' stands outside its flow, which ends at {'xyz'[axis]} = "
             text += f"{first if low[axis] < first else last:g} m"
             raise ScriptError([Diagnostic("invalid", text, of.span, "move it inside, or take a larger `size`")])
+    if flow.fractions is None:
+        return
+    import numpy as np
+
+    cells = [
+        np.clip(((points[:, k] - flow.low[k]) // flow.spacing[k]).astype(int), 0, flow.cells.shape[k] - 1)
+        for k in range(axes)
+    ]
+    shape = flow.cells.shape
+    number = cells[0] + shape[0] * (cells[1] + shape[1] * (cells[2] if axes == 3 else 0))
+    shut = np.flatnonzero(np.asarray(flow.fractions)[number] == 0.0)
+    if len(shut):
+        x, y, z = points[shut[0]]
+        text = f"'{of.name}' stands where its flow has no fluid, at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+        raise ScriptError([Diagnostic("invalid", text, of.span, "move it to where the fluid is")])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.skins.closed_line import closed_line, signed_area
-from sceneql.skins.fitting import stiffness_in
+from sceneql.skins.elasticity import stiffness_in
 from sceneql.system import Membrane
 
 if TYPE_CHECKING:
@@ -82,6 +82,10 @@ class Line:
             crossed = np.sort(points[over, 0] + part * (ends[over, 0] - points[over, 0]))
             found[row] = np.searchsorted(crossed, places[row, 0]) % 2 == 1
         return found
+
+    def encloses(self, places: Floats, points: Floats) -> NDArray[bool_]:
+        """(k,) whether it goes around places (k, 3)."""
+        return self.holds(places, points)
 
     def sides_of(self, points: Floats) -> Floats:
         """(n,) the lengths of its sides [m]."""

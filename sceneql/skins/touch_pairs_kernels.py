@@ -84,7 +84,11 @@ def lay(y, floats, ints, reach):
     for turn in range(2):
         for p in range(count):
             at = ints[vertex(ints, p) + layout.POSITION]
-            i, j, k = (cell_of(y, floats, ints, at, 0), cell_of(y, floats, ints, at, 1), cell_of(y, floats, ints, at, 2))
+            i, j, k = (
+                cell_of(y, floats, ints, at, 0),
+                cell_of(y, floats, ints, at, 1),
+                cell_of(y, floats, ints, at, 2),
+            )
             cell = i + nx * (j + ny * k)
             if turn == 0:
                 floats[starts + cell] += 1.0
@@ -148,7 +152,11 @@ def look(y, changed, floats, ints, p, reach):
     count, corners, at = ints[layout.VERTICES], ints[layout.CORNERS], ints[own + layout.POSITION]
     for s in range(ints[layout.SKINS]):
         floats[best + layout.FOUND * s] = math.inf
-    nx, ny, nz = (int(floats[room + layout.ACROSS]), int(floats[room + layout.ACROSS + 1]), int(floats[room + layout.ACROSS + 2]))
+    nx, ny, nz = (
+        int(floats[room + layout.ACROSS]),
+        int(floats[room + layout.ACROSS + 1]),
+        int(floats[room + layout.ACROSS + 2]),
+    )
     if nx == 0:
         return
     starts = room + layout.STARTS

@@ -16,8 +16,8 @@ face in the state that was looked at last [m]."""
 
 LOW, SCALE, ACROSS, STARTS = 0, 3, 4, 7
 CELLS = 4
-"""ROOM: low corner, cells by length [1/m], cells along each axis; from STARTS on where each cell's vertices begin in the
-list that follows after CELLS for each vertex and one more."""
+"""ROOM: low corner, cells by length [1/m], cells along each axis; from STARTS on where each cell's vertices begin in
+the list that follows after CELLS for each vertex and one more."""
 
 DISTANCE, NORMAL, FACE, SHARES, FOUND = 0, 1, 4, 5, 8
 """BEST: for each skin the least distance from it, the normal towards the vertex (3), its face, the weights of its

@@ -18,6 +18,8 @@ from sceneql.skins.touching_skins import add_pairs
 
 if TYPE_CHECKING:
     from sceneql.kinds import Value
+    from sceneql.skins.deep import Sheet
+    from sceneql.skins.flat import Line
     from sceneql.system import Assembly, Bodies, Membrane
 
 OBJECTS = "sceneql.skins.touch_objects_kernels"
@@ -47,7 +49,7 @@ class Solid:
 
 def assemble(
     assembly: Assembly,
-    skins: Sequence[tuple[str, Membrane]],
+    skins: Sequence[tuple[str, Line | Sheet]],
     everyone: Sequence[Bodies],
     refs: Sequence[Ref],
     friction: Value,
@@ -57,11 +59,12 @@ def assemble(
 
     Raises ScriptError for what cannot be collided with, and for what starts too near.
     """
-    gap = max(skin.cell for _, skin in skins) if gap is None else gap
+    gap = max(made.membrane.cell for _, made in skins) if gap is None else gap
     rubs = not friction.constant or assembly.initial(friction) > 0.0
     told, touch = assembly.floats([gap]), Touch(assembly.value(friction), rubs, gap)
     solids = [solid for bodies in everyone for solid in _solids(bodies, assembly)]
-    for name, skin in skins:
+    for name, made in skins:
+        skin = made.membrane
         if refs:
             objects = surfaces(refs, assembly, layout.HEAD)
             ints = _ints(assembly, skin, len(refs), objects, touch)
@@ -74,16 +77,14 @@ def assemble(
                 heads += [*solid.head, at + len(data)]
                 data += solid.data
             places = [one for solid in solids for one in solid.place]
-            ints = list(_ints(assembly, skin, len(solids), (*heads, *data, *places), touch))
-            ints[own.BODIES] = at + len(data)
-            _add(assembly, name, skin, [one.ref for one in solids], ints, touch, BODIES, f"{BODIES}:limit")
-    add_pairs(assembly, [skin for _, skin in skins], touch.friction_at, gap)
+            numbered = list(_ints(assembly, skin, len(solids), (*heads, *data, *places), touch))
+            numbered[own.BODIES] = at + len(data)
+            _add(assembly, name, skin, [one.ref for one in solids], numbered, touch, BODIES, f"{BODIES}:limit")
+    add_pairs(assembly, skins, touch.friction_at, gap)
     return (told,)
 
 
-def _ints(
-    assembly: Assembly, skin: Membrane, count: int, objects: Sequence[int], touch: Touch
-) -> tuple[int, ...]:
+def _ints(assembly: Assembly, skin: Membrane, count: int, objects: Sequence[int], touch: Touch) -> tuple[int, ...]:
     """Of kernels, with a number of objects whose integers are given."""
     pairs = skin.count * count
     head = [0] * layout.HEAD
