@@ -67,7 +67,7 @@ class IslandAssembly(Reserved):
     _alike: list[tuple[int, int]] = field(default_factory=list)
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
     _matrices: dict[int, Any] = field(default_factory=dict)
-    """Inertia that is a matrix, by the offset of the velocities."""
+    """Inertia that is a matrix, by the offset of the velocities, and other capacities, by that of the entries."""
     _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
     _exact: list[Block] = field(default_factory=list)
     _local: list[Block] = field(default_factory=list)
@@ -139,6 +139,10 @@ class IslandAssembly(Reserved):
         self._masses.append((velocity_at, inverse_at, count))
         if matrix is not None:
             self._matrices[velocity_at] = matrix
+
+    def capacity(self, at: int, matrix: Any) -> None:
+        """Say that rates of entries are solved for by a matrix (system.Assembly)."""
+        self._matrices[at] = matrix
 
     def contact(
         self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False, help: str = ""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
+from pydantic import PrivateAttr
+
 from sceneql.grids.medium import (
     SOURCE,
     START,
@@ -15,7 +17,7 @@ from sceneql.grids.medium import (
     layout_of,
 )
 from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
-from sceneql.kinds import Formula, Gives, Value, field
+from sceneql.kinds import Formula, Gives, Problem, Value, field
 from sceneql.kinds.stable_step import Oscillation
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.dimension import Dimension
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from sceneql.galerkin.element_field import ElementField
+    from sceneql.grids.medium import Between
     from sceneql.system import Assembly, ModelState
 
 UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
@@ -47,6 +51,14 @@ class Diffusion(SpreadingMedium):
 
     of: Literal["concentration", "temperature", "number"] = field(
         "What spreads, which gives its unit, and a temperature's output its name.", "concentration"
+    )
+    method: Literal["cells", "elements"] = field(
+        "By finite volumes on cells, or by finite elements: triangles or tetrahedra with sides of a `cell`.", "cells"
+    )
+    element: Literal["p1", "p2"] | None = field(
+        "The elements: p1, linear, of order 2; or p2, quadratic with sides curved onto the boundary, of order 3, the "
+        "default.",
+        None,
     )
     coefficient: COEFFICIENT = field("The coefficient D [m^2/s].")
     initial: START | Picture | None = field("The field at the start, a formula or a picture; by default 0.", None)
@@ -72,8 +84,8 @@ class Diffusion(SpreadingMedium):
         return UNITS.get(str(written.get("of", "concentration")))
 
     def field_count(self) -> int:
-        """One."""
-        return 1
+        """One on cells."""
+        return 1 if self.method == "cells" else 0
 
     def boundaries(self) -> Iterable[Boundary]:
         """That of its field."""
@@ -98,8 +110,36 @@ class Diffusion(SpreadingMedium):
         found = self.spreading(self.coefficient)
         return () if found is None else (found,)
 
+    _solved: ElementField | None = PrivateAttr(None)
+
+    def problems(self) -> Iterable[Problem]:
+        """Besides those of any medium what elements cannot do, and an element of cells."""
+        yield from super().problems()
+        if self.method == "cells":
+            if self.element is not None:
+                yield Problem("cells have no `element`: say `method: elements`, too", ("element",), at_key=True)
+            return
+        if self.drift is not None:
+            text = "elements carry nothing, they would swing: leave out `drift`, or `method: elements`"
+            yield Problem(text, ("drift",), at_key=True)
+        if "edges" in self.model_fields_set:
+            yield Problem("elements meet the boundary at their own sides: `edges` is for cells", ("edges",), at_key=True)
+        for name, part in self.boundary.items():
+            if part.open:
+                yield Problem("`open` lets a drift through, and elements have none", ("boundary", name, "open"))
+
+    @property
+    def degree(self) -> int:
+        """Of the functions of its elements."""
+        return 1 if self.element == "p1" else 2
+
     def assemble(self, name: str, assembly: Assembly) -> None:
-        """Reserve a number a cell and one for the inflow, and add the terms of the rate. Raises ScriptError."""
+        """Reserve a number a cell or node and one for the inflow, and add the terms of the rate. Raises ScriptError."""
+        if self.method == "elements":
+            from sceneql.galerkin import assembly as elements
+
+            self._solved = elements.add_field(self, self, self.boundary, self.degree, assembly)
+            return
         from sceneql.grids.assembly import add_field
         from sceneql.grids.domain.domain import cells_of
         from sceneql.grids.ground import Ground
@@ -123,7 +163,15 @@ class Diffusion(SpreadingMedium):
 
     def layout(self, state: ModelState, output: str = "concentration") -> FieldLayout:
         """Where its field lies, for pictures."""
+        if self._solved is not None:
+            return self._solved.layout
         return layout_of(state.ints[0], state.ints[1:], state.floats)
+
+    def between(self, layout: FieldLayout, state: ModelState) -> Between:
+        """What pictures of its field see between its values."""
+        from sceneql.grids.maps.seen import between_cells
+
+        return between_cells(layout, state) if self._solved is None else self._solved.between
 
     def shows(self, name: str) -> Value | None:
         """The field."""
@@ -131,8 +179,14 @@ class Diffusion(SpreadingMedium):
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells of the domain,), (cells, 3) or float."""
-        return self.measure("field" if output in _names(self.of) else output, self.layout(state), state)
+        what = "field" if output in _names(self.of) else output
+        if self._solved is not None:
+            return self._solved.measure(what, state)
+        return self.measure(what, self.layout(state), state)
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Of the cells, of probes, and of what has come in."""
-        return self.places_of("field" if output in _names(self.of) else output, self.layout(state), state)
+        what = "field" if output in _names(self.of) else output
+        if self._solved is not None:
+            return self._solved.places_of(what)
+        return self.places_of(what, self.layout(state), state)

@@ -1,0 +1,68 @@
+"""A field on elements as its outputs tell it. Imports numpy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.frame import Floats
+    from sceneql.galerkin.between import BetweenNodes
+    from sceneql.galerkin.field_mesh import FieldMesh
+    from sceneql.grids.medium import FieldLayout
+    from sceneql.system import ModelState
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ElementField:
+    """A field of an island."""
+
+    mesh: FieldMesh
+    at: int
+    """y[at : at + count] are the values at the nodes, y[at + count] is what has come in."""
+    volumes: Floats
+    """(count,) integrals of the functions [m^3]."""
+    layout: FieldLayout
+    """The grid on which pictures see it."""
+    between: BetweenNodes
+    probed: Mapping[str, Any]
+    """Sparse weights (1, count) of the nodes at each probe."""
+    fastest: Callable[[], float]
+    """The fastest decay [1/s] of what is even in time."""
+
+    def values(self, state: ModelState) -> Floats:
+        """(count,) at the nodes."""
+        return state.y[self.at : self.at + self.mesh.count]
+
+    def measure(self, what: str, state: ModelState) -> Any:
+        """`field` (count,), `centers` (count, 3), the nodes, or a float: another measure, a probe."""
+        values = self.values(state)
+        match what:
+            case "field":
+                return values
+            case "centers":
+                return self.mesh.places
+            case "mass":
+                return float(self.volumes @ values)
+            case "inflow":
+                return float(state.y[self.at + self.mesh.count])
+            case "max":
+                return float(values.max())
+            case "min":
+                return float(values.min())
+            case "mean":
+                return float(self.volumes @ values / self.volumes.sum())
+        return float((self.probed[what] @ values)[0])
+
+    def places_of(self, what: str) -> NDArray[int64] | None:
+        """Where in y a measure stands (kinds.Model.places)."""
+        if what == "field":
+            return self.at + np.arange(self.mesh.count)
+        return np.array(self.at + self.mesh.count) if what == "inflow" else None

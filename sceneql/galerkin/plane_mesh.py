@@ -1,0 +1,136 @@
+"""Meshes of triangles in outlines: corners kept, quadratic sides curved onto the outline. Imports numpy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.galerkin import plane_corners
+from sceneql.galerkin.field_mesh import FieldMesh, sized
+from sceneql.galerkin.plane_quality import angles, delaunay, outer_sides, smoothed
+from sceneql.galerkin.plane_stuffing import Triangles, Values, crossing, sides_of, stuffed
+from sceneql.galerkin.simplex import Simplex
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+LEAST_BENT = 0.2
+"""A triangle is bent no more than to this part of its straight size at any place that is looked at."""
+FINE = 0.25
+THIN = 0.95
+"""What lies inside farther than so many spacings from all vertices, or outside as far from the outline but in a
+triangle, is too thin for the spacing."""
+GAP = 0.35
+ROUNDS = 3
+"""Times that vertices move, and sides are exchanged."""
+
+
+class TooCoarse(ValueError):
+    """A domain has parts that are too thin for the spacing."""
+
+
+def outlined(low: Floats, high: Floats, spacing: float, level: Any, element: Simplex) -> FieldMesh | None:
+    """The mesh of what lies inside a flat level set (grids.domain.cut.Level); None where nothing does.
+
+    Raises TooCoarse where parts, or gaps between parts, are thinner than the spacing.
+    """
+
+    def values(points: Floats) -> Floats:
+        found: Floats = level.values(np.column_stack([points, np.zeros(len(points))]))
+        return found
+
+    made = stuffed(low[:2], high[:2], spacing, values)
+    if not len(made.triangles):
+        return None
+    _whole(made, low[:2], high[:2], spacing, values)
+    told = getattr(level, "corners", None)
+    corners = plane_corners.corners_of(made, values, spacing) if told is None else told()
+    made, fixed = plane_corners.kept(made, _distinct(corners, spacing), spacing)
+
+    def onto(places: Floats, normals: Floats, reach: Floats) -> Floats:
+        way = reach[:, None] * normals
+        inner, outer = places - way, places + way
+        met = (values(inner) < 0.0) & ~(values(outer) < 0.0)
+        found = np.full_like(places, np.nan)
+        share = crossing(values, inner[met], outer[met])
+        found[met] = inner[met] + share[:, None] * (outer - inner)[met]
+        return found
+
+    points, triangles = made.points, delaunay(made.points, made.triangles)
+    for _ in range(ROUNDS):
+        points = smoothed(points, triangles, fixed, onto)
+        triangles = delaunay(points, triangles)
+    _, outer = outer_sides(triangles)
+    middles = 0.5 * (points[outer[:, 0]] + points[outer[:, 1]])
+    pieces = level.pieces(np.column_stack([middles, np.zeros(len(middles))]))
+    least, largest = angles(points, triangles)
+    straight = flat_mesh(points, triangles, element, pieces, level.names, (least, largest))
+    return straight if element.degree == 1 else _curved(straight, onto)
+
+
+def flat_mesh(
+    points: Floats, triangles: Any, element: Simplex, pieces: Any, names: tuple[str, ...], worst: tuple[float, float]
+) -> FieldMesh:
+    """Triangles (t, 3) of points (n, 2) with straight sides; ``pieces``: of the outer sides in their order."""
+    cells = triangles
+    if element.degree == 2:
+        ends, which = sides_of(triangles)
+        points = np.concatenate([points, 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])])
+        cells = np.concatenate([triangles, len(points) - len(ends) + which[:, [2, 0, 1]]], axis=1)
+    own, _ = outer_sides(triangles)
+    return FieldMesh(element, points, cells.astype(np.int64), cells.astype(np.int64), len(points), own, pieces, names, worst)
+
+
+def _distinct(corners: Floats, spacing: float) -> Floats:
+    """Corners of which none are the same."""
+    kept: list[Any] = []
+    for corner in corners:
+        if all(np.abs(corner - other).max() > 1e-3 * spacing for other in kept):
+            kept.append(corner)
+    return np.array(kept).reshape(-1, 2)
+
+
+def _curved(mesh: FieldMesh, onto: Any) -> FieldMesh:
+    """With the nodes on outer sides moved onto the outline, but those that would bend a triangle too much."""
+    from dataclasses import replace
+
+    points = mesh.points.copy()
+    nodes = mesh.cells[mesh.faces[:, 0]][np.arange(len(mesh.faces))[:, None], np.array(mesh.element.side_nodes())[mesh.faces[:, 1]]]
+    way = points[nodes[:, 1]] - points[nodes[:, 0]]
+    length = np.linalg.norm(way, axis=1)
+    normal = np.stack([way[:, 1], -way[:, 0]], axis=1) / length[:, None]
+    found = onto(points[nodes[:, 2]], normal, 0.4 * length)
+    met = np.isfinite(found).all(axis=1)
+    points[nodes[met, 2]] = found[met]
+    places = np.concatenate([mesh.element.rule[0], np.eye(3), np.full((3, 3), 0.5) - 0.5 * np.eye(3)])
+    least = LEAST_BENT * sized(mesh.element, mesh.points[mesh.cells], places[:1])
+    bad = (sized(mesh.element, points[mesh.cells], places) < least).any(axis=1)
+    back = np.unique(mesh.cells[bad, 3:])
+    points[back] = mesh.points[back]
+    return replace(mesh, points=points)
+
+
+def _whole(made: Triangles, low: Floats, high: Floats, spacing: float, values: Values) -> None:
+    """Raise TooCoarse where a part, or a gap between parts, is too thin for the lattice to know of it."""
+    from scipy.spatial import cKDTree
+
+    counts = np.ceil((high - low) / (FINE * spacing)).astype(int) + 1
+    axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    places = places[values(places) < 0.0]
+    corners = made.points[made.triangles]
+    inner = np.concatenate([corners.mean(axis=1), *(0.5 * (corners[:, k] + corners[:, k - 1]) for k in range(3))])
+    beyond = values(inner)
+    beyond = np.where(beyond > 0.0, beyond, 0.0)
+    some = np.flatnonzero(beyond > 0.0)
+    steep = np.linalg.norm(plane_corners.slopes(values, inner[some], 1e-3 * spacing), axis=1)
+    beyond[some] /= np.maximum(steep, 1e-300)
+    if len(places):
+        away, _ = cKDTree(made.points).query(places)
+        k = int(np.argmax(away))
+        if away[k] > THIN * spacing:
+            raise TooCoarse(f"at ({places[k][0]:.3g}, {places[k][1]:.3g}) m it is thinner than the spacing")
+    k = int(np.argmax(beyond))
+    if beyond[k] > GAP * spacing:
+        raise TooCoarse(f"at ({inner[k][0]:.3g}, {inner[k][1]:.3g}) m a gap or bay is narrower than the spacing")
