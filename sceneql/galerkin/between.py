@@ -23,6 +23,11 @@ INVERSIONS = 6
 BEYOND = 0.5
 """How far outside its element, in barycentric coordinates, a place is continued to: farther ones have the values there."""
 
+FARTHEST = 1.0
+"""Farthest, in barycentric coordinates from its middle, that an element's own functions tell where a place is."""
+LEAST = 0.1
+"""Part of an element's straight size below which it is taken as straight at a place, far outside of it."""
+
 
 class BetweenNodes:
     """The functions of a mesh's elements as pictures read them (grids.medium.Between)."""
@@ -110,14 +115,17 @@ class BetweenNodes:
         sides = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
         local = np.linalg.solve(sides, (points - corners[:, 0])[..., None])[..., 0]
         places = np.concatenate([1.0 - local.sum(axis=1, keepdims=True), local], axis=1)
-        size = np.abs(sides).max()
+        size, middle = np.abs(sides).max(), 1.0 / (element.dimension + 1)
         for _ in range(INVERSIONS if element.degree == 2 else 0):
-            at = np.clip(places, -BEYOND, 1.0 + BEYOND)
+            away = places - middle
+            at = middle + away * np.minimum(1.0, FARTHEST / np.maximum(np.abs(away).max(axis=1, keepdims=True), 1e-300))
             away = points - np.einsum("kn,knd->kd", element.functions(at), nodes)
             if np.abs(away).max(initial=0.0) < 1e-14 * size and (at == places).all():
                 break
             slopes = element.slopes(at)
             turned = np.swapaxes(nodes, 1, 2) @ (slopes[..., 1:] - slopes[..., :1])
+            flat = np.abs(np.linalg.det(turned)) < LEAST * np.abs(np.linalg.det(sides))
+            turned = np.where(flat[:, None, None], sides, turned)
             local = np.linalg.solve(turned, away[..., None])[..., 0]
             places = at + np.concatenate([-local.sum(axis=1, keepdims=True), local], axis=1)
         return places

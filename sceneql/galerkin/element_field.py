@@ -66,3 +66,16 @@ class ElementField:
         if what == "field":
             return self.at + np.arange(self.mesh.count)
         return np.array(self.at + self.mesh.count) if what == "inflow" else None
+
+    def remark(self, name: str) -> str:
+        """How many elements, their worst angle, what bounds explicit steps, and what is not kept."""
+        mesh = self.mesh
+        what, between = ("triangles", "") if mesh.element.dimension == 2 else ("tetrahedra", "between faces ")
+        least, largest = (float(np.degrees(angle)) for angle in mesh.worst)
+        bound = 2.0 / rate if (rate := self.fastest()) > 0.0 else np.inf
+        told = f"; forward steps up to {bound:.3g} s are stable" if np.isfinite(bound) else ""
+        swing = "values may leave the range of the start and the boundary by the error of the elements"
+        return (
+            f"{len(mesh.cells):,} {what} {name} with {mesh.count:,} nodes, angles {between}from {least:.0f} to "
+            f"{largest:.0f} degrees{told}; {swing}"
+        )

@@ -15,6 +15,7 @@ from sceneql.grids.medium import (
     Picture,
     gives_of,
     layout_of,
+    number_in,
 )
 from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
 from sceneql.kinds import Formula, Gives, Problem, Value, field
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, ModelState
 
 UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
+
+LEAST_RATES = {1: 8.0, 2: 150.0}
+"""D/cell^2 times so much is no more than the fastest decay on elements of such a degree: what was measured."""
 
 
 def _names(what: str) -> tuple[str, ...]:
@@ -107,8 +111,15 @@ class Diffusion(SpreadingMedium):
 
     def fastest(self, name: str) -> Iterable[Oscillation]:
         """What limits the explicit step."""
+        if self.method == "elements":
+            d = number_in(self.coefficient)
+            if d is not None:
+                rate = LEAST_RATES[self.degree] * d / self.cell**2
+                yield Oscillation(0.0, rate, f"the spread over elements of {self.cell:g} m", ("cell",))
+            return
         found = self.spreading(self.coefficient)
-        return () if found is None else (found,)
+        if found is not None:
+            yield found
 
     _solved: ElementField | None = PrivateAttr(None)
 
@@ -151,6 +162,10 @@ class Diffusion(SpreadingMedium):
             assembly.offer(called, grid)
         assembly.remember(grid.at, *ground.memory)
         self.must_hold_probes(layout_of(grid.at, ground.memory, assembly.numbers()), assembly)
+
+    def remark(self, state: ModelState) -> str:
+        """Of elements how many, their worst angle, what bounds explicit steps, and what they do not keep."""
+        return "" if self._solved is None else self._solved.remark(self.element or "p2")
 
     def connect(self, name: str, assembly: Assembly) -> None:
         """Add the drift by a flow that is solved. Raises ScriptError."""
