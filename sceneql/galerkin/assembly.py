@@ -70,7 +70,7 @@ def add_field(
     probed = {name: _probed(between, name, place, assembly) for name, place in model.probes.items()}
     build = _Builder(spreading, boundary, mesh, model.depth, layout.shape, assembly)
     build.add()
-    return ElementField(mesh, build.at, build.form.volumes, layout, between, probed, build.fastest)
+    return ElementField(mesh, build.at, build.form, layout, between, probed, build.fastest)
 
 
 def _probed(between: BetweenNodes, name: str, place: tuple[float, ...], assembly: Assembly) -> Any:

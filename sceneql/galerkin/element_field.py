@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.galerkin.between import BetweenNodes
     from sceneql.galerkin.field_mesh import FieldMesh
+    from sceneql.galerkin.weak_form import WeakForm
     from sceneql.grids.medium import FieldLayout
     from sceneql.system import ModelState
 
@@ -27,8 +28,8 @@ class ElementField:
     mesh: FieldMesh
     at: int
     """y[at : at + count] are the values at the nodes, y[at + count] is what has come in."""
-    volumes: Floats
-    """(count,) integrals of the functions [m^3]."""
+    form: WeakForm
+    """Its integrals."""
     layout: FieldLayout
     """The grid on which pictures see it."""
     between: BetweenNodes
@@ -50,7 +51,7 @@ class ElementField:
             case "centers":
                 return self.mesh.places
             case "mass":
-                return float(self.volumes @ values)
+                return float(self.form.volumes @ values)
             case "inflow":
                 return float(state.y[self.at + self.mesh.count])
             case "max":
@@ -58,8 +59,13 @@ class ElementField:
             case "min":
                 return float(values.min())
             case "mean":
-                return float(self.volumes @ values / self.volumes.sum())
+                return float(self.form.volumes @ values / self.form.volumes.sum())
         return float((self.probed[what] @ values)[0])
+
+    def samples(self, state: ModelState) -> tuple[Floats, Floats, Floats]:
+        """Places (k, 3) [m] of the elements' rule, the field there (k,), and the volumes (k,) that these stand for."""
+        values = self.values(state)[self.mesh.unknowns] @ self.form.functions.T
+        return self.form.points.reshape(-1, 3), values.ravel(), self.form.weights.ravel()
 
     def places_of(self, what: str) -> NDArray[int64] | None:
         """Where in y a measure stands (kinds.Model.places)."""

@@ -146,6 +146,7 @@ class Diffusion(SpreadingMedium):
 
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a cell or node and one for the inflow, and add the terms of the rate. Raises ScriptError."""
+        self._solved = None
         if self.method == "elements":
             from sceneql.galerkin import assembly as elements
 
@@ -187,6 +188,22 @@ class Diffusion(SpreadingMedium):
         from sceneql.grids.maps.seen import between_cells
 
         return between_cells(layout, state) if self._solved is None else self._solved.between
+
+    def by_methods(self) -> Mapping[str, Diffusion]:
+        """Itself by every method, for `bench`; only itself where elements cannot do what it asks for."""
+        given = {"method": "elements", "edges": "cut_cell"}
+        if self.drift is not None or any(part.open for part in self.boundary.values()):
+            return {"cells": self}
+        cells = self.model_copy(update={"method": "cells", "element": None})
+        return {"cells": cells, **{one: self.model_copy(update={**given, "element": one}) for one in ("p1", "p2")}}
+
+    def samples(self, state: ModelState) -> tuple[Any, Any, Any]:
+        """Places (k, 3) [m], the field there (k,), and the volumes (k,) [m^3] that these stand for."""
+        if self._solved is not None:
+            return self._solved.samples(state)
+        layout = self.layout(state)
+        volumes = state.floats[layout.volumes_at : layout.volumes_at + layout.count]
+        return self.measure("centers", layout, state), self.measure("field", layout, state), volumes[volumes > 0.0]
 
     def shows(self, name: str) -> Value | None:
         """The field."""
