@@ -50,9 +50,7 @@ class Rim:
     shape: tuple[int, int, int]
 
 
-def add_field(
-    model: Medium, spreading: Spreading, boundary: Boundary, degree: int, assembly: Assembly
-) -> ElementField:
+def add_field(model: Medium, spreading: Spreading, boundary: Boundary, degree: int, assembly: Assembly) -> ElementField:
     """Reserve an entry of y for each unknown and one for the inflow, and add the terms of the rate.
 
     Raises ScriptError for a domain without a mesh, a coefficient below 0, a start that is not finite, boundary parts
@@ -82,7 +80,7 @@ def _probed(between: BetweenNodes, name: str, place: tuple[float, ...], assembly
 
 @dataclass
 class _Builder:
-    field: Spreading
+    spreading: Spreading
     boundary: Boundary
     mesh: FieldMesh
     depth: float
@@ -100,7 +98,7 @@ class _Builder:
         self.at = assembly.state(np.append(self._start(mesh.places), 0.0))
         self.inflow = self.at + mesh.count
         assembly.alike(self.at, mesh.count)
-        self.varying = varies(self.field.coefficient)
+        self.varying = varies(self.spreading.coefficient)
         inner = self.form.points
         d = self._coefficients(inner)
         matrix = self.form.stiffness(np.zeros(inner.shape[:2]) if self.varying else d)
@@ -116,7 +114,7 @@ class _Builder:
                 if load is not None:
                     np.add.at(fixed, mesh.unknowns[owners], load)
                     fed += float(load.sum())
-        source = self.field.source
+        source = self.spreading.source
         if source is not None and not varies(source):
             load = (self.form.weights * self._at(source, inner)) @ self.form.functions
             np.add.at(fixed, mesh.unknowns, load)
@@ -147,7 +145,7 @@ class _Builder:
         return found
 
     def _start(self, places: Floats) -> Floats:
-        initial = self.field.initial
+        initial = self.spreading.initial
         if initial is None:
             return np.zeros(len(places))
         if not isinstance(initial, Formula):
@@ -169,7 +167,7 @@ class _Builder:
 
     def _coefficients(self, points: Floats) -> Floats:
         """D (e, q) at points (e, q, 3), where it depends on the place alone; else zeros."""
-        formula = self.field.coefficient
+        formula = self.spreading.coefficient
         if formula is None or self.varying:
             return np.zeros(points.shape[:2])
         d = self._at(formula, points)
@@ -237,13 +235,23 @@ class _Builder:
         k = nodes.shape[1]
         slope = bend if bend >= 0 else assembly.floats(np.zeros(len(each)))
         shapes = assembly.floats(edge.functions.ravel()) if bend >= 0 else 0
-        ints = (self.at, self.inflow, len(each), k, assembly.floats(weights.ravel()), at, slope, shapes, *each.ravel().tolist())
+        ints = (
+            self.at,
+            self.inflow,
+            len(each),
+            k,
+            assembly.floats(weights.ravel()),
+            at,
+            slope,
+            shapes,
+            *each.ravel().tolist(),
+        )
         self._term("given", ints, self._pairs(each) if bend >= 0 else None)
 
     def _held(self, one: Condition, edge: Edge) -> None:
         """The term of given values where the coefficient varies."""
         assembly, nodes = self.assembly, self.mesh.unknowns[edge.owners]
-        formula = self.field.coefficient
+        formula = self.spreading.coefficient
         assert formula is not None
         conducts, bend = self._values(formula, edge.points, edge.functions, nodes)
         slope = NONE
@@ -256,7 +264,18 @@ class _Builder:
         each = np.repeat(nodes, edge.points.shape[1], axis=0)
         firm = np.repeat(self.firm[one.cells], edge.points.shape[1])
         tables = [assembly.floats(part.ravel()) for part in (edge.functions, edge.normal, edge.weights, firm)]
-        ints = (self.at, self.inflow, len(each), nodes.shape[1], *tables, conducts, value, slope, bend, *each.ravel().tolist())
+        ints = (
+            self.at,
+            self.inflow,
+            len(each),
+            nodes.shape[1],
+            *tables,
+            conducts,
+            value,
+            slope,
+            bend,
+            *each.ravel().tolist(),
+        )
         self._term("held", ints, self._pairs(each))
 
     def _bulk(self, source: Formula | None) -> None:
@@ -270,8 +289,8 @@ class _Builder:
             made, slope = self._values(source, form.points, shapes, nodes)
         slopes_at = 0
         if self.varying:
-            assert self.field.coefficient is not None
-            conducts, bend = self._values(self.field.coefficient, form.points, shapes, nodes)
+            assert self.spreading.coefficient is not None
+            conducts, bend = self._values(self.spreading.coefficient, form.points, shapes, nodes)
             slopes_at = assembly.floats(form.gradients().ravel())
         head = (self.at, self.inflow, *form.points.shape[:2], nodes.shape[1], self.mesh.element.dimension)
         tables = (assembly.floats(shapes.ravel()), slopes_at, assembly.floats(form.weights.ravel()))
@@ -331,9 +350,9 @@ class _Builder:
     def _close(self, mass: Any) -> None:
         n, assembly = self.mesh.count, self.assembly
         if self.mesh.element.degree == 1:
-            kernel, ints = "lumped", (self.at, n, assembly.floats(self.form.volumes))
+            kernel, tables = "lumped", [assembly.floats(self.form.volumes)]
         else:
             *floats, plan = factored(mass, assembly)
-            kernel, ints = "consistent", (self.at, n, *floats, *plan)
+            kernel, tables = "consistent", [*floats, *plan]
         none = np.zeros(0, dtype=np.int64)
-        assembly.term("close", f"{CLOSING}:{kernel}", ints, Slopes(f"{CLOSING}:nothing", none, none))
+        assembly.term("close", f"{CLOSING}:{kernel}", (self.at, n, *tables), Slopes(f"{CLOSING}:nothing", none, none))

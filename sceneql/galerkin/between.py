@@ -21,7 +21,7 @@ FEWER = 4
 INVERSIONS = 6
 """Most steps of Newton's method to a place in an element with curved sides."""
 BEYOND = 0.5
-"""How far outside its element, in barycentric coordinates, a place is continued to: farther ones have the values there."""
+"""How far outside its element, in barycentric coordinates, a field is continued; beyond it stays."""
 
 FARTHEST = 1.0
 """Farthest, in barycentric coordinates from its middle, that an element's own functions tell where a place is."""
@@ -51,7 +51,8 @@ class BetweenNodes:
     def gridded(self, field: Floats) -> Floats:
         """(nz, ny, nx) at the centers of the cells of the layout, with a layer of cells around them of a deep one."""
         weights, _ = self._grid
-        return (weights @ field).reshape(self.shape)
+        found: Floats = (weights @ field).reshape(self.shape)
+        return found
 
     @property
     def shape(self) -> tuple[int, int, int]:

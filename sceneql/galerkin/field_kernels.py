@@ -18,13 +18,17 @@ STARTS on the rows' starts (count + 1), then the columns."""
 S_AT, S_ROWS, S_POINTS, S_NODES, S_SHAPES, S_REPEATS, S_TARGET, S_LIST = range(8)
 """Integers of `sample`: first unknown, elements or sides, points of each, nodes of each; functions (points, nodes) of
 all, or of each (S_REPEATS 0); where the field goes; the nodes from S_LIST on."""
-B_AT, B_INFLOW, B_ELEMENTS, B_POINTS, B_NODES, B_DIMENSION, B_SHAPES, B_GRADIENTS, B_WEIGHTS, B_CONDUCTS, B_MADE = range(11)
+B_AT, B_INFLOW, B_ELEMENTS, B_POINTS, B_NODES, B_DIMENSION, B_SHAPES, B_GRADIENTS, B_WEIGHTS, B_CONDUCTS, B_MADE = (
+    range(11)
+)
 B_SLOPE, B_BEND, B_LIST = 11, 12, 13
 """Integers of `bulk`: besides offsets of functions, their gradients (none are read where B_CONDUCTS is -1) and weights,
 those of the coefficient and of the source at the points (-1: none), and of their derivatives by the field (-1)."""
 G_AT, G_INFLOW, G_POINTS, G_NODES, G_WEIGHTS, G_VALUES, G_SLOPE, G_SHAPES, G_LIST = range(9)
 """Integers of `given`: points, nodes of each, weights (points, nodes) of the values there and of its derivative."""
-H_AT, H_INFLOW, H_POINTS, H_NODES, H_SHAPES, H_NORMAL, H_WEIGHTS, H_FIRM, H_CONDUCTS, H_VALUES, H_SLOPE, H_BEND = range(12)
+H_AT, H_INFLOW, H_POINTS, H_NODES, H_SHAPES, H_NORMAL, H_WEIGHTS, H_FIRM, H_CONDUCTS, H_VALUES, H_SLOPE, H_BEND = range(
+    12
+)
 H_LIST = 12
 """Integers of `held`: points on sides whose value is given, where the coefficient varies."""
 

@@ -111,7 +111,9 @@ def _corners(element: Simplex) -> Any:
     return np.array(element.sides)
 
 
-def _joined(mesh: FieldMesh, pieces: Any, names: tuple[str, ...], axes: set[int], low: Floats, sides: Floats) -> FieldMesh:
+def _joined(
+    mesh: FieldMesh, pieces: Any, names: tuple[str, ...], axes: set[int], low: Floats, sides: Floats
+) -> FieldMesh:
     """With names of the box's sides, and nodes across periodic ones as one unknown."""
     from dataclasses import replace
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,8 @@ THIN = 0.95
 """What lies inside farther than so many spacings from all vertices, or outside as far from the outline but in a
 triangle, is too thin for the spacing."""
 GAP = 0.35
+ROUGH = 1e-4
+"""Parts of a side within which vertices on the outline move along it."""
 ROUNDS = 3
 """Times that vertices move, and sides are exchanged."""
 
@@ -48,25 +51,42 @@ def outlined(low: Floats, high: Floats, spacing: float, level: Any, element: Sim
     corners = plane_corners.corners_of(made, values, spacing) if told is None else told()
     made, fixed = plane_corners.kept(made, _distinct(corners, spacing), spacing)
 
-    def onto(places: Floats, normals: Floats, reach: Floats) -> Floats:
+    def onto(places: Floats, normals: Floats, reach: Floats, within: float = 4e-16) -> Floats:
         way = reach[:, None] * normals
         inner, outer = places - way, places + way
         met = (values(inner) < 0.0) & ~(values(outer) < 0.0)
         found = np.full_like(places, np.nan)
-        share = crossing(values, inner[met], outer[met])
+        share = crossing(values, inner[met], outer[met], within)
         found[met] = inner[met] + share[:, None] * (outer - inner)[met]
         return found
 
     points, triangles = made.points, delaunay(made.points, made.triangles)
     for _ in range(ROUNDS):
-        points = smoothed(points, triangles, fixed, onto)
+        points = smoothed(points, triangles, fixed, partial(onto, within=ROUGH))
         triangles = delaunay(points, triangles)
+    points = _settled(points, triangles, fixed, onto)
     _, outer = outer_sides(triangles)
     middles = 0.5 * (points[outer[:, 0]] + points[outer[:, 1]])
     pieces = level.pieces(np.column_stack([middles, np.zeros(len(middles))]))
     least, largest = angles(points, triangles)
     straight = flat_mesh(points, triangles, element, pieces, level.names, (least, largest))
     return straight if element.degree == 1 else _curved(straight, onto)
+
+
+def _settled(points: Floats, triangles: Any, fixed: Any, onto: Any) -> Floats:
+    """With the vertices of outer sides, but those that are fixed, on the outline to rounding."""
+    _, outer = outer_sides(triangles)
+    normals = np.zeros_like(points)
+    way = points[outer[:, 1]] - points[outer[:, 0]]
+    for k in (0, 1):
+        np.add.at(normals, outer[:, k], np.stack([way[:, 1], -way[:, 0]], axis=1))
+    free = np.setdiff1d(outer, fixed)
+    size = np.linalg.norm(normals[free], axis=1)
+    found = onto(points[free], normals[free] / np.maximum(size, 1e-300)[:, None], 10.0 * ROUGH * size)
+    met = np.isfinite(found).all(axis=1)
+    points = points.copy()
+    points[free[met]] = found[met]
+    return points
 
 
 def flat_mesh(
@@ -79,7 +99,9 @@ def flat_mesh(
         points = np.concatenate([points, 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])])
         cells = np.concatenate([triangles, len(points) - len(ends) + which[:, [2, 0, 1]]], axis=1)
     own, _ = outer_sides(triangles)
-    return FieldMesh(element, points, cells.astype(np.int64), cells.astype(np.int64), len(points), own, pieces, names, worst)
+    return FieldMesh(
+        element, points, cells.astype(np.int64), cells.astype(np.int64), len(points), own, pieces, names, worst
+    )
 
 
 def _distinct(corners: Floats, spacing: float) -> Floats:
@@ -96,7 +118,8 @@ def _curved(mesh: FieldMesh, onto: Any) -> FieldMesh:
     from dataclasses import replace
 
     points = mesh.points.copy()
-    nodes = mesh.cells[mesh.faces[:, 0]][np.arange(len(mesh.faces))[:, None], np.array(mesh.element.side_nodes())[mesh.faces[:, 1]]]
+    own = np.array(mesh.element.side_nodes())[mesh.faces[:, 1]]
+    nodes = np.take_along_axis(mesh.cells[mesh.faces[:, 0]], own, axis=1)
     way = points[nodes[:, 1]] - points[nodes[:, 0]]
     length = np.linalg.norm(way, axis=1)
     normal = np.stack([way[:, 1], -way[:, 0]], axis=1) / length[:, None]

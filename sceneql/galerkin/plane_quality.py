@@ -12,7 +12,10 @@ from sceneql.galerkin.plane_stuffing import sides_of
 if TYPE_CHECKING:
     from sceneql.frame import Floats
 
-PASSES = 60
+PASSES, IDLE = 60, 4
+"""Most passes over the vertices, and passes in a row in which few move after which no more follow."""
+FEW = 0.05
+"""Part of the vertices tried that counts as few."""
 GOOD = 0.9
 """Quality from which on triangles are left as they are."""
 ENOUGH = 1e-3
@@ -112,7 +115,7 @@ def smoothed(points: Floats, triangles: Any, fixed: Any, onto: Onto) -> Floats:
     after, before = np.arange(count), np.arange(count)
     after[outer[:, 0]], before[outer[:, 1]] = outer[:, 1], outer[:, 0]
     rank = np.random.Generator(np.random.Philox(5)).permutation(count)
-    corner = triangles.ravel().astype(np.int64)
+    corner, idle = triangles.ravel().astype(np.int64), 0
     for _ in range(PASSES):
         quality = qualities(points, triangles)
         worst = np.full(count, 2.0)
@@ -152,4 +155,7 @@ def smoothed(points: Floats, triangles: Any, fixed: Any, onto: Onto) -> Floats:
             better = ~done & (least > worst[moving] + ENOUGH)
             points[moving[better]] = trial[better]
             done |= better
+        idle = 0 if done.mean() > FEW else idle + 1
+        if idle == IDLE:
+            break
     return points

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 NEAR = 0.4
 """An end of a side moves to where the outline cuts it within this part of the side."""
 OUT, ON, IN = 0, 1, 2
-ROOTS = 48
-"""Most halvings of a piece of a side to the place where the outline cuts it."""
+ROOTS, SLOW = 80, 12
+"""Most steps to the place where the outline cuts a side, and those after which it is halved in turn."""
 TOUCHING = 1e-9
 """Parts of the spacing by which the lattice is off a place on the outline."""
 
@@ -63,26 +63,29 @@ def stuffed(low: Floats, high: Floats, spacing: float, values: Values) -> Triang
     return _cut(points, state, triangles, ends, surface)
 
 
-def crossing(values: Values, inner: Floats, outer: Floats) -> Floats:
-    """(k,) fractions at which ways from places inside to places outside, each (k, 2), leave: by regula falsi with the
-    Illinois rule (Dowell & Jarratt 1971), and by halving where the values do not lie on the sides that they should."""
+def crossing(values: Values, inner: Floats, outer: Floats, within: float = 4e-16) -> Floats:
+    """(k,) fractions at which ways from places inside to places outside, each (k, 2), leave, ``within`` so much: by
+    regula falsi with the Illinois rule (Dowell & Jarratt 1971), by halving where that takes long."""
     low, high = np.zeros(len(inner)), np.ones(len(inner))
     below, above = values(inner), values(outer)
-    for step in range(ROOTS):
-        if not len(inner) or (high - low).max() < 4e-16:
-            break
+    share, side = np.full(len(inner), np.inf), np.zeros(len(inner))
+    for step in range(ROOTS if len(inner) else 0):
         rise = above - below
+        last = share
         share = np.where(rise > 0.0, low - below * (high - low) / np.where(rise > 0.0, rise, 1.0), 0.5 * (low + high))
-        if step % 3 == 2:
+        if step > SLOW and step % 2:
             share = 0.5 * (low + high)
+        share = np.clip(share, low, high)
+        if np.minimum(np.abs(share - last), high - low).max() < within:
+            break
         found = values(inner + share[:, None] * (outer - inner))
         held = found < 0.0
         low, high = np.where(held, share, low), np.where(held, high, share)
-        below, above = np.where(held, found, 0.5 * below), np.where(held, 0.5 * above, found)
-        high = np.where(found == 0.0, share, high)
-        low = np.where(found == 0.0, share, low)
-    result: Floats = 0.5 * (low + high)
-    return result
+        again = np.where(held, 1.0, -1.0) == side
+        below = np.where(held, found, np.where(again, 0.5 * below, below))
+        above = np.where(held, np.where(again, 0.5 * above, above), found)
+        side = np.where(held, 1.0, -1.0)
+    return share
 
 
 def sides_of(triangles: Any) -> tuple[Any, Any]:

@@ -1,6 +1,6 @@
 """Formulas of place, time and the field, printed as kernels that evaluate them for cells, boundary faces or points.
 
-The first two add weight * value: ``floats[target + cell] = floats[base + cell] + floats[weight + cell] * value`` for cells,
+Two add weight * value: ``floats[target + cell] = floats[base + cell] + floats[weight + cell] * value`` for cells,
 ``floats[target + cell] += floats[weight + k] * value`` for face k of the cell. ints of the first: constants, field (in
 y), target, base, weight, nx, ny, nz, box (low corner and spacing: 6 floats), then values read from other parts; of the
 second: constants, field, target, weight, faces, points (3 floats a face), number of inputs, index of the cells in ints,

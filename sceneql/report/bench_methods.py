@@ -119,7 +119,7 @@ def _end(graph: SimulationGraph, island: Island, kind: Any) -> _End:
     steps, whole = [], []
     for _ in range(REPEATS):
         begun = time.perf_counter()
-        moment, march = run(patched, island, TrBdf2(tolerance=TOLERANCE), LONGEST)
+        _, march = run(patched, island, TrBdf2(tolerance=TOLERANCE), LONGEST)
         steps.append(march.march.statistics.seconds)
         whole.append(time.perf_counter() - begun - steps[-1])
         if steps[-1] + whole[-1] > 0.5 * ENOUGH_SECONDS:

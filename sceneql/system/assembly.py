@@ -113,8 +113,10 @@ class Assembly(Protocol):
         """
 
     def capacity(self, at: int, matrix: Any) -> None:
-        """Say that a close term solves with a matrix for the rates of y[at : at + n], whose rows of the Jacobian are those
-        before it. ``matrix``: scipy sparse, symmetric and positive definite, (n, n)."""
+        """Say that a close term solves with a matrix for the rates of y[at : at + n]: slopes are of what it solves for.
+
+        ``matrix``: scipy sparse, symmetric and positive definite, (n, n).
+        """
 
     def contact(
         self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False, help: str = ""

@@ -107,7 +107,9 @@ class Part(Protocol):
 Said = TypeVar("Said", bound=Part)
 
 
-def conditions(boundary: Boundary, cells: Bounded, line: Span | None) -> tuple[list[Condition], tuple[bool, bool, bool]]:
+def conditions(
+    boundary: Boundary, cells: Bounded, line: Span | None
+) -> tuple[list[Condition], tuple[bool, bool, bool]]:
     """The conditions of boundaries that are not closed, and which directions are periodic. Raises ScriptError.
 
     ``line``: the model's place in the script.

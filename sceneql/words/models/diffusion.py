@@ -134,7 +134,9 @@ class Diffusion(SpreadingMedium):
             text = "elements carry nothing, they would swing: leave out `drift`, or `method: elements`"
             yield Problem(text, ("drift",), at_key=True)
         if "edges" in self.model_fields_set:
-            yield Problem("elements meet the boundary at their own sides: `edges` is for cells", ("edges",), at_key=True)
+            yield Problem(
+                "elements meet the boundary at their own sides: `edges` is for cells", ("edges",), at_key=True
+            )
         for name, part in self.boundary.items():
             if part.open:
                 yield Problem("`open` lets a drift through, and elements have none", ("boundary", name, "open"))
