@@ -1,1 +1,1 @@
-"""Fields by finite elements: triangles, weak forms."""
+"""Fields by finite elements."""

@@ -66,9 +66,6 @@ class IslandAssembly(Reserved):
     """(offset, count) of floats that change as bodies come and go."""
     _alike: list[tuple[int, int]] = field(default_factory=list)
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
-    _matrices: dict[int, Any] = field(default_factory=dict)
-    """Inertia that is a matrix, by the offset of the velocities, and other capacities, by that of the entries."""
-    _capacities: list[int] = field(default_factory=list)
     _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
     _exact: list[Block] = field(default_factory=list)
     _local: list[Block] = field(default_factory=list)
@@ -141,11 +138,6 @@ class IslandAssembly(Reserved):
         if matrix is not None:
             self._matrices[velocity_at] = matrix
 
-    def capacity(self, at: int, matrix: Any) -> None:
-        """Say that rates of entries are solved for by a matrix (system.Assembly)."""
-        self._matrices[at] = matrix
-        self._capacities.append(at)
-
     def contact(
         self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False, help: str = ""
     ) -> None:
@@ -200,9 +192,7 @@ class IslandAssembly(Reserved):
         """The fields and the flow, and whether there is anything else."""
         alone = bool(self._ranges) and len(self._ranges) == len(self._grids) + len(self._flows)
         alone = alone and not self._pairs and not self.changed_between_steps
-        elements = 0
-        if self._capacities and len(self._ranges) == len(self._capacities) and not self.changed_between_steps:
-            elements = sum(self._matrices[at].shape[0] for at in self._capacities)
+        elements = 0 if self.changed_between_steps else self.on_elements
         return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone, elements)
 
     @property
