@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import permutations
 from typing import TYPE_CHECKING, Any, cast
 
@@ -73,7 +74,11 @@ def _object(model: Medium, degree: int, assembly: Assembly) -> FieldMesh:
             message = f"no triangle of {model.cell:g} m lies inside '{ref.name}'"
             raise ScriptError([Diagnostic("no-mesh", message, ref.span, "take a smaller `cell`")])
         return found
-    made = filled(ref, model.cell, elements()[f"p{degree}"], {}, assembly)
+    try:
+        made = filled(ref, model.cell, elements()[f"p{degree}"], {}, assembly)
+    except ScriptError as error:
+        told = [replace(one, help=one.help or "the spacing is that of `cell`") for one in error.diagnostics]
+        raise ScriptError(told) from None
     four = made.cells[:, :4].astype(np.int64)
     own = _outer(four)
     names = getattr(level, "names", (ref.name,))
@@ -115,8 +120,6 @@ def _joined(
     mesh: FieldMesh, pieces: Any, names: tuple[str, ...], axes: set[int], low: Floats, sides: Floats
 ) -> FieldMesh:
     """With names of the box's sides, and nodes across periodic ones as one unknown."""
-    from dataclasses import replace
-
     if not axes:
         return replace(mesh, pieces=pieces, names=names)
     share = (mesh.points - low) / sides

@@ -18,11 +18,12 @@ if TYPE_CHECKING:
 
 LEAST_BENT = 0.2
 """A triangle is bent no more than to this part of its straight size at any place that is looked at."""
-FINE = 0.25
-THIN = 0.95
-"""What lies inside farther than so many spacings from all vertices, or outside as far from the outline but in a
-triangle, is too thin for the spacing."""
-GAP = 0.35
+FINE, THIN = 0.25, 0.95
+"""What lies inside farther than THIN spacings from all vertices is too thin: looked for at places FINE spacings apart."""
+GAP = 0.05
+"""Spacings by which a triangle, away from its outer sides, may lie outside."""
+LOOKED_AT = (0.1, 0.25, 0.5, 0.75, 0.9)
+"""Parts of an inner side at which it must lie inside."""
 ROUGH = 1e-4
 """Parts of a side within which vertices on the outline move along it."""
 ROUNDS = 3
@@ -46,7 +47,6 @@ def outlined(low: Floats, high: Floats, spacing: float, level: Any, element: Sim
     made = stuffed(low[:2], high[:2], spacing, values)
     if not len(made.triangles):
         return None
-    _whole(made, low[:2], high[:2], spacing, values)
     told = getattr(level, "corners", None)
     corners = plane_corners.corners_of(made, values, spacing) if told is None else told()
     made, fixed = plane_corners.kept(made, _distinct(corners, spacing), spacing)
@@ -65,6 +65,7 @@ def outlined(low: Floats, high: Floats, spacing: float, level: Any, element: Sim
         points = smoothed(points, triangles, fixed, partial(onto, within=ROUGH))
         triangles = delaunay(points, triangles)
     points = _settled(points, triangles, fixed, onto)
+    _whole(points, triangles, low[:2], high[:2], spacing, values)
     _, outer = outer_sides(triangles)
     middles = 0.5 * (points[outer[:, 0]] + points[outer[:, 1]])
     pieces = level.pieces(np.column_stack([middles, np.zeros(len(middles))]))
@@ -134,7 +135,7 @@ def _curved(mesh: FieldMesh, onto: Any) -> FieldMesh:
     return replace(mesh, points=points)
 
 
-def _whole(made: Triangles, low: Floats, high: Floats, spacing: float, values: Values) -> None:
+def _whole(points: Floats, triangles: Any, low: Floats, high: Floats, spacing: float, values: Values) -> None:
     """Raise TooCoarse where a part, or a gap between parts, is too thin for the lattice to know of it."""
     from scipy.spatial import cKDTree
 
@@ -142,18 +143,18 @@ def _whole(made: Triangles, low: Floats, high: Floats, spacing: float, values: V
     axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
     places = places[values(places) < 0.0]
-    corners = made.points[made.triangles]
-    inner = np.concatenate([corners.mean(axis=1), *(0.5 * (corners[:, k] + corners[:, k - 1]) for k in range(3))])
-    beyond = values(inner)
-    beyond = np.where(beyond > 0.0, beyond, 0.0)
-    some = np.flatnonzero(beyond > 0.0)
-    steep = np.linalg.norm(plane_corners.slopes(values, inner[some], 1e-3 * spacing), axis=1)
-    beyond[some] /= np.maximum(steep, 1e-300)
     if len(places):
-        away, _ = cKDTree(made.points).query(places)
+        away, _ = cKDTree(points).query(places)
         k = int(np.argmax(away))
         if away[k] > THIN * spacing:
             raise TooCoarse(f"at ({places[k][0]:.3g}, {places[k][1]:.3g}) m it is thinner than the spacing")
+    ends, which = sides_of(triangles)
+    one, two = points[ends[np.bincount(which.ravel()) == 2]].transpose(1, 0, 2)
+    inner = np.concatenate([points[triangles].mean(axis=1), *(one + part * (two - one) for part in LOOKED_AT)])
+    beyond = np.maximum(values(inner), 0.0)
+    some = np.flatnonzero(beyond > 0.0)
+    steep = np.linalg.norm(plane_corners.slopes(values, inner[some], 1e-3 * spacing), axis=1)
+    beyond[some] /= np.maximum(steep, 1e-300)
     k = int(np.argmax(beyond))
     if beyond[k] > GAP * spacing:
         raise TooCoarse(f"at ({inner[k][0]:.3g}, {inner[k][1]:.3g}) m a gap or bay is narrower than the spacing")
