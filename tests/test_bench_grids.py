@@ -90,10 +90,19 @@ def test_the_section_is_written(tmp_path):
     graph, _ = field(tmp_path, PLATE, "{implicit_euler: {step: 5 ms}}")
     section = grid_section(graph, tmp_path / "out", {"plate": {"exact": Exact()}})
     assert section.lines[0].startswith("plate on grids, exact in time: observed order 2.0")
-    assert [path.name for _, path in section.plots] == ["out.schemes.svg", "out.grids.svg", "out.linear.svg"]
+    assert [path.name for _, path in section.plots] == [
+        "out.schemes.svg",
+        "out.grids.svg",
+        "out.linear.svg",
+        "out.methods.svg",
+    ]
     assert all("<svg" in path.read_text() for _, path in section.plots)
     rows = list(csv.DictReader(section.files[0].read_text().splitlines()))
     assert [float(row["cell"]) for row in rows] == sorted((float(row["cell"]) for row in rows), reverse=True)
+    methods = list(csv.DictReader(section.files[3].read_text().splitlines()))
+    assert list(dict.fromkeys(row["method"] for row in methods)) == ["cells", "p1", "p2"]
+    finest = {row["method"]: float(row["error"]) for row in methods}  # the last of each stays
+    assert finest["p2"] < 0.2 * finest["cells"]
     assert {row["linear"] for row in csv.DictReader(section.files[2].read_text().splitlines())} >= {"multigrid", "sor"}
 
 

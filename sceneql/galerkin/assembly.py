@@ -279,10 +279,14 @@ class _Builder:
         self._term("held", ints, self._pairs(each))
 
     def _bulk(self, source: Formula | None) -> None:
-        """The term of a coefficient and a source that vary."""
+        """The term of a coefficient and a source that vary; with a lumped mass a source acts at the nodes alone."""
+        if source is not None and self.mesh.element.degree == 1:
+            self._at_nodes(source)
+            source = None
         if source is None and not self.varying:
             return
-        assembly, form, nodes = self.assembly, self.form, self.mesh.unknowns
+        assembly, nodes = self.assembly, self.mesh.unknowns
+        form = WeakForm(self.mesh, self.depth, self.mesh.element.coarse_rule)
         shapes = form.functions
         made = slope = conducts = bend = NONE
         if source is not None:
@@ -296,6 +300,15 @@ class _Builder:
         tables = (assembly.floats(shapes.ravel()), slopes_at, assembly.floats(form.weights.ravel()))
         ints = (*head, *tables, conducts, made, slope, bend, *nodes.ravel().tolist())
         self._term("bulk", ints, self._pairs(nodes) if slope >= 0 or conducts >= 0 else None)
+
+    def _at_nodes(self, source: Formula) -> None:
+        """The term of a source that varies, times the integrals of the functions."""
+        assembly, nodes = self.assembly, np.arange(self.mesh.count)[:, None]
+        at, bend = self._values(source, self.mesh.places[:, None], np.ones((1, 1)), nodes)
+        slope = bend if bend >= 0 else assembly.floats(np.zeros(len(nodes)))
+        tables = (assembly.floats(self.form.volumes), at, slope, assembly.floats(np.ones(len(nodes))))
+        ints = (self.at, self.inflow, len(nodes), 1, *tables, *nodes.ravel().tolist())
+        self._term("given", ints, self._pairs(nodes) if bend >= 0 else None)
 
     def _values(self, formula: Formula, points: Floats, shapes: Floats, nodes: Any) -> tuple[int, int]:
         """Offsets of a formula at points (e, q, 3), evaluated at each rate, and of its derivative (-1: it is 0).

@@ -10,7 +10,7 @@ import numpy as np
 from sceneql.galerkin import plane_corners
 from sceneql.galerkin.field_mesh import FieldMesh, sized
 from sceneql.galerkin.plane_quality import angles, delaunay, outer_sides, smoothed
-from sceneql.galerkin.plane_stuffing import Triangles, Values, crossing, sides_of, stuffed
+from sceneql.galerkin.plane_stuffing import Values, crossing, sides_of, stuffed
 from sceneql.galerkin.simplex import Simplex
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 LEAST_BENT = 0.2
 """A triangle is bent no more than to this part of its straight size at any place that is looked at."""
 FINE, THIN = 0.25, 0.95
-"""What lies inside farther than THIN spacings from all vertices is too thin: looked for at places FINE spacings apart."""
+"""What lies inside farther than THIN spacings from all vertices is too thin: sought at places FINE spacings apart."""
 GAP = 0.05
 """Spacings by which a triangle, away from its outer sides, may lie outside."""
 LOOKED_AT = (0.1, 0.25, 0.5, 0.75, 0.9)

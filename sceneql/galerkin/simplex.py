@@ -77,6 +77,11 @@ class Simplex:
         """Places (q, corners) and weights (q,) that sum to 1: exact to order 2 for degree 1, to 4 for degree 2."""
         return _rule(self.dimension, self.degree)
 
+    @property
+    def coarse_rule(self) -> tuple[Floats, Floats]:
+        """The same exact to order 2: enough for loads and stiffness of either degree (Ciarlet 1978, section 4.1)."""
+        return _rule(self.dimension, 1)
+
     def side_rule(self) -> tuple[Floats, Floats]:
         """Places (sides, q, corners) on each side, and weights (q,) that sum to 1."""
         if self.dimension == 2:

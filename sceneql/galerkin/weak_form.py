@@ -38,24 +38,24 @@ class Edge:
 
 
 class WeakForm:
-    """The integrals of a mesh; ``depth`` [m]: how thick a flat one is."""
+    """The integrals of a mesh; ``depth`` [m]: how thick a flat one is; ``rule``: places and weights, else its own."""
 
-    def __init__(self, mesh: FieldMesh, depth: float) -> None:
-        self.mesh = mesh
+    def __init__(self, mesh: FieldMesh, depth: float, rule: tuple[Floats, Floats] | None = None) -> None:
+        self.mesh, self.rule = mesh, mesh.element.rule if rule is None else rule
         self.depth = depth if mesh.element.dimension == 2 else 1.0
 
     @cached_property
     def weights(self) -> Floats:
         """(e, q) volumes [m^3] that the places of the rule stand for."""
         mesh = self.mesh
-        places, weights = mesh.element.rule
+        places, weights = self.rule
         found: Floats = sized(mesh.element, mesh.points[mesh.cells], places) * weights * self.depth
         return found
 
     @cached_property
     def points(self) -> Floats:
         """(e, q, 3) the places of the rule [m]."""
-        at = self.mesh.at(self.mesh.element.rule[0])
+        at = self.mesh.at(self.rule[0])
         found = np.zeros((*at.shape[:2], 3))
         found[..., : at.shape[2]] = at
         return found
@@ -63,12 +63,12 @@ class WeakForm:
     @property
     def functions(self) -> Floats:
         """(q, nodes) at these places."""
-        return self.mesh.element.functions(self.mesh.element.rule[0])
+        return self.mesh.element.functions(self.rule[0])
 
     def gradients(self, chosen: Any = slice(None)) -> Floats:
         """(e, q, nodes, d) at these places of some elements [1/m]."""
         mesh = self.mesh
-        return gradients(mesh.element, mesh.points[mesh.cells[chosen]], mesh.element.rule[0])
+        return gradients(mesh.element, mesh.points[mesh.cells[chosen]], self.rule[0])
 
     @cached_property
     def volumes(self) -> Floats:

@@ -52,13 +52,14 @@ def grid_section(graph: SimulationGraph, stem: Path, schemes: Mapping[str, Mappi
     linear: list[LinearRun] = []
     orders: dict[str, float | None] = {}
     by_methods: list[MethodRun] = []
+    of_methods: list[str] = []
     for island in islands:
         title = ", ".join(island.models)
-        mine_by_methods = method_runs(graph, island)
-        by_methods += mine_by_methods
-        if mine_by_methods:
-            lines.append(f"{title} by methods, by tr_bdf2 at tolerance {TOLERANCE:g}, beside the finest p2:")
-            lines += method_lines(mine_by_methods)
+        compared = method_runs(graph, island)
+        by_methods += compared
+        if compared:
+            method = f"{title} by methods, by tr_bdf2 at tolerance {TOLERANCE:g}, beside the finest p2:"
+            of_methods += [method, *method_lines(compared)]
         if cast(Model, graph.tasks[island.models[0]].kind).field_count() == 0:
             continue  # on elements
         ends, how = ends_on_grids(graph, island)
@@ -83,6 +84,7 @@ def grid_section(graph: SimulationGraph, stem: Path, schemes: Mapping[str, Mappi
         for one in mine:
             last = f"residual {one.residuals[-1]:.1e} of the first" if one.residuals else "solved at once"
             lines.append(f"    {one.linear:<20} {one.iterations:6d} iterations  {one.seconds * 1e3:9.3f} ms  {last}")
+    lines += of_methods
     return _written(graph.name, stem, lines, runs, orders, by_schemes, linear, by_methods)
 
 
@@ -112,15 +114,15 @@ def _written(
     if by_schemes:
         plots.append(("Error of space and time against run time", beside(stem, "schemes.svg")))
         schemes_against_time(plots[-1][1], name, by_schemes)
-    if by_methods:
-        plots.append(("Error of space against run time, by methods", beside(stem, "methods.svg")))
-        methods_against_time(plots[-1][1], name, by_methods)
     if runs:
         plots.append(("Error of space against cell", beside(stem, "grids.svg")))
         error_against_cell(plots[-1][1], name, runs, orders)
     if any(run.residuals for run in linear):
         plots.append(("Residuals of linear solvers", beside(stem, "linear.svg")))
         residuals(plots[-1][1], name, linear)
+    if by_methods:
+        plots.append(("Error of space against run time, by methods", beside(stem, "methods.svg")))
+        methods_against_time(plots[-1][1], name, by_methods)
     data = {key: [asdict(row) for row in rows] for key, _, _, rows in parts}
     return GridSection(lines, plots, tables, files, data)
 
