@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import PrivateAttr
@@ -44,13 +45,17 @@ def _names(what: str) -> tuple[str, ...]:
 
 
 class Diffusion(SpreadingMedium):
-    """Diffusion dc/dt = div(D grad c) + source by finite volumes on a grid of cells, which conserve what there is.
+    """Diffusion dc/dt = div(D grad c) + source by finite volumes on cells, or by finite elements. Both conserve.
 
     A face between two cells carries D area (difference)/(distance); D there is the harmonic mean of the cells' where it
     depends on the place alone (layers in a row), else the arithmetic one. On a boundary the value, the flux, or both in
     proportion are given; where nothing is said nothing crosses. In formulas x, y, z, t and the field c are plain
-    numbers in SI. A flat domain has x and y and a `depth`. Source: Patankar, Numerical Heat Transfer and Fluid Flow
-    (1980), 4.2; Crank, The Mathematics of Diffusion (1975).
+    numbers in SI. A flat domain has x and y and a `depth`.
+
+    With `method: elements` the field is that of Galerkin's weak form (Galerkin 1915) on triangles or tetrahedra, whose
+    sides lie on the boundary; given values are held by Nitsche's terms (1971), and nothing carries it. Source:
+    Patankar, Numerical Heat Transfer and Fluid Flow (1980), 4.2; Crank, The Mathematics of Diffusion (1975);
+    Zienkiewicz & Taylor, The Finite Element Method (2000).
     """
 
     of: Literal["concentration", "temperature", "number"] = field(
@@ -78,7 +83,14 @@ class Diffusion(SpreadingMedium):
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
         """In the unit of what spreads."""
         what = str(written.get("of", "concentration"))
-        found = dict(gives_of("The field in every cell of the domain.", UNITS.get(what, dim.PLAIN), written))
+        by_elements = written.get("method") == "elements"
+        text = "The field at every node of the elements." if by_elements else "The field in every cell of the domain."
+        found = dict(gives_of(text, UNITS.get(what, dim.PLAIN), written))
+        if by_elements:
+            probes = written.get("probes")
+            of_nodes = dict.fromkeys(map(str, probes if isinstance(probes, Mapping) else ()), "The value there.")
+            for name, told in {"centers": "The places of these nodes.", **of_nodes}.items():
+                found[name] = replace(found[name], doc=told, computed=True)
         own = found.pop("field")
         return {**dict.fromkeys(_names(what), own), **found}
 
