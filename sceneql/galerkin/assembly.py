@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,18 +11,16 @@ from sceneql.bodies.consistent import factored
 from sceneql.galerkin.between import BetweenNodes
 from sceneql.galerkin.element_field import ElementField
 from sceneql.galerkin.meshes import mesh_of
+from sceneql.galerkin.varying_terms import NONE, WITHOUT_SLOPES, VaryingTerms
 from sceneql.galerkin.weak_form import Edge, WeakForm, firmness
-from sceneql.grids.assembly import ZERO, varies
+from sceneql.grids.assembly import varies
 from sceneql.grids.at_points import at_points
-from sceneql.grids.cell_program import FIELD, over_points
 from sceneql.grids.domain.boundary import GIVEN_FLUX, Condition, conditions
 from sceneql.grids.domain.cells import BoundaryFaces, counts
 from sceneql.grids.domain.picture_mask import sampled
 from sceneql.grids.medium import FieldLayout
 from sceneql.kinds import Formula
-from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.quantities.expression import Expr, Symbol, walk
 from sceneql.system import Slopes
 
 if TYPE_CHECKING:
@@ -32,10 +30,7 @@ if TYPE_CHECKING:
     from sceneql.grids.medium import Boundary, Medium, Picture
     from sceneql.system import Assembly
 
-KERNELS = "sceneql.galerkin.field_kernels"
-SLOPES = "sceneql.galerkin.field_slopes_kernels"
 CLOSING = "sceneql.galerkin.closing_kernels"
-NONE = -1
 POWERS = 60
 """Steps of power iteration to the fastest decay."""
 
@@ -86,10 +81,6 @@ class _Builder:
     depth: float
     shape: tuple[int, int, int]
     assembly: Assembly
-    tables: dict[int, tuple[int, int, Floats]] = field(default_factory=dict)
-    """Offsets of points, and of the field at them, by the identity of the points, which are held."""
-    sampled: set[int] = field(default_factory=set)
-    """Those at which the field is found."""
 
     def add(self) -> None:
         """Add all."""
@@ -97,6 +88,7 @@ class _Builder:
         self.form = WeakForm(mesh, self.depth)
         self.at = assembly.state(np.append(self._start(mesh.places), 0.0))
         self.inflow = self.at + mesh.count
+        self.terms = VaryingTerms(assembly, self.at, self.inflow)
         assembly.alike(self.at, mesh.count)
         self.varying = varies(self.spreading.coefficient)
         inner = self.form.points
@@ -220,45 +212,24 @@ class _Builder:
             weights = area * shapes / one.resistance
             blocks = np.einsum("fqi,fqj->fij", weights, shapes)
         if moving:
-            self._moving(one, edge, weights)
+            assert one.formula is not None
+            self.terms.given(one.formula, edge.points, shapes, self.mesh.unknowns[edge.owners], weights)
             return blocks, edge.owners, None
         if one.formula is None:
             return blocks, edge.owners, None
         return blocks, edge.owners, np.einsum("fqi,fq->fi", weights, self._at(one.formula, edge.points))
-
-    def _moving(self, one: Condition, edge: Edge, weights: Floats) -> None:
-        """The term of values or fluxes that vary."""
-        assert one.formula is not None
-        assembly, nodes = self.assembly, self.mesh.unknowns[edge.owners]
-        at, bend = self._values(one.formula, edge.points, edge.functions, nodes)
-        each = np.repeat(nodes, edge.points.shape[1], axis=0)
-        k = nodes.shape[1]
-        slope = bend if bend >= 0 else assembly.floats(np.zeros(len(each)))
-        shapes = assembly.floats(edge.functions.ravel()) if bend >= 0 else 0
-        ints = (
-            self.at,
-            self.inflow,
-            len(each),
-            k,
-            assembly.floats(weights.ravel()),
-            at,
-            slope,
-            shapes,
-            *each.ravel().tolist(),
-        )
-        self._term("given", ints, self._pairs(each) if bend >= 0 else None)
 
     def _held(self, one: Condition, edge: Edge) -> None:
         """The term of given values where the coefficient varies."""
         assembly, nodes = self.assembly, self.mesh.unknowns[edge.owners]
         formula = self.spreading.coefficient
         assert formula is not None
-        conducts, bend = self._values(formula, edge.points, edge.functions, nodes)
+        conducts, bend = self.terms.values(formula, edge.points, edge.functions, nodes)
         slope = NONE
         if one.formula is None:
             value = assembly.floats(np.zeros(edge.weights.size))
         elif varies(one.formula):
-            value, slope = self._values(one.formula, edge.points, edge.functions, nodes)
+            value, slope = self.terms.values(one.formula, edge.points, edge.functions, nodes)
         else:
             value = assembly.floats(self._at(one.formula, edge.points).ravel())
         each = np.repeat(nodes, edge.points.shape[1], axis=0)
@@ -276,12 +247,13 @@ class _Builder:
             bend,
             *each.ravel().tolist(),
         )
-        self._term("held", ints, self._pairs(each))
+        self.terms.term("held", ints, self.terms.pairs(each))
 
     def _bulk(self, source: Formula | None) -> None:
         """The term of a coefficient and a source that vary; with a lumped mass a source acts at the nodes alone."""
         if source is not None and self.mesh.element.degree == 1:
-            self._at_nodes(source)
+            nodes, weights = np.arange(self.mesh.count)[:, None], self.form.volumes[:, None, None]
+            self.terms.given(source, self.mesh.places[:, None], np.ones((1, 1)), nodes, weights)
             source = None
         if source is None and not self.varying:
             return
@@ -290,65 +262,16 @@ class _Builder:
         shapes = form.functions
         made = slope = conducts = bend = NONE
         if source is not None:
-            made, slope = self._values(source, form.points, shapes, nodes)
+            made, slope = self.terms.values(source, form.points, shapes, nodes)
         slopes_at = 0
         if self.varying:
             assert self.spreading.coefficient is not None
-            conducts, bend = self._values(self.spreading.coefficient, form.points, shapes, nodes)
+            conducts, bend = self.terms.values(self.spreading.coefficient, form.points, shapes, nodes)
             slopes_at = assembly.floats(form.gradients().ravel())
         head = (self.at, self.inflow, *form.points.shape[:2], nodes.shape[1], self.mesh.element.dimension)
         tables = (assembly.floats(shapes.ravel()), slopes_at, assembly.floats(form.weights.ravel()))
         ints = (*head, *tables, conducts, made, slope, bend, *nodes.ravel().tolist())
-        self._term("bulk", ints, self._pairs(nodes) if slope >= 0 or conducts >= 0 else None)
-
-    def _at_nodes(self, source: Formula) -> None:
-        """The term of a source that varies, times the integrals of the functions."""
-        assembly, nodes = self.assembly, np.arange(self.mesh.count)[:, None]
-        at, bend = self._values(source, self.mesh.places[:, None], np.ones((1, 1)), nodes)
-        slope = bend if bend >= 0 else assembly.floats(np.zeros(len(nodes)))
-        tables = (assembly.floats(self.form.volumes), at, slope, assembly.floats(np.ones(len(nodes))))
-        ints = (self.at, self.inflow, len(nodes), 1, *tables, *nodes.ravel().tolist())
-        self._term("given", ints, self._pairs(nodes) if bend >= 0 else None)
-
-    def _values(self, formula: Formula, points: Floats, shapes: Floats, nodes: Any) -> tuple[int, int]:
-        """Offsets of a formula at points (e, q, 3), evaluated at each rate, and of its derivative (-1: it is 0).
-
-        ``shapes`` (q, nodes) of all elements or (e, q, nodes); ``nodes`` (e, nodes): their unknowns.
-        """
-        assembly, count = self.assembly, points.shape[0] * points.shape[1]
-        key = id(points)
-        if key not in self.tables:
-            self.tables[key] = assembly.floats(points.ravel()), assembly.floats(np.zeros(count)), points
-        places, values, _ = self.tables[key]
-        reads = any(isinstance(node, Symbol) and node.name == FIELD for node in walk(formula.expr))
-        if reads and key not in self.sampled:
-            self.sampled.add(key)
-            table = assembly.floats(shapes.ravel())
-            head = (self.at, len(nodes), points.shape[1], nodes.shape[1], table, int(shapes.ndim == 2), values)
-            self._writes(f"{KERNELS}:sample", (*head, *nodes.ravel().tolist()))
-        found = self._formula(components(formula.expr)[0], places, values, count)
-        slope = differentiate(components(formula.expr)[0], Symbol(FIELD))
-        return found, self._formula(slope, places, values, count) if slope != ZERO else NONE
-
-    def _formula(self, expr: Expr, places: int, values: int, count: int) -> int:
-        target = self.assembly.floats(np.zeros(count))
-        self._writes(*over_points(self.assembly, expr, values, target, count, places))
-        return target
-
-    def _writes(self, kernel: str, ints: tuple[int, ...]) -> None:
-        """A kernel that writes floats for the terms after it, and for their slopes."""
-        self.assembly.term("internal", kernel, ints, Slopes(kernel, [self.at], [self.at]))
-
-    def _term(self, kernel: str, ints: tuple[int, ...], places: tuple[Any, Any] | None) -> None:
-        none = np.zeros(0, dtype=np.int64)
-        rows, columns = (none, none) if places is None else places
-        slopes = f"{CLOSING}:nothing" if places is None else f"{SLOPES}:{kernel}"
-        self.assembly.term("force", f"{KERNELS}:{kernel}", ints, Slopes(slopes, rows, columns))
-
-    def _pairs(self, nodes: Any) -> tuple[Any, Any]:
-        """Rows and columns of the entries of blocks (e, nodes, nodes)."""
-        k = nodes.shape[1]
-        return self.at + np.repeat(nodes, k, axis=1).ravel(), self.at + np.tile(nodes, (1, k)).ravel()
+        self.terms.term("bulk", ints, self.terms.pairs(nodes) if slope >= 0 or conducts >= 0 else None)
 
     def _balance(self, matrix: Any, fixed: Floats, crossing: Floats, fed: float) -> None:
         assembly, n = self.assembly, self.mesh.count
@@ -358,7 +281,7 @@ class _Builder:
         lists = np.concatenate([matrix.indptr, matrix.indices]).tolist()
         rows = np.repeat(np.arange(n), np.diff(matrix.indptr))
         places = self.at + rows, self.at + matrix.indices.astype(np.int64)
-        self._term("balance", (self.at, n, self.inflow, *tables, *lists), places)
+        self.terms.term("balance", (self.at, n, self.inflow, *tables, *lists), places)
 
     def _close(self, mass: Any) -> None:
         n, assembly = self.mesh.count, self.assembly
@@ -368,4 +291,4 @@ class _Builder:
             *floats, plan = factored(mass, assembly)
             kernel, tables = "consistent", [*floats, *plan]
         none = np.zeros(0, dtype=np.int64)
-        assembly.term("close", f"{CLOSING}:{kernel}", (self.at, n, *tables), Slopes(f"{CLOSING}:nothing", none, none))
+        assembly.term("close", f"{CLOSING}:{kernel}", (self.at, n, *tables), Slopes(WITHOUT_SLOPES, none, none))
