@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 LEVELS = (4.0, 2.0, 1.0, 0.5, 0.25)
 """Sides of cells in parts of the script's own, from coarse to fine."""
-ENOUGH_SECONDS = 2.0
+ENOUGH_SECONDS = 15.0
 """Seconds of a run, with its set-up, after which no finer one is tried."""
 LONGEST = 10.0
 """Seconds of compiled steps after which a run is given up."""
