@@ -109,6 +109,8 @@ class Fields:
     flow: Flow | None = None
     alone: bool = False
     """Whether the island is these fields and nothing else, which nothing changes between steps."""
+    on_elements: int = 0
+    """Unknowns of fields on elements, where the island is these and nothing else."""
 
     @property
     def single(self) -> Grid | None:
