@@ -178,7 +178,7 @@ class _Builder:
         middles[:, : mesh.points.shape[1]] = mesh.points[mesh.cells[mesh.faces[:, :1], corners]].mean(axis=1)
         zeros = np.zeros(len(everything))
         rim = Rim(
-            BoundaryFaces(everything, zeros, zeros, middles, mesh.pieces),
+            BoundaryFaces(everything, zeros, zeros, middles, np.zeros_like(middles), mesh.pieces),
             mesh.names,
             mesh.element.dimension == 2,
             self.shape,

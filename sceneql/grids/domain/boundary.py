@@ -34,6 +34,7 @@ class Condition:
     areas: Floats
     distances: Floats
     points: Floats
+    outward: Floats
     formula: Formula | None
     """The value outside or the flux; None: 0."""
     resistance: float
@@ -201,7 +202,7 @@ def _condition(part: OfField, cells: Bounded, mine: Any) -> Condition:
     if part.open:
         resistance = float("inf")
     ways = faces.cells[mine], faces.areas[mine], faces.distances[mine]
-    return Condition(*ways, points, formula, resistance, part.open)
+    return Condition(*ways, points, faces.outward[mine], formula, resistance, part.open)
 
 
 def held_by(boundaries: Sequence[Boundary], names: tuple[str, ...]) -> Callable[[Floats, Any], Any] | None:
