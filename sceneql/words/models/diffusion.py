@@ -16,7 +16,7 @@ from sceneql.grids.medium import (
 )
 from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
 from sceneql.kinds import Formula, Gives, Value, field
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.expression import Link, Type
@@ -93,9 +93,9 @@ class Diffusion(SpreadingMedium):
         """Whether it is a concentration."""
         return self.of == "concentration"
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """What limits the explicit step."""
-        found = self.spreading(self.coefficient)
+        found = self.spreading(self.coefficient, scene)
         return () if found is None else (found,)
 
     def assemble(self, name: str, assembly: Assembly) -> None:
