@@ -88,6 +88,31 @@ class FieldLayout:
         return centers_of(self.shape, self.low, self.spacing)
 
 
+class Between(Protocol):
+    """What a field is between the places of its values."""
+
+    @property
+    def what(self) -> str:
+        """What it has values at: cells, nodes."""
+
+    @property
+    def count(self) -> int:
+        """How many."""
+
+    @property
+    def known(self) -> Any:
+        """Which places of `gridded` lie in the domain."""
+
+    def filled(self, values: Floats) -> Floats:
+        """What `at` and `gridded` read, from the values (count,)."""
+
+    def at(self, field: Floats, points: Floats) -> Floats:
+        """The field (k,) at points (k, 3) [m]."""
+
+    def gridded(self, field: Floats) -> Floats:
+        """(nz, ny, nx) at the centers of the cells of its layout, with a layer of cells around them."""
+
+
 class Exchange(Record):
     """What crosses a boundary in proportion to a difference: coefficient (outside - c) a second and square meter."""
 
