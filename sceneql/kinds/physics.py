@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from sceneql.kinds.stable_step import Oscillation, StaticMass
+from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Quantity, Ref, Value
 from sceneql.kinds.word import Kind, Problem, field
@@ -153,7 +153,7 @@ class Model(Kind):
         """An output of a kinematic model as an expression of time."""
         raise TypeError(f"{type(self).__name__} is not a function of time")
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """Bounds on its fastest oscillations by its own fields, for `check`: without numpy, and quickly."""
         return ()
 

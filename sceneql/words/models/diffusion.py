@@ -20,7 +20,7 @@ from sceneql.grids.medium import (
 )
 from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
 from sceneql.kinds import Formula, Gives, Problem, Value, field
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.expression import Link, Type
@@ -121,7 +121,7 @@ class Diffusion(SpreadingMedium):
         """Whether it is a concentration."""
         return self.of == "concentration"
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """What limits the explicit step."""
         if self.method == "elements":
             d = number_in(self.coefficient)
@@ -129,7 +129,7 @@ class Diffusion(SpreadingMedium):
                 rate = LEAST_RATES[self.degree] * d / self.cell**2
                 yield Oscillation(0.0, rate, f"the spread over elements of {self.cell:g} m", ("cell",))
             return
-        found = self.spreading(self.coefficient)
+        found = self.spreading(self.coefficient, scene)
         if found is not None:
             yield found
 
