@@ -29,7 +29,7 @@ def close(assembly: Assembly, bodies: Bodies, matrix: Any) -> None:
     whole = csr_array(matrix + diags_array(1.0 * held))
     whole.sum_duplicates()
     whole.sort_indices()
-    plan = multifrontal.plan(whole)
+    plan = multifrontal.plan(whole, symmetric=True)
     plan.numbers[SINGLE_FACTOR] = -1
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     if not multifrontal_kernels.factor_system(plan.numbers, whole.data, factors, work, True):
@@ -39,4 +39,4 @@ def close(assembly: Assembly, bodies: Bodies, matrix: Any) -> None:
     assembly.inertia(bodies.velocity_at, bodies.inverse_at, bodies.count, matrix)
     places = np.arange(size)
     slopes = Slopes(f"{KERNELS}_slopes_kernels:close", bodies.position_at + places, bodies.velocity_at + places)
-    assembly.term("close", f"{KERNELS}_kernels:close", ints.tolist(), slopes, energy="")
+    assembly.term("close", f"{KERNELS}_kernels:close", ints, slopes, energy="")
