@@ -146,7 +146,7 @@ def still(script: Path, folder: Path) -> int:
         code = 1
         try:
             resource.setrlimit(resource.RLIMIT_CPU, (STILL, STILL + 1))
-            pipeline.render(pipeline.load(script, sets=[SMALL]), folder=folder)
+            pipeline.render(pipeline.load(script, sets=[SMALL]), folder=folder, limit=STILL - 3)
             code = 0
         except ScriptError as error:
             code = int(wrong(error.diagnostics) is not None)
