@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol
 
 from sceneql import kinds
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, centers_of, counts
@@ -64,6 +64,31 @@ class FieldLayout:
     def centers(self) -> Floats:
         """(cells, 3) [m]."""
         return centers_of(self.shape, self.low, self.spacing)
+
+
+class Between(Protocol):
+    """What a field is between the places of its values."""
+
+    @property
+    def what(self) -> str:
+        """What it has values at: cells, nodes."""
+
+    @property
+    def count(self) -> int:
+        """How many."""
+
+    @property
+    def known(self) -> Any:
+        """Which places of `gridded` lie in the domain."""
+
+    def filled(self, values: Floats) -> Floats:
+        """What `at` and `gridded` read, from the values (count,)."""
+
+    def at(self, field: Floats, points: Floats) -> Floats:
+        """The field (k,) at points (k, 3) [m]."""
+
+    def gridded(self, field: Floats) -> Floats:
+        """(nz, ny, nx) at the centers of the cells of its layout, with a layer of cells around them."""
 
 
 class Exchange(Record):

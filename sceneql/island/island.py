@@ -67,8 +67,6 @@ class IslandAssembly(Reserved):
     """(offset, count) of floats that change as bodies come and go."""
     _alike: list[tuple[int, int]] = field(default_factory=list)
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
-    _matrices: dict[int, Any] = field(default_factory=dict)
-    """Inertia that is a matrix, by the offset of the velocities."""
     _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
     _exact: list[Block] = field(default_factory=list)
     _local: list[Block] = field(default_factory=list)
@@ -195,7 +193,8 @@ class IslandAssembly(Reserved):
         """The fields and the flow, and whether there is anything else."""
         alone = bool(self._ranges) and len(self._ranges) == len(self._grids) + len(self._flows)
         alone = alone and not self._pairs and not self.changed_between_steps
-        return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone)
+        elements = 0 if self.changed_between_steps else self.on_elements
+        return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone, elements)
 
     @property
     def changed_between_steps(self) -> bool:

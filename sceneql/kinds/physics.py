@@ -333,6 +333,12 @@ class Contact(Kind):
         """Add its terms for all models at once, where there are rigid bodies among them."""
         raise NotImplementedError
 
+    def assemble_carried(
+        self, name: str, assembly: Assembly, skins: Sequence[str], everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add its terms for all models at once that a flow carries (Model.carried); ``everyone``: its masses."""
+        raise NotImplementedError
+
     def assemble_skins(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> bool:

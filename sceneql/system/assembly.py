@@ -117,6 +117,12 @@ class Assembly(Protocol):
         that are held have a row and a column of zeros.
         """
 
+    def capacity(self, at: int, matrix: Any) -> None:
+        """Say that a close term solves with a matrix for the rates of y[at : at + n]: slopes are of what it solves for.
+
+        ``matrix``: scipy sparse, symmetric and positive definite, (n, n).
+        """
+
     def contact(
         self, mode: Mode, kernels: Sequence[str], ints: Ints, pairs: int, apart: bool = False, help: str = ""
     ) -> None:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.grids.domain.cells import Cells
+    from sceneql.grids.domain.cells import BoundaryFaces
     from sceneql.grids.medium import Boundary
     from sceneql.grids.medium import Part as OfField
     from sceneql.kinds import Formula
@@ -56,6 +56,26 @@ class Condition:
         return weights
 
 
+class Bounded(Protocol):
+    """What has a boundary: cells, or elements."""
+
+    @property
+    def boundary(self) -> BoundaryFaces:
+        """Its faces."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the boundary's pieces."""
+
+    @property
+    def flat(self) -> bool:
+        """Whether it has two dimensions."""
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Cells along the axes, of a box."""
+
+
 class Part(Protocol):
     """A part of the boundary as a script says it."""
 
@@ -87,7 +107,9 @@ class Part(Protocol):
 Said = TypeVar("Said", bound=Part)
 
 
-def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[list[Condition], tuple[bool, bool, bool]]:
+def conditions(
+    boundary: Boundary, cells: Bounded, line: Span | None
+) -> tuple[list[Condition], tuple[bool, bool, bool]]:
     """The conditions of boundaries that are not closed, and which directions are periodic. Raises ScriptError.
 
     ``line``: the model's place in the script.
@@ -99,7 +121,7 @@ def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[lis
 
 
 def shares(
-    boundary: Mapping[str, Said], cells: Cells, line: Span | None
+    boundary: Mapping[str, Said], cells: Bounded, line: Span | None
 ) -> tuple[list[tuple[Said, Any]], tuple[bool, bool, bool]]:
     """The parts with the indices (m,) of their boundary faces, and the periodic directions. Raises ScriptError."""
     faces = cells.boundary
@@ -141,7 +163,7 @@ def shares(
 HELP = "give each face to one part: say `where` or `near`, or name other sides"
 
 
-def _faces_of(name: str, part: Part, cells: Cells, taken: Any) -> Any:
+def _faces_of(name: str, part: Part, cells: Bounded, taken: Any) -> Any:
     """(faces,) bool."""
     faces = cells.boundary
     mine = ~taken if name == "rest" else np.ones(len(faces.cells), dtype=bool)
@@ -165,7 +187,7 @@ def _chosen(part: Part, points: Floats) -> Any:
     return found
 
 
-def _condition(part: OfField, cells: Cells, mine: Any) -> Condition:
+def _condition(part: OfField, cells: Bounded, mine: Any) -> Condition:
     faces = cells.boundary
     points = faces.points[mine]
     if cells.flat:
