@@ -136,5 +136,6 @@ class Reserved:
 
     def numbers(self) -> Floats:
         """The floats stored so far."""
-        self._numbers[:] = [np.concatenate(self._numbers)]  # many words ask, each after it has stored a few
+        if len(self._numbers) > 1:  # many words ask, each after it has stored a few
+            self._numbers = [np.concatenate(self._numbers)]
         return self._numbers[0].copy()
