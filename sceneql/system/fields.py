@@ -74,6 +74,8 @@ class Flow:
     """[Pa s]"""
     pressure: str
     """How it is solved for, for `explain`."""
+    varying: tuple[int, ...] = ()
+    """Integers of the kernels of several fluids (flows/varying/layout.py); empty where density and viscosity are one."""
 
 
 @dataclass(frozen=True, slots=True)

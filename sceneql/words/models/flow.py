@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
+from pydantic import PrivateAttr
+
 from sceneql import kinds
 from sceneql.flows.parts import FORCE, MOST_FACTORED, Buoyancy, Side, Start, fastest_turn
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
@@ -100,6 +102,9 @@ class Flow(Model):
         ),
         "largest_speed": Gives(quantity_type(dim.VELOCITY), "The largest speed.", computed=True),
     }
+
+    _masses_at: int = PrivateAttr(-1)
+    """Where the masses in the own cells of faces stand, of several fluids."""
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
@@ -201,13 +206,15 @@ class Flow(Model):
         """Reserve a number a face, and add the terms of the rate. Raises ScriptError."""
         from sceneql.flows.assembly import add_flow
         from sceneql.flows.fluid_box import box_of
+        from sceneql.flows.varying.layout import MASSES
         from sceneql.grids.ground import Ground
 
         size = self.size or ()
         corner = self.corner or (0.0,) * len(size)
         named = self.boundary
         ground = Ground(box_of(self.domain, self.flat, size, corner, self.cell, self.depth, named, assembly), assembly)
-        flow = add_flow(self, ground.cells, assembly)
+        flow = add_flow(name, self, ground.cells, assembly)
+        self._masses_at = flow.varying[MASSES] if flow.varying else -1
         assembly.remember(*ground.memory, *flow.ints)
 
     def connect(self, name: str, assembly: Assembly) -> None:
@@ -235,4 +242,4 @@ class Flow(Model):
 
             number = [ref.name for ref in self.skins].index(name)
             return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)
-        return measure(output, self.layout(state, output), state.ints[5:], self.density, state)
+        return measure(output, self.layout(state, output), state.ints[5:], self.density, state, self._masses_at)
