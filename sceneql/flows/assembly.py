@@ -18,6 +18,7 @@ from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces
 from sceneql.grids.domain.boundary import shares
+from sceneql.grids.medium import number_in
 from sceneql.grids.multigrid.layout import SINK
 from sceneql.kinds import Formula
 from sceneql.quantities.derivative import components, differentiate
@@ -68,12 +69,12 @@ class _Builder:
                 self.opened[mine] = True
                 self.pressure[mine] = part.outflow.pressure
         self.fluids: Fluids | None = None
-        held = assembly.fluids(name)
-        if held:
+        held, viscosity = assembly.fluids(name), number_in(model.viscosity)
+        if held or viscosity is None:
             from sceneql.flows.varying.fluids import Fluids
 
             self.fluids = Fluids(model, [density for density, _ in held], self.faces, assembly)
-        self.viscosity = model.viscosity / model.density if self.fluids is None else 1.0
+        self.viscosity = 1.0 if viscosity is None or self.fluids is not None else viscosity / model.density
         staircase = model.edges == "staircase"
         self.solids: Solids | None = None
         self.moving: MovingSolids | None = None
@@ -170,7 +171,7 @@ class _Builder:
             ints=numbers,
             fractions=fractions,
             density=self.model.density,
-            viscosity=self.model.viscosity,
+            viscosity=number_in(self.model.viscosity) or 0.0,
             pressure=text,
             varying=varying,
         )

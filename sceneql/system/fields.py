@@ -71,7 +71,7 @@ class Flow:
     density: float
     """[kg/m^3]"""
     viscosity: float
-    """[Pa s]"""
+    """[Pa s]; 0 where it varies."""
     pressure: str
     """How it is solved for, for `explain`."""
     varying: tuple[int, ...] = ()

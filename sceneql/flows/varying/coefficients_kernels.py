@@ -11,7 +11,7 @@ from sceneql.compiled.kernels import lean_inlined
 from sceneql.flows import layout as flow
 from sceneql.flows.advection_kernels import sides
 from sceneql.flows.varying import layout as own
-from sceneql.flows.varying.halves_kernels import mean, total
+from sceneql.flows.varying.halves_kernels import halves, mean, total
 
 NEAR = 1e-11
 """What is filled up to so much is full, or empty: the rest is rounding."""
@@ -21,8 +21,16 @@ NEAR = 1e-11
 def begin(n, floats, ints):
     """The flow's own fluid everywhere, and no weight."""
     density, viscosity = floats[ints[own.OWN]], floats[ints[own.OWN] + 1]
+    one = ints[ints[own.FLOW] :]
+    nx, ny, _ = halves(one)
+    cells = one[flow.CELLS] * one[flow.CELLS + 1] * one[flow.CELLS + 2]
     for c in range(n):
-        here = floats[ints[own.BASE] + c] if ints[own.BASE] >= 0 else viscosity
+        here = viscosity
+        if ints[own.BASE] >= 0:
+            i, j, k = c % nx, c // nx % ny, c // (nx * ny)
+            block = i % 2 + 2 * (j % 2) + 4 * (k % 2)
+            cell = i // 2 + one[flow.CELLS] * (j // 2 + one[flow.CELLS + 1] * (k // 2))
+            here = max(floats[ints[own.BASE] + block * cells + cell], 0.0)
         floats[ints[own.DENSITY] + c] = density
         floats[ints[own.MEAN] + c] = here
         floats[ints[own.FLUIDITY] + c] = 1.0 / here if here > 0.0 else math.inf

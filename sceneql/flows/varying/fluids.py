@@ -7,8 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sceneql.flows import layout
+from sceneql.flows.edges import timed
 from sceneql.flows.varying import layout as own
+from sceneql.grids.at_points import at_points
+from sceneql.grids.cell_program import over_cells
+from sceneql.grids.medium import number_in
+from sceneql.quantities.derivative import components
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import TIME_SYMBOL
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -31,14 +38,15 @@ class Fluids:
         self.model, self.count, self.faces, self.assembly = model, len(densities), faces, assembly
         self.unequal = any(density != model.density for density in densities)
         if model.around or model.domain is not None:
-            text = "the flow has solids in it or around it, and skins in it hold other fluids"
-            help = "let the flow be without `around` and `domain`, or leave `filling` out"
+            what = "skins in it hold other fluids" if self.count else "its viscosity varies"
+            text = f"the flow has solids in it or around it, and {what}"
+            help = "let the flow be without `around` and `domain`, or let it have one density and viscosity"
             raise ScriptError([Diagnostic("invalid", text, assembly.line(), help)])
 
     @property
     def text(self) -> str:
         """For `explain`."""
-        return f"; mass and momentum of {1 + self.count} fluids move together" if self.count else ""
+        return f", of {1 + self.count} fluids" if self.count else ""
 
     def solver(self, named: str) -> str:
         """How the equation of the pressure is solved. Raises ScriptError for one that stays as it is."""
@@ -67,7 +75,9 @@ class Fluids:
 
         ints[own.FLOW], ints[own.BASE], ints[own.HELD], ints[own.UNEQUAL] = own.HEAD, -1, held, self.unequal
         box = [*faces.low, *cells.spacing]
-        ints[own.OWN] = assembly.floats([self.model.density, self.model.viscosity, *box])
+        ints[own.OWN] = assembly.floats([self.model.density, number_in(self.model.viscosity) or 0.0, *box])
+        if number_in(self.model.viscosity) is None:
+            ints[own.BASE] = self._by_formula(int(flow[layout.AT]))
         ints[own.TABLE] = assembly.floats([0.0, float(zeros(own.ROW * self.count))])
         for place in (own.DENSITY, own.MEAN, own.FLUIDITY, own.PART, own.COVER):
             ints[place] = zeros(halves)
@@ -80,6 +90,33 @@ class Fluids:
         assembly.term("velocity", f"{ROOM}.{'flat' if flat else 'deep'}_parts_kernels:measure", found)
         for term in ("flow_in", "drive"):
             assembly.term("close", f"{ROOM}.motion_kernels:{term}", found)
+        return found
+
+
+    def _by_formula(self, at: int) -> int:
+        """Offset of the viscosity by half: blocks of those at the same place in their cells, as many as cells.
+
+        Raises ScriptError where it is not above 0 at the start.
+        """
+        assembly, cells, formula = self.assembly, self.faces.cells, self.model.viscosity
+        flat, n = self.faces.axes == 2, int(np.prod(cells.shape))
+        shifts = [(a, b, c) for c in ((0.0,) if flat else (-0.25, 0.25)) for b in (-0.25, 0.25) for a in (-0.25, 0.25)]
+        index = np.stack(np.meshgrid(*map(np.arange, cells.shape[::-1]), indexing="ij")[::-1], axis=-1).reshape(-1, 3)
+        first = self.faces.low - (0.0, 0.0, 0.5 * cells.spacing[2] if flat else 0.0)
+        values = [
+            at_points(formula, first + (index + 0.5 + np.array(shift)) * cells.spacing, t=0.0, **{TIME_SYMBOL: 0.0})
+            for shift in shifts
+        ]
+        found, ones = assembly.floats(np.concatenate(values)), assembly.floats(np.ones(n))
+        if not (np.concatenate(values) > 0.0).all():
+            text = f"the viscosity is {np.concatenate(values).min():.3g} Pa s at some places at the start"
+            raise ScriptError([Diagnostic("out-of-range", text, formula.span, "let it be above 0 everywhere")])
+        zeros = assembly.floats(np.zeros(n))
+        for number, shift in enumerate(shifts if timed(formula.expr) else ()):
+            box = assembly.floats([*(first + np.array(shift) * cells.spacing), *cells.spacing])
+            arrays = (found + n * number, zeros, ones)
+            kernel, ints = over_cells(assembly, components(formula.expr)[0], at, arrays, cells.shape, box)
+            assembly.term("velocity", kernel, ints)
         return found
 
 

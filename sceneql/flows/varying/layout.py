@@ -11,7 +11,8 @@ OWN = 1
 TABLE = 2
 """How many other fluids there are, and where their rows begin, of ROW floats each (2 floats)."""
 BASE = 3
-"""By half: viscosity of the own fluid where that is a formula; -1: it is one number."""
+"""Viscosity of the own fluid where that is a formula: by cell, of the halves at one place in their cells after another;
+-1: it is one number."""
 DENSITY, MEAN, FLUIDITY = 4, 5, 6
 """By half: density, viscosity [Pa s], and the mean of 1/viscosity."""
 PART, COVER = 7, 8

@@ -20,12 +20,14 @@ from sceneql.flows.layout import AT, CELLS, FACES, INVERSES, PRESSURE, SKIP, VEL
 from sceneql.flows.projection_kernels import less_gradient, project
 from sceneql.flows.varying import layout as own
 from sceneql.flows.varying.carried_kernels import bring, hand_over, rub
-from sceneql.flows.varying.stress_kernels import WITH_WALLS, stress
+from sceneql.flows.varying.stress_kernels import WITH_WALLS, spacing, stress
 from sceneql.system.signatures_kernels import STEP
 
 ORDER, BLOCKS, VARYING_AT, HEAD = range(4)
 START, END, KNOWN, TOLERANCE, SIZES = range(5)
 ARRAYS = 14
+STILL = 1e-6
+"""A velocity that crosses such a part of a cell in a step is as good as none: rounding moves what is at rest."""
 SWING = 1.0
 """Longest step, times the angular velocity of the fastest waves of skins, where a tolerance chooses steps."""
 
@@ -159,12 +161,11 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     floats[one[SKIP]], floats[mode] = 0.0, own.WHOLE
     if settings[TOLERANCE] == 0.0:
         return 0.0
-    swing = h * floats[var[own.FASTEST]] / SWING
-    worst = swing**3 if swing > 1.0 else 0.0
+    worst = (h * floats[var[own.FASTEST]] / SWING) ** 3
     for block in range(numbers[BLOCKS]):
         place, count = numbers[HEAD + 2 * block], numbers[HEAD + 2 * block + 1]
         total = 0.0
-        size = settings[SIZES + block]
+        size = max(settings[SIZES + block], STILL * spacing(0, floats, var) / h if place == at else 0.0)
         for k in range(place, place + count):
             straight = 2.0 * half[k] - y0[k] if at <= k < at + faces else y0[k] + h * rate_a[k]
             total += (y1[k] - straight) ** 2

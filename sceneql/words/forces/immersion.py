@@ -40,7 +40,7 @@ class Immersion(Force):
         if flow.size is None:  # a flow in a domain takes no skins
             return
         cell = min(side / count for side, count in zip(flow.size, counts(flow.size, flow.cell), strict=False))
-        decay = flow.viscosity / flow.density * len(flow.size) / cell**2
+        decay = flow.thickest() / flow.density * len(flow.size) / cell**2
         for name, skin in skins.items():
             turn = (skin.largest_tension() / (flow.density * cell**3)) ** 0.5
             yield Oscillation(0.0, decay, f"the skin '{name}' in cells of {cell:g} m", ("on",), turn)

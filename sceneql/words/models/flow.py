@@ -8,9 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import PrivateAttr
 
 from sceneql import kinds
-from sceneql.flows.parts import FORCE, MOST_FACTORED, Buoyancy, Side, Start, fastest_turn
+from sceneql.flows.parts import (
+    FORCE,
+    MOST_FACTORED,
+    VISCOSITY,
+    Buoyancy,
+    Side,
+    Start,
+    fastest_turn,
+    thickest,
+)
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
-from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of
+from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of, number_in
 from sceneql.grids.multigrid.linear_solvers import Linear
 from sceneql.kinds import Gives, Model, Problem, Quantity, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation
@@ -60,7 +69,7 @@ class Flow(Model):
     depth: kinds.FixedLength = field("How thick a flat box is.", "1 m", above=0)
     cell: kinds.FixedLength = field("Largest side of a cell.", above=0)
     density: Annotated[float, Quantity(dim.DENSITY)] = field("The density.", above=0)
-    viscosity: Annotated[float, Quantity(dim.PRESSURE * dim.TIME)] = field("The dynamic viscosity.", at_least=0)
+    viscosity: VISCOSITY = field("The dynamic viscosity, a number or by place and time: `1e-3*(1 + x)`.")
     initial: Start | None = field("The flow at the start; by default at rest.", None)
     boundary: dict[str, Side] = field(
         "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z), on any part `where` a "
@@ -146,6 +155,9 @@ class Flow(Model):
 
     def problems(self) -> Iterable[Problem]:
         """Sides that do not fit, too many cells, boundaries of no side."""
+        viscosity = number_in(self.viscosity)
+        if viscosity is not None and viscosity < 0.0:
+            yield Problem(f"viscosity must be at least 0, and is {viscosity:g}", ("viscosity",), code="out-of-range")
         if (self.size is None) == (self.domain is None):
             yield Problem("a flow fills one of `domain` and `size`")
             return
@@ -193,7 +205,7 @@ class Flow(Model):
         """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann), and advection."""
         size = self.size or (self.cell, self.cell)  # of a flat domain; rates of a deep one are larger
         spacing = [side / n for side, n in zip(size, counts(size, self.cell), strict=False)]
-        decay = 4.0 * self.viscosity / self.density * sum(1.0 / side**2 for side in spacing)
+        decay = 4.0 * self.thickest() / self.density * sum(1.0 / side**2 for side in spacing)
         if decay > 0.0:
             yield Oscillation(0.0, decay, f"the viscosity over cells of {self.cell:g} m", ("viscosity",))
         if self.size is None:
@@ -201,6 +213,11 @@ class Flow(Model):
         turn = fastest_turn(self.initial, self.boundary, self.corner or (0.0,) * len(self.size), self.size, spacing)
         if turn > 0.0:  # a wave of four cells, which advection turns fastest: viscosity has half its largest rate there
             yield Oscillation(0.0, 0.5 * decay, f"the flow through cells of {self.cell:g} m", ("cell",), turn)
+
+    def thickest(self) -> float:
+        """The viscosity [Pa s], of a formula the largest by samples of the start."""
+        low = self.corner or (0.0,) * len(self.size or ())
+        return thickest(self.viscosity, low, self.size or ())
 
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a face, and add the terms of the rate. Raises ScriptError."""

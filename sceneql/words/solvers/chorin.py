@@ -28,7 +28,7 @@ class Chorin(Solver):
         return multistep.stepper(multistep.CHORIN, 1, self.step)
 
     def choose(self, island: IslandFacts) -> Methods:
-        """The same with masses that move, where skins hold other fluids."""
+        """The same with masses that move, where density or viscosity varies."""
         if island.fields.flow is None or not island.fields.flow.varying:
             return super().choose(island)
         from sceneql.flows.varying import schemes
