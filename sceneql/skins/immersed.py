@@ -15,7 +15,7 @@ def immerse(flow: Flow, skin: Membrane, assembly: Assembly) -> None:
     """Add what the flow does to a skin, and the skin to it."""
     box, kernels = assembly.floats([*flow.low, *flow.spacing]), KERNELS
     if flow.varying:
-        from sceneql.flows.varying.layout import MASSES
+        from sceneql.flows.varying.fluid_layout import MASSES
 
         kernels, dense = BY_MASS, flow.varying[MASSES]
     else:

@@ -51,7 +51,8 @@ def factor(masses, component, x, y, z, ints):
                 d, e, f = u + a, v + b, w + c
                 whole += m
                 sx, sy, sz = sx + m * d, sy + m * e, sz + m * f
-                xx, xy, xz, yy, yz, zz = xx + m * d * d, xy + m * d * e, xz + m * d * f, yy + m * e * e, yz + m * e * f, zz + m * f * f
+                xx, xy, xz = xx + m * d * d, xy + m * d * e, xz + m * d * f
+                yy, yz, zz = yy + m * e * e, yz + m * e * f, zz + m * f * f
     if not whole > 0.0:
         return math.nan, 0.0, 0.0, 0.0
     sx, sy, sz = sx / whole, sy / whole, sz / whole

@@ -75,7 +75,7 @@ class Flow:
     pressure: str
     """How it is solved for, for `explain`."""
     varying: tuple[int, ...] = ()
-    """Integers of the kernels of several fluids (flows/varying/layout.py); empty where density and viscosity are one."""
+    """Integers of the kernels of several fluids (flows/varying/fluid_layout.py); empty of one density and viscosity."""
 
 
 @dataclass(frozen=True, slots=True)

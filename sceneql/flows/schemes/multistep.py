@@ -142,7 +142,9 @@ def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, st
     if flow.varying:
         _, _, part, spans = system.ranges[0]
         message = "density or viscosity varies in this flow, which this solver does not know"
-        raise ScriptError([Diagnostic("invalid", message, spans[0], "take `imex_midpoint`, `chorin`, or let auto march")])
+        raise ScriptError(
+            [Diagnostic("invalid", message, spans[0], "take `imex_midpoint`, `chorin`, or let auto march")]
+        )
     velocities = [grid for grid in flow.components if _spreads(grid, system.floats)]
     fixed = [grid for grid in grids if not grid.varying]
     fields = [*velocities, *(grid for grid in fixed if _spreads(grid, system.floats))]

@@ -8,7 +8,7 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.flows import layout as flow
 from sceneql.flows.advection_kernels import sides
-from sceneql.flows.varying import layout as own
+from sceneql.flows.varying import fluid_layout as own
 from sceneql.flows.varying.stress_kernels import DRAWS, HELD, WITH_WALLS, stress
 from sceneql.system.signatures_kernels import A, F, I
 
@@ -70,7 +70,7 @@ def hand_over(u, had, more, floats, ints):
                     for turn in range(2):
                         for c in range(-1, 2):
                             z = k + c
-                            if mz == 1 and c != 0 or not pz and (z < 0 or z >= mz):
+                            if (mz == 1 and c != 0) or (not pz and (z < 0 or z >= mz)):
                                 continue
                             for b in range(-1, 2):
                                 y = j + b

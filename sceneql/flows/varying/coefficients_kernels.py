@@ -10,7 +10,7 @@ import math
 from sceneql.compiled.kernels import lean_inlined
 from sceneql.flows import layout as flow
 from sceneql.flows.advection_kernels import sides
-from sceneql.flows.varying import layout as own
+from sceneql.flows.varying import fluid_layout as own
 from sceneql.flows.varying.halves_kernels import halves, mean, total
 
 NEAR = 1e-11
@@ -135,7 +135,11 @@ def finish(floats, ints):
                 for k in range(1 if axis == 2 else mz):
                     for j in range(1 if axis == 1 else my):
                         for i in range(1 if axis == 0 else mx):
-                            x, y, z = (place if axis == 0 else i), (place if axis == 1 else j), (place if axis == 2 else k)
+                            x, y, z = (
+                                (place if axis == 0 else i),
+                                (place if axis == 1 else j),
+                                (place if axis == 2 else k),
+                            )
                             floats[e] = 1.0 / mean(fluid, x, y, z, component, axis, side, one)
                             e += 1
     if ints[own.UNEQUAL] == 1:

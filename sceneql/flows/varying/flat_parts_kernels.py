@@ -9,7 +9,7 @@ import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows import layout as flow
-from sceneql.flows.varying import layout as own
+from sceneql.flows.varying import fluid_layout as own
 from sceneql.flows.varying.coefficients_kernels import begin, blend, finish
 from sceneql.flows.varying.halves_kernels import halves
 from sceneql.system.signatures_kernels import TERM

@@ -1,4 +1,4 @@
-"""A flow of several fluids as numbers of an island: what its kernels (layout.py) read and write."""
+"""A flow of several fluids as numbers of an island: what its kernels (fluid_layout.py) read and write."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from sceneql.flows import layout
 from sceneql.flows.edges import timed
-from sceneql.flows.varying import layout as own
+from sceneql.flows.varying import fluid_layout as own
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells
 from sceneql.grids.medium import number_in
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from sceneql.flows.staggered import Faces
     from sceneql.system import Assembly, Flow, Membrane
 
-ROOM = "sceneql.flows.varying"
+FLAT, DEEP = "sceneql.flows.varying.flat_parts_kernels:measure", "sceneql.flows.varying.deep_parts_kernels:measure"
+FLOW_IN, DRIVE = "sceneql.flows.varying.mass_flow_kernels:flow_in", "sceneql.flows.varying.mass_flow_kernels:drive"
 FIXED = ("fast_transform", "direct")
 """Solvers of the pressure for one density, whose equation stays."""
 
@@ -58,7 +59,7 @@ class Fluids:
         return "multigrid" if named == "auto" else named
 
     def add(self, flow: NDArray[int64], held: int, edges: int) -> tuple[int, ...]:
-        """The integers of all kernels, and the terms; ``held``: layout.HELD; ``edges``: at walls."""
+        """The integers of all kernels, and the terms; ``held``: fluid_layout.HELD; ``edges``: at walls."""
         assembly, faces = self.assembly, self.faces
         cells, flat = faces.cells, faces.axes == 2
         n = int(np.prod(cells.shape))
@@ -87,11 +88,10 @@ class Fluids:
         ints[own.SHEARS : own.SHEARS + len(starts)] = starts
         ints[own.WEIGHT], ints[own.MODE], ints[own.FASTEST] = zeros(3), zeros(1), zeros(1)
         found = (*ints.tolist(), *flow.tolist())
-        assembly.term("velocity", f"{ROOM}.{'flat' if flat else 'deep'}_parts_kernels:measure", found)
-        for term in ("flow_in", "drive"):
-            assembly.term("close", f"{ROOM}.motion_kernels:{term}", found)
+        assembly.term("velocity", FLAT if flat else DEEP, found)
+        assembly.term("close", FLOW_IN, found)
+        assembly.term("close", DRIVE, found)
         return found
-
 
     def _by_formula(self, at: int) -> int:
         """Offset of the viscosity by half: blocks of those at the same place in their cells, as many as cells.

@@ -1,11 +1,11 @@
 # mypy: ignore-errors
-"""Halves of cells (layout.py): how many, which of them make up a cell, and means over them."""
+"""Halves of cells (fluid_layout.py): how many, which of them make up a cell, and means over them."""
 
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows import layout as flow
-from sceneql.system.signatures_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, I, N
 
 
 @lean_inlined
@@ -34,7 +34,11 @@ def total(values, i, j, k, a, b, side, one):
     ``side``: -1, or half ``side`` alone of those along the axis b, on which the cell lies at faces.
     """
     nx, ny, nz = halves(one)
-    periodic_x, periodic_y, periodic_z = one[flow.PERIODIC] == 1, one[flow.PERIODIC + 1] == 1, one[flow.PERIODIC + 2] == 1
+    periodic_x, periodic_y, periodic_z = (
+        one[flow.PERIODIC] == 1,
+        one[flow.PERIODIC + 1] == 1,
+        one[flow.PERIODIC + 2] == 1,
+    )
     x0, xn = reach(i, one[flow.CELLS], a == 0 or b == 0, periodic_x)
     y0, yn = reach(j, one[flow.CELLS + 1], a == 1 or b == 1, periodic_y)
     z0, zn = 0, 1
@@ -59,7 +63,6 @@ def total(values, i, j, k, a, b, side, one):
 @lean(types.float64(A, N, N, N, N, N, N, I), inner=True)
 def mean(values, i, j, k, a, b, side, one):
     """`total` over how many halves it is of."""
-    nx, ny, nz = halves(one)
     count = 1.0
     places = (i, j, k)
     for axis in range(one[flow.AXES]):

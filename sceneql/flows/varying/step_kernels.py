@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""A step of a flow of several fluids: their skins move, mass takes momentum along, viscosity is implicit, projections.
+"""A step of a flow of several fluids: skins move, mass takes momentum along, viscosity is implicit; projections.
 
 Order 1: skins move with the flow, forces act where they are then, and viscosity by implicit Euler (Chorin 1968). Order
 2: a step of half the length so far gives velocities and forces in the middle, by which the whole one goes (midpoint;
@@ -8,8 +8,8 @@ al. 1985, IEEE Trans. Electron Devices 32, 1992-2007), the pressure by increment
 other is Verlet's method then: it swings without growing up to two over the angular velocity.
 
 ``settings``: start and end of the latest step, 1 where there is one, the tolerance (0: none), then the size that each
-block of the state has had. ``numbers``: [order, number of blocks, where the integers of layout.py begin], then [offset
-in y, count] of each block, whose errors are measured together.
+block of the state has had. ``numbers``: [order, number of blocks, where the integers of fluid_layout.py begin], then
+[offset in y, count] of each block, whose errors are measured together.
 """
 
 import math
@@ -18,14 +18,13 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, AT_SETTLE, rate_at, settle_at
 from sceneql.flows.layout import AT, CELLS, FACES, INVERSES, PRESSURE, SKIP, VELOCITY
 from sceneql.flows.projection_kernels import less_gradient, project
-from sceneql.flows.varying import layout as own
+from sceneql.flows.varying import fluid_layout as own
 from sceneql.flows.varying.carried_kernels import bring, hand_over, rub
 from sceneql.flows.varying.stress_kernels import WITH_WALLS, spacing, stress
 from sceneql.system.signatures_kernels import STEP
 
 ORDER, BLOCKS, VARYING_AT, HEAD = range(4)
 START, END, KNOWN, TOLERANCE, SIZES = range(5)
-ARRAYS = 14
 STILL = 1e-6
 """A velocity that crosses such a part of a cell in a step is as good as none: rounding moves what is at rest."""
 SWING = 1.0
@@ -66,7 +65,8 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     cells = one[CELLS] * one[CELLS + 1] * one[CELLS + 2]
     rate1, rate_a, rate_b, half = work[:n], work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 4 * n]
     room = work[4 * n :]
-    first, second, newtons, masses = room[:faces], room[faces : 2 * faces], room[2 * faces : 3 * faces], room[3 * faces :]
+    first, second, newtons = room[:faces], room[faces : 2 * faces], room[2 * faces : 3 * faces]
+    masses = room[3 * faces :]
     had, wanted = masses[2 * faces : 3 * faces], masses[3 * faces : 4 * faces]
     r, z, p = masses[4 * faces : 5 * faces], masses[5 * faces : 6 * faces], masses[6 * faces : 7 * faces]
     q, entries = masses[7 * faces : 8 * faces], masses[8 * faces : 9 * faces]

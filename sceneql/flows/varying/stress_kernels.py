@@ -10,7 +10,7 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows import layout as flow
 from sceneql.flows.advection_kernels import sides
-from sceneql.flows.varying import layout as own
+from sceneql.flows.varying import fluid_layout as own
 from sceneql.system.signatures_kernels import A, I, N
 
 HELD, WITH_WALLS, DRAWS = range(3)

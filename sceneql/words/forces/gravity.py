@@ -56,7 +56,7 @@ class Gravity(Force):
 
     def assemble_weight(self, name: str, assembly: Assembly) -> None:
         """Add g to what fluids of several densities weigh."""
-        from sceneql.flows.varying.layout import WEIGHT
+        from sceneql.flows.varying.fluid_layout import WEIGHT
 
         flow = assembly.flow_of()
         if flow is None or not flow.varying:  # it could not be made, which is told

@@ -223,7 +223,7 @@ class Flow(Model):
         """Reserve a number a face, and add the terms of the rate. Raises ScriptError."""
         from sceneql.flows.assembly import add_flow
         from sceneql.flows.fluid_box import box_of
-        from sceneql.flows.varying.layout import MASSES
+        from sceneql.flows.varying.fluid_layout import MASSES
         from sceneql.grids.ground import Ground
 
         size = self.size or ()

@@ -48,11 +48,11 @@ class Auto(Solver):
     a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less. (On large nets
     tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty masses keep
     it with dopri5, and so do ties of rigid bodies that have exact contacts. A field on a grid is marched by tr_bdf2,
-    and on a box whose coefficient and boundary do not vary by exact; a flow, with all that is solved with it, by ark3, and
-    by imex_midpoint where its density or viscosity varies;
-    elastic solids that may touch by bdf2 in steps of 1/240 s, others of 6,000 unknowns or more by bdf2 with 100 times
-    the tolerance. Errors are measured as those of `radau` are. Sources: see these words; the sign of stiffness is that
-    of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
+    and on a box whose coefficient and boundary do not vary by exact; a flow, with all that is solved with it, by ark3,
+    and by imex_midpoint where its density or viscosity varies; elastic solids that may touch by bdf2 in steps of 1/240
+    s, others of 6,000 unknowns or more by bdf2 with 100 times the tolerance. Errors are measured as those of `radau`
+    are. Sources: see these words; the sign of stiffness is that of Hairer & Wanner, Solving Ordinary Differential
+    Equations II (1996), IV.2.
     """
 
     tolerance: FixedScalar = field(

@@ -9,10 +9,10 @@ is crossed in a step.
 
 from numba import types
 
-from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.kernels import lean
 from sceneql.flows import layout as flow
 from sceneql.flows.advection_kernels import across_row, along_row, sides
-from sceneql.flows.varying import layout as own
+from sceneql.flows.varying import fluid_layout as own
 from sceneql.flows.varying.halves_kernels import mean
 from sceneql.flows.varying.stress_kernels import WITH_WALLS, stress
 from sceneql.system.signatures_kernels import TERM, A, F, I, N
