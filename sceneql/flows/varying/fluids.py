@@ -87,6 +87,10 @@ class Fluids:
         ints[own.NORMAL], ints[own.SHEAR], ints[own.WALLS] = zeros(n), zeros(sum(sizes)), zeros(edges)
         ints[own.SHEARS : own.SHEARS + len(starts)] = starts
         ints[own.WEIGHT], ints[own.MODE], ints[own.FASTEST] = zeros(3), zeros(1), zeros(1)
+        if not flat:
+            from sceneql.flows.varying.deep_parts_kernels import ROOM
+
+            ints[own.CLIPPED] = zeros(ROOM)
         found = (*ints.tolist(), *flow.tolist())
         assembly.term("velocity", FLAT if flat else DEEP, found)
         assembly.term("close", FLOW_IN, found)

@@ -43,13 +43,16 @@ class Flow(Model):
     of order 1. In formulas x, y, z and t are plain numbers in SI. A flat flow has x and y and a `depth`. Sources:
     Harlow & Welch (1965), Phys. Fluids 8, 2182-2189; Chorin (1968), Math. Comp. 22, 745-762; Koren (1993).
 
-    The density is one, so gravity would add the pressure of the fluid's weight and no motion: the scene's `gravity` and
-    other forces leave a flow alone. `force: "[0, -9.81*1000]"` has that pressure; `buoyancy` has warm fluid rise.
+    One density would add the pressure of its weight and no motion: the scene's `gravity` and other forces leave a flow
+    alone. `force: "[0, -9.81*1000]"` has that pressure; `buoyancy` has warm fluid rise. What skins hold (`filling` of
+    `membrane`) weighs what it is heavier than the fluid around it, whose own pressure is left out. A `viscosity` that
+    varies gives the stress mu (grad u + grad u^T); fields, densities by formula and solids do not go with it.
 
     A lid that moves along a square: `air: {flow: {size: 1 1 m, cell: 2 cm, density: 1 kg/m^3, viscosity: 0.01 Pa*s,
     boundary: {top: {wall: {velocity: "[1, 0]"}}}}}`, seen by `{field_map: {of: air.speed}}` and `{streamlines: {of:
     air.velocity}}`; a `diffusion` in the same box with `drift: {by: air}` is carried by it. Solvers for flows are
-    `ark3` (that of `auto`), `sbdf2`, `cnab2` and `chorin`; explicit ones bear viscosity up to the step that `check`
+    `ark3` (that of `auto`), `sbdf2`, `cnab2` and `chorin`, of several fluids or with a viscosity that varies
+    `imex_midpoint` (that of `auto`) and `chorin`; explicit ones bear viscosity up to the step that `check`
     tells.
     """
 

@@ -79,6 +79,9 @@ class Membrane(Model):
     step one number moves all vertices along the slope of the volume, X += s dV/dX, so that what is drawn keeps it
     exactly; `volume_correction` sums what that put back.
 
+    With a `filling` it holds a fluid other than that of its flow: treacle in air, which `gravity` weighs. Masses in
+    cells are what the drawn skin cuts off them, exactly; what crosses a side of a cell takes its momentum along.
+
     `models: {air: {flow: {size: 3 3 m, cell: 3/64 m, density: 1 kg/m^3, viscosity: 0.1 Pa*s}}, balloon: {membrane: {of:
     egg, law: {springs: {stretch: 10 N/m}}, prestress: 2 N/m}}}`, `forces: [{immersion: {on: [balloon], in: air}}]`,
     `objects: {egg: {implicit: {field: "x^2/0.75^2 + y^2/0.5^2 - 1", position: 1.5 1.5 0 m}}}`.
