@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from sceneql import kinds
 from sceneql.grids.domain.cells import SIDES
-from sceneql.grids.medium import PLACE, SIZES
+from sceneql.grids.medium import PLACE, SIZES, number_in
 from sceneql.kinds import Formula, Problem, Quantity, Record, Symbols, Value, field
 from sceneql.kinds.stable_step import StaticScene
 from sceneql.quantities import dimension as dim
@@ -22,6 +22,7 @@ from sceneql.quantities.units import describe, in_words
 MOVING = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.VELOCITY)]
 VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True)]
 STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_start=True)]
+VISCOSITY = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.PRESSURE * dim.TIME)]
 FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME)]
 
 
@@ -186,3 +187,17 @@ def _placed(position: Value, time: float) -> tuple[float, ...]:
     """Where it is at a time [m]."""
     found = evaluate(position.expr, lambda node: time if isinstance(node, Symbol) else {}[node])
     return tuple(map(float, found))
+
+
+def thickest(viscosity: Formula, corner: Sequence[float], size: Sequence[float]) -> float:
+    """The viscosity [Pa s] of a flow's own fluid, of a formula the largest at the start by samples of its box."""
+    alone = number_in(viscosity)
+    if alone is not None:
+        return alone
+    rows = [[low + side * k / SAMPLES for k in range(SAMPLES + 1)] for low, side in zip(corner, size, strict=True)]
+    found = 0.0
+    for place in product(*rows):
+        known = {Symbol(one): x for one, x in zip("xyzt", (*place, *[0.0] * (4 - len(place))), strict=True)}
+        known[Symbol(TIME_SYMBOL)] = 0.0
+        found = max(found, float(evaluate(components(viscosity.expr)[0], known)))
+    return found

@@ -180,6 +180,10 @@ class IslandAssembly(Reserved):
         """The flow of a model, or the only one (system.Assembly)."""
         return next(iter(self._flows.values()), None) if model is None else self._flows.get(model)
 
+    def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
+        """Those that skins in it hold (system.Assembly)."""
+        return self.setting.fluids(flow)
+
     def membrane(self, membrane: Membrane) -> None:
         """Say that entries are those of a skin (system.Assembly)."""
         self._membranes[self._word[0]] = membrane

@@ -114,6 +114,10 @@ class Model(Kind):
         """How many items an output has, where its fields tell."""
         return None
 
+    def fluid(self) -> tuple[float, float] | None:
+        """Density [kg/m^3] and viscosity [Pa s] of what it holds, where these are not those of its flow."""
+        return None
+
     def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
         """Objects that it fills by a measure, with a function of the low and high corner (3,) of their boxes.
 
@@ -218,6 +222,10 @@ class Interaction(Kind):
 
     def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:
         """Add its terms for one skin, where it has a `carrier`."""
+        raise NotImplementedError
+
+    def assemble_weight(self, name: str, assembly: Assembly) -> None:
+        """Add what fluids of several densities weigh, where it is weight: `weighs`."""
         raise NotImplementedError
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:

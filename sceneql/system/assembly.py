@@ -160,6 +160,9 @@ class Assembly(Protocol):
     def flow_of(self, model: str | None = None) -> Flow | None:
         """The flow of a model, or by default the only one; None where this island has none."""
 
+    def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
+        """Density and viscosity of each other fluid that skins in a flow hold (Model.fluid)."""
+
     def membrane(self, membrane: Membrane) -> None:
         """Say that entries of the state are a skin that a flow carries."""
 

@@ -75,9 +75,11 @@ class Flow:
     density: float
     """[kg/m^3]"""
     viscosity: float
-    """[Pa s]"""
+    """[Pa s]; 0 where it varies."""
     pressure: str
     """How it is solved for, for `explain`."""
+    varying: tuple[int, ...] = ()
+    """Integers of the kernels of several fluids (flows/varying/fluid_layout.py); empty of one density and viscosity."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
