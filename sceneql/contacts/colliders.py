@@ -61,7 +61,7 @@ def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assemb
     """Raise ScriptError where a moving body's center starts inside an object; ``ints``: the contact's integers."""
     import numpy as np
 
-    from sceneql.contacts.start_kernels import deepest
+    from sceneql.contacts.near_kernels import deepest
 
     depth, body, other = deepest(assembly.start(), assembly.numbers(), np.array(ints, dtype=np.int64))
     if depth > 0.0:
@@ -97,10 +97,10 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
         raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", place, help)]) from None
     places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
     flat = int(here.flat and not is_moving(kind))
-    return (*_kernels(here), *places, *poses, flat), here.data
+    return (*shape_kernels(here), *places, *poses, flat), here.data
 
 
-def _kernels(here: Collider) -> list[int]:
+def shape_kernels(here: Collider) -> list[int]:
     """The numbers of a shape's four kernels."""
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE
@@ -146,7 +146,18 @@ def surface_of(
     body = rotation_matrix(place[3:])
     position = assembly.floats(place[:3] + body @ relative)
     rotation = assembly.floats(quaternion(body @ turn))
-    head = (*_kernels(here), position, rotation, here.size_at, here.depth_at, 0, position, rotation, position, rotation)
+    head = (
+        *shape_kernels(here),
+        position,
+        rotation,
+        here.size_at,
+        here.depth_at,
+        0,
+        position,
+        rotation,
+        position,
+        rotation,
+    )
     return (*head, int(here.flat)), here.data, np.concatenate([relative, quaternion(turn)])
 
 

@@ -151,16 +151,15 @@ class _Builder:
             fractions = self.moving.fractions()
             text += ", cells cut anew at each instant"
         self._force(at, int(ints[layout.PUSHES]), base, strengths)
-        numbers = tuple(ints.tolist())
         varying: tuple[int, ...] = ()
         if self.fluids is None:
-            assembly.term("close", "sceneql.flows.advection_kernels:advect", numbers)
-            assembly.term("close", "sceneql.flows.advection_kernels:rub", numbers)
+            assembly.term("close", "sceneql.flows.advection_kernels:advect", ints)
+            assembly.term("close", "sceneql.flows.advection_kernels:rub", ints)
         else:
             held = int(plan[SINK]) if len(plan) else -1
             varying = self.fluids.add(ints, held, len(edge_faces))
             text += self.fluids.text
-        assembly.term("constrain", "sceneql.flows.projection_kernels:constrain", numbers)
+        assembly.term("constrain", "sceneql.flows.projection_kernels:constrain", ints)
         assembly.state(self._projected(x, ints))
         flow = Flow(
             cells=Cells(cells.shape, self.periodic, np.zeros(len(cells.volumes), dtype=bool), 0, 0),
@@ -168,7 +167,7 @@ class _Builder:
             areas=faces.areas,
             spacing=tuple(cells.spacing.tolist()),
             low=tuple(cells.low.tolist()),
-            ints=numbers,
+            ints=tuple(ints.tolist()),
             fractions=fractions,
             density=self.model.density,
             viscosity=number_in(self.model.viscosity) or 0.0,

@@ -10,6 +10,7 @@ from sceneql import kinds
 from sceneql.grids.domain.cells import SIDES
 from sceneql.grids.medium import PLACE, SIZES, number_in
 from sceneql.kinds import Formula, Problem, Quantity, Record, Symbols, Value, field
+from sceneql.kinds.stable_step import StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components
 from sceneql.quantities.dimension import PLAIN, comparable
@@ -133,6 +134,8 @@ class Buoyancy(Record):
                     yield Problem(text, (name,), code="dimension-mismatch")
 
 
+MOMENTS = 200
+"""Pieces of a run in which the mean velocities of solids are sampled before it."""
 SAMPLES = 12
 """Samples of a velocity along each side before the run."""
 
@@ -173,3 +176,28 @@ def thickest(viscosity: Formula, corner: Sequence[float], size: Sequence[float])
         known[Symbol(TIME_SYMBOL)] = 0.0
         found = max(found, float(evaluate(components(viscosity.expr)[0], known)))
     return found
+
+
+def fastest_solid(refs: Sequence[kinds.Ref], scene: StaticScene, spacing: Sequence[float]) -> tuple[float, str]:
+    """The largest sum of |v|/spacing [1/s] of places of solids that move, by samples in time, and of which one.
+
+    The fluid beside a solid is as fast. What turns in its place, or is led by another part, is not known here.
+    """
+    most, of = 0.0, ""
+    for ref in refs:
+        position = getattr(scene.objects.get(ref.name), "position", None)
+        if not isinstance(position, Value) or position.constant or position.links:
+            continue
+        step = scene.end / MOMENTS
+        for k in range(MOMENTS if step > 0.0 else 0):
+            before, after = (_placed(position, (k + part) * step) for part in (0.25, 0.75))
+            turn = sum(abs(b - a) / (0.5 * step * side) for a, b, side in zip(before, after, spacing, strict=False))
+            if turn > most:
+                most, of = turn, ref.name
+    return most, of
+
+
+def _placed(position: Value, time: float) -> tuple[float, ...]:
+    """Where it is at a time [m]."""
+    found = evaluate(position.expr, lambda node: time if isinstance(node, Symbol) else {}[node])
+    return tuple(map(float, found))

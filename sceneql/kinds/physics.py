@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from sceneql.kinds.stable_step import Oscillation, StaticMass
+from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Quantity, Ref, Value
 from sceneql.kinds.word import Kind, Problem, field
@@ -157,7 +157,7 @@ class Model(Kind):
         """An output of a kinematic model as an expression of time."""
         raise TypeError(f"{type(self).__name__} is not a function of time")
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """Bounds on its fastest oscillations by its own fields, for `check`: without numpy, and quickly."""
         return ()
 
@@ -339,6 +339,12 @@ class Contact(Kind):
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
         """Add its terms for all models at once, where there are rigid bodies among them."""
+        raise NotImplementedError
+
+    def assemble_carried(
+        self, name: str, assembly: Assembly, skins: Sequence[str], everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add its terms for all models at once that a flow carries (Model.carried); ``everyone``: its masses."""
         raise NotImplementedError
 
     def assemble_skins(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import cast
@@ -152,6 +152,16 @@ class Assembled:
                 kind.assemble_rigid(contact, self.assembly, [bodies for bodies, _ in masses], rigid[0][1])
             for bodies, refs in masses if not kind.mutual and not rigid else ():
                 kind.assemble(contact, self.assembly, bodies, refs)
+        self._add_carried(contact, kind, [bodies for bodies, _ in masses])
+
+    def _add_carried(self, contact: str, kind: Contact, everyone: Sequence[Bodies]) -> None:
+        """Add a contact of skins that a flow carries, with its objects and masses."""
+        rows = [(model, others) for name, model, others in self.island.contacts if name == contact]
+        rows = [row for row in rows if cast(Model, self.graph.tasks[row[0]].kind).carried]
+        with self.word(contact):
+            if rows:
+                touched = tuple(Ref(other) for other in rows[0][1])
+                kind.assemble_carried(contact, self.assembly, [model for model, _ in rows], everyone, touched)
 
 
 def models_of(graph: SimulationGraph, island: Island) -> Assembled:

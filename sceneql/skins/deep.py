@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.skins.closed_surface import closed_surface
+from sceneql.skins.elasticity import stiffness_in
 from sceneql.system import Membrane
 
 if TYPE_CHECKING:
@@ -112,6 +113,15 @@ class Sheet:
         found[order[~is_crossing] - count] = ((before - begun)[~is_crossing] % 2).astype(bool)
         return found
 
+    def encloses(self, places: Floats, points: Floats) -> NDArray[bool_]:
+        """(k,) whether it goes around places (k, 3), by solid angles."""
+        from sceneql.bodies.filling.clusters import Clusters, tiled
+        from sceneql.bodies.filling.winding_kernels import hold
+
+        found, arrays = np.zeros(len(places), dtype=bool), Clusters.of(points[self.triangles]).arrays
+        tiled(len(places), lambda first, last: hold(*arrays, np.ascontiguousarray(places), found, first, last))
+        return found
+
     def sides_of(self, points: Floats) -> Floats:
         """(k,) the lengths of its sides [m]."""
         found: Floats = np.linalg.norm(points[self.sides[:, 1]] - points[self.sides[:, 0]], axis=1)
@@ -135,15 +145,20 @@ def _areas(points: Floats, triangles: NDArray[int64]) -> Floats:
     return found
 
 
-def add_sheet(of: Ref, spacing: float, law: Elasticity, kept: bool, flow: Flow, assembly: Assembly) -> Sheet:
-    """Reserve the vertices of an object's surface, and add its tension and its law; ``kept``: its volume is.
+def add_sheet(
+    of: Ref, spacing: float, law: Elasticity, largest: float, kept: bool, flow: Flow, assembly: Assembly
+) -> Sheet:
+    """Reserve the vertices of an object's surface, and add its tension and its law; ``kept``: its volume is;
+    ``largest``: of Membrane.largest_tension.
 
     Raises ScriptError.
     """
     points, triangles = closed_surface(of, spacing, assembly)
     count, areas = len(points), _areas(points, triangles)
     at = assembly.state(np.append(points.ravel(), 0.0))
-    skin = Membrane(count, at, assembly.floats(np.zeros(3 * count)))
+    shares = np.asarray(np.bincount(triangles.ravel(), np.repeat(areas / 3.0, 3), count), dtype=np.float64)
+    stiffness = stiffness_in(flow, largest)
+    skin = Membrane(count, at, assembly.floats(np.zeros(3 * count)), triangles, shares, *stiffness)
     ends = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
     sides, which = np.unique(ends, axis=0, return_inverse=True)
     lengths = np.linalg.norm(points[sides[:, 1]] - points[sides[:, 0]], axis=1)

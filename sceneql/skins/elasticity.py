@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sceneql.system import Flow
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,3 +23,10 @@ class Elasticity:
     """That of Skalak's law [N/m]."""
     area: float = 0.0
     """How much it resists a change of area, in parts of that."""
+
+
+def stiffness_in(flow: Flow, largest: float) -> tuple[float, float, float]:
+    """The pressure by which contacts push a skin off [Pa], the density around it, and the side of a cell [m];
+    ``largest``: of Membrane.largest_tension [N/m]."""
+    cell = min(flow.spacing[: len(flow.areas)])
+    return largest / cell, flow.density, cell

@@ -23,10 +23,6 @@ def spacing_in(flow: Flow, spacing: float | None, of: Ref, assembly: Assembly) -
     """Its vertices' distance [m], at most a cell. Raises ScriptError where that leaves gaps, and around solids."""
     cell = min(flow.spacing[: len(flow.areas)])
     apart = APART[len(flow.areas)] * cell
-    if flow.fractions is not None:
-        text = "the flow has solids in it or around it, and nothing keeps a skin from them"
-        help = "let the flow be without `around` and `domain`"
-        raise ScriptError([Diagnostic("invalid", text, assembly.line(), help)])
     if spacing is not None and spacing > cell:
         text = f"vertices {spacing:g} m apart are too coarse for cells of {cell:g} m: fluid would pass between them"
         raise ScriptError([Diagnostic("invalid", text, assembly.line(), f"let `spacing` be {apart:.3g} m")])
@@ -53,3 +49,18 @@ def must_fit(skin: Line | Sheet, of: Ref, assembly: Assembly) -> None:
             text = f"'{of.name}' stands outside its flow, which ends at {'xyz'[axis]} = "
             text += f"{first if low[axis] < first else last:g} m"
             raise ScriptError([Diagnostic("invalid", text, of.span, "move it inside, or take a larger `size`")])
+    if flow.fractions is None:
+        return
+    import numpy as np
+
+    cells = [
+        np.clip(((points[:, k] - flow.low[k]) // flow.spacing[k]).astype(int), 0, flow.cells.shape[k] - 1)
+        for k in range(axes)
+    ]
+    shape = flow.cells.shape
+    number = cells[0] + shape[0] * (cells[1] + shape[1] * (cells[2] if axes == 3 else 0))
+    shut = np.flatnonzero(np.asarray(flow.fractions)[number] == 0.0)
+    if len(shut):
+        x, y, z = points[shut[0]]
+        text = f"'{of.name}' stands where its flow has no fluid, at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+        raise ScriptError([Diagnostic("invalid", text, of.span, "move it to where the fluid is")])

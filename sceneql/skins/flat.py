@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.skins.closed_line import closed_line, signed_area
+from sceneql.skins.elasticity import stiffness_in
 from sceneql.system import Membrane
 
 if TYPE_CHECKING:
@@ -82,20 +83,34 @@ class Line:
             found[row] = np.searchsorted(crossed, places[row, 0]) % 2 == 1
         return found
 
+    def encloses(self, places: Floats, points: Floats) -> NDArray[bool_]:
+        """(k,) whether it goes around places (k, 3)."""
+        return self.holds(places, points)
+
     def sides_of(self, points: Floats) -> Floats:
         """(n,) the lengths of its sides [m]."""
         found: Floats = np.hypot(*(np.roll(points, -1, axis=0) - points)[:, :2].T)
         return found
 
 
-def add_line(of: Ref, spacing: float, law: Elasticity, kept: bool, flow: Flow, assembly: Assembly) -> Line:
-    """Reserve the vertices of an object's outline, and add its tension; ``kept``: its area is. Raises ScriptError."""
+def add_line(
+    of: Ref, spacing: float, law: Elasticity, largest: float, kept: bool, flow: Flow, assembly: Assembly
+) -> Line:
+    """Reserve the vertices of an object's outline, and add its tension; ``kept``: its area is; ``largest``: of
+    Membrane.largest_tension.
+
+    Raises ScriptError.
+    """
     points = closed_line(of, spacing, assembly)
     count, depth = len(points), flow.spacing[2]
     at = assembly.state(np.append(np.column_stack([points, np.zeros(count)]).ravel(), 0.0))
-    skin = Membrane(count, at, assembly.floats(np.zeros(3 * count)))
-    head = (skin.count, skin.position_at, skin.force_at)
     lengths = np.hypot(*(np.roll(points, -1, axis=0) - points).T)
+    number = np.arange(count)
+    skin = Membrane(
+        *(count, at, assembly.floats(np.zeros(3 * count)), np.column_stack([number, np.roll(number, -1)])),
+        *(0.5 * depth * (lengths + np.roll(lengths, 1)), *stiffness_in(flow, largest)),
+    )
+    head = (skin.count, skin.position_at, skin.force_at)
     sheets = [law.modulus * depth, law.shear * (1.0 + law.area) * depth]
     tension, stretch = (assembly.floats([one * depth]) for one in (law.tension, law.stretch))
     ints = (*head, tension, stretch, assembly.floats(lengths), assembly.floats(sheets))

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from numpy import float64, int64
+    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +82,7 @@ class Flow:
     """Integers of the kernels of several fluids (flows/varying/fluid_layout.py); empty of one density and viscosity."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Membrane:
     """Points without inertia, a closed skin, that move as a flow does and hand it their forces."""
 
@@ -87,6 +91,16 @@ class Membrane:
     """y[position_at + 3k : +3] [m]."""
     force_at: int
     """floats[force_at + 3k : +3] [N]: 0 after stage `velocity`, then what terms of `internal` and `force` add."""
+    faces: NDArray[int64]
+    """(m, 2) the vertices of its sides, or (m, 3) of its triangles."""
+    areas: NDArray[float64]
+    """(count,) of each vertex's share of it at the start [m^2]."""
+    stiffness: float
+    """The pressure by which contacts push it off [Pa]: by none larger do they shorten steps that its waves allow."""
+    density: float
+    """Of the flow around it [kg/m^3]."""
+    cell: float
+    """Side of a cell of the flow [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,6 +111,8 @@ class Fields:
     flow: Flow | None = None
     alone: bool = False
     """Whether the island is these fields and nothing else, which nothing changes between steps."""
+    on_elements: int = 0
+    """Unknowns of fields on elements, where the island is these and nothing else."""
 
     @property
     def single(self) -> Grid | None:

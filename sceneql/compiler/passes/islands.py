@@ -77,8 +77,8 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         if len(targets) > 1 and (not others or (isinstance(kind, Contact) and kind.mutual)):
             for target in targets[1:]:
                 tie(targets[0], target)
-        solids = (getattr(tasks[target].kind, what, False) for target in targets for what in ("has_skin", "turns"))
-        if any(solids):
+        together = ("has_skin", "turns", "carried")
+        if any(getattr(tasks[target].kind, what, False) for target in targets for what in together):
             for target in targets[1:]:
                 tie(targets[0], target)
         for surface in others:
@@ -144,17 +144,22 @@ def _touching(
         if why is not None:
             help = f"name under `between` what may touch, without '{ref.name}'"
             found.error("no-collider", f"'{ref.name}': {why}", ref.span, help=help)
-        elif ref.name in models and not getattr(tasks[ref.name].kind, "has_bodies", False):
+        elif ref.name in models and not _collides(tasks[ref.name], task.kind):
             text = f"{task.word} acts on masses, and there are none in {ref.name}"
             found.error("no-mass", text, ref.span, help=f"name under `between` what may touch, without '{ref.name}'")
     ties = list(dict.fromkeys(driver.get(name, name) for name in ties))
     targets = [name for name in ties if name in models]
     surfaces = [name for name in ties if isinstance(tasks[name].kind, Object)]
     if not targets:
-        targets = [n for n in models if getattr(tasks[n].kind, "has_bodies", False)]
+        targets = [n for n in models if _collides(tasks[n], task.kind)]
     if (not surfaces and len(targets) < 2) or not ties:
         return tuple(targets), touchable(tasks, found)
     return tuple(targets), tuple(surfaces)
+
+
+def _collides(model: Task, contact: Contact) -> bool:
+    """Whether a model has masses, or a skin that touches others."""
+    return isinstance(model.kind, Model) and (model.kind.has_bodies or (model.kind.carried and not contact.mutual))
 
 
 def _solver(group: tuple[str, ...], tasks: Mapping[str, Task], found: Diagnostics) -> tuple[str, str]:

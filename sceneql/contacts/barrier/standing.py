@@ -63,7 +63,7 @@ def add_objects(
         -1,
     )
     ints = (*head, *objects, *nodes.tolist(), *edges.ravel().tolist(), *np.ravel(skin.held[nodes]).astype(int).tolist())
-    _must_be_apart(bodies.model, refs, places[nodes], ints, numbers[layout.GAP], assembly)
+    must_be_apart(bodies.model, refs, places[nodes], ints, numbers[layout.GAP], assembly)
 
     def slopes() -> Slopes:
         from sceneql.system import Slopes
@@ -100,7 +100,7 @@ def add_objects_to_body(
         layout.HEAD + len(objects),
     )
     ints = (*head, *objects, *surface.places.ravel().tolist())
-    _must_be_apart(surface.model, refs, surface.at, ints, numbers[layout.GAP], assembly)
+    must_be_apart(surface.model, refs, surface.at, ints, numbers[layout.GAP], assembly)
 
     def slopes() -> Slopes:
         from sceneql.bodies.rigid.place_slopes import force_places
@@ -126,7 +126,7 @@ def areas_of(corners: Floats) -> Floats:
     return found
 
 
-def _must_be_apart(model: str, refs: Sequence[Ref], places: Floats, ints: Any, gap: float, assembly: Assembly) -> None:
+def must_be_apart(model: str, refs: Sequence[Ref], places: Floats, ints: Any, gap: float, assembly: Assembly) -> None:
     """Raise ScriptError where a node of the skin starts on or in an object."""
     from sceneql.contacts.barrier.nearest_node_kernels import nearest
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from sceneql.contacts import layout
+from sceneql.contacts import layout, tallies
 from sceneql.kinds import (
     Contact,
     DrawnRef,
@@ -27,12 +27,8 @@ from sceneql.quantities.expression import Type
 if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
-RIGID = ("points", "normals", "forces")
-TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 MOST_EXACT = 8
 EXACT = "sceneql.contacts.collision_kernels"
-BARRIER, SPRINGS = -3, -4
-"""Where in the remembered integers those of a barrier begin, and that of the memory of masses beside rigid bodies."""
 NO_RESTITUTION = "elastic solids have no restitution: they bounce by their own elasticity"
 LOCAL = "sceneql.contacts.back_off_kernels"
 SHAPES = "sceneql.contacts.shapes"
@@ -97,6 +93,15 @@ class Collision(Contact):
     the gap; friction acts on both sides of it, and so may turn them a little by that arm. `points`, `normals` and
     `forces` do not tell of the barrier, and bodies that ties hold do not collide with elastic solids.
 
+    Skins in a flow (`membrane`) have no mass: within the `gap`, a cell by default, forces push them off objects,
+    masses, rigid bodies, one another and themselves (what is nearer at the start than two gaps is not pushed apart),
+    ever more the nearer, so that no vertex passes anything in any step; what they touch feels the same. There is no
+    restitution: tension throws off. Friction on objects and bodies holds each vertex by a spring at the place where it
+    came to touch, which slides along where it would pull more than Coulomb's law lets it (Cundall & Strack 1979), so
+    that what sticks does not creep; between skins it grows with the slip until Coulomb's law holds it. An edge or
+    corner thinner than the distance of vertices may enter between them. Objects that a skin collides with are no walls
+    to the fluid unless the flow goes `around` them, too. Skins of a periodic flow do not touch across its ends.
+
     Steps that a tolerance chooses are at most 1/240 s in mode `local`, and where an object moves other than straight on
     at one speed. In mode `local` what lands slower than gravity makes it in two steps comes to rest, at 1/240 s below
     8 cm/s on Earth: smaller bounces need a solver of shorter steps, by `largest_step` or `step`, or mode `exact`.
@@ -128,47 +133,23 @@ class Collision(Contact):
     thickness: FixedLength = field("Distance to keep besides the radius.", "0 m", at_least=0)
     mode: Literal["auto", "exact", "local", "barrier"] = field("How impacts are found.", "auto")
     gap: FixedLength | None = field(
-        "Distance from which on elastic solids are pushed off; by default a twentieth of the sides of their elements' "
-        "faces.",
+        "Distance from which on elastic solids, and skins in flows, are pushed off; by default a twentieth of the "
+        "sides of their elements' faces, and a cell of the flow.",
         None,
         above=0,
     )
 
     def trouble(self, state: ModelState) -> str:
         """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
-        at = [k for k, each in enumerate(state.ints) if each == -1]
-        longer, longest = self._too_long(state)
-        if longer:
-            told = f"in {longer:.0f} steps longer than {longest:.2g} s masses on springs touched something: "
-            return told + "where rigid bodies collide, too, such steps can make energy: shorter ones, or `auto`, do not"
-        jammed = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
-        if jammed:
-            return f"at {jammed:.0f} instants no force fitted the slip of rigid bodies: friction stopped it at once"
-        loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
-        if crowded:
-            return f"in {crowded:.0f} steps rigid bodies had more contacts than outputs have room for: all acted"
-        if not loose:
-            return ""
-        return f"in {loose:.0f} steps contacts of rigid bodies were not solved: friction there is not exact"
+        return tallies.trouble(state)
 
-    def _too_long(self, state: ModelState) -> tuple[float, float]:
-        """Steps that were too long for the springs of masses beside rigid bodies, and how long they may be [s]."""
-        if SPRINGS not in state.ints:
-            return 0.0, 0.0
-        from sceneql.contacts.distance.mass_points_kernels import LONGER, LONGEST
+    def remark(self, state: ModelState) -> str:
+        """The gap of skins."""
+        return "" if self.mode in ("exact", "local") else tallies.remark(state)
 
-        at = state.ints[state.ints.index(SPRINGS) + 1]
-        return float(state.floats[at + LONGER]), float(state.floats[at + LONGEST])
-
-    def _rigid(self, output: str, state: ModelState) -> Any:
-        """Points, normals and forces of the contacts of rigid bodies at the end of the latest step (n, 3)."""
-        import numpy as np
-
-        if -1 not in state.ints:
-            return np.zeros((0, 3))
-        count_at, *places = state.ints[state.ints.index(-1) + 1 :][:4]
-        count, at = int(state.floats[count_at]), places[RIGID.index(output)]
-        return state.floats[at : at + 3 * count].reshape(-1, 3).copy()
+    def read(self, output: str, state: ModelState) -> Any:
+        """An output over all its models: counts add up, the first time is the earliest, the last the latest."""
+        return tallies.read(output, state)
 
     def ties(self) -> tuple[Ref, ...]:
         """The models and objects of `between`."""
@@ -246,7 +227,11 @@ class Collision(Contact):
             yield Problem(f"mode {self.mode} has no gap: the mode barrier of elastic solids has", ("gap",), at_key=True)
 
     def refusals(self, models: Mapping[str, Model]) -> Iterator[Diagnostic]:
-        """Masses beside elastic solids; a moment against rolling that nothing would have."""
+        """Masses beside elastic solids; a moment against rolling that nothing would have; what skins in flows lack."""
+        carried = [name for name, model in models.items() if model.carried]
+        if carried:
+            yield from self._refused_by_skins(carried[0], len(carried) == len(models))
+            models = {name: model for name, model in models.items() if not model.carried}
         soft = self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values())
         hard = next((name for name, model in models.items() if not (model.has_skin or model.turns)), None)
         if soft and hard is not None:
@@ -265,6 +250,17 @@ class Collision(Contact):
         message = f"{why}: there is no moment against rolling"
         help = "rigid bodies have, in a collision of their own" if turning else "rigid bodies have"
         yield Diagnostic("no-rolling", message, self.rolling.span, help)
+
+    def _refused_by_skins(self, name: str, alone: bool) -> Iterator[Diagnostic]:
+        """What a skin that a flow carries has not; ``alone``: nothing else collides here."""
+        if self.mode in ("exact", "local"):
+            message = f"'{name}' is a skin in a flow, which has no mass of its own: it has no impacts"
+            yield Diagnostic("no-collider", message, None, "leave the mode out")
+        for what in ("restitution", "rolling") if alone else ():
+            span = getattr(self, what).span
+            if span is not None:
+                message = f"'{name}' is a skin in a flow, which has no {what}: its tension throws off what touches it"
+                yield Diagnostic("no-restitution", message, span, "leave it out")
 
     def assemble_skins(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
@@ -285,12 +281,19 @@ class Collision(Contact):
         assembly.remember(*assemble(assembly, everyone, touched, self.friction, self.gap))
         return True
 
-    def remark(self, state: ModelState) -> str:
-        """The gap of elastic solids, and of rigid bodies beside them."""
-        if self.mode in ("exact", "local") or BARRIER not in state.ints:
-            return ""
-        gap, slip = state.floats[state.ints[state.ints.index(BARRIER) + 1] :][:2]
-        return f"elastic solids are pushed off within a gap of {gap:.3g} m; friction is smooth below {slip:.2g} m/s"
+    def assemble_carried(
+        self, name: str, assembly: Assembly, skins: Sequence[str], everyone: Sequence[Bodies], others: tuple[Ref, ...]
+    ) -> None:
+        """Add the contacts of skins that a flow carries, with one another and with objects."""
+        from sceneql.skins.touching import assemble
+
+        written = {ref.name: ref for ref in self.between or ()}
+        touched = [written.get(ref.name, ref) for ref in others]
+        # Of a skin that could not be made that is told.
+        models: list[tuple[str, Any]] = [(skin, assembly.object(Ref(skin))) for skin in skins]
+        made = [(skin, model.made) for skin, model in models if assembly.membrane_of(skin) is not None]
+        if made:
+            assembly.remember(tallies.CARRIED, *assemble(assembly, made, everyone, touched, self.friction, self.gap))
 
     def assemble_rigid(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
@@ -321,13 +324,13 @@ class Collision(Contact):
         if self.mode == "auto" and self._exactly(name, assembly, rigid, points, touched):
             return
         if name in assembly.went_on:  # what was counted until then
-            tally_at = assembly.floats(_tally(assembly.went_on[name]))
+            tally_at = assembly.floats(tallies.tally(assembly.went_on[name]))
             assembly.remember(tally_at)
         assembly.step_at_most(OFTEN)
         masses = masses_of(points, self.thickness, assembly) if points else None
         told = assemble(assembly, rigid, touched, self.restitution, self.friction, self.rolling, masses)
         if masses is not None:
-            assembly.remember(masses.tally_at, -1, *told, SPRINGS, masses.memory_at)
+            assembly.remember(masses.tally_at, -1, *told, tallies.SPRINGS, masses.memory_at)
         else:
             assembly.remember(-1, *told)
 
@@ -361,30 +364,6 @@ class Collision(Contact):
         )
         assembly.contact_why = f"chosen for rigid bodies: {why}" if why else few
         return not why
-
-    def read(self, output: str, state: ModelState) -> Any:
-        """An output over all its models: counts add up, the first time is the earliest, the last the latest."""
-        import numpy as np
-
-        if output in RIGID:
-            return self._rigid(output, state)
-        marks = (k for k, each in enumerate(state.ints) if each in (-1, -2, BARRIER))
-        ints = state.ints[: next(marks, len(state.ints))]
-        tallies = np.array([state.floats[at : at + len(TALLY)] for at in ints]).reshape(-1, len(TALLY))
-        column = tallies[:, TALLY.index(output)]
-        if output == "hits.count":
-            return float(column.sum())
-        times = column if output != "hits.last.speed" else tallies[:, TALLY.index("hits.last.time")]
-        known = np.flatnonzero(~np.isnan(times))
-        if len(known) == 0 or (output == "rest.time" and len(known) < len(tallies)):
-            return 0.0 if output == "hits.last.speed" else float("nan")
-        best = known[np.argmin(times[known]) if output == "hits.first.time" else np.argmax(times[known])]
-        return float(column[best])
-
-
-def _tally(state: ModelState) -> Any:
-    """What a contact has counted (5,)."""
-    return state.floats[state.ints[0] : state.ints[0] + len(TALLY)]
 
 
 def _held(bodies: Bodies) -> Slopes:

@@ -38,10 +38,11 @@ class Immersion(Force):
 
     def fastest_carried(self, skins: Mapping[str, Any], flow: Any) -> Iterator[Oscillation]:
         """The fastest waves of each skin that the flow's cells know; viscosity takes a quarter of its largest rate."""
-        if flow.size is None:  # a flow in a domain takes no skins
-            return
-        cell = min(side / count for side, count in zip(flow.size, counts(flow.size, flow.cell), strict=False))
-        decay = flow.thickest() / flow.density * len(flow.size) / cell**2
+        size, axes = flow.size, 2 if flow.flat else 3
+        cell = flow.cell
+        if size is not None:
+            cell, axes = min(side / n for side, n in zip(size, counts(size, cell), strict=False)), len(size)
+        decay = flow.thickest() / flow.density * axes / cell**2
         for name, skin in skins.items():
             inside = (skin.fluid() or (flow.density, 0.0))[0]
             turn = (skin.largest_tension() / (0.5 * (flow.density + inside) * cell**3)) ** 0.5

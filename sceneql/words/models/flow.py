@@ -15,14 +15,15 @@ from sceneql.flows.parts import (
     Buoyancy,
     Side,
     Start,
+    fastest_solid,
     fastest_turn,
     thickest,
 )
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
-from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of, number_in
+from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of, number_in, spacing_of
 from sceneql.grids.multigrid.linear_solvers import Linear
 from sceneql.kinds import Gives, Model, Problem, Quantity, Value, field, quantity_type
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Link, Type
 
@@ -204,13 +205,16 @@ class Flow(Model):
             text = f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
             yield Problem(text, ("boundary", name), at_key=True)
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann), and advection."""
-        size = self.size or (self.cell, self.cell)  # of a flat domain; rates of a deep one are larger
-        spacing = [side / n for side, n in zip(size, counts(size, self.cell), strict=False)]
+        spacing = spacing_of(self, scene)
         decay = 4.0 * self.thickest() / self.density * sum(1.0 / side**2 for side in spacing)
         if decay > 0.0:
             yield Oscillation(0.0, decay, f"the viscosity over cells of {self.cell:g} m", ("viscosity",))
+        moved, mover = fastest_solid(self.around, scene, spacing)
+        if moved > 0.0:
+            what = f"the solid '{mover}' that moves through cells of {self.cell:g} m"
+            yield Oscillation(0.0, 0.5 * decay, what, ("cell",), moved, later=True)
         if self.size is None:
             return
         turn = fastest_turn(self.initial, self.boundary, self.corner or (0.0,) * len(self.size), self.size, spacing)

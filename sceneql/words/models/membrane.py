@@ -169,7 +169,7 @@ class Membrane(Model):
         if len(flow.areas) == 2:
             from sceneql.skins.flat import add_line
 
-            made = add_line(self.of, spacing, law, self.volume == "kept", flow, assembly)
+            made = add_line(self.of, spacing, law, self.largest_tension(), self.volume == "kept", flow, assembly)
         else:
             from sceneql.skins.deep import add_sheet
 
@@ -178,7 +178,7 @@ class Membrane(Model):
                 text = f"`{what}` is of a flat skin, which is a line; a deep one is drawn as its surface"
                 raise ScriptError([Diagnostic("invalid", text, assembly.line(), f"leave `{what}` out")])
 
-            made = add_sheet(self.of, spacing, law, self.volume == "kept", flow, assembly)
+            made = add_sheet(self.of, spacing, law, self.largest_tension(), self.volume == "kept", flow, assembly)
         must_fit(made, self.of, assembly)
         assembly.membrane(made.membrane)
         self._made = made

@@ -1,0 +1,89 @@
+"""What the word `collision` tells of a run: its outputs, remarks and troubles, by the integers that it remembers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sceneql.system import ModelState
+
+RIGID = ("points", "normals", "forces")
+TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
+BARRIER, SPRINGS, CARRIED = -3, -4, -5
+"""Where in the remembered integers those of a barrier begin, that of the memory of masses beside rigid bodies, and
+those of skins that a flow carries."""
+
+
+def read(output: str, state: ModelState) -> Any:
+    """An output over all its models: counts add up, the first time is the earliest, the last the latest."""
+    import numpy as np
+
+    if output in RIGID:
+        return _rigid(output, state)
+    marks = (k for k, each in enumerate(state.ints) if each in (-1, -2, BARRIER, CARRIED))
+    ints = state.ints[: next(marks, len(state.ints))]
+    tallies = np.array([state.floats[at : at + len(TALLY)] for at in ints]).reshape(-1, len(TALLY))
+    column = tallies[:, TALLY.index(output)]
+    if output == "hits.count":
+        return float(column.sum())
+    times = column if output != "hits.last.speed" else tallies[:, TALLY.index("hits.last.time")]
+    known = np.flatnonzero(~np.isnan(times))
+    if len(known) == 0 or (output == "rest.time" and len(known) < len(tallies)):
+        return 0.0 if output == "hits.last.speed" else float("nan")
+    best = known[np.argmin(times[known]) if output == "hits.first.time" else np.argmax(times[known])]
+    return float(column[best])
+
+
+def tally(state: ModelState) -> Any:
+    """What a contact has counted (5,)."""
+    return state.floats[state.ints[0] : state.ints[0] + len(TALLY)]
+
+
+def remark(state: ModelState) -> str:
+    """The gap of elastic solids, and of rigid bodies beside them; that of skins that a flow carries."""
+    if CARRIED in state.ints:
+        gap = state.floats[state.ints[state.ints.index(CARRIED) + 1]]
+        return f"skins in the flow are pushed off within a gap of {gap:.3g} m"
+    if BARRIER not in state.ints:
+        return ""
+    gap, slip = state.floats[state.ints[state.ints.index(BARRIER) + 1] :][:2]
+    return f"elastic solids are pushed off within a gap of {gap:.3g} m; friction is smooth below {slip:.2g} m/s"
+
+
+def trouble(state: ModelState) -> str:
+    """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
+    at = [k for k, each in enumerate(state.ints) if each == -1]
+    longer, longest = _too_long(state)
+    if longer:
+        told = f"in {longer:.0f} steps longer than {longest:.2g} s masses on springs touched something: "
+        return told + "where rigid bodies collide, too, such steps can make energy: shorter ones, or `auto`, do not"
+    jammed = sum(state.floats[state.ints[k + 1]] for k, each in enumerate(state.ints) if each == -2)
+    if jammed:
+        return f"at {jammed:.0f} instants no force fitted the slip of rigid bodies: friction stopped it at once"
+    loose, crowded = (sum(state.floats[state.ints[k + j]] for k in at) for j in (5, 6))
+    if crowded:
+        return f"in {crowded:.0f} steps rigid bodies had more contacts than outputs have room for: all acted"
+    if not loose:
+        return ""
+    return f"in {loose:.0f} steps contacts of rigid bodies were not solved: friction there is not exact"
+
+
+def _too_long(state: ModelState) -> tuple[float, float]:
+    """Steps that were too long for the springs of masses beside rigid bodies, and how long they may be [s]."""
+    if SPRINGS not in state.ints:
+        return 0.0, 0.0
+    from sceneql.contacts.distance.mass_points_kernels import LONGER, LONGEST
+
+    at = state.ints[state.ints.index(SPRINGS) + 1]
+    return float(state.floats[at + LONGER]), float(state.floats[at + LONGEST])
+
+
+def _rigid(output: str, state: ModelState) -> Any:
+    """Points, normals and forces of the contacts of rigid bodies at the end of the latest step (n, 3)."""
+    import numpy as np
+
+    if -1 not in state.ints:
+        return np.zeros((0, 3))
+    count_at, *places = state.ints[state.ints.index(-1) + 1 :][:4]
+    count, at = int(state.floats[count_at]), places[RIGID.index(output)]
+    return state.floats[at : at + 3 * count].reshape(-1, 3).copy()

@@ -1,0 +1,84 @@
+"""Contacts of skins in flows with one another, and of each with itself. Imports numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.skins import touch_pairs_layout as layout
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+    from sceneql.skins.deep import Sheet
+    from sceneql.skins.flat import Line
+    from sceneql.system import Assembly
+
+KERNELS = "sceneql.skins.touch_pairs_kernels"
+
+
+NEAR = 0.01
+"""Part of the gap below which skins touch at the start."""
+
+
+def add_pairs(assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], friction_at: int, gap: float) -> None:
+    """Add what keeps skins apart, and each from itself. Raises ScriptError where they cross or touch at the start."""
+    skins = [one.membrane for _, one in made]
+    counts = [skin.count for skin in skins]
+    firsts, count, corners = np.cumsum([0, *counts]), sum(counts), skins[0].faces.shape[1]
+    faces = np.concatenate([first + skin.faces for first, skin in zip(firsts, skins, strict=False)])
+    numbers = [np.arange(one) for one in counts]
+    table = [
+        np.column_stack([skin.position_at + 3 * own, skin.force_at + 3 * own, np.full(skin.count, k)])
+        for k, (skin, own) in enumerate(zip(skins, numbers, strict=True))
+    ]
+    start = assembly.start()
+    rest = [start[skin.position_at :][: 3 * skin.count] for skin in skins]
+    weights = [np.column_stack([skin.areas, np.full(skin.count, skin.stiffness)]) for skin in skins]
+    impedance = min((skin.stiffness * skin.density) ** 0.5 for skin in skins)
+    order = np.argsort(faces.ravel(), kind="stable")
+    begins = np.searchsorted(faces.ravel()[order], np.arange(count + 1))
+    head = [0] * layout.HEAD
+    head[layout.VERTICES], head[layout.FACES] = count, len(faces)
+    head[layout.CORNERS], head[layout.SKINS] = corners, len(skins)
+    head[layout.NUMBERS] = assembly.floats([gap, impedance, 0.0])
+    head[layout.FRICTION] = friction_at
+    head[layout.WEIGHTS] = assembly.floats(np.concatenate(weights))
+    head[layout.REST] = assembly.floats(np.concatenate(rest))
+    room = layout.STARTS + (layout.CELLS + 1) * count + 1
+    head[layout.ROOM] = assembly.floats(np.zeros(room))
+    head[layout.BEST] = assembly.floats(np.zeros(layout.FOUND * len(skins)))
+    lists = (np.concatenate(table), faces, begins, order // corners)
+    ints = (*head, *(int(one) for part in lists for one in np.ravel(part)))
+    _must_be_apart(assembly, made, rest, np.array(ints, dtype=np.int64), gap)
+    assembly.term("force", f"{KERNELS}:force", ints)
+    assembly.limit(f"{KERNELS}:limit", ints)
+
+
+def _must_be_apart(
+    assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], places: Sequence[Floats], ints: Any, gap: float
+) -> None:
+    """Raise ScriptError where a skin crosses or touches another; one may stand inside another."""
+    from sceneql.skins.touch_start_kernels import least
+
+    all_points = [place.reshape(-1, 3) for place in places]
+    help = f"leave a distance between them: forces begin at the gap of {gap:.3g} m"
+    for (name, skin), points in zip(made, all_points, strict=True):
+        for (other, _), others in zip(made, all_points, strict=True):
+            apart = (others.min(axis=0) > points.max(axis=0)) | (others.max(axis=0) < points.min(axis=0))
+            if name == other or apart.any():
+                continue
+            held = skin.encloses(others, points)
+            if held.any() and not held.all():
+                x, y, z = others[np.argmax(held != held[0])]
+                text = f"'{other}' crosses '{name}' at the start, near ({x:.4g}, {y:.4g}, {z:.4g}) m"
+                raise ScriptError([Diagnostic("starts-inside", text, assembly.line(), help)])
+    d, vertex, skin = least(assembly.start(), assembly.numbers(), ints, gap)
+    if d < NEAR * gap:
+        own = int(ints[layout.HEAD + layout.VERTEX * vertex + layout.SKIN])
+        x, y, z = np.concatenate(all_points)[vertex]
+        what = f"'{made[skin][0]}'" if own != skin else "itself"
+        text = f"'{made[own][0]}' touches {what} at the start, at ({x:.4g}, {y:.4g}, {z:.4g}) m"
+        raise ScriptError([Diagnostic("starts-inside", text, assembly.line(), help)])
