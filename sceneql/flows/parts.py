@@ -164,6 +164,20 @@ def fastest_turn(
     return most
 
 
+def thickest(viscosity: Formula, corner: Sequence[float], size: Sequence[float]) -> float:
+    """The viscosity [Pa s] of a flow's own fluid, of a formula the largest at the start by samples of its box."""
+    alone = number_in(viscosity)
+    if alone is not None:
+        return alone
+    rows = [[low + side * k / SAMPLES for k in range(SAMPLES + 1)] for low, side in zip(corner, size, strict=True)]
+    found = 0.0
+    for place in product(*rows):
+        known = {Symbol(one): x for one, x in zip("xyzt", (*place, *[0.0] * (4 - len(place))), strict=True)}
+        known[Symbol(TIME_SYMBOL)] = 0.0
+        found = max(found, float(evaluate(components(viscosity.expr)[0], known)))
+    return found
+
+
 def fastest_solid(refs: Sequence[kinds.Ref], scene: StaticScene, spacing: Sequence[float]) -> tuple[float, str]:
     """The largest sum of |v|/spacing [1/s] of places of solids that move, by samples in time, and of which one.
 
@@ -187,17 +201,3 @@ def _placed(position: Value, time: float) -> tuple[float, ...]:
     """Where it is at a time [m]."""
     found = evaluate(position.expr, lambda node: time if isinstance(node, Symbol) else {}[node])
     return tuple(map(float, found))
-
-
-def thickest(viscosity: Formula, corner: Sequence[float], size: Sequence[float]) -> float:
-    """The viscosity [Pa s] of a flow's own fluid, of a formula the largest at the start by samples of its box."""
-    alone = number_in(viscosity)
-    if alone is not None:
-        return alone
-    rows = [[low + side * k / SAMPLES for k in range(SAMPLES + 1)] for low, side in zip(corner, size, strict=True)]
-    found = 0.0
-    for place in product(*rows):
-        known = {Symbol(one): x for one, x in zip("xyzt", (*place, *[0.0] * (4 - len(place))), strict=True)}
-        known[Symbol(TIME_SYMBOL)] = 0.0
-        found = max(found, float(evaluate(components(viscosity.expr)[0], known)))
-    return found

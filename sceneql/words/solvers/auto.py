@@ -99,7 +99,6 @@ class Auto(Solver):
             there = "for a field on elements"
             tr_bdf2 = TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1), absolute=self.absolute)
             return replace(tr_bdf2.choose(island), remark=there)
-
         if island.fields.flow is not None and island.fields.flow.varying:
             there = "as its density or viscosity varies"
             several = ImexMidpoint(tolerance=min(100.0 * self.tolerance, 0.1))
