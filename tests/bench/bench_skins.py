@@ -235,7 +235,8 @@ def bag(cells: str) -> None:
     floor = 2.0 / int(cells)
     egg = f'field: "x^2 + y^2 - 0.18^2", bounds: {{ball: 1}}, position: 0.5 {floor + 0.19!r} 0 m'
     law = "law: {springs: {stretch: 4000 N/m}}, filling: {density: 1000 kg/m^3, viscosity: 80 Pa*s}"
-    flow = f"size: 1 1 m, cell: 1/{cells} m, density: 1 kg/m^3, viscosity: 0.08 Pa*s, boundary: {{bottom: {{wall: {{slip: free}}}}}}"
+    flow = f"size: 1 1 m, cell: 1/{cells} m, density: 1 kg/m^3, viscosity: 0.08 Pa*s"
+    flow += ", boundary: {bottom: {wall: {slip: free}}}"
     text = f"clock: {{end: 2 s, fps: 1}}\nmodels:\n  air: {{flow: {{{flow}}}}}\n"
     text += (
         f"  balloon: {{membrane: {{of: egg, {law}}}}}\nforces: [gravity, {{immersion: {{on: [balloon], in: air}}}}]\n"
