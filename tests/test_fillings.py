@@ -192,3 +192,17 @@ def test_what_several_fluids_cannot_bear_is_told(tmp_path, fields, text):
     objects = f"objects: {{{egg}, pole: {{sphere: {{radius: 0.1 m, position: 0.8 0.5 0 m}}}}}}\n"
     with pytest.raises(ScriptError, match=text):
         filled(tmp_path, 10.0, objects=objects, **fields)
+
+
+def test_a_heavy_bag_rests_on_a_floor_as_tall_and_wide_as_its_tension_lets_it(tmp_path):
+    floor = 2.0 / 24
+    egg = f'egg: {{implicit: {{field: "x^2 + y^2 - 0.0324", position: 0.5 {floor + 0.185} 0 m}}}}'
+    ledge = f"ledge: {{plane: {{position: 0 {floor} 0 m, normal: 0 1 0}}}}"
+    air = filled(
+        tmp_path, 1000.0, 80.0, "law: {springs: {stretch: 4000 N/m}}", cells=24, viscosity="0.08 Pa*s", end=1.4,
+        forces=f"{FALLING}contacts: {{land: {{collision: {{between: [balloon, ledge]}}}}}}\n",
+        objects=f"objects: {{{egg}, {ledge}}}\n", boundary="{bottom: {wall: {slip: free}}}",
+    )  # fmt: skip
+    sides = [np.ptp(air.at(time).read("positions", "balloon"), axis=0)[:2] for time in (1.1, 1.2, 1.3, 1.4)]
+    # Of an elastic line around a weight that leans on a plane (its equation, solved apart).
+    assert np.mean(sides, axis=0) == pytest.approx([0.46532072, 0.26211314], rel=0.01)
