@@ -54,6 +54,7 @@ def seen_at(scale, *shapes, size=(96, 72)):
 
 KINDS = {
     "line": (ring(),),
+    "line thinner than a pixel": (ring(0.005),),
     "mesh": (round_mesh(WHITE, steps=8),),
     "balls": (points(WHITE, [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0)], [0.7, 0.3]),),
     "sphere": (sphere(WHITE),),
