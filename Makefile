@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: film test test-long gallery clean
+.PHONY: film test test-long test-fuzz test-whole test-checked test-plain gallery clean
 
 film: $(VENV)/installed
 	$(BIN)/sceneql render scenes/first.yaml -o first.mp4
@@ -15,13 +15,26 @@ test: $(VENV)/installed-test
 	$(BIN)/mypy
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
-test-long: $(VENV)/installed-test
-	SCENEQL_FUZZ=1000000 $(BIN)/python -m pytest tests -k "fuzz"
-	SCENEQL_LONG=1 $(BIN)/python -m pytest -n auto --dist worksteal
-	@# Kernels that look at every index, compiled into a cache of their own.
-	NUMBA_BOUNDSCHECK=1 SCENEQL_CACHE=$(VENV)/checked $(BIN)/python -m pytest -n auto --dist worksteal
-	@# Kernels compiled by numba as it is, without what compiled/numba replaces of it; they have a cache of their own.
-	SCENEQL_NUMBA=plain $(BIN)/python -m pytest -n auto --dist worksteal
+# Each part ends and tells by itself, and may be begun alone; FUZZ and SEED choose how much is tried, and which.
+FUZZ ?= 20000
+SEED ?= 0
+SUITE := $(BIN)/python -m pytest -n auto --dist worksteal --maxfail 20
+
+test-long: test-fuzz test-whole test-checked test-plain
+
+test-fuzz: $(VENV)/installed-test
+	SCENEQL_FUZZ=$(FUZZ) SCENEQL_SEED=$(SEED) $(SUITE) tests -k "fuzz"
+
+test-whole: $(VENV)/installed-test
+	SCENEQL_LONG=1 $(SUITE)
+
+# Kernels that look at every index, compiled into a cache of their own.
+test-checked: $(VENV)/installed-test
+	NUMBA_BOUNDSCHECK=1 SCENEQL_CACHE=$(VENV)/checked $(SUITE)
+
+# Kernels compiled by numba as it is, without what compiled/numba replaces of it; they have a cache of their own.
+test-plain: $(VENV)/installed-test
+	SCENEQL_NUMBA=plain $(SUITE)
 
 gallery: $(VENV)/installed
 	$(BIN)/sceneql gallery update

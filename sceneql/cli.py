@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sceneql import __version__, interrupts, room
-from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, as_words, options
+from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, as_seconds, as_words, options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -128,6 +128,7 @@ def _say_kept(error: BaseException | None) -> None:
 @click.option("-o", "--output", callback=as_path, help="File to make, for a script with one output.")
 @click.option("--report", "account", is_flag=True, help="Tell how far energy and momentum drifted.")
 @click.option("--draft", is_flag=True, help="Pictures of `trace` less sharp, in a sixth of the time.")
+@click.option("--limit", callback=as_seconds, metavar="TIME", help="Fail after so long, as 20s; what is made is kept.")
 def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None, **how: Any) -> None:
     """Make the outputs of a scene."""
     from sceneql import pipeline

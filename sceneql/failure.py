@@ -40,6 +40,12 @@ class OutOfMemory(RunFailure):
     code = "out-of-memory"
 
 
+class OutOfTime(RunFailure):
+    """A run that has taken longer than it may."""
+
+    code = "out-of-time"
+
+
 @contextmanager
 def failing_as(name: str, time: float, span: Span | None) -> Iterator[None]:
     """Report failures inside as those of a part at a time [s]; words refuse values by TypeError and ValueError.

@@ -179,10 +179,10 @@ class Segments:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mist:
-    """A volume that absorbs light on its way to the camera, of its surface's color where it is thick.
+    """A volume that absorbs light on its way, and scatters the share of it that is its surface's color.
 
     It stands in the box low..high of coordinates in which absorption[k, j, i] is that of the point (i, j, k); between
-    these it is trilinear. It throws no shadow and is not seen in mirrors.
+    these it is trilinear. Where it is not lit it throws no shadow, and has that color itself where it is thick.
     """
 
     name: str
@@ -193,6 +193,7 @@ class Mist:
     """(nz, ny, nx) [1/m], not below 0."""
     low: tuple[float, float, float]
     high: tuple[float, float, float]
+    lit: bool = True
 
 
 @dataclass(frozen=True, slots=True, eq=False)

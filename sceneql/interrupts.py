@@ -1,4 +1,4 @@
-"""Ctrl-C, SIGTERM and SIGHUP: one way out of the program, at any instant without a traceback.
+"""Ctrl-C, SIGTERM, SIGHUP and a limit of time: one way out of the program, at any instant without a traceback.
 
 While a command runs they raise KeyboardInterrupt, which keeps what was made; before and after there is nothing to keep,
 and they end the process at once. A signal that the caller has switched off (nohup) stays off.
@@ -116,3 +116,40 @@ def held() -> Iterator[None]:
 def exit_code() -> int:
     """128 and the number of the signal that has come first."""
     return 128 + (_Received.first or int(signal.SIGINT))
+
+
+class Limit:
+    """A limit of time: whether it has passed, and what was being done then."""
+
+    passed = False
+    doing = ""
+
+
+@contextmanager
+def within(seconds: float | None, doing: Callable[[], str]) -> Iterator[Limit]:
+    """When the block has taken so many seconds KeyboardInterrupt is raised in it, as by a signal; None: never.
+
+    ``doing`` tells what is done then. Signals are handled on the main thread alone.
+    """
+    limit = Limit()
+    if seconds is None:
+        yield limit
+        return
+    number = getattr(signal, "SIGALRM", signal.SIGINT)
+
+    def end() -> None:
+        limit.passed, limit.doing = True, doing()
+        _thread.interrupt_main(number)
+
+    timer = threading.Timer(seconds, end)
+    timer.daemon = True
+    with raised():
+        before = signal.signal(number, _press)
+        timer.start()
+        try:
+            yield limit
+        finally:
+            timer.cancel()
+            signal.signal(number, before)
+            if limit.passed and _Received.first == number:
+                _Received.first = 0  # nobody has ended the program

@@ -14,21 +14,32 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 def as_length(context: click.Context, parameter: click.Parameter, value: Any) -> float | None:
     """A length as scripts write it to meters, above 0; a bare number is in meters."""
-    if value is None:
-        return None
+    from sceneql.quantities.dimension import LENGTH
+
+    return None if value is None else _above_zero(value, LENGTH, f"'{value}' is no length above 0, as 2mm or 0.5")
+
+
+def as_seconds(context: click.Context, parameter: click.Parameter, value: Any) -> float | None:
+    """A time as scripts write it to seconds, above 0; a bare number is in seconds."""
+    from sceneql.quantities.dimension import TIME
+
+    return None if value is None else _above_zero(value, TIME, f"'{value}' is no time above 0, as 20s or 2min")
+
+
+def _above_zero(value: Any, dimension: Any, wrong: str) -> float:
+    """A number of a dimension, or a bare one, in SI units. Raises BadParameter, which says what is wrong."""
     from sceneql.kinds.word import literal
     from sceneql.quantities.diagnostic import ScriptError
-    from sceneql.quantities.dimension import LENGTH, PLAIN
+    from sceneql.quantities.dimension import PLAIN
     from sceneql.quantities.expression import Type
 
-    wrong = click.BadParameter(f"'{value}' is no length above 0, as 2mm or 0.5")
     try:
         read = literal(value)
         number = read.number()
     except (ScriptError, ArithmeticError, ValueError):
-        raise wrong from None
-    if read.expr.type not in (Type((), LENGTH), Type((), PLAIN)) or not 0.0 < number < float("inf"):
-        raise wrong
+        raise click.BadParameter(wrong) from None
+    if read.expr.type not in (Type((), dimension), Type((), PLAIN)) or not 0.0 < number < float("inf"):
+        raise click.BadParameter(wrong)
     return float(number)
 
 

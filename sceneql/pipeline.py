@@ -10,7 +10,7 @@ from __future__ import annotations
 import gc
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -18,21 +18,32 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pydantic import BaseModel
 
+from sceneql import doing
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS
 from sceneql.compiler.compile import compile_script
-from sceneql.failure import OutOfMemory, RunFailure, Unsuitable, failing_itself, starved, want_of_memory
+from sceneql.failure import (
+    LimitRefused,
+    OutOfMemory,
+    OutOfTime,
+    RunFailure,
+    Unsuitable,
+    failing_itself,
+    starved,
+    want_of_memory,
+)
 from sceneql.files import NUMBERS, refuse_unwritable, try_folder
 from sceneql.graph import SimulationGraph
-from sceneql.interrupts import held
+from sceneql.interrupts import held, within
 from sceneql.kinds import FAMILIES, Camera, Kind, Model, Output, Picture
 from sceneql.language.patch import Patch
 from sceneql.language.script import read_script
-from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.tools import Report, Tools, frame_of, shapes_of
 
 if TYPE_CHECKING:
     from sceneql.run.instant import Instant
+    from sceneql.run.run import Run
 
 __all__ = ["Report", "Tools", "frame_of", "load", "render", "shapes_of", "simulate"]
 
@@ -71,14 +82,15 @@ def render(
     folder: Path | None = None,
     account: bool = False,
     draft: bool = False,
+    limit: float | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Report:
     """Run a graph and make its outputs, in one pass over the union of their times.
 
     ``output`` overrides the file of a single output; with ``account`` energies are looked at in every frame, with
-    ``draft`` pictures are drawn coarsely. On a failure what was made is kept beside the final names, in ``error.kept``
-    of the exception that goes on. Raises RunFailure, LimitRefused, OSError, and Unsuitable for one file with several
-    outputs and for drafts of a renderer that has none.
+    ``draft`` pictures are drawn coarsely; after ``limit`` seconds it fails. On a failure what was made is kept beside
+    the final names, in ``error.kept`` of the exception that goes on. Raises RunFailure, LimitRefused, OSError, and
+    Unsuitable for one file with several outputs and for drafts of a renderer that has none.
     """
     started, compiled = time.perf_counter(), _compiled()
     report = Report()
@@ -102,6 +114,9 @@ def render(
     sinks: dict[str, Any] = {}
     models = [name for name, task in graph.tasks.items() if isinstance(task.kind, Model)]
     now, busy = 0.0, _Busy("starting the run", models)
+    run: Any = None
+    ending = ExitStack()
+    late = ending.enter_context(within(limit, lambda: doing.now(0.0)))
     try:
         for name, kind in outputs.items():
             if isinstance(kind, Picture):
@@ -119,9 +134,11 @@ def render(
         watch = Watch(run, always=account)
         if run.islands and instants and instants[0] > 0.0:
             watch.look(run.at(0.0))  # what is gained is gained over the start
-        solving = _Busy("solving", models)
+        busy = solving = _Busy("solving", models)
         for done, moment in enumerate(run.moments(instants)):
             progress(done, len(instants))
+            if late.passed:  # told where it was lost, as signals are in callbacks of a C library
+                raise KeyboardInterrupt
             if done == 1:
                 gc.freeze()  # what lives by now lives on, and is not looked over in every collection
             watch.look(moment, last=done == len(instants) - 1)
@@ -142,6 +159,8 @@ def render(
                 del sinks[name]
     except BaseException as error:
         told = _out_of_memory(error, graph, now, busy) if starved(error) else error
+        if late.passed and not isinstance(error, RunFailure | LimitRefused | ScriptError):
+            told = _out_of_time(graph, run, now, busy, f"the limit of {limit:g} s has passed", late.doing)
         with suppress(KeyboardInterrupt), held():
             told.kept = [*report.files, *_kept(sinks, told)]  # type: ignore[attr-defined]
         if told is not error:
@@ -149,6 +168,7 @@ def render(
         raise
     finally:
         gc.unfreeze()
+        ending.close()
     report.warnings = (*missing(report.present, graph.tasks), *decided_by_rounding(report.rounded, graph.tasks))
     report.warnings += (*watch.warnings(), *run.warnings(), *blind(report.within, graph.tasks))
     report.conserved = watch.account()
@@ -181,6 +201,20 @@ def _out_of_memory(error: BaseException, graph: SimulationGraph, now: float, bus
     less = " or ".join(f"a {size} `{field}` of '{name}'" for name, field, size in large)
     help = f"{less} takes less" if less else None
     return OutOfMemory(message, part=part, time=now, span=span or (tasks[0].span if tasks else None), help=help)
+
+
+def _out_of_time(
+    graph: SimulationGraph, run: Run | None, now: float, busy: _Busy, message: str, doing: str
+) -> OutOfTime:
+    """The end of a run at its limit: of the island that has come least far, else what the run was busy with."""
+    part = busy.parts[0] if busy.parts else graph.name
+    if run is not None and run.islands and busy.doing == "solving":
+        behind = min(run.islands, key=lambda island: island.march.time)
+        part, now = next(iter(behind.island.models)), behind.march.time
+    span = graph.tasks[part].span if part in graph.tasks else None
+    less = "a smaller `size` and `--draft`" if busy.doing == "making the frame" else "larger steps and coarser models"
+    help = f"allow more by `--limit`; {less} take less"
+    return OutOfTime(f"{message}, when {doing or busy.doing}", part=part, time=now, span=span, help=help)
 
 
 def _large(record: BaseModel) -> Iterator[str]:

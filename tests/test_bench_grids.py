@@ -10,6 +10,7 @@ import pytest
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.pipeline import load
+from sceneql.report import bench_methods
 from sceneql.report.bench_grids import grid_section
 from sceneql.report.bench_schemes import front, scheme_runs
 from sceneql.report.grid_ends import difference, ends_on_grids
@@ -86,14 +87,24 @@ def test_schemes_reach_the_errors_of_grids_by_steps_of_their_own(tmp_path):
     assert all(a.seconds <= b.seconds and a.error > b.error for a, b in pairwise(best))
 
 
-def test_the_section_is_written(tmp_path):
+def test_the_section_is_written(tmp_path, monkeypatch):
+    monkeypatch.setattr(bench_methods, "LEVELS", (2.0, 1.0))
     graph, _ = field(tmp_path, PLATE, "{implicit_euler: {step: 5 ms}}")
     section = grid_section(graph, tmp_path / "out", {"plate": {"exact": Exact()}})
     assert section.lines[0].startswith("plate on grids, exact in time: observed order 2.0")
-    assert [path.name for _, path in section.plots] == ["out.schemes.svg", "out.grids.svg", "out.linear.svg"]
+    assert [path.name for _, path in section.plots] == [
+        "out.schemes.svg",
+        "out.grids.svg",
+        "out.linear.svg",
+        "out.methods.svg",
+    ]
     assert all("<svg" in path.read_text() for _, path in section.plots)
     rows = list(csv.DictReader(section.files[0].read_text().splitlines()))
     assert [float(row["cell"]) for row in rows] == sorted((float(row["cell"]) for row in rows), reverse=True)
+    methods = list(csv.DictReader(section.files[3].read_text().splitlines()))
+    assert list(dict.fromkeys(row["method"] for row in methods)) == ["cells", "p1", "p2"]
+    finest = {row["method"]: float(row["error"]) for row in methods}  # the last of each stays
+    assert finest["p2"] < 0.5 * finest["cells"], "with sides of twice the length: the finest is what all are beside"
     assert {row["linear"] for row in csv.DictReader(section.files[2].read_text().splitlines())} >= {"multigrid", "sor"}
 
 

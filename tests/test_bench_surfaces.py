@@ -55,7 +55,7 @@ objects:
   torus: {torus: {radius: 0.5 m, tube: 0.2 m}}
   shell: {implicit: {field: "abs(sqrt(x^2 + y^2 + z^2) - 0.3) - 0.002", bounds: {ball: 0.4}, position: 1.2 0 0}}
   sheet: {implicit: {field: "(x^2 + y^2 + z^2 - 0.09)^2", bounds: {ball: 0.4}, mode: surface, position: -1.2 0 0}}
-outputs: {still: {image: {size: 96 54}}}
+outputs: {still: {image: {size: 64 36}}}
 """
 
 
@@ -66,7 +66,7 @@ def rows(path):
 
 @pytest.mark.long
 def test_rays_and_meshes_are_measured(tmp_path, monkeypatch):
-    monkeypatch.setattr(surface_measures, "SIZES", (1_296, 5_184, 60_000))
+    monkeypatch.setattr(surface_measures, "SIZES", (576, 2_304, 60_000))
     monkeypatch.setattr(surface_measures, "CELLS", (16, 32, 64))
     monkeypatch.setattr(surface_measures, "SAMPLES", (16, 64, 256))
     monkeypatch.setattr(surface_measures, "REPEATS", 1)
@@ -76,8 +76,8 @@ def test_rays_and_meshes_are_measured(tmp_path, monkeypatch):
     traced = [run for run in rays if run["renderer"] == "trace" and float(run["setting"]) <= 1e-7]
     assert len(traced) == 6
     assert all(int(run["wrong"]) == 0 and float(run["largest_depth_error"]) < 1e-9 for run in traced)
-    assert list(dict.fromkeys((run["width"], run["height"]) for run in rays)) == [("48", "27"), ("96", "54")]
-    for width in ("48", "96"):
+    assert list(dict.fromkeys((run["width"], run["height"]) for run in rays)) == [("32", "18"), ("64", "36")]
+    for width in ("32", "64"):
         # March never sees the sheet, which is a third of the picture, and tears the shell.
         marched = [run for run in rays if run["renderer"] == "march" and run["width"] == width]
         wrong = [int(run["wrong"]) for run in marched]

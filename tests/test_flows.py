@@ -361,6 +361,15 @@ def test_a_lid_drives_a_finer_cavity_nearer(tmp_path, cells, step, within):
     assert found == pytest.approx([-0.2140424, 0.1795728, -0.2538030], rel=within)
 
 
+def test_streamlines_end_at_the_box_that_the_flow_runs_into():
+    """Towards a wall, as beside it velocities read between centers do not vanish."""
+    layout = FieldLayout((8, 8, 1), 0, 0, (0.0, 0.0, -0.5), (0.25, 0.25, 1.0))
+    ends = lines(np.tile([0.3, 1.0, 0.0], (64, 1)), layout, 0.5, np.inf)
+    assert len(ends) > 20
+    assert ends[..., :2].min() >= -1e-5
+    assert 2.0 - 1e-5 <= ends[..., :2].max() <= 2.0 + 1e-5
+
+
 def test_streamlines_follow_the_circles_of_a_vortex():
     """Of a solid rotation: every piece keeps its distance from the axis, and lines fill the box evenly."""
     layout = FieldLayout((32, 32, 1), 0, 0, (-1.0, -1.0, -0.5), (1 / 16, 1 / 16, 1.0))

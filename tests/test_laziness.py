@@ -93,6 +93,7 @@ def test_a_picture_without_implicit_objects_compiles_nothing_that_finds_them(tmp
     names = modules_after(tmp_path, STILL, "render")
     assert "renderers.tracing.solids.intersect_kernels" in names
     assert not names & {"renderers.tracing.solids.implicit_kernels", "sceneql.field.enclose.enclosure_kernels"}
+    assert not names & {"renderers.tracing.mist", "renderers.tracing.light.mist_light_kernels"}
     blob = STILL.replace("objects:\n", "objects:\n  drop: {blobby: {skeleton: [{point: 0 1 0 m, radius: 1 m}]}}\n")
     names = modules_after(tmp_path, blob, "render")
     assert "renderers.tracing.solids.implicit_kernels" in names

@@ -90,13 +90,15 @@ def net(columns, rows, seed):
     seed=st.integers(0, 2**32),
     symmetric=st.booleans(),
     dissected=st.booleans(),
+    bare=st.booleans(),
 )
-def test_fronts_solve_to_rounding(columns, rows, seed, symmetric, dissected):
+def test_fronts_solve_to_rounding(columns, rows, seed, symmetric, dissected, bare):
     pattern = net(columns, rows, seed)
     matrix = csr_array(0.5 * (pattern + pattern.T)) if symmetric else pattern.copy()
     matrix.setdiag(matrix.diagonal() + 30.0)
     places = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), [0], indexing="ij"), axis=-1).reshape(-1, 3)
-    plan = multifrontal.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
+    points = places.repeat(3, axis=0).astype(float) if dissected else None
+    plan = multifrontal.plan(pattern, points=points, symmetric=symmetric and bare)
     factors, work, numbers = np.zeros(plan.factors), np.zeros(plan.work), plan.numbers.copy()
     right = np.random.default_rng(seed).standard_normal(matrix.shape[0])
     x = right.copy()

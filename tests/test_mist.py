@@ -7,8 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from renderers.tracing import layout
 from renderers.tracing.draw import draw
-from renderers.tracing.mist_kernels import depths
+from renderers.tracing.mist_kernels import mists_along
+from renderers.tracing.pack import pack
 from runs import complaint
 from sceneql.frame import Mist, Points, Quadric, SeenFrame, Sky, Surface, View
 from sceneql.pipeline import frame_of, load
@@ -19,13 +21,15 @@ SIDE = 24
 WHITE = Sky(zenith=(1, 1, 1), horizon=(1, 1, 1), ground=(1, 1, 1))
 
 
-def depth(field, start, way, end=np.inf, low=None, high=None):
-    """What lies on one ray through a field (nz, ny, nx), in cells."""
-    low = np.zeros(3) if low is None else np.array(low)
-    high = np.array(field.shape[::-1]) - 1.0 if high is None else np.array(high)
-    out = np.empty(1)
-    depths(np.array([start], float), np.array([way], float), np.array([end]), field, low, high, out)
-    return out[0]
+VIEW = View((0.0, 0.0, 6.0), np.eye(3), (SIDE, SIDE), 0.9, True)
+
+
+def depth(field, start, way, end=np.inf):
+    """What lies on one ray through a field (nz, ny, nx) of unit cells."""
+    mist = Mist("m", Surface(), np.eye(3, 4), field, (0.0, 0.0, 0.0), tuple(np.array(field.shape[::-1]) - 1.0), False)
+    scene, _ = pack(SeenFrame(0, 0.0, (mist,), (WHITE,), VIEW))
+    kept = mists_along(scene, *map(float, start), *map(float, way), 0.0, float(end), layout.SEEN)[0]
+    return -np.log(kept)
 
 
 def chord(start, way, low, high):
@@ -58,7 +62,7 @@ def test_the_integral_of_a_product_of_places_is_exact(seed):
     for axis in range(3):
         cubic *= np.polynomial.Polynomial([start[axis], way[axis]])
     whole = cubic.integ()
-    assert depth(i * j * k, start, way) == pytest.approx(whole(last) - whole(first), rel=1e-9, abs=1e-9)
+    assert depth(0.01 * i * j * k, start, way) == pytest.approx(0.01 * (whole(last) - whole(first)), rel=1e-9, abs=1e-9)
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 1.0))
@@ -87,11 +91,11 @@ def test_rays_along_axes_and_through_nodes_are_as_deep_as_they_should_be(way):
 # --- pictures ---
 
 
-def block(strength, color=(0.0, 0.0, 0.0)):
+def block(strength, color=(0.0, 0.0, 0.0), lit=False):
     """A mist of 2 m x 2 m x 2 m around the origin."""
     to_cells = np.column_stack([np.eye(3) * 4.0, np.full(3, 4.0)])
     field = np.full((9, 9, 9), strength)
-    return Mist("m", Surface(color=color), to_cells, field, (0.0, 0.0, 0.0), (8.0, 8.0, 8.0))
+    return Mist("m", Surface(color=color), to_cells, field, (0.0, 0.0, 0.0), (8.0, 8.0, 8.0), lit)
 
 
 def seen(*shapes, orthographic=True):

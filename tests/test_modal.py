@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from numpy.random import Generator, Philox
@@ -9,6 +11,7 @@ from scipy.sparse import csr_array, diags_array
 
 from runs import complaint, watch
 from sceneql.failure import LimitRefused, RunFailure
+from sceneql.march import modal_march
 from sceneql.march.mode_loads import Modes
 from sceneql.pipeline import load
 from sceneql.run.run import Run
@@ -174,3 +177,35 @@ def test_a_mode_moves_on_as_by_two_halves(square, decay):
     assert second[0] == pytest.approx(q, rel=1e-9, abs=1e-9)
     assert second[1] == pytest.approx(speed, rel=1e-8, abs=1e-9 * scale)
     assert first[2][0, 0] + second[2][0, 0] == pytest.approx(whole[0, 0], rel=1e-9, abs=1e-9)
+
+
+def test_stiffness_that_may_vary_is_kept_once(tmp_path, monkeypatch):
+    """Loads that vary have it looked at eight times, one after the other."""
+    peaks = []
+
+    def tangent(*arguments):
+        tracemalloc.start()
+        found = original(*arguments)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+        return found
+
+    original = modal_march.tangent
+    monkeypatch.setattr(modal_march, "tangent", tangent)
+    for force in ("0 -1 0 N", "{x: 0 N, y: 1 N * sin(20 rad/s * time), z: 0 N}"):
+        script = scene(bar(f", loads: {{pull: {{near: 0.5 0 0 m, force: {force}}}}}", "6, 3, 3"))
+        watch(tmp_path, script, [0.0], "body.displacements", pruned=False)
+    assert peaks[1] < 1.4 * peaks[0]
+
+
+def test_a_run_of_a_solid_holds_little_beside_its_numbers_and_integers(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(scene(bar(cells="4, 3, 3")), encoding="utf-8")
+    graph = load(path, pruned=False)
+    Run(graph)
+    tracemalloc.start()
+    run = Run(graph)
+    held = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    system = run.islands[0].march.system
+    assert held < 3.0 * (system.floats.nbytes + system.ints.nbytes)

@@ -228,3 +228,68 @@ def test_numbers_beyond_all_doubles_leave_a_check_whole(tmp_path):
     cells = "models: {m: {diffusion: {size: 1 1 m, cell: 1e308 m, coefficient: 1 m^2/s}}}\n"
     cells += "solvers: {main: {rk4: {step: 1 ms}}}\n"
     assert warnings(loaded(tmp_path, cells + outputs.replace("water.kinetic_energy", "m.mass"))) == []
+
+
+DEEP = """\
+clock: {{end: 1 s}}
+models: {{m: {{{model}: {{{where}, cell: 0.1 m, {fields}}}}}}}
+objects: {{ball: {{sphere: {{radius: 0.52 m}}}}}}
+solvers: {{main: {{{solver}: {{step: {step} s}}}}}}
+outputs: {{data: {{record: {{of: [m.{output}]}}}}}}
+"""
+INSIDE = {
+    "wave": ("speed: 1 m/s, initial: exp(-x^2/0.02)", "verlet", "0.065", "max", 2.0 / (2.0 * math.sqrt(3) / 0.1)),
+    "diffusion": ("coefficient: 1 m^2/s, initial: exp(-x^2/0.02)", "euler", "2e-3", "max", 2.0 / (12.0 / 0.1**2)),
+    "flow": (
+        "density: 1 kg/m^3, viscosity: 1 Pa*s, initial: {velocity: '[-y, x, 0]'}", "euler", "2e-3",
+        "largest_speed", 2.0 / (12.0 / 0.1**2),
+    ),
+}  # fmt: skip
+"""Models in a domain, with a method, a step beyond its bound in three dimensions and below that in two, and that."""
+
+
+@pytest.mark.parametrize(("model", "case"), INSIDE.items())
+def test_the_bound_in_a_deep_domain_is_that_of_three_dimensions(tmp_path, model, case):
+    """It was told as that of a flat one, by which steps seemed to hold that do not."""
+    fields, solver, step, output, bound = case
+    script = DEEP.format(model=model, where="domain: ball", fields=fields, solver=solver, step=step, output=output)
+    (told,) = warnings(loaded(tmp_path, script))
+    found = re.fullmatch(r"dt = .* exceeds (\S+) ms, set by the .* over cells of 0.1 m \(scene.yaml:2\)", told)
+    assert float(found[1]) * 1e-3 == pytest.approx(bound, rel=1e-2)
+    flat = script.replace("domain: ball", "domain: ball, flat: yes").replace("[-y, x, 0]", "[-y, x]")
+    assert warnings(loaded(tmp_path, flat)) == []
+
+
+def test_speeds_and_coefficients_by_formulas_bound_the_step_by_their_largest(tmp_path):
+    """Nothing was told of them."""
+    box = {"where": "size: 2 1 m", "solver": "verlet", "output": "max"}
+    script = DEEP.format(model="wave", fields="speed: 1 + x, initial: exp(-x^2/0.02)", step="0.03", **box)
+    (told,) = warnings(loaded(tmp_path, script))
+    bound = 2.0 / (2.0 * 3.0 * math.sqrt(2) / 0.1)
+    assert float(re.search(r"exceeds (\S+) ms", told)[1]) * 1e-3 == pytest.approx(bound, rel=1e-2)
+    (island,) = Run(loaded(tmp_path, script)).islands
+    assert bound <= stability(island.march, island.solver).step < 1.25 * bound
+    spread = DEEP.format(
+        model="diffusion", fields="coefficient: 1 + x, initial: exp(-x^2/0.02)", step="1.2e-3",
+        **box | {"solver": "euler"},
+    )  # fmt: skip
+    (told,) = warnings(loaded(tmp_path, spread))
+    assert float(re.search(r"exceeds (\S+) ms", told)[1]) * 1e-3 == pytest.approx(2.0 / (8.0 * 3.0 / 0.1**2), rel=1e-2)
+
+
+def test_a_solid_that_moves_bounds_the_step_of_the_flow_around_it(tmp_path):
+    """The fluid is at rest at the start, whose spectrum tells nothing of what the solid will do."""
+    script = (
+        "clock: {end: 1 s}\nmodels: {air: {flow: {size: 2 1 m, cell: 0.1 m, density: 1 kg/m^3, viscosity: 0.1 Pa*s, "
+        "around: [cyl]}}}\nobjects: {cyl: {sphere: {radius: 0.2 m, position: '[0.5 m + 4 m*time^2/(1 s^2)/8, 0.5 m, "
+        "0 m]'}}}\nsolvers: {main: {rk4: {step: 0.3 s}}}\noutputs: {data: {record: {of: [air.largest_speed]}}}\n"
+    )
+    graph = loaded(tmp_path, script)
+    (told,) = warnings(graph)
+    assert "set by the viscosity" in told  # 4 nu of both directions: 0.034 s
+    fast = script.replace("4 m*time", "400 m*time").replace("0.3 s", "20 ms")
+    (told,) = warnings(loaded(tmp_path, fast))
+    found = re.fullmatch(r"dt = 20 ms exceeds (\S+) ms, set by the solid 'cyl' that moves .* \(scene.yaml:2\)", told)
+    assert 2.5 / (100.0 / 0.1) < float(found[1]) * 1e-3 < 3.0 / (100.0 / 0.1)  # |v| dt/cell of rk4
+    plan = text(explain(loaded(tmp_path, fast)))
+    assert re.search(rf"after the start stable up to a step of {found[1]} ms, set by the solid 'cyl'", plan)

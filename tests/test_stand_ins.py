@@ -27,7 +27,9 @@ def test_the_shape_of_a_soft_body_is_neither_seen_nor_hit(tmp_path, model):
     graph = graph_of(tmp_path, model)
     assert "mold" not in graph.drawn["film"]
     assert "body" in graph.drawn["film"]
-    pipeline.render(pipeline.load(tmp_path / "s.yaml", sets=["outputs={s: {image: {size: 16 9}}}"]), folder=tmp_path)
+    pipeline.render(
+        pipeline.load(tmp_path / "s.yaml", sets=["outputs={s: {image: {size: 16 9, time: 20 ms}}}"]), folder=tmp_path
+    )
 
 
 def test_an_elastic_solid_looks_like_its_shape_unless_it_says_otherwise(tmp_path):

@@ -72,7 +72,11 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
     """
     scene, rows = pack(frame, tolerance, march)
     width, height = frame.view.size
-    columns = FIRST_LIGHT + 2 * int(scene.ints[layout.LIGHT_COUNT])
+    columns = FIRST_LIGHT + (2 if scene.mist == 0 else 3) * int(scene.ints[layout.LIGHT_COUNT])
+    if scene.mist != 0:
+        from renderers.tracing.mist import light_up
+
+        light_up(scene, rows)
     layers = layers_of(scene)
     buffers = _buffers(width, height, columns, layers)
     reach(scene, buffers.reached)
@@ -109,7 +113,7 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
         with_waves(lambda w: w.smooth(start, stop, points, doubted, buffers.busy, buffers.planes, *light, linear))
 
     over_rows(height, smooth)
-    over(frame, buffers.records[0], buffers.radiance, linear)
+    over(frame, buffers.records[0], linear)
     _kept[:] = [buffers]
     return Picture(linear.reshape(height, width, 3), undecided)
 

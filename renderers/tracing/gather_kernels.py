@@ -17,7 +17,7 @@ from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import behind, bend, beneath, describe, faded, mirrored, refracted, refracted_spread
 from renderers.tracing.record_kernels import IMAGED, SURFACE, TINT, TRACED, WEIGHT, copy_record, start_of
 from renderers.tracing.record_kernels import RADIUS as BROAD
-from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, part
+from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, mists_at, part
 from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.thin_capsules_kernels import coverage
 from sceneql.compiled.kernels import kernel
@@ -52,14 +52,15 @@ RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIV
 (3 each); whether it was only refracted, so that it sees the backdrop; whether its second record is still to be found;
 surfaces so far; whether the camera is a perspective one; whether it goes on; whether a root was undecided; whether its
 last surface is still to be lit."""
-WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PAST, LINES, SAMPLE, PATH = (
+WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PAST, LINES, SAMPLE, CLEARED, PATH = (
     21,
     22,
-    *range(28, 37),
+    *range(28, 38),
 )
 """Glass splits a ray: whether the mirrored one waits, and its begin. Share of the lamps that a ray sees: none unless it
 was mirrored, and has met nothing but clear glass since then. Distance up to which a camera's ray is through with thin
-capsules, and how many it has met; number of the path's sample in its pixel. Numbers of a path."""
+capsules, and how many it has met; number of the path's sample in its pixel; distance up to which mists on the ray are
+counted. Numbers of a path."""
 
 
 @part
@@ -73,7 +74,7 @@ def begin(path, ray, cone):
         path[GATHERED + c] = 0.0
     path[STRAIGHT], path[KEEP], path[BOUNCE], path[LIVE] = 1.0, 1.0, 0.0, 1.0
     path[PERSPECTIVE] = 1.0 if cone[1] > 0.0 else 0.0
-    path[WAITING] = path[DOUBTED] = path[DARK] = path[LAMPS] = path[PAST] = path[LINES] = 0.0
+    path[WAITING] = path[DOUBTED] = path[DARK] = path[LAMPS] = path[PAST] = path[LINES] = path[CLEARED] = 0.0
 
 
 @kernel(types.void(SCENE, SCRATCH, PLACES, ROW, ROW, ROW), _nrt=False, inner=True)
@@ -100,6 +101,13 @@ def advance(scene, scratch, path, first, second, spare):
     scratch[counter, layout.TOLD] = scratch[counter, layout.WIDE_FROM] = 0.0
     if widens:
         scratch[counter, layout.WIDE_RADIUS] = scratch[counter, layout.WIDE_SPREAD] = 0.0
+    if scene.mist != 0:
+        left, r, g, b = mists_at(scene.mist)(scene, ox, oy, oz, dx, dy, dz, path[CLEARED], t, layout.SEEN)
+        cr, cg, cb = cr + wr * r, cg + wg * g, cb + wb * b
+        wr, wg, wb = left * wr, left * wg, left * wb
+        path[LIGHT_WEIGHT], path[LIGHT_WEIGHT + 1], path[LIGHT_WEIGHT + 2] = wr, wg, wb
+        path[GATHERED], path[GATHERED + 1], path[GATHERED + 2], path[CLEARED] = cr, cg, cb, t
+    if widens:
         if item >= 0:
             share, past = coverage(scene, item, radius, spread, ox, oy, oz, dx, dy, dz)
             if share < 1.0:
@@ -219,7 +227,7 @@ def advance(scene, scratch, path, first, second, spare):
         radius, spread, path[LAMPS] = path[LATER_RADIUS], path[LATER_SPREAD], path[LATER_LAMPS]
     else:
         path[0], path[1], path[2], path[3], path[4], path[5] = ox, oy, oz, dx, dy, dz
-    path[RADIUS], path[SPREAD], path[BOUNCE] = radius, spread, bounce
+    path[RADIUS], path[SPREAD], path[BOUNCE], path[CLEARED] = radius, spread, bounce, 0.0
     path[LIGHT_WEIGHT], path[LIGHT_WEIGHT + 1], path[LIGHT_WEIGHT + 2] = wr, wg, wb
     path[STRAIGHT], path[KEEP] = (1.0 if straight else 0.0), (1.0 if keep else 0.0)
 

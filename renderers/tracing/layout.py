@@ -1,11 +1,12 @@
 """Layout of the tracer's scene (two arrays), of its scratch and of its lists of rays."""
 
 NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT = range(7)
-HAS_THIN, BOX_COUNT, EMBERS_AT, EMBERS = range(7, 11)
-"""The header; HAS_THIN tells whether there are THIN items, EMBERS how many spheres glow, EMBERS_AT where their tree is.
+HAS_THIN, BOX_COUNT, EMBERS_AT, EMBERS, MISTS_AT, MISTS = range(7, 13)
+"""The header; HAS_THIN tells whether there are THIN items, EMBERS how many spheres glow, EMBERS_AT where their tree is,
+MISTS_AT where in the ints the places of the reals of so many MISTS are.
 The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""
 
-ITEMS = 11
+ITEMS = 13
 """Offset of the items, by leaf: kind, place of the reals, place of the surface, index of the shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
 TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID, THIN = range(8)
@@ -28,6 +29,24 @@ CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
 """Columns of the ranges, and their number."""
 CELLS = 32
 """Occupancy cells along each axis of an implicit object's box, through which single rays walk."""
+
+TO_NODES, TO_WORLD, MIST_LOW, MIST_HIGH, NODES, MIST_BOX, MIST_COLOR, LIT, ABSORPTION = (
+    0,
+    12,
+    24,
+    27,
+    30,
+    33,
+    39,
+    42,
+    43,
+)
+"""Reals of a mist: maps to its nodes and from these to the world (3, 4), corners of its box in nodes, nodes along x, y,
+z, its box in the world, color, whether it is lit; the absorption of its nodes [1/m], if it is lit the radiance that it
+has at each where it is thick (3, one behind the other), and for each block of grid_kernels.BLOCK cells 1 if there is
+any in it."""
+SEEN, LIGHT, LEFT = range(3)
+"""What a ray wants to know of mists (mist_kernels.mists_along)."""
 
 EMBER = 9
 """Reals of a node of the tree of spheres that glow: their mean place by intensity, distance from there up to which they

@@ -1,96 +1,134 @@
-"""Absorbing volumes over a finished picture, each as far as the surface that stands in it."""
+"""Mists: packed for the kernels, and lit before rays meet them."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from renderers.tracing.mist_kernels import depths
-from renderers.tracing.picture import over_rows
-from renderers.tracing.record_kernels import OWNER, PLACE
+from renderers.tracing import layout
+from renderers.tracing.mist_kernels import mists_along
+from renderers.tracing.scene_kernels import MIST
+from renderers.tracing.solids.grid_kernels import BLOCK
+from renderers.tracing.solids.grids import blocks_with
+from sceneql.compiled.kernels import address, over_tiles
+from sceneql.shapes.placement import inverse
+from sceneql.shapes.world_boxes import box_of
 
 if TYPE_CHECKING:
-    from numpy import float32
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Mist, View
+    from renderers.tracing.scene_kernels import Scene
+    from sceneql.frame import Floats, Mist
 
-STEP = 0.01
-"""Difference of transmittance between neighboring pixels from which on there is an edge."""
-FAINT = 1e-3
-"""Difference of two colors below which their shares in a pixel do not matter."""
+    Corner = tuple[float, float, float]
+
+FAINT = 1e-4
+"""Optical depth across a mist's box below which there is none: a carried field has faint rims that reach far."""
+ORDERS = 6
+"""How often light goes on from place to place in mists, after it has been scattered once."""
+COARSE = 10
+"""Places along the longest side of a mist's grid at which the light from around is gathered."""
+DIRECTIONS = 24
+"""In so many directions, evenly over the sphere."""
 
 
-def dim(
-    shape: Mist, view: View, records: NDArray[float32], radiance: NDArray[float32], linear: NDArray[float32]
-) -> None:
-    """Draw a mist over ``linear`` (pixels, 3); ``records``, ``radiance``: of the center of each pixel.
+def row(shape: Mist) -> Floats:
+    """The reals of a mist (see layout); what it sends is still 0."""
+    counts = shape.absorption.shape[::-1]
+    low, high = box_of(shape)
+    some = shape.absorption * np.linalg.norm(high - low) > FAINT
+    absorption = np.where(some, shape.absorption, 0.0)
+    found = blocks_with(some)
+    corner, top = _bounds(shape, found)
+    low, high = box_of(replace(shape, low=corner, high=top))
+    to_nodes = np.asarray(shape.to_cells, dtype=np.float64)
+    maps = [to_nodes.ravel(), inverse(to_nodes).ravel()]
+    head = [*corner, *top, *counts, *low, *high, *shape.surface.color, float(shape.lit)]
+    source = np.zeros(3 * absorption.size if shape.lit else 0)
+    return np.concatenate([*maps, head, absorption.ravel(), source, found.ravel()])
 
-    Both pictures are changed. The background is dimmed by the transmittance exp(-depth) (Beer, Lambert), and the rest
-    is the mist's own color.
+
+def _bounds(shape: Mist, found: NDArray[np.bool_]) -> tuple[Corner, Corner]:
+    """The corners of its box, cut to the blocks in which there is any."""
+    low, high = list(shape.low), list(shape.high)
+    for axis in range(3):
+        some = np.flatnonzero(found.any(axis=tuple({0, 1, 2} - {2 - axis})))
+        if len(some) > 0:
+            low[axis] = max(low[axis], float(BLOCK * some[0]))
+            high[axis] = min(high[axis], float(BLOCK * (some[-1] + 1)))
+    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+
+def passed(scene: Scene) -> Scene:
+    """The scene with the address of the kernel for mists."""
+    return scene._replace(mist=address(mists_along, MIST))
+
+
+def light_up(scene: Scene, rows: int, orders: int = ORDERS) -> None:
+    """Find what the scene's lit mists send; ``rows`` of scratch.
+
+    The light of lamps and suns that each node scatters is found there: what solids and mists leave of it. The rest, of
+    the sky, of surfaces, and of the mists themselves, is gathered at a few places, and again ``orders`` times, since
+    each time light has gone on from place to place.
     """
-    width, height = view.size
-    turn, shift = np.asarray(shape.to_cells)[:, :3], np.asarray(shape.to_cells)[:, 3]
-    field = np.ascontiguousarray(shape.absorption, dtype=np.float64)
-    low, high = np.array(shape.low, dtype=np.float64), np.array(shape.high, dtype=np.float64)
-    depth = np.empty(len(records))
+    from renderers.tracing.light.bounce_kernels import WAY
+    from renderers.tracing.light.mist_light_kernels import REACH, gather_around, light_nodes, scatter_again, spread
+    from renderers.tracing.scratch import scratch
+    from renderers.tracing.solids.packet_choice import lender
 
-    def work(start: int, stop: int) -> None:
-        rows = slice(start * width, stop * width)
-        origins, ways = rays(view, start, stop)
-        seen = records[rows].astype(np.float64)
-        far = ((seen[:, PLACE : PLACE + 3] - origins) * ways).sum(axis=1)
-        ends = np.where(seen[:, OWNER] == 0.0, np.inf, far)
-        depths(origins @ turn.T + shift, ways @ turn.T, ends, field, low, high, depth[rows])
+    reals = scene.reals
+    places = [int(at) for at in scene.ints[scene.ints[layout.MISTS_AT] :]]
+    lit = [at for at in places if reals[at + layout.LIT] != 0.0]
+    with_scratch = lender(lambda: (scratch(rows), np.zeros((1, layout.ANSWERS)), np.zeros(WAY)))
+    ways = directions()
+    layers = [(at, k) for at in lit for k in range(int(reals[at + layout.NODES + 2]))]
+    over_tiles(len(layers), lambda i: with_scratch(lambda own: light_nodes(scene, own[0], *layers[i])))
+    if not lit or orders == 0:
+        return
+    lamps = [_source(scene, at).copy() for at in lit]
+    around = [np.zeros((*_coarse(reals, at), REACH + DIRECTIONS)) for at in lit]
+    rods = [(m, k) for m in range(len(lit)) for k in range(len(around[m]))]
 
-    over_rows(height, work)
-    color = np.array(shape.surface.color)
-    kept = np.exp(-depth)
-    edges, other = _steps(kept.reshape(height, width))
-    own, beside = radiance[edges].astype(np.float64), radiance[other].astype(np.float64)
-    away = own - beside
-    square = (away * away).sum(axis=1)
-    apart = square > FAINT**2
-    share = np.clip(((linear[edges] - beside) * away).sum(axis=1) / np.where(apart, square, 1.0), 0.0, 1.0)[:, None]
-    mixed = kept[edges, None] + (1.0 - share) * (kept[other] - kept[edges])[:, None]
-    parts = share * kept[edges, None] * own + (1.0 - share) * kept[other, None] * beside
-    smooth = (parts + (1.0 - mixed) * color)[apart]
-    for picture in (linear, radiance):  # the next mist lies over this one
-        picture[:] = kept[:, None] * picture + (1.0 - kept[:, None]) * color
-    linear[edges[apart]] = smooth
+    def gather(i: int) -> None:
+        m, k = rods[i]
+        with_scratch(lambda own: gather_around(scene, *own, lit[m], ways, around[m], k))
 
+    def scatter(i: int) -> None:
+        m, k = rods[i]
+        scatter_again(scene, lit[m], ways, around[m], k)
 
-def _steps(kept: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Edges in a transmittance (h, w): pixels (k,), and for each its most different neighbor of four.
+    def join(i: int) -> None:
+        at, k = layers[i]
+        m = lit.index(at)
+        spread(scene, at, lamps[m], around[m], k)
 
-    At an edge a pixel's color is a mean of two surfaces, each with a depth of its own.
-    """
-    number = np.arange(kept.size).reshape(kept.shape)
-    best, other = np.full(kept.shape, STEP), number.copy()
-    for axis in range(2):
-        for way in (1, -1):
-            beside = np.roll(number, way, axis)
-            at_rim = [slice(None)] * 2
-            at_rim[axis] = slice(0, 1) if way == 1 else slice(-1, None)
-            beside[tuple(at_rim)] = number[tuple(at_rim)]
-            step = abs(kept.ravel()[beside] - kept)
-            other = np.where(step > best, beside, other)
-            best = np.maximum(best, step)
-    edges = np.flatnonzero(best.ravel() > STEP)
-    return edges, other.ravel()[edges]
+    over_tiles(len(rods), gather)
+    for _ in range(orders):
+        over_tiles(len(layers), join)
+        over_tiles(len(rods), scatter)
+    over_tiles(len(layers), join)
 
 
-def rays(view: View, start: int, stop: int) -> tuple[Floats, Floats]:
-    """Origins and unit directions (n, 3) of the rays through the centers of some rows' pixels."""
-    width, height = view.size
-    columns, rows = np.meshgrid(np.arange(width) + 0.5, np.arange(start, stop) + 0.5)
-    across = (2.0 * columns.ravel()[:, None] - width) / height * view.half_height * view.axes[0]
-    across += (1.0 - 2.0 * rows.ravel()[:, None] / height) * view.half_height * view.axes[1]
-    if view.orthographic:
-        # Objects before the window's plane are seen as well.
-        back = 1e4 * max(1.0, view.half_height)
-        return np.array(view.origin) + across + back * view.axes[2], np.broadcast_to(-view.axes[2], across.shape)
-    ways = across - view.axes[2]
-    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
-    return np.broadcast_to(np.array(view.origin, dtype=float), ways.shape), ways
+def _source(scene: Scene, at: int) -> Floats:
+    """What a mist sends, as kept in the scene."""
+    count = int(np.prod(scene.reals[at + layout.NODES : at + layout.NODES + 3]))
+    first = at + layout.ABSORPTION + count
+    found: Floats = scene.reals[first : first + 3 * count]
+    return found
+
+
+def _coarse(reals: Floats, at: int) -> tuple[int, int, int]:
+    """Places along z, y, x."""
+    nodes = reals[at + layout.NODES : at + layout.NODES + 3]
+    x, y, z = (max(2, round(COARSE * float(side / nodes.max()))) for side in nodes)
+    return z, y, x
+
+
+def directions() -> Floats:
+    """(DIRECTIONS, 3) unit vectors evenly over the sphere, on a spiral (Gonzalez 2010)."""
+    up = 1.0 - (2.0 * np.arange(DIRECTIONS) + 1.0) / DIRECTIONS
+    turn = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(DIRECTIONS)
+    across = np.sqrt(1.0 - up * up)
+    return np.stack([across * np.cos(turn), up, across * np.sin(turn)], axis=1)

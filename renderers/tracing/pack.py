@@ -70,12 +70,14 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     ranges_at = links_at + links.size
     embers = embers_of(frame.shapes, frame.lights)
     parts = [lights.ravel(), panels.ravel(), *tables.surfaces, nodes.ravel(), *tables.reals, embers.ravel()]
+    mists = np.array(tables.mists, dtype=np.int64) + reals_at
     reals = np.concatenate([head, *parts])
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), tables.thin]
-    header += [len(panels), len(reals) - embers.size, (len(embers) + 1) // 2]
+    header += [len(panels), len(reals) - embers.size, (len(embers) + 1) // 2, 0, len(mists)]
     ranges_of = [*tables.ranges, *tables.textures]
     code_at = ranges_at + sum(map(len, ranges_of))
-    ints = np.concatenate([header, items.ravel(), links.ravel(), *ranges_of, *tables.codes], dtype=np.int32)
+    ints = np.concatenate([header, items.ravel(), links.ravel(), *ranges_of, *tables.codes, mists], dtype=np.int32)
+    ints[layout.MISTS_AT] = len(ints) - len(mists)
     for k in range(len(tables.implicits)):
         place = ranges_at + layout.RANGES * k
         ranges = ints[place : place + layout.RANGES]
@@ -88,7 +90,7 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
         ints[place] += code_at
         ints[[place + 2, place + 4]] += reals_at
         reals[surfaces_at + layout.SURFACE_SIZE * index + layout.TEXTURE] = place
-    scene = Scene(reals, ints, 0, 0, 0, 0, 0, 0)
+    scene = Scene(reals, ints, 0, 0, 0, 0, 0, 0, 0)
     if tables.painted:
         from renderers.tracing.solids.texture_kernels import texture
 
@@ -97,6 +99,10 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
         from renderers.tracing.solids.grids import found_by_cells
 
         scene = found_by_cells(scene)
+    if tables.mists:
+        from renderers.tracing.mist import passed
+
+        scene = passed(scene)
     rows = tables.rows + len(frame.shapes) + 1
     if tables.implicits:
         from renderers.tracing.solids.implicit import prepared
@@ -127,6 +133,8 @@ class Rows:
         """Ranges of the tapes of meshes, the shapes ``painted``; they stand behind those of implicit objects."""
         self.still: list[tuple[Packed, NDArray[np.int64]]] = []
         """Meshes with hierarchies of their own: their packed data, and their items, which are not among the others."""
+        self.mists: list[int] = []
+        """Places of the reals of mists."""
         self.rows = 0
         self._size = 0
         self._code_size = 0
@@ -147,7 +155,11 @@ class Rows:
             self._implicit(index, shape)
         elif isinstance(shape, seen.Grid):
             self._grid(index, shape)
-        elif isinstance(shape, seen.Mist) or (isinstance(shape, seen.Points) and shape.soft is not None):
+        elif isinstance(shape, seen.Mist):
+            from renderers.tracing.mist import row
+
+            self.mists.append(self._place(row(shape)))
+        elif isinstance(shape, seen.Points) and shape.soft is not None:
             pass  # drawn over the picture (sprites.py)
         elif isinstance(shape, seen.Points):
             zero = np.zeros((len(shape.centers), 3))

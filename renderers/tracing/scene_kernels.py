@@ -34,6 +34,8 @@ class Scene(NamedTuple):
     """Of grid_kernels.skin; 0 without grids."""
     texture: int
     """Of texture_kernels.texture; 0 without meshes that are painted."""
+    mist: int
+    """Of mist_kernels.mists_along; 0 without mists."""
 
 
 _f, _i = types.float64, types.int64
@@ -52,11 +54,12 @@ listed, whether packets know all of the scene (they are ALONE), and from ANSWERS
 rays are traced at once; ASKING: rays are written down, and those that reach boxes of implicit shapes or grids are open,
 and miss everything; TELLING: rays are traced with the answers, in the order in which they were written; ENDING: no rays
 are traced, and what ways of light have brought is summed up, in their order, in which NEXT is the next one."""
-SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i, _i), Scene)
+SCENE = types.NamedTuple((types.float64[::1], types.int32[::1], _i, _i, _i, _i, _i, _i, _i), Scene)
 RAY = (_f,) * 8
 """Types of origin, direction, near and far."""
 CROSSING = types.FunctionType(_f(SCENE, SCRATCH, _i, *RAY, types.boolean))
 SKIN = types.FunctionType(types.UniTuple(_f, 6)(SCENE, SCRATCH, _i, _f, _f, _f))
 TEXTURE = types.FunctionType(types.UniTuple(_f, 3)(SCENE, SCRATCH, _i, _f, _f, _f))
-crossing_at, skin_at, texture_at = map(function_at, (CROSSING, SKIN, TEXTURE))
+MIST = types.FunctionType(types.UniTuple(_f, 4)(SCENE, *RAY, _i))
+crossing_at, skin_at, texture_at, mists_at = map(function_at, (CROSSING, SKIN, TEXTURE, MIST))
 """Turn addresses into functions."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from renderers.tracing.picture import over_rows
-from sceneql.frame import Mist, Points
+from sceneql.frame import Points
 
 if TYPE_CHECKING:
     from numpy import float32
@@ -19,16 +19,11 @@ SMALLEST = 1.25
 """Radius [pixels] below which a disc is drawn larger and as much fainter, so that none falls between pixels."""
 
 
-def over(frame: SeenFrame, records: NDArray[float32], radiance: NDArray[float32], linear: NDArray[float32]) -> None:
-    """Draw the frame's mists, then its soft discs over ``linear`` (pixels, 3), shapes in their order.
+def over(frame: SeenFrame, records: NDArray[float32], linear: NDArray[float32]) -> None:
+    """Draw the frame's soft discs over ``linear`` (pixels, 3), shapes in their order.
 
-    ``records``, ``radiance``: of the center of each pixel. Opaque discs of one shape are drawn from the farthest on.
+    ``records``: of the center of each pixel. Opaque discs of one shape are drawn from the farthest on.
     """
-    for shape in frame.shapes:
-        if isinstance(shape, Mist):
-            from renderers.tracing.mist import dim
-
-            dim(shape, frame.view, records, radiance, linear)
     for shape in frame.shapes:
         if isinstance(shape, Points) and shape.soft is not None and len(shape.centers):
             _draw(shape, frame.view, records, linear)

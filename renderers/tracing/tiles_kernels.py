@@ -94,7 +94,8 @@ def in_tile(u, ball, x, y):
 
 @kernel(types.void(SCENE, MARKS), _nrt=False)
 def reach(scene, reached):
-    """Mark the tiles in which a ray of a pixel may meet an item: by outlines of the hierarchy's boxes, and of balls."""
+    """Mark the tiles in which a ray of a pixel may meet an item: by outlines of boxes, of the hierarchy and mists, and
+    of balls."""
     rows, columns = reached.shape
     everywhere = 1 if scene.ints[layout.ENDLESS_COUNT] > 0 else 0
     for y in range(rows):
@@ -118,6 +119,12 @@ def reach(scene, reached):
                         reached[y, x] = 1
             # Behind a leaf the nodes of a mesh that has its own may follow: they are inside of the leaf's box.
             n = scene.ints[link]
+    for m in range(scene.ints[layout.MISTS]):
+        box = scene.ints[scene.ints[layout.MISTS_AT] + m] + layout.MIST_BOX
+        seen, left, right, top, bottom = outline(scene.reals, box)
+        for y in range(max(tile_at(top, rows), 0), (min(tile_at(bottom, rows), rows - 1) if seen else -1) + 1):
+            for x in range(max(tile_at(left, columns), 0), min(tile_at(right, columns), columns - 1) + 1):
+                reached[y, x] = 1
 
 
 @kernel(types.void(SCENE, _i, _i, MARKS, MARKS, _stack, _rows), _nrt=False)

@@ -13,7 +13,7 @@ from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.visibility_kernels import look_around
 from renderers.tracing.path_kernels import describe_by, faded
 from renderers.tracing.record_kernels import OWNER, UNSURE, WEIGHT, erase
-from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part
 from renderers.tracing.solids.intersect_kernels import put_ray, tell, told_alone, walk
 from renderers.tracing.solids.surface_kernels import normal_at
 from sceneql.compiled.kernels import kernel
@@ -51,17 +51,28 @@ def layers_of(scene):
 
 
 @part
+def see_mist(scene, ray, t, gathered):
+    """Add what mists send on a camera's ray up to t to what it has ``gathered``; returns what is left of light."""
+    left, r, g, b = mists_at(scene.mist)(scene, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5], 0.0, t, layout.SEEN)
+    gathered[0], gathered[1], gathered[2] = gathered[0] + r, gathered[1] + g, gathered[2] + b
+    return left
+
+
+@part
 def see_matte(scene, item, skin, t, ray, cone, record, gathered):
     """Write the record of a matte item that a camera's ray meets at t; endless ones fade into the backdrop."""
     x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
     radius = abs(cone[0] + cone[1] * t)
     describe_by(scene, item, skin, x, y, z, ray[3], ray[4], ray[5], radius, record)
     weight = 1.0
+    if scene.mist != 0:
+        weight = see_mist(scene, ray, t, gathered)
     fade = faded(scene, item, record) if cone[1] > 0.0 else 1.0
     if fade < 1.0:
         r, g, b = backdrop(scene.reals, max(ray[4], 0.0))
-        gathered[0], gathered[1], gathered[2] = (1.0 - fade) * r, (1.0 - fade) * g, (1.0 - fade) * b
-        weight = fade
+        lost = weight * (1.0 - fade)
+        gathered[0], gathered[1], gathered[2] = gathered[0] + lost * r, gathered[1] + lost * g, gathered[2] + lost * b
+        weight *= fade
     record[WEIGHT], record[WEIGHT + 1], record[WEIGHT + 2] = weight, weight, weight
 
 
@@ -128,7 +139,9 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
         own = gathered[i]
         own[0], own[1], own[2] = 0.0, 0.0, 0.0
         if item < 0:
-            own[0], own[1], own[2] = backdrop(scene.reals, ray[4])
+            r, g, b = backdrop(scene.reals, ray[4])
+            left = see_mist(scene, ray, np.inf, own) if scene.mist != 0 else 1.0
+            own[0], own[1], own[2] = own[0] + left * r, own[1] + left * g, own[2] + left * b
         elif together and scene.ints[layout.ITEMS + 4 * item + layout.KIND] == layout.IMPLICIT:
             hits[hits_now], met[i, 0], met[i, 1] = i, t, item
             for axis in range(3):

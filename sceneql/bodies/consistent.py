@@ -19,24 +19,37 @@ def close(assembly: Assembly, bodies: Bodies, matrix: Any) -> None:
     import numpy as np
     from scipy.sparse import csr_array, diags_array
 
-    from sceneql.linear import multifrontal, multifrontal_kernels
-    from sceneql.linear.multifrontal_layout import SINGLE_FACTOR
     from sceneql.system import Slopes
 
     size = 3 * bodies.count
     matrix = csr_array(matrix, dtype=np.float64)
     held = matrix.diagonal() == 0.0
-    whole = csr_array(matrix + diags_array(1.0 * held))
+    *floats, plan = factored(csr_array(matrix + diags_array(1.0 * held)), assembly)
+    head = [bodies.position_at, bodies.velocity_at, size, *floats, assembly.floats(1.0 * held)]
+    ints = np.concatenate([head, plan])
+    assembly.inertia(bodies.velocity_at, bodies.inverse_at, bodies.count, matrix)
+    places = np.arange(size)
+    slopes = Slopes(f"{KERNELS}_slopes_kernels:close", bodies.position_at + places, bodies.velocity_at + places)
+    assembly.term("close", f"{KERNELS}_kernels:close", ints, slopes, energy="")
+
+
+def factored(matrix: Any, assembly: Assembly) -> tuple[int, int, int, int, Any]:
+    """Offsets and counts of the factors of a matrix and of room to solve with them, then their plan, int64.
+
+    ``matrix``: scipy sparse, symmetric, positive definite. Read by multifrontal_solve_kernels.solve_symmetric.
+    """
+    import numpy as np
+    from scipy.sparse import csr_array
+
+    from sceneql.linear import multifrontal, multifrontal_kernels
+    from sceneql.linear.multifrontal_layout import SINGLE_FACTOR
+
+    whole = csr_array(matrix, dtype=np.float64)
     whole.sum_duplicates()
     whole.sort_indices()
-    plan = multifrontal.plan(whole)
+    plan = multifrontal.plan(whole, symmetric=True)
     plan.numbers[SINGLE_FACTOR] = -1
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     if not multifrontal_kernels.factor_system(plan.numbers, whole.data, factors, work, True):
         raise ValueError("the inertia is singular")
-    floats = (assembly.floats(factors), len(factors), assembly.floats(work), len(work), assembly.floats(1.0 * held))
-    ints = np.concatenate([[bodies.position_at, bodies.velocity_at, size, *floats], plan.numbers])
-    assembly.inertia(bodies.velocity_at, bodies.inverse_at, bodies.count, matrix)
-    places = np.arange(size)
-    slopes = Slopes(f"{KERNELS}_slopes_kernels:close", bodies.position_at + places, bodies.velocity_at + places)
-    assembly.term("close", f"{KERNELS}_kernels:close", ints.tolist(), slopes, energy="")
+    return assembly.floats(factors), len(factors), assembly.floats(work), len(work), plan.numbers

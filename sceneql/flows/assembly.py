@@ -18,6 +18,7 @@ from sceneql.flows.staggered import Faces
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces
 from sceneql.grids.domain.boundary import shares
+from sceneql.grids.medium import number_in
 from sceneql.grids.multigrid.layout import SINK
 from sceneql.kinds import Formula
 from sceneql.quantities.derivative import components, differentiate
@@ -28,6 +29,7 @@ from sceneql.system import Cells, Flow, Grid
 if TYPE_CHECKING:
     from sceneql.flows.flow_fields import Model
     from sceneql.flows.parts import Side
+    from sceneql.flows.varying.fluids import Fluids
     from sceneql.frame import Floats
     from sceneql.grids.domain.cells import Cells as Ground
     from sceneql.system import Assembly
@@ -41,13 +43,13 @@ TIMES = (0.0, 0.37, 1.0, 7.3)
 """Instants [s] at which inflows of a closed box are looked at."""
 
 
-def add_flow(model: Model, cells: Ground, assembly: Assembly) -> Flow:
+def add_flow(name: str, model: Model, cells: Ground, assembly: Assembly) -> Flow:
     """Reserve an entry of y a face, and add the terms of the rate. Raises ScriptError where sides do not fit."""
-    return _Builder(model, cells, assembly).build()
+    return _Builder(name, model, cells, assembly).build()
 
 
 class _Builder:
-    def __init__(self, model: Model, cells: Ground, assembly: Assembly) -> None:
+    def __init__(self, name: str, model: Model, cells: Ground, assembly: Assembly) -> None:
         self.model, self.cells, self.assembly = model, cells, assembly
         solids = {ref.name for ref in (*model.around, *([model.domain] if model.domain is not None else []))}
         sides = {name: part for name, part in model.boundary.items() if name not in solids}
@@ -66,7 +68,13 @@ class _Builder:
             if part.outflow is not None:
                 self.opened[mine] = True
                 self.pressure[mine] = part.outflow.pressure
-        self.viscosity = model.viscosity / model.density
+        self.fluids: Fluids | None = None
+        held, viscosity = assembly.fluids(name), number_in(model.viscosity)
+        if held or viscosity is None:
+            from sceneql.flows.varying.fluids import Fluids
+
+            self.fluids = Fluids(model, [density for density, _ in held], self.faces, assembly)
+        self.viscosity = 1.0 if viscosity is None or self.fluids is not None else viscosity / model.density
         staircase = model.edges == "staircase"
         self.solids: Solids | None = None
         self.moving: MovingSolids | None = None
@@ -125,7 +133,9 @@ class _Builder:
         ints[layout.EDGE_FACES :] = edge_faces
         ints[layout.SCHEME], ints[layout.SKIP] = SCHEMES[self.model.advection], assembly.floats([0.0])
         moves, solver = self.moving is not None, self.model.pressure
-        walled = moves or self.solids is not None
+        if self.fluids is not None:
+            moves, solver = self.fluids.unequal, self.fluids.solver(solver)
+        walled = self.moving is not None or self.solids is not None
         scales = areas * inverses
         plan, text = write_pressure(faces, self.opened, walled, areas, scales, solver, assembly, ints, moves)
         ints = np.concatenate([ints, plan])
@@ -141,10 +151,15 @@ class _Builder:
             fractions = self.moving.fractions()
             text += ", cells cut anew at each instant"
         self._force(at, int(ints[layout.PUSHES]), base, strengths)
-        numbers = tuple(ints.tolist())
-        assembly.term("close", "sceneql.flows.advection_kernels:advect", numbers)
-        assembly.term("close", "sceneql.flows.advection_kernels:rub", numbers)
-        assembly.term("constrain", "sceneql.flows.projection_kernels:constrain", numbers)
+        varying: tuple[int, ...] = ()
+        if self.fluids is None:
+            assembly.term("close", "sceneql.flows.advection_kernels:advect", ints)
+            assembly.term("close", "sceneql.flows.advection_kernels:rub", ints)
+        else:
+            held = int(plan[SINK]) if len(plan) else -1
+            varying = self.fluids.add(ints, held, len(edge_faces))
+            text += self.fluids.text
+        assembly.term("constrain", "sceneql.flows.projection_kernels:constrain", ints)
         assembly.state(self._projected(x, ints))
         flow = Flow(
             cells=Cells(cells.shape, self.periodic, np.zeros(len(cells.volumes), dtype=bool), 0, 0),
@@ -152,11 +167,12 @@ class _Builder:
             areas=faces.areas,
             spacing=tuple(cells.spacing.tolist()),
             low=tuple(cells.low.tolist()),
-            ints=numbers,
+            ints=tuple(ints.tolist()),
             fractions=fractions,
             density=self.model.density,
-            viscosity=self.model.viscosity,
+            viscosity=number_in(self.model.viscosity) or 0.0,
             pressure=text,
+            varying=varying,
         )
         assembly.flow(flow)
         return flow

@@ -18,6 +18,8 @@ PART = 0.8
 """Length of a step, in parts of a cell."""
 REST = 1e-6
 """Speed that counts as rest, in parts of the largest."""
+OUT = 1e-6
+"""Part of a step up to the box by which a line is drawn beyond."""
 LEAST = 4
 """Pieces of a line, shorter ones are left out."""
 MOST = 150
@@ -53,7 +55,8 @@ def lines(velocity: Floats, layout: FieldLayout, apart: float, longest: float) -
     seeds = np.stack(np.meshgrid(*rows, indexing="ij"), axis=-1).reshape(-1, axes)
     starts = np.zeros((len(seeds), 3))
     starts[:, :axes] = seeds
-    ways = [_way(along, starts, way * step, min(MOST, longest / step)) for way in (1.0, -1.0)]
+    high = np.where(np.arange(3) < axes, low + size, np.inf)
+    ways = [_way(along, starts, way * step, min(MOST, longest / step), (low, high)) for way in (1.0, -1.0)]
     found = np.empty(2 * (ways[0].size + ways[1].size))
     side = 0.5 * apart
     boxes = np.ceil(size / side).astype(np.int64) + 2  # and those that the last steps of lines end in, outside
@@ -62,13 +65,23 @@ def lines(velocity: Floats, layout: FieldLayout, apart: float, longest: float) -
     return found[: 6 * count].reshape(-1, 2, 3).copy()
 
 
-def _way(along: Callable[[Floats], Floats], starts: Floats, step: float, most: float) -> Floats:
-    """The points (steps, k, 3) of ways from all starts, by the midpoint rule; at rest where a way ends."""
+def _way(
+    along: Callable[[Floats], Floats], starts: Floats, step: float, most: float, box: tuple[Floats, Floats]
+) -> Floats:
+    """The points (steps, k, 3) of ways from all starts, by the midpoint rule; at rest where a way ends: at the box."""
     found = [starts]
     while len(found) <= most:
         at = found[-1]
         change = step * along(at + 0.5 * step * along(at))
         if not change.any():
             break
-        found.append(at + change)
+        found.append(at + change * _part_within(at, change, *box)[:, None])
     return np.stack(found)
+
+
+def _part_within(at: Floats, change: Floats, low: Floats, high: Floats) -> Floats:
+    """(k,) part of each change (k, 3) up to where it leaves the box, by so little more that it rests there."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        wall = np.where(change > 0.0, high - at, low - at) / change
+    part: Floats = np.minimum(1.0, np.where(change != 0.0, wall, np.inf).min(axis=1) * (1.0 + OUT))
+    return part

@@ -22,7 +22,7 @@ class Model(Protocol):
         """[kg/m^3]"""
 
     @property
-    def viscosity(self) -> float:
+    def viscosity(self) -> Formula:
         """[Pa s]"""
 
     @property

@@ -8,8 +8,9 @@ from typing import Annotated, Literal
 
 from sceneql import kinds
 from sceneql.grids.domain.cells import SIDES
-from sceneql.grids.medium import PLACE, SIZES
+from sceneql.grids.medium import PLACE, SIZES, number_in
 from sceneql.kinds import Formula, Problem, Quantity, Record, Symbols, Value, field
+from sceneql.kinds.stable_step import StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components
 from sceneql.quantities.dimension import PLAIN, comparable
@@ -21,6 +22,7 @@ from sceneql.quantities.units import describe, in_words
 MOVING = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.VELOCITY)]
 VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True)]
 STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_start=True)]
+VISCOSITY = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.PRESSURE * dim.TIME)]
 FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME)]
 
 
@@ -132,6 +134,8 @@ class Buoyancy(Record):
                     yield Problem(text, (name,), code="dimension-mismatch")
 
 
+MOMENTS = 200
+"""Pieces of a run in which the mean velocities of solids are sampled before it."""
 SAMPLES = 12
 """Samples of a velocity along each side before the run."""
 
@@ -158,3 +162,42 @@ def fastest_turn(
             speeds = [abs(float(evaluate(part, known))) for part in components(formula.expr)]
             most = max(most, sum(speed / side for speed, side in zip(speeds, spacing, strict=True)))
     return most
+
+
+def thickest(viscosity: Formula, corner: Sequence[float], size: Sequence[float]) -> float:
+    """The viscosity [Pa s] of a flow's own fluid, of a formula the largest at the start by samples of its box."""
+    alone = number_in(viscosity)
+    if alone is not None:
+        return alone
+    rows = [[low + side * k / SAMPLES for k in range(SAMPLES + 1)] for low, side in zip(corner, size, strict=True)]
+    found = 0.0
+    for place in product(*rows):
+        known = {Symbol(one): x for one, x in zip("xyzt", (*place, *[0.0] * (4 - len(place))), strict=True)}
+        known[Symbol(TIME_SYMBOL)] = 0.0
+        found = max(found, float(evaluate(components(viscosity.expr)[0], known)))
+    return found
+
+
+def fastest_solid(refs: Sequence[kinds.Ref], scene: StaticScene, spacing: Sequence[float]) -> tuple[float, str]:
+    """The largest sum of |v|/spacing [1/s] of places of solids that move, by samples in time, and of which one.
+
+    The fluid beside a solid is as fast. What turns in its place, or is led by another part, is not known here.
+    """
+    most, of = 0.0, ""
+    for ref in refs:
+        position = getattr(scene.objects.get(ref.name), "position", None)
+        if not isinstance(position, Value) or position.constant or position.links:
+            continue
+        step = scene.end / MOMENTS
+        for k in range(MOMENTS if step > 0.0 else 0):
+            before, after = (_placed(position, (k + part) * step) for part in (0.25, 0.75))
+            turn = sum(abs(b - a) / (0.5 * step * side) for a, b, side in zip(before, after, spacing, strict=False))
+            if turn > most:
+                most, of = turn, ref.name
+    return most, of
+
+
+def _placed(position: Value, time: float) -> tuple[float, ...]:
+    """Where it is at a time [m]."""
+    found = evaluate(position.expr, lambda node: time if isinstance(node, Symbol) else {}[node])
+    return tuple(map(float, found))

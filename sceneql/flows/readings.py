@@ -15,8 +15,13 @@ if TYPE_CHECKING:
     from sceneql.system import ModelState
 
 
-def measure(what: str, cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState) -> Any:
-    """An output of the word `flow`: (cells,), (cells, 3), (3,), (iterations,) or float."""
+def measure(
+    what: str, cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState, masses_at: int = -1
+) -> Any:
+    """An output of the word `flow`: (cells,), (cells, 3), (3,), (iterations,) or float.
+
+    ``masses_at``: of several fluids, where the masses in the own cells of faces stand.
+    """
     match what:
         case "centers":
             return cells.centers()
@@ -42,12 +47,15 @@ def measure(what: str, cells: FieldLayout, ints: tuple[int, ...], density: float
             out = np.zeros(cells.count)
             outflow(state.y, out, layout.VELOCITY, state.floats, np.array(ints))
             return float(np.abs(out).max() / np.prod(cells.spacing))
-    sums = [_own(ints, state.floats, cells, axis) for axis in range(ints[layout.AXES])]
     velocities = components(ints, state.y)
+    if masses_at < 0:
+        masses = [density * _own(ints, state.floats, cells, axis) for axis in range(ints[layout.AXES])]
+    else:
+        first = [masses_at + ints[layout.STARTS + axis] for axis in range(ints[layout.AXES])]
+        masses = [state.floats[at : at + u.size].reshape(u.shape) for at, u in zip(first, velocities, strict=True)]
     if what == "kinetic_energy":
-        parts = [(own * u**2).sum() for own, u in zip(sums, velocities, strict=True)]
-        return float(0.5 * density * sum(parts))
-    parts = [density * (own * u).sum() for own, u in zip(sums, velocities, strict=True)]
+        return float(0.5 * sum((mass * u**2).sum() for mass, u in zip(masses, velocities, strict=True)))
+    parts = [(mass * u).sum() for mass, u in zip(masses, velocities, strict=True)]
     return np.array([*parts, 0.0][:3])
 
 

@@ -1,10 +1,11 @@
-"""Formulas of place, time and the field, printed as kernels that evaluate them for all cells or boundary faces.
+"""Formulas of place, time and the field, printed as kernels that evaluate them for cells, boundary faces or points.
 
-Both add weight * value: ``floats[target + cell] = floats[base + cell] + floats[weight + cell] * value`` for cells,
+Two add weight * value: ``floats[target + cell] = floats[base + cell] + floats[weight + cell] * value`` for cells,
 ``floats[target + cell] += floats[weight + k] * value`` for face k of the cell. ints of the first: constants, field (in
 y), target, base, weight, nx, ny, nz, box (low corner and spacing: 6 floats), then values read from other parts; of the
 second: constants, field, target, weight, faces, points (3 floats a face), number of inputs, index of the cells in ints,
-then the inputs' offsets and the cells.
+then the inputs' offsets and the cells. For points ``floats[target + k] = value`` with the field in floats: constants,
+field, target, count, points, then the inputs' offsets.
 """
 
 from __future__ import annotations
@@ -67,6 +68,23 @@ def over_faces(
     inputs = _stored(assembly, constants)
     head = (assembly.floats(constants.values), at, target, weight, len(cells), points, 7 + len(inputs))
     return write_term("faces", constants, 7, lines), (*head, *inputs, *cells)
+
+
+def over_points(
+    assembly: Assembly, expr: Expr, field: int, target: int, count: int, points: int
+) -> tuple[str, tuple[int, ...]]:
+    """Kernel and ints for points; ``field``: offset of the field there in the floats, of any floats where none is."""
+    constants, printer, value = _printed(expr)
+    lines = [
+        "    field, target, points = ints[1], ints[2], ints[4]",
+        "    for k in range(ints[3]):",
+        "        own_x, own_y, own_z = floats[points + 3 * k], floats[points + 3 * k + 1], floats[points + 3 * k + 2]",
+        "        own_c = floats[field + k]",
+        *(f"        {line}" for line in printer.lines),
+        f"        floats[target + k] = {value}",
+    ]
+    head = (assembly.floats(constants.values), field, target, count, points)
+    return write_term("points", constants, 5, lines), (*head, *_stored(assembly, constants))
 
 
 def _printed(expr: Expr) -> tuple[Constants, Printer, str]:

@@ -84,10 +84,8 @@ def _given(drift: Drift, cells: Cells, ties: list[Floats], conditions: list[Cond
         axes.append(_through(drift, faces, outward, areas, np.full(len(areas), width)))
     through = []
     for one in conditions:
-        outward = one.points - centers[one.cells]
-        outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-300)
         width = one.areas / cells.spacing[2] if cells.flat else np.ones(len(one.areas))
-        flow = _through(drift, one.points, outward, one.areas, width)
+        flow = _through(drift, one.points, one.outward, one.areas, width)
         through.append(flow if one.through else np.zeros(len(one.cells)))
     return Flow(tuple(axes), tuple(through))
 

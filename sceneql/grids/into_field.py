@@ -31,5 +31,6 @@ def numbers(of: Value, assembly: Assembly) -> tuple[int, ...]:
     grid = assembly.field_of(of.expr)
     if grid is None:
         text = f"'{of.expr.task}.{of.expr.output}' is no field on a grid"
-        raise ScriptError([Diagnostic("no-field", text, of.span, "name one of a `diffusion` or `reaction_diffusion`")])
+        help = "name one of a `diffusion` or `reaction_diffusion` on cells"
+        raise ScriptError([Diagnostic("no-field", text, of.span, help)])
     return (grid.at, *grid.cells.shape, grid.cells.insides_at, grid.cells.box_at, *map(int, grid.cells.periodic))

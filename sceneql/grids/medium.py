@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from itertools import product
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol
 
 from sceneql import kinds
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, centers_of, counts
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Record, Symbols, field, quantity_type
+from sceneql.kinds.stable_step import StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.dimension import Dimension
@@ -34,6 +36,26 @@ MEASURES = ("field", "concentration", "temperature", "centers", "mass", "inflow"
 SHORTEST = 1e-100
 """[m] Least side of a domain, or of a cell: rates of spreading over shorter ones overflow."""
 SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]
+
+
+class Spaced(Protocol):
+    """What a script says of the cells of a field or a flow."""
+
+    @property
+    def size(self) -> tuple[float, ...] | None:
+        """Sides of the box [m]."""
+
+    @property
+    def domain(self) -> kinds.Ref | None:
+        """In place of it the object whose inside is the domain."""
+
+    @property
+    def flat(self) -> bool:
+        """Whether only its section is."""
+
+    @property
+    def cell(self) -> float:
+        """Largest side of a cell [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +86,31 @@ class FieldLayout:
     def centers(self) -> Floats:
         """(cells, 3) [m]."""
         return centers_of(self.shape, self.low, self.spacing)
+
+
+class Between(Protocol):
+    """What a field is between the places of its values."""
+
+    @property
+    def what(self) -> str:
+        """What it has values at: cells, nodes."""
+
+    @property
+    def count(self) -> int:
+        """How many."""
+
+    @property
+    def known(self) -> Any:
+        """Which places of `gridded` lie in the domain."""
+
+    def filled(self, values: Floats) -> Floats:
+        """What `at` and `gridded` read, from the values (count,)."""
+
+    def at(self, field: Floats, points: Floats) -> Floats:
+        """The field (k,) at points (k, 3) [m]."""
+
+    def gridded(self, field: Floats) -> Floats:
+        """(nz, ny, nx) at the centers of the cells of its layout, with a layer of cells around them."""
 
 
 class Exchange(Record):
@@ -124,6 +171,33 @@ def number_in(formula: Formula | None) -> float | None:
     if formula is None or any(isinstance(node, Symbol | Link) for node in walk(formula.expr)):
         return None
     return float(evaluate(formula.expr, {}))
+
+
+SAMPLES = {2: 24, 3: 8}
+"""Samples of a formula along each side of a box before the run."""
+
+
+def largest_in(formula: Formula | None, corner: Sequence[float], size: Sequence[float]) -> float | None:
+    """The largest magnitude of a formula in a box at the start, by samples; None where it reads the field itself."""
+    if formula is None or any(
+        isinstance(node, Link) or (isinstance(node, Symbol) and node.name == "c") for node in walk(formula.expr)
+    ):
+        return None
+    count, most = SAMPLES[len(size)], 0.0
+    sides = [[low + side * k / count for k in range(count + 1)] for low, side in zip(corner, size, strict=True)]
+    for place in product(*sides):
+        known = {Symbol(one): x for one, x in zip("xyzt", (*place, *[0.0] * (4 - len(place))), strict=True)}
+        most = max(most, abs(float(evaluate(formula.expr, known))))
+    return most
+
+
+def spacing_of(medium: Spaced, scene: StaticScene) -> tuple[float, ...]:
+    """The sides of the cells of a model in a box, or of those that an object's inside is cut into at most."""
+    if medium.size is not None:
+        return tuple(side / n for n, side in zip(counts(medium.size, medium.cell), medium.size, strict=False))
+    domain = None if medium.domain is None else scene.objects.get(medium.domain.name)
+    flat = medium.flat or (domain is not None and type(domain).domain is not kinds.Object.domain)
+    return (medium.cell,) * (2 if flat else 3)
 
 
 def _vectors(part: object, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Annotated, ClassVar
 
-from sceneql.grids.domain.cells import counts
 from sceneql.grids.drift import Drift
-from sceneql.grids.medium import ANY, SHORTEST, Medium, number_in
+from sceneql.grids.medium import ANY, SHORTEST, Medium, largest_in, number_in, spacing_of
 from sceneql.kinds import Formula, Problem, Symbols, field
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 
 COEFFICIENT = Annotated[Formula, Symbols(ANY, dim.AREA / dim.TIME)]
@@ -49,17 +48,18 @@ class SpreadingMedium(Medium):
         if drift.velocity is None and sides == 3:
             yield Problem("a deep drift has a velocity, not a stream function", ("drift",))
 
-    def spreading(self, coefficient: Formula | None) -> Oscillation | None:
-        """The rates that limit explicit steps of a field of constant D: the decay of the checkerboard, and the drift.
+    def spreading(self, coefficient: Formula | None, scene: StaticScene) -> Oscillation | None:
+        """The rates that limit explicit steps of a field: the decay of the checkerboard, and the drift.
 
-        The first is at most 4 D sum of 1/spacing^2 (von Neumann's bound); None where a coefficient varies.
+        The first is at most 4 D sum of 1/spacing^2 (von Neumann's bound), for the largest D of the start where that
+        varies in a box; None where it varies with the field, or elsewhere.
         """
         d = 0.0 if coefficient is None else number_in(coefficient)
+        if d is None and self.size is not None:
+            d = largest_in(coefficient, self.corner or (0.0,) * len(self.size), self.size)
         if d is None:
             return None
-        spacing: tuple[float, ...] = (self.cell, self.cell)  # of a flat domain; rates of a deep one are larger
-        if self.size is not None:
-            spacing = tuple(side / n for n, side in zip(counts(self.size, self.cell), self.size, strict=False))
+        spacing = spacing_of(self, scene)
         rate = 4.0 * d * sum(1.0 / side**2 for side in spacing)
         carried = 0.0
         if self.drift is not None and coefficient is not None and self.size is not None:

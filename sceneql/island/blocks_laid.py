@@ -17,14 +17,16 @@ if TYPE_CHECKING:
 
     from sceneql.quantities.span import Span
     from sceneql.system import Slopes
+    from sceneql.system.assembly import Ints
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Block:
     """The kernels and integers of one term or contact."""
 
     kernels: tuple[str, ...]
-    ints: tuple[int, ...]
+    ints: Ints
+    """(k,) int64; tables of plans and elements are long."""
     pairs: int = 0
     slopes: Slopes | Callable[[], Slopes | None] | None = None
     part: str = ""
@@ -36,6 +38,9 @@ class Block:
     damped: bool = False
     help: str = ""
     """What is said where its events have no end."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "ints", np.array(self.ints, dtype=np.int64))
 
 
 def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...], int]]:
@@ -71,4 +76,4 @@ def lay_out(
         list(accumulate(pairs, initial=0)),
         *(block.ints for block in blocks),
     ]
-    return np.concatenate([np.array(part, dtype=np.int64) for part in parts])
+    return np.concatenate([np.asarray(part, dtype=np.int64) for part in parts])

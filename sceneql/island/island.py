@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from sceneql.island.inputs import Word
     from sceneql.island.setting import Setting
     from sceneql.system import Bodies, Flow, Grid, Membrane, Mode, Slopes, Stage, Tied
+    from sceneql.system.assembly import Ints
 
 STAGES: tuple[Stage, ...] = ("velocity", "internal", "force", "tie", "close", "constrain")
 TIED = 150
@@ -66,8 +67,6 @@ class IslandAssembly(Reserved):
     """(offset, count) of floats that change as bodies come and go."""
     _alike: list[tuple[int, int]] = field(default_factory=list)
     _masses: list[tuple[int, int, int]] = field(default_factory=list)
-    _matrices: dict[int, Any] = field(default_factory=dict)
-    """Inertia that is a matrix, by the offset of the velocities."""
     _terms: dict[Stage, list[Block]] = field(default_factory=lambda: {stage: [] for stage in STAGES})
     _exact: list[Block] = field(default_factory=list)
     _local: list[Block] = field(default_factory=list)
@@ -107,7 +106,7 @@ class IslandAssembly(Reserved):
         self,
         stage: Stage,
         kernel: str,
-        ints: Sequence[int],
+        ints: Ints,
         jacobian: Slopes | Callable[[], Slopes | None] | None = None,
         apart: bool = False,
         energy: str | None = None,
@@ -115,16 +114,16 @@ class IslandAssembly(Reserved):
     ) -> None:
         """Add a term to the rate."""
         self._apart = self._apart and apart
-        self._terms[stage].append(Block((kernel,), tuple(ints), 0, jacobian, *self._word, energy, damped))
+        self._terms[stage].append(Block((kernel,), ints, 0, jacobian, *self._word, energy, damped))
 
-    def tied_drift(self, kernel: str, ints: Sequence[int]) -> None:
+    def tied_drift(self, kernel: str, ints: Ints) -> None:
         """Add what lets drifts end where ties hold (system.Assembly)."""
-        self._tied.append(Block((kernel,), tuple(ints)))
+        self._tied.append(Block((kernel,), ints))
 
-    def limit(self, kernel: str, ints: Sequence[int]) -> None:
+    def limit(self, kernel: str, ints: Ints) -> None:
         """Add what keeps surfaces apart (system.Assembly)."""
         self._apart = False
-        self._limits.append(Block((kernel,), tuple(ints)))
+        self._limits.append(Block((kernel,), ints))
 
     def grows(self, grow: Callable[[Floats], bool]) -> None:
         """Say that slopes may have more places later (system.Assembly)."""
@@ -141,21 +140,21 @@ class IslandAssembly(Reserved):
             self._matrices[velocity_at] = matrix
 
     def contact(
-        self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False, help: str = ""
+        self, mode: Mode, kernels: Sequence[str], ints: Ints, pairs: int, apart: bool = False, help: str = ""
     ) -> None:
         """Add contacts."""
         self._apart = self._apart and apart and mode == "local"
-        block = Block(tuple(kernels), tuple(ints), pairs, None, *self._word, help=help)
+        block = Block(tuple(kernels), ints, pairs, None, *self._word, help=help)
         (self._exact if mode == "exact" else self._local).append(block)
 
-    def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False, samples: bool = False) -> None:
+    def after_step(self, kernel: str, ints: Ints, apart: bool = False, samples: bool = False) -> None:
         """Add what happens at the end of each step (system.Assembly)."""
         self._apart = self._apart and apart
-        (self._settling if samples else self._after).append(Block((kernel,), tuple(ints)))
+        (self._settling if samples else self._after).append(Block((kernel,), ints))
 
-    def free_motion(self, kernel: str, ints: Sequence[int], at: int, count: int) -> None:
+    def free_motion(self, kernel: str, ints: Ints, at: int, count: int) -> None:
         """Add a motion without forces (system.Assembly)."""
-        self._free.append(Block((kernel,), tuple(ints)))
+        self._free.append(Block((kernel,), ints))
         self._frees.append((at, count))
 
     def grid(self, grid: Grid) -> None:
@@ -181,6 +180,10 @@ class IslandAssembly(Reserved):
         """The flow of a model, or the only one (system.Assembly)."""
         return next(iter(self._flows.values()), None) if model is None else self._flows.get(model)
 
+    def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
+        """Those that skins in it hold (system.Assembly)."""
+        return self.setting.fluids(flow)
+
     def membrane(self, membrane: Membrane) -> None:
         """Say that entries are those of a skin (system.Assembly)."""
         self._membranes[self._word[0]] = membrane
@@ -194,7 +197,8 @@ class IslandAssembly(Reserved):
         """The fields and the flow, and whether there is anything else."""
         alone = bool(self._ranges) and len(self._ranges) == len(self._grids) + len(self._flows)
         alone = alone and not self._pairs and not self.changed_between_steps
-        return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone)
+        elements = 0 if self.changed_between_steps else self.on_elements
+        return Fields(tuple(self._grids), next(iter(self._flows.values()), None), alone, elements)
 
     @property
     def changed_between_steps(self) -> bool:
@@ -258,7 +262,7 @@ class IslandAssembly(Reserved):
     def ints_of(self, kernel: str) -> tuple[int, ...]:
         """The integers of a term (system.Assembly)."""
         terms = [term for some in self._terms.values() for term in some if kernel in term.kernels]
-        return tuple(terms[0].ints) if terms else ()
+        return tuple(np.asarray(terms[0].ints).tolist()) if terms else ()
 
     def body_count(self) -> int:
         """Number of bodies of the island so far; in a block that of the whole."""
@@ -297,7 +301,7 @@ class IslandAssembly(Reserved):
         y = self.start()
         slopes = self._slopes(newton) if jacobian else None
         inputs = self._inputs()
-        blocks = [Block((), tuple(self._program(inputs)))]
+        blocks = [Block((), self._program(inputs))]
         groups: list[tuple[tuple[str, ...], int]] = []
         for stage in STAGES:
             groups += grouped(self._terms[stage], blocks)
@@ -338,6 +342,8 @@ class IslandAssembly(Reserved):
         floats = np.concatenate([*self._numbers, np.zeros(0 if found is None else len(channels.ARRAYS) * len(y))])
         if slopes is not None and (self._local or self._limits):
             floats[channels.STAGE] = channels.OUTSIDE if newton else channels.BETWEEN
+        else:
+            self._numbers = [floats[: self._stored]]  # nobody writes into either: each march has its own
 
         def grown(floats: Floats) -> System | None:
             more = [grow(floats) for grow in self._growing]
@@ -392,7 +398,7 @@ class IslandAssembly(Reserved):
         found.raise_errors()
         return program
 
-    def _slopes(self, newton: bool) -> list[tuple[Slopes, Sequence[int]]] | None:
+    def _slopes(self, newton: bool) -> list[tuple[Slopes, Ints]] | None:
         """The slopes of all terms with their integers; None where those of one are not known."""
         inputs = self._inputs()
         layout = Layout(self._size, self._ranges, self._pairs, self._masses, [*self._grids, *self.fields.values()])

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from sceneql.system.assembly import Ints
+
     Numbers = NDArray[int64]
     Triples = Sequence[tuple[int, int, int]]
 
@@ -40,7 +42,7 @@ def full(size: int) -> Pattern | None:
 def section(
     at: int,
     size: int,
-    slopes: Sequence[tuple[Slopes, Sequence[int]]],
+    slopes: Sequence[tuple[Slopes, Ints]],
     masses: Triples,
     pairs: Triples,
     border: int = 0,
@@ -53,7 +55,7 @@ def section(
     their inertia is a matrix, which multiplies no rows;
     ``pairs``: (position_at, velocity_at, count of entries).
     """
-    by_kernel: dict[str, list[tuple[Slopes, Sequence[int]]]] = {}
+    by_kernel: dict[str, list[tuple[Slopes, Ints]]] = {}
     for one in slopes:
         by_kernel.setdefault("|".join(filter(None, (one[0].kernel, one[0].positive))), []).append(one)
     ordered = [one for group in by_kernel.values() for one in group]

@@ -43,6 +43,9 @@ class Reserved:
     _numbers: list[Floats] = field(init=False, default_factory=lambda: [np.zeros(channels.HEAD)])
     _stored: int = field(init=False, default=channels.HEAD)
     _rests: list[tuple[int, Floats]] = field(init=False, default_factory=list)
+    _matrices: dict[int, Any] = field(init=False, default_factory=dict)
+    """Inertia that is a matrix, by the offset of the velocities, and other capacities, by that of the entries."""
+    _capacities: list[int] = field(init=False, default_factory=list)
     _word: tuple[str, Span | None, str | None] = field(init=False, default=("island", None, None))
 
     @contextmanager
@@ -54,6 +57,18 @@ class Reserved:
             yield
         finally:
             self._word = before
+
+    def capacity(self, at: int, matrix: Any) -> None:
+        """Say that rates of entries are solved for by a matrix (system.Assembly)."""
+        self._matrices[at] = matrix
+        self._capacities.append(at)
+
+    @property
+    def on_elements(self) -> int:
+        """Unknowns with such rates, where there are no others."""
+        if len(self._ranges) != len(self._capacities):
+            return 0
+        return sum(self._matrices[at].shape[0] for at in self._capacities)
 
     def begin_contacts(self) -> None:
         """Say that all that comes now belongs to contacts."""
@@ -121,5 +136,6 @@ class Reserved:
 
     def numbers(self) -> Floats:
         """The floats stored so far."""
-        self._numbers[:] = [np.concatenate(self._numbers)]  # many words ask, each after it has stored a few
+        if len(self._numbers) > 1:  # many words ask, each after it has stored a few
+            self._numbers = [np.concatenate(self._numbers)]
         return self._numbers[0].copy()

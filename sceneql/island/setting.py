@@ -21,5 +21,8 @@ class Setting(Protocol):
     def holder(self, ref: Ref) -> tuple[str, Object] | None:
         """The group that an object of the script is a member of, and its kind; None where it is in none."""
 
+    def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
+        """Density and viscosity of each other fluid that skins in a flow hold (Model.fluid)."""
+
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""

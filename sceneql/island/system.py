@@ -90,7 +90,8 @@ class System:
     masses: tuple[tuple[int, int, int], ...] = ()
     """For each model of masses: offset of velocities in y, offset of inverse masses in floats, number of masses."""
     inertia: tuple[tuple[int, Any], ...] = ()
-    """Offset of the velocities and the sparse matrix of each of these whose inertia is one (Assembly.inertia)."""
+    """Offset and sparse matrix of velocities whose inertia is one (Assembly.inertia), and of other entries whose rates
+    are solved for by one (Assembly.capacity)."""
     border: int = 0
     """Unknowns that border the linear systems of implicit stages (Slopes.border)."""
     alike: tuple[tuple[int, int], ...] = ()

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from sceneql.island.blocks_laid import Block
     from sceneql.island.inputs import Inputs, Stored, ValueSlopes, Word
     from sceneql.system import Grid, Stage
+    from sceneql.system.assembly import Ints
 
     Numbers = NDArray[int64]
 
@@ -79,7 +80,7 @@ class Layout:
         return found
 
 
-def own_slopes(terms: Mapping[Stage, Sequence[Block]], in_stages: bool) -> list[tuple[Slopes, Sequence[int]]]:
+def own_slopes(terms: Mapping[Stage, Sequence[Block]], in_stages: bool) -> list[tuple[Slopes, Ints]]:
     """The slopes that terms give, with their integers; ``in_stages``: including those with `Slopes.in_stages`.
 
     Raises WithoutSlopes.
@@ -99,7 +100,7 @@ def value_slopes(
     known: Sequence[Slopes],
     layout: Layout,
     inputs: Inputs,
-) -> list[tuple[Slopes, Sequence[int]]]:
+) -> list[tuple[Slopes, Ints]]:
     """The slopes through values, with their integers. ``known``: the terms' own slopes.
 
     Raises WithoutSlopes. Derivatives of contact constraints through values are left out.
@@ -131,9 +132,7 @@ def value_slopes(
     return found
 
 
-def _slopes(
-    rows: Numbers, acting: Sequence[Block], values: Sequence[tuple[int, ValueSlopes]]
-) -> tuple[Slopes, Sequence[int]]:
+def _slopes(rows: Numbers, acting: Sequence[Block], values: Sequence[tuple[int, ValueSlopes]]) -> tuple[Slopes, Ints]:
     """The slopes of one word's terms, with the kernel's integers: see value_slopes_kernels."""
     from sceneql.compiled.generated import load
     from sceneql.compiled.numbered_kernels import number_of
@@ -162,4 +161,4 @@ def _slopes(
         *(one.ints for one in acting),
     ]
     ints = np.concatenate([np.asarray(part, dtype=np.int64) for part in parts])
-    return Slopes(KERNEL, np.tile(rows, len(columns)), np.repeat(columns, len(rows))), ints.tolist()
+    return Slopes(KERNEL, np.tile(rows, len(columns)), np.repeat(columns, len(rows))), ints

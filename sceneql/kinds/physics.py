@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from sceneql.kinds.stable_step import Oscillation, StaticMass
+from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Quantity, Ref, Value
 from sceneql.kinds.word import Kind, Problem, field
@@ -114,6 +114,10 @@ class Model(Kind):
         """How many items an output has, where its fields tell."""
         return None
 
+    def fluid(self) -> tuple[float, float] | None:
+        """Density [kg/m^3] and viscosity [Pa s] of what it holds, where these are not those of its flow."""
+        return None
+
     def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
         """Objects that it fills by a measure, with a function of the low and high corner (3,) of their boxes.
 
@@ -153,7 +157,7 @@ class Model(Kind):
         """An output of a kinematic model as an expression of time."""
         raise TypeError(f"{type(self).__name__} is not a function of time")
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """Bounds on its fastest oscillations by its own fields, for `check`: without numpy, and quickly."""
         return ()
 
@@ -218,6 +222,10 @@ class Interaction(Kind):
 
     def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:
         """Add its terms for one skin, where it has a `carrier`."""
+        raise NotImplementedError
+
+    def assemble_weight(self, name: str, assembly: Assembly) -> None:
+        """Add what fluids of several densities weigh, where it is weight: `weighs`."""
         raise NotImplementedError
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:

@@ -40,8 +40,8 @@ class Solver(Kind):
     """Marches a system in time. Sees only its rate, its Jacobian, its invariants and its events."""
 
     family: ClassVar[str] = "solvers"
-    marches: ClassVar[Literal["anything", "a field", "a flow"]] = "anything"
-    """What it is for: islands of any kind, those that are one field on a grid, or those with a flow."""
+    marches: ClassVar[Literal["anything", "a field", "a flow", "several fluids"]] = "anything"
+    """What it is for: islands of any kind, those that are one field on a grid, those with a flow, or of several."""
     static: ClassVar[bool] = False
     """Whether it finds rests, without motion in time."""
     refuses_ties: ClassVar[str] = ""

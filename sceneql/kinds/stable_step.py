@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sceneql.kinds.eigenvalues import Rows, eigenvalues
 
@@ -34,11 +34,22 @@ class Oscillation:
     """Steps to the field that sets it: ``("springs", 2)``."""
     turn: float = 0.0
     """Angular velocity [1/s] at which velocities rotate in a magnetic field, or coupled states among each other."""
+    later: bool = False
+    """Whether it may be there only after the start, whose spectrum does not show it."""
 
     @property
     def size(self) -> float:
         """Largest of its rates [1/s]."""
         return max(self.frequency, self.decay, abs(self.turn))
+
+
+class StaticScene(NamedTuple):
+    """What is known of a script before anything runs, for bounds on steps."""
+
+    objects: Mapping[str, Any]
+    """Its objects, by name."""
+    end: float
+    """Of the run [s]."""
 
 
 class StaticMass(NamedTuple):

@@ -64,6 +64,7 @@ def plan(
     unit: int = 1,
     exact: bool = True,
     border: int = 0,
+    symmetric: bool = False,
 ) -> Plan:
     """Analyze a symmetric (n, n) scipy CSR pattern that has its whole diagonal (and may be grouped already).
 
@@ -71,6 +72,7 @@ def plan(
     ``unit``: so many unknowns for each of the n; value k of the pattern is a block of unit x unit, row by row. Not
     ``exact``: solutions may have errors of some percent, for an iteration that corrects them. ``border``: so many of
     the last unknowns have diagonals that may vanish, and are eliminated after all that they are coupled to.
+    ``symmetric``: all matrices will be, so that there is no room for L.
     """
     import numpy as np
 
@@ -87,7 +89,7 @@ def plan(
     sizes = unit * np.array([len(some) for some in members], dtype=np.int64)
     fronts = _fronts(graph, parents, sizes) if points is None else _fronts_of_blocks(graph, parents, blocks)
     first = np.concatenate([[0], np.cumsum(sizes)])
-    return _laid_out(pattern, np.concatenate(members), fronts, first, unit, exact)
+    return _laid_out(pattern, np.concatenate(members), fronts, first, unit, exact, symmetric)
 
 
 def _fronts_of_blocks(graph: Any, parents: list[int], blocks: list[Rows]) -> list[_Front]:
@@ -143,7 +145,9 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
     return fronts
 
 
-def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit: int, exact: bool) -> Plan:
+def _laid_out(
+    pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit: int, exact: bool, symmetric: bool
+) -> Plan:
     import numpy as np
 
     from sceneql.compiled.threads_kernels import threads
@@ -206,7 +210,7 @@ def _laid_out(pattern: Any, order: Rows, fronts: list[_Front], first: Rows, unit
         if front.parent >= 0:
             earlier[k], last_child[front.parent] = last_child[front.parent], k
             map_at += int(map_sizes[k])
-        factors += width * height + width * rest + layout.PAD
+        factors += width * height + (0 if symmetric else width * rest) + layout.PAD
     table += [n, 0, 0, int(row_starts[-1]), map_at, factors, bounds[-1], -1, -1, 0, 0]
     for k in range(count):
         table[layout.FIELDS * k + 7 : layout.FIELDS * k + 9] = last_child[k], earlier[k]

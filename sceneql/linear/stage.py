@@ -126,7 +126,8 @@ def _chosen(system: System, kinds: Kinds, exact: bool, signs: bool) -> tuple[Lef
     solver = None
     if by_masses is None:
         points = None if system.border else _points(system, left)
-        solver = _factored(pattern, 1, points, exact, signs, system.border)
+        # Factors of a field's matrix serve for many steps: they pay where iterations would be sooner for one.
+        solver = _factored(pattern, 1, points, exact, signs or system.fields.on_elements > 0, system.border)
     return left, pattern, solver or _iterations(pattern)
 
 
@@ -245,10 +246,11 @@ def likely_kernels(system: System) -> tuple[str, ...]:
 
 
 def _factored(
-    pattern: Any, unit: int, points: Floats | None, exact: bool, signs: bool, border: int = 0
+    pattern: Any, unit: int, points: Floats | None, exact: bool, filling: bool, border: int = 0
 ) -> _Solver | None:
     """A factorization on a pattern of units; None where it would fill in too much, unless it has a border, for which
-    iterations are no good. They tell no signs, and are slow in thin parts at rest, which no inertia stiffens."""
+    iterations are no good. They tell no signs, and are slow in thin parts at rest, which no inertia stiffens: then it
+    may be ``filling``, as in solids."""
     import numpy as np
 
     size = pattern.shape[0]
@@ -271,7 +273,7 @@ def _factored(
 
     groups = grouped(pattern) if unit == 1 else Groups(list(np.arange(size).reshape(-1, 1)), pattern)
     count = groups.graph.shape[0]
-    solid = not signs and groups.graph.nnz > (SOLID + 1) * count and count > SOLID_GROUPS
+    solid = not filling and groups.graph.nnz > (SOLID + 1) * count and count > SOLID_GROUPS
     if (solid or count > MOST_GROUPS) and not border:
         return None
     plan = multifrontal.plan(pattern, groups, points, unit, exact, border)

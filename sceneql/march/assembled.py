@@ -41,6 +41,14 @@ class Setting:
                 return name, cast(Object, task.original or task.kind)
         return None
 
+    def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
+        """Density and viscosity of each other fluid that skins in a flow hold."""
+        kinds = [task.kind for task in self.tasks.values()]
+        carrying = [kind for kind in kinds if isinstance(kind, Interaction) and kind.carrier() is not None]
+        names = [name for kind in carrying if cast(Ref, kind.carrier()).name == flow for name in kind.targets() or ()]
+        found = [cast(Model, self.tasks[name].kind).fluid() for name in dict.fromkeys(names) if name in self.tasks]
+        return tuple(one for one in found if one is not None)
+
     def formula(self, link: Link) -> Expr | None:
         """The output of a kinematic model, or an object's field, as an expression; None of what stands in the state."""
         kind = self.tasks[link.task].kind
@@ -113,6 +121,10 @@ class Assembled:
         for model in [model for name, model in self.island.forces if name == force] if kind.carrier() else ():
             with self.word(force, model):
                 kind.assemble_carried(force, self.assembly, model)
+        filled = [model for name, model in self.island.forces if name == force and kind.weighs]
+        if any(cast(Model, self.graph.tasks[model].kind).fluid() is not None for model in filled):
+            with self.word(force):
+                kind.assemble_weight(force, self.assembly)
         everyone = [self.bodies.get(model) for name, model in self.island.forces if name == force]
         masses = [bodies for bodies in everyone if bodies is not None]
         if kind.mutual and masses:

@@ -65,23 +65,36 @@ def tangent(march: March, functions: Any, rest: Floats, times: Floats) -> Tangen
     paired = np.flatnonzero(system.partner >= 0)
     position_of[system.partner[paired]] = paired
     positions, inertia = position_of[velocities], _inertia(system, march.floats)
-    found = []
-    for t in times.tolist():
+    forces = _forces(system, march.floats)
+
+    def matrices(t: float) -> list[Any]:
         rows = _slopes(march, functions, rest, t)[velocities].tocsc()
-        found.append([-csr_array(_forces(system, march.floats) @ rows[:, at]) for at in (positions, velocities)])
-    stiffness = abs(found[0][0])
+        return [-csr_array(forces @ rows[:, at]) for at in (positions, velocities)]
+
+    found = matrices(float(times[0]))
+    stiffness = abs(found[0])
     # What is led: others feel its place, and it feels none.
     led = (stiffness.sum(axis=0) > 0.0) & (stiffness.sum(axis=1) == 0.0)
     free = np.flatnonzero((inertia.diagonal() > 0.0) & ~led)
-    matrices = [[one[free][:, free] for one in pair] for pair in found]
-    for which, what in enumerate(("stiffness", "damping")):
-        first, size = matrices[0][which], max(float(abs(pair[which]).max()) for pair in matrices) if len(free) else 0.0
-        if any(abs(pair[which] - first).max() > SAME * size for pair in matrices[1:] if size > 0.0):
+    found = [one[free][:, free] for one in found]
+    sizes, changes = [_largest(one) for one in found], [0.0, 0.0]
+    for t in times[1:].tolist():  # one after the other: all at once would take the memory of as many
+        for which, one in enumerate(matrices(t)):
+            now = one[free][:, free]
+            sizes[which] = max(sizes[which], _largest(now))
+            changes[which] = max(changes[which], _largest(now - found[which]))
+    for first, size, change, what in zip(found, sizes, changes, ("stiffness", "damping"), strict=True):
+        if change > SAME * size:
             raise _refused(march, rest, times, f"the {what} of '{{}}' changes in time, and modes are those of one")
-        if size > 0.0 and abs(first - first.T).max() > SAME * size:
+        if _largest(first - first.T) > SAME * size:
             raise _refused(march, rest, times[:1], "the forces of '{}' have no potential, and modes are those of one")
-    halves = [csr_array((one + one.T) * 0.5) for one in matrices[0]]
+    halves = [csr_array((one + one.T) * 0.5) for one in found]
     return Tangent(positions[free], velocities[free], free % 3, csr_array(inertia[free][:, free]), *halves)
+
+
+def _largest(matrix: Any) -> float:
+    """The largest size of an entry."""
+    return float(np.abs(matrix.data).max(initial=0.0))
 
 
 def _inertia(system: System, floats: Floats) -> Any:

@@ -12,11 +12,13 @@ from typing import Any, cast
 from sceneql.files import whole
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Model, Solver
+from sceneql.report.bench_methods import TOLERANCE, MethodRun, method_runs
+from sceneql.report.bench_methods import told as method_lines
 from sceneql.report.bench_schemes import SchemeRun, scheme_runs, told
 from sceneql.report.grid_ends import ends_on_grids
 from sceneql.report.grid_runs import GridRun, LinearRun, linear_runs, on_grids
 from sceneql.report.page import Table, beside
-from sceneql.report.plots_grids import error_against_cell, residuals, schemes_against_time
+from sceneql.report.plots_grids import error_against_cell, methods_against_time, residuals, schemes_against_time
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +51,17 @@ def grid_section(graph: SimulationGraph, stem: Path, schemes: Mapping[str, Mappi
     by_schemes: list[SchemeRun] = []
     linear: list[LinearRun] = []
     orders: dict[str, float | None] = {}
+    by_methods: list[MethodRun] = []
+    of_methods: list[str] = []
     for island in islands:
         title = ", ".join(island.models)
+        compared = method_runs(graph, island)
+        by_methods += compared
+        if compared:
+            method = f"{title} by methods, by tr_bdf2 at tolerance {TOLERANCE:g}, beside the finest p2:"
+            of_methods += [method, *method_lines(compared)]
+        if cast(Model, graph.tasks[island.models[0]].kind).field_count() == 0:
+            continue  # on elements
         ends, how = ends_on_grids(graph, island)
         found, orders[title] = on_grids(title, ends)
         runs += found
@@ -73,7 +84,8 @@ def grid_section(graph: SimulationGraph, stem: Path, schemes: Mapping[str, Mappi
         for one in mine:
             last = f"residual {one.residuals[-1]:.1e} of the first" if one.residuals else "solved at once"
             lines.append(f"    {one.linear:<20} {one.iterations:6d} iterations  {one.seconds * 1e3:9.3f} ms  {last}")
-    return _written(graph.name, stem, lines, runs, orders, by_schemes, linear)
+    lines += of_methods
+    return _written(graph.name, stem, lines, runs, orders, by_schemes, linear, by_methods)
 
 
 def _written(
@@ -84,12 +96,14 @@ def _written(
     orders: Mapping[str, float | None],
     by_schemes: Sequence[SchemeRun],
     linear: Sequence[LinearRun],
+    by_methods: Sequence[MethodRun],
 ) -> GridSection:
     """The section with its files."""
     parts: list[tuple[str, str, type, Sequence[Any]]] = [
         ("grids", "Grids", GridRun, runs),
         ("schemes", "Schemes, grids and steps", SchemeRun, by_schemes),
         ("linear", "Linear solvers", LinearRun, linear),
+        ("methods", "Finite volumes and finite elements", MethodRun, by_methods),
     ]
     tables, files, plots = [], [], []
     for key, caption, kind, rows in parts:
@@ -106,6 +120,9 @@ def _written(
     if any(run.residuals for run in linear):
         plots.append(("Residuals of linear solvers", beside(stem, "linear.svg")))
         residuals(plots[-1][1], name, linear)
+    if by_methods:
+        plots.append(("Error of space against run time, by methods", beside(stem, "methods.svg")))
+        methods_against_time(plots[-1][1], name, by_methods)
     data = {key: [asdict(row) for row in rows] for key, _, _, rows in parts}
     return GridSection(lines, plots, tables, files, data)
 

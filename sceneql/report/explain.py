@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, cast
 
 from sceneql.compiler.catalogue import ROOT, Catalogue
+from sceneql.compiler.passes.stable_steps import duration, later_bound
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
 from sceneql.kinds import Camera, Contact, Interaction, Model, Object, Output, Overlay, Picture, Tie
@@ -94,12 +95,20 @@ def _solved(graph: SimulationGraph) -> dict[str, Any]:
     return {"islands": islands, "ranges": ranges}
 
 
+def _later(bound: tuple[float, str] | None) -> str:
+    """What bounds steps after the start, as a text."""
+    if bound is None:
+        return ""
+    return f"; after the start stable up to a step of {duration(bound[0])}, set by {bound[1]}"
+
+
 def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
     from sceneql.march.stability import stability
 
     island = run.island
     order, control = run.march.stepper.method.order, run.march.stepper.control
     bound = stability(run.march, run.methods.bounding)
+    later = later_bound(island, graph.tasks, graph.settings.clock.end)
     return {
         "models": list(island.models),
         "model_remarks": _model_remarks(graph, run),
@@ -122,7 +131,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
         "tolerance": control.tolerance if control.adaptive else None,
         "measure": run.solver.measure() if control.adaptive and run.march.system.fields.single is None else "",
         "step_bound": bound.step if math.isfinite(bound.step) else None,
-        "bound_text": bound.text,
+        "bound_text": bound.text + _later(later),
     }
 
 

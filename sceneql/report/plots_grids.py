@@ -12,6 +12,7 @@ from sceneql.report.curve_ends import label_ends
 from sceneql.report.plots import MARKS, SMALLEST, figure_at, panel
 
 if TYPE_CHECKING:
+    from sceneql.report.bench_methods import MethodRun
     from sceneql.report.bench_schemes import SchemeRun
     from sceneql.report.grid_runs import GridRun, LinearRun
 
@@ -60,6 +61,18 @@ def error_against_cell(path: Path, title: str, runs: Sequence[GridRun], orders: 
             order = orders[mine[0].island]
             text = "no order seen" if order is None else f"order {order:.2f}"
             axes.plot([run.cell for run in mine], [max(run.error, SMALLEST) for run in mine], "o-", ms=4, label=text)
+            label_ends(axes)
+
+
+def methods_against_time(path: Path, title: str, runs: Sequence[MethodRun]) -> None:
+    """Write an SVG: error of space over run time [s] with the set-up, a line a method, a mark a spacing."""
+    with figure_at(path, _size(runs)) as figure:
+        for axes, mine in _panels(figure, title, runs):
+            axes.set(xscale="log", yscale="log", xlabel="run time with set-up [s]", ylabel="error of space, rms")
+            for method, mark in zip(dict.fromkeys(run.method for run in mine), cycle(MARKS), strict=False):
+                own = [run for run in mine if run.method == method]
+                times, errors = [run.seconds + run.setup for run in own], [max(run.error, SMALLEST) for run in own]
+                axes.plot(times, errors, marker=mark, ms=5, lw=1.2, label=method)
             label_ends(axes)
 
 

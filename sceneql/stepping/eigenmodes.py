@@ -122,7 +122,7 @@ def _inverse(stiffness: Any, mass: Any, points: Floats, shift: float) -> Callabl
     whole = csr_array(stiffness + shift * mass)
     whole.sum_duplicates()
     whole.sort_indices()
-    plan = multifrontal.plan(whole, points=points)
+    plan = multifrontal.plan(whole, points=points, symmetric=True)
     plan.numbers[SINGLE_FACTOR] = -1
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     multifrontal_kernels.factor_system(plan.numbers, whole.data, factors, work, True)

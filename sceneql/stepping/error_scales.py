@@ -74,6 +74,7 @@ def _sums(system: System) -> NDArray[int64]:
     """What models of masses and fields keep besides them, where nothing tells what it depends on."""
     found = np.zeros(len(system.y), dtype=bool)
     at = [velocity_at for velocity_at, _, _ in system.masses] + [grid.at for grid in system.grids]
+    at += [first for first, _ in system.inertia]
     for first, last, _, _ in system.ranges:
         found[first:last] = any(first <= one < last for one in at)
     return np.flatnonzero(found)

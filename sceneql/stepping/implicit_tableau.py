@@ -143,8 +143,8 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     settings, text = np.array(method.settings), plan.text
     if system.fields.single is not None:  # a field that drifts: grids/grid_or_general.py
         text += ", chosen since a drift may pass many cells in a step"
-        if stepper.control.by_scale:
-            settings[ABSOLUTE] *= float(np.abs(system.y).max(initial=0.0)) or 1.0
+    if (system.fields.single is not None or system.fields.on_elements) and stepper.control.by_scale:
+        settings[ABSOLUTE] *= float(np.abs(system.y).max(initial=0.0)) or 1.0
     return Prepared(
         settings=np.concatenate([settings, plan.scales]),
         numbers=np.concatenate([method.numbers, [len(method.settings), room], plan.numbers]),

@@ -9,6 +9,9 @@ from sceneql.system.terms import Slopes, Stage
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.kinds.values import Ref, Value
     from sceneql.kinds.word import Kind
     from sceneql.quantities.expression import Expr, Link
@@ -16,6 +19,8 @@ if TYPE_CHECKING:
     from sceneql.system.fields import Flow, Grid, Membrane
     from sceneql.system.state import ModelState, Place
     from sceneql.system.ties import Tied
+
+    Ints = Sequence[int] | NDArray[int64]
 
 Mode = Literal["exact", "local"]
 """How contacts act: by events located in time and impulses (exact), or by impacts resolved within a step (local)."""
@@ -59,7 +64,7 @@ class Assembly(Protocol):
         self,
         stage: Stage,
         kernel: str,
-        ints: Sequence[int],
+        ints: Ints,
         jacobian: Slopes | Callable[[], Slopes | None] | None = None,
         apart: bool = False,
         energy: str | None = None,
@@ -78,7 +83,7 @@ class Assembly(Protocol):
         potential where they are 0.
         """
 
-    def limit(self, kernel: str, ints: Sequence[int]) -> None:
+    def limit(self, kernel: str, ints: Ints) -> None:
         """Add what keeps surfaces apart: the largest part of a change of the state that lets none pass another.
 
         ``kernel`` is ``"package.module:function"``, ``(t, y, changed, floats, ints) -> float``, 1 where the whole way
@@ -94,7 +99,7 @@ class Assembly(Protocol):
         it returns whether the slopes of its term, given by a function, have more places now. None are taken away.
         """
 
-    def tied_drift(self, kernel: str, ints: Sequence[int]) -> None:
+    def tied_drift(self, kernel: str, ints: Ints) -> None:
         """Add what changes the momenta before a splitting's drift, so that it ends where ties hold (RATTLE).
 
         ``kernel(functions, h, y0, kicked, y1, floats, all_ints, ints)``: y1 is the state that has drifted over h from
@@ -112,8 +117,14 @@ class Assembly(Protocol):
         that are held have a row and a column of zeros.
         """
 
+    def capacity(self, at: int, matrix: Any) -> None:
+        """Say that a close term solves with a matrix for the rates of y[at : at + n]: slopes are of what it solves for.
+
+        ``matrix``: scipy sparse, symmetric and positive definite, (n, n).
+        """
+
     def contact(
-        self, mode: Mode, kernels: Sequence[str], ints: Sequence[int], pairs: int, apart: bool = False, help: str = ""
+        self, mode: Mode, kernels: Sequence[str], ints: Ints, pairs: int, apart: bool = False, help: str = ""
     ) -> None:
         """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (back_off,) for `local`.
 
@@ -121,7 +132,7 @@ class Assembly(Protocol):
         the pairs have no end, which is then told at the contact's line.
         """
 
-    def after_step(self, kernel: str, ints: Sequence[int], apart: bool = False, samples: bool = False) -> None:
+    def after_step(self, kernel: str, ints: Ints, apart: bool = False, samples: bool = False) -> None:
         """Add a kernel that acts at the end of each accepted step: springs that tear, particles that are born.
 
         ``kernel`` is ``"package.module:function"``; it returns whether it changed anything. ``apart``: as for a term.
@@ -130,7 +141,7 @@ class Assembly(Protocol):
         end of the step is to be evaluated anew.
         """
 
-    def free_motion(self, kernel: str, ints: Sequence[int], at: int, count: int) -> None:
+    def free_motion(self, kernel: str, ints: Ints, at: int, count: int) -> None:
         """Add the exact motion without forces of y[at : at + count], which splittings use as their drift.
 
         ``kernel(h, y, floats, ints)`` changes these entries alone, from those of velocities and momenta. Of entries
@@ -148,6 +159,9 @@ class Assembly(Protocol):
 
     def flow_of(self, model: str | None = None) -> Flow | None:
         """The flow of a model, or by default the only one; None where this island has none."""
+
+    def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
+        """Density and viscosity of each other fluid that skins in a flow hold (Model.fluid)."""
 
     def membrane(self, membrane: Membrane) -> None:
         """Say that entries of the state are a skin that a flow carries."""

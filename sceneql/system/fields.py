@@ -75,9 +75,11 @@ class Flow:
     density: float
     """[kg/m^3]"""
     viscosity: float
-    """[Pa s]"""
+    """[Pa s]; 0 where it varies."""
     pressure: str
     """How it is solved for, for `explain`."""
+    varying: tuple[int, ...] = ()
+    """Integers of the kernels of several fluids (flows/varying/fluid_layout.py); empty of one density and viscosity."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,6 +111,8 @@ class Fields:
     flow: Flow | None = None
     alone: bool = False
     """Whether the island is these fields and nothing else, which nothing changes between steps."""
+    on_elements: int = 0
+    """Unknowns of fields on elements, where the island is these and nothing else."""
 
     @property
     def single(self) -> Grid | None:

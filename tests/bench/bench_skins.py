@@ -8,6 +8,8 @@
     python tests/bench/bench_skins.py correction      how much volume is put back, on three grids
     python tests/bench/bench_skins.py deep 48 5       volume of an egg in a deep flow, cells a side, step [ms]
     python tests/bench/bench_skins.py capsule 12 10   rubber in shear: deformation, cells a radius, radii between walls
+    python tests/bench/bench_skins.py bag 96          bag of heavy fluid on a floor, cells a side
+    python tests/bench/bench_skins.py fall 96         circle that begins to fall, cells a side and half
     python tests/bench/bench_skins.py share 64        a skin's part of a step's time there
 
 Sources: Tu & Peskin (1992), SIAM J. Sci. Stat. Comput. 13, 1361-1376, for the relaxing ring. The frequency and damping
@@ -228,6 +230,52 @@ def rest(cells: str) -> None:
     print(f"radius at rest {radii.min():+.1e} to {radii.max():+.1e} m off, speed {speed:.1e}")
 
 
+def bag(cells: str) -> None:
+    """A bag of heavy fluid at rest on a floor without friction, of a fluid a thousand times as light and thin."""
+    floor = 2.0 / int(cells)
+    egg = f'field: "x^2 + y^2 - 0.18^2", bounds: {{ball: 1}}, position: 0.5 {floor + 0.19!r} 0 m'
+    law = "law: {springs: {stretch: 4000 N/m}}, filling: {density: 1000 kg/m^3, viscosity: 80 Pa*s}"
+    flow = f"size: 1 1 m, cell: 1/{cells} m, density: 1 kg/m^3, viscosity: 0.08 Pa*s"
+    flow += ", boundary: {bottom: {wall: {slip: free}}}"
+    text = f"clock: {{end: 2 s, fps: 1}}\nmodels:\n  air: {{flow: {{{flow}}}}}\n"
+    text += (
+        f"  balloon: {{membrane: {{of: egg, {law}}}}}\nforces: [gravity, {{immersion: {{on: [balloon], in: air}}}}]\n"
+    )
+    ledge = f"ledge: {{plane: {{position: 0 {floor!r} 0 m, normal: 0 1 0}}}}"
+    text += f"objects: {{egg: {{implicit: {{{egg}}}}}, {ledge}}}\n"
+    text += "contacts: {land: {collision: {between: [balloon, ledge]}}}\nsolvers: {main: {auto: {}}}\n"
+    made, begun = Balloon.of(text), time.process_time()
+    sides = []
+    for k in range(8):  # it still swings a little: the mean of the last periods
+        made.run.advance(1.3 + 0.1 * k)
+        sides.append(np.ptp(made.read("positions"), axis=0)[:2])
+    width, height = np.mean(sides, axis=0)
+    print(
+        f"{cells} cells: height {height:.7f} m ({height / 0.26211314 - 1:+.2%}), width {width:.7f} m "
+        f"({width / 0.46532072 - 1:+.2%}), {time.process_time() - begun:.0f} s"
+    )
+
+
+def fall(cells: str) -> None:
+    """A circle of fluid in a box of 12 radii begins to fall: (heavy - light)/(heavy + light) g."""
+    for density in (3.0, 1000.0):
+        found = []
+        for count in (int(cells) // 2, int(cells)):
+            law = "law: {springs: {stretch: 1e-3 N/m}}"
+            more = f", filling: {{density: {density!r} kg/m^3, viscosity: 1e-5 Pa*s}}"
+            egg = 'implicit: {field: "x^2 + y^2 - 1/144", bounds: {ball: 1}, position: 0.5 0.5 0 m}'
+            made = Balloon.of(
+                f"clock: {{end: 0.01 s, fps: 1}}\nmodels:\n  air: {{flow: {{size: 1 1 m, cell: 1/{count} m, density: "
+                f"1 kg/m^3, viscosity: 1e-5 Pa*s}}}}\n  balloon: {{membrane: {{of: egg, {law}{more}}}}}\n"
+                f"forces: [gravity, {{immersion: {{on: [balloon], in: air}}}}]\nobjects: {{egg: {{{egg}}}}}\n"
+                "solvers: {main: {imex_midpoint: {step: 1 ms}}}\n"
+            )
+            before = made.read("center")[1]
+            made.run.advance(0.01)
+            found.append(2.0 * (before - made.read("center")[1]) / 1e-4 / ((density - 1) / (density + 1) * 9.81) - 1)
+        print(f"{density:g} : 1: off by {found[0]:+.2%}, {found[1]:+.2%}, drawn to 0 {2 * found[1] - found[0]:+.2%}")
+
+
 def exponent(values: Any, apart: float) -> complex:
     """That of a decaying oscillation by its samples (Prony 1795)."""
     rows = np.column_stack([values[1:-1], values[:-2]])
@@ -259,9 +307,19 @@ def ring(across: str) -> None:
 
 
 if __name__ == "__main__":
-    all_of = (areas, circle, rest, ring, correction, deep, share, capsule)
+    all_of = (areas, circle, rest, ring, correction, deep, share, bag, fall, capsule)
     parts = {one.__name__: one for one in all_of}
     if len(sys.argv) > 1:
         parts[sys.argv[1]](*sys.argv[2:])
     else:
-        areas("64"), circle("64"), rest("64"), ring("21.33"), correction(), deep("48"), share("64")
+        (
+            areas("64"),
+            circle("64"),
+            rest("64"),
+            ring("21.33"),
+            correction(),
+            deep("48"),
+            share("64"),
+            bag("96"),
+            fall("96"),
+        )

@@ -107,6 +107,8 @@ def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, 
             for c in range(FIRST_LIGHT if told else 0):
                 joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
                 fine[k, c] = joined / (samples + pixels)
+        for column in range(FIRST_LIGHT + 2 * scene.ints[layout.LIGHT_COUNT], columns):  # what mists leave
+            fine[k, column] = mean_of(means, columns, x, y, 1 + column)
         for l in range(int(scene.ints[layout.LIGHT_COUNT]) if asked[0, layout.MODE] != layout.ENDING else 0):
             column = FIRST_LIGHT + 2 * l
             share = mean_of(means, columns, x, y, 1 + column)

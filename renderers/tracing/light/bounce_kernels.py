@@ -14,7 +14,7 @@ from renderers.tracing.light.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.light.lights_kernels import in_a_lamp, light_at, reach
 from renderers.tracing.light.sampling_kernels import NEXT_DISK, SKY_COUNT, across
 from renderers.tracing.light.through_kernels import CLEAR, clearness, go_through
-from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part
 from renderers.tracing.solids.intersect_kernels import ask
 from renderers.tracing.solids.surface_kernels import color_at, normal_at
 from sceneql.compiled.kernels import kernel
@@ -112,6 +112,8 @@ def step(scene, scratch, asked, way):
             if far < np.inf:
                 far = reach(far, u[layout.LIGHTS + layout.LIGHT * l + 7], 1.0)
             _, _, share = ask(scene, scratch, asked, sx, sy, sz, lx, ly, lz, far, True)
+            if scene.mist != 0 and not asking:
+                share *= mists_at(scene.mist)(scene, sx, sy, sz, lx, ly, lz, 0.0, far, layout.LEFT)[0]
             cosine *= share / np.pi
             er, eg, eb = er + cosine * ir, eg + cosine * ig, eb + cosine * ib
     if scene.ints[layout.EMBERS] > 0 and not asking:

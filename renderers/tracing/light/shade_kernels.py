@@ -82,6 +82,15 @@ def is_dark(u):
 
 
 @part
+def share_seen(scene, visibility, l):
+    """Share of light l that reaches a record, past all that is solid and through mists."""
+    share = visibility[FIRST_LIGHT + 2 * l]
+    if scene.mist != 0:
+        share *= visibility[FIRST_LIGHT + 2 * int(scene.ints[layout.LIGHT_COUNT]) + l]
+    return share
+
+
+@part
 def shade_matte(scene, record, visibility, s, nx, ny, nz, x, y, z):
     """``shade`` of a surface that reflects nothing specularly: bit for bit the same, since those terms are 0."""
     u = scene.reals
@@ -92,7 +101,7 @@ def shade_matte(scene, record, visibility, s, nx, ny, nz, x, y, z):
         lx, ly, lz, _, ir, ig, ib = light_at(u, l, x, y, z)
         nl = nx * lx + ny * ly + nz * lz
         if nl > 0.0:
-            nl *= visibility[FIRST_LIGHT + 2 * l]
+            nl *= share_seen(scene, visibility, l)
             r, g, b = r + nl * ir, g + nl * ig, b + nl * ib
     e = s + layout.EMISSION
     return (
@@ -132,7 +141,7 @@ def shade(scene, record, visibility):
         nl = nx * lx + ny * ly + nz * lz
         if nl <= 0.0:
             continue
-        nl_seen = nl * visibility[FIRST_LIGHT + 2 * l]
+        nl_seen = nl * share_seen(scene, visibility, l)
         sums = sums[0] + nl_seen * ir, sums[1] + nl_seen * ig, sums[2] + nl_seen * ib
         hx, hy, hz = lx + vx, ly + vy, lz + vz
         length = np.sqrt(hx * hx + hy * hy + hz * hz)

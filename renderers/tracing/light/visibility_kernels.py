@@ -13,7 +13,7 @@ from renderers.tracing.light.lights_kernels import light_at, reach
 from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, SKY_COUNT, SKY_DISK, across
 from renderers.tracing.light.through_kernels import CLEAR, clearness, go_through
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, SURFACE, TINT, start_of
-from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, part
+from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, mists_at, part
 from renderers.tracing.solids.intersect_kernels import answer, ask
 from sceneql.compiled.kernels import kernel
 
@@ -21,7 +21,8 @@ _i = types.int64
 SKY = 0
 """First of three columns of visibility: mean radiance of the open sky less the incoming one (RGB)."""
 FIRST_LIGHT = 3
-"""Then two columns for each light: the visible share of it, and the width [m] of the penumbra here."""
+"""Then two columns for each light: the visible share of it, and the width [m] of the penumbra here. Where there are
+mists, one more for each light behind these: the share of it that mists leave."""
 AWAITED = np.inf
 """First number of a row of visibility that lacks the light of its ways."""
 EMBERS = 3
@@ -29,8 +30,8 @@ EMBERS = 3
 
 
 @part
-def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
-    """(share, distance of the blocker) of the point (disk_x, disk_y) of light l's disk from a place."""
+def toward(scene, l, x, y, z, disk_x, disk_y):
+    """(direction, where along it to end) of a ray from a place to the point (disk_x, disk_y) of light l's disk."""
     dx, dy, dz, far, _, _, _ = light_at(scene.reals, l, x, y, z)
     ax, ay, az, bx, by, bz = across(dx, dy, dz)
     size = scene.reals[layout.LIGHTS + layout.LIGHT * l + 8]
@@ -43,6 +44,13 @@ def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
         dx, dy, dz = dx / length, dy / length, dz / length
     else:
         far = reach(far, scene.reals[layout.LIGHTS + layout.LIGHT * l + 7], 1.0 + u * u + v * v)
+    return dx, dy, dz, far
+
+
+@part
+def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
+    """(share, distance of the blocker) of the point (disk_x, disk_y) of light l's disk from a place."""
+    dx, dy, dz, far = toward(scene, l, x, y, z, disk_x, disk_y)
     blocker, _, share = ask(scene, scratch, asked, x, y, z, dx, dy, dz, far, True)
     return share, blocker
 
@@ -76,11 +84,17 @@ def sky_loss(scene, scratch, asked, ways, record, sample):
         dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
         x, y, z = start_of(record)
         t, item, _ = ask(scene, scratch, asked, x, y, z, dx, dy, dz, np.inf, False)
-    if item < 0:
+    if item < 0 and (scene.mist == 0 or (mode == layout.ASKING and asked[0, layout.OPEN] != 0.0)):
         return 0.0, 0.0, 0.0
-    if mode == layout.ASKING:  # found when rays have answers
+    if item >= 0 and mode == layout.ASKING:  # found when rays have answers
         asked[0, layout.OPEN] = 1.0
         return 0.0, 0.0, 0.0
+    left, mr, mg, mb = 1.0, 0.0, 0.0, 0.0
+    if scene.mist != 0:
+        left, mr, mg, mb = mists_at(scene.mist)(scene, x, y, z, dx, dy, dz, 0.0, t, layout.LIGHT)
+        if item < 0:
+            r, g, b = sky_radiance(scene.reals, dy)
+            return (1.0 - left) * r - mr, (1.0 - left) * g - mg, (1.0 - left) * b - mb
     way = ways[int(asked[0, layout.WAYS])]
     radius = record[RADIUS] + 0.05 * t
     way[OPEN_SKY], way[OPEN_SKY + 1], way[OPEN_SKY + 2] = sky_radiance(scene.reals, dy)
@@ -89,6 +103,8 @@ def sky_loss(scene, scratch, asked, ways, record, sample):
         t, item, glass = go_through(scene, scratch, x, y, z, dx, dy, dz, t, radius, item)
         for c in range(6):
             way[THROUGH + c] = glass[c]
+    if scene.mist != 0:  # all of them before the glass
+        veil(way, left, mr, mg, mb)
     share = met(scene, item, x, y, z) if item >= 0 else 0.0
     set_out(scene, way, item, x + t * dx, y + t * dy, z + t * dz, dx, dy, dz, radius, sample, share)
     if item < 0:  # through glass alone
@@ -99,6 +115,37 @@ def sky_loss(scene, scratch, asked, ways, record, sample):
         return 0.0, 0.0, 0.0
     follow(scene, scratch, asked, way)
     return lost(way)
+
+
+@part
+def veil(way, left, mr, mg, mb):
+    """Put mists before what a way goes through: the share that they leave, and what they send (3)."""
+    if way[THROUGH] != way[THROUGH]:
+        for c in range(3):
+            way[THROUGH + c] = 1.0
+            way[THROUGH + 3 + c] = 0.0
+    for c in range(6):
+        way[THROUGH + c] *= left
+    way[THROUGH + 3], way[THROUGH + 4], way[THROUGH + 5] = (
+        way[THROUGH + 3] + mr,
+        way[THROUGH + 4] + mg,
+        way[THROUGH + 5] + mb,
+    )
+
+
+@part
+def dim_lights(scene, record, number, samples, visibility):
+    """Fill the columns of what mists leave of each light, means of so many samples of its disk, for look_around."""
+    lights = int(scene.ints[layout.LIGHT_COUNT])
+    x, y, z = start_of(record)
+    for l in range(lights if samples > 0 else 0):
+        total = 0.0
+        lit = facing(scene, record, l)
+        for k in range(samples if lit else 0):
+            sample = (number * samples + k) % COUNT
+            dx, dy, dz, far = toward(scene, l, x, y, z, DISK[sample, 0], DISK[sample, 1])
+            total += mists_at(scene.mist)(scene, x, y, z, dx, dy, dz, 0.0, far, layout.LEFT)[0]
+        visibility[FIRST_LIGHT + 2 * lights + l] = total / samples if lit else 1.0
 
 
 @part
@@ -196,6 +243,8 @@ def look_around(scene, scratch, asked, ways, record, number, of_sky, of_lights, 
         add_lost(asked, ways, of_sky, visibility)
         if scene.ints[layout.EMBERS] > 0:
             by_embers(scene, scratch, asked, record, number, of_sky, visibility)
+        if scene.mist != 0:
+            dim_lights(scene, record, number, of_lights, visibility)
         return True
     asked[0, layout.OPEN] = 0.0
     ways_before = asked[0, layout.WAYS]
@@ -220,10 +269,13 @@ def look_around(scene, scratch, asked, ways, record, number, of_sky, of_lights, 
         ways[int(ways_before), COUNT_OF_ROW] = asked[0, layout.WAYS] - ways_before
         visibility[0] = AWAITED
         return False
-    if mode != layout.ASKING:
-        return True
-    if asked[0, layout.OPEN] == 0.0 and visibility[0] == visibility[0]:
+    final = mode != layout.ASKING
+    if not final and asked[0, layout.OPEN] == 0.0 and visibility[0] == visibility[0]:
         asked[0, layout.NEXT] = begin
+        final = True
+    if final:
+        if scene.mist != 0:
+            dim_lights(scene, record, number, of_lights, visibility)
         return True
     visibility[0] = np.nan
     return False

@@ -42,10 +42,10 @@ def box(shape: Grid) -> Floats:
 
 def met(values: Floats) -> NDArray[bool_]:
     """(bz, by, bx) mask of the blocks with cells that have corners of both signs."""
-    return _any(values < 0.0) & _any(values >= 0.0)
+    return blocks_with(values < 0.0) & blocks_with(values >= 0.0)
 
 
-def _any(corners: NDArray[bool_]) -> NDArray[bool_]:
+def blocks_with(corners: NDArray[bool_]) -> NDArray[bool_]:
     """Whether any corner of a block's cells is set."""
     for axis in range(3):
         starts = np.arange(0, corners.shape[axis] - 1, BLOCK)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,6 +46,9 @@ A_PLACE = 6
 TOO_FINE = "take larger spacings under `finer`"
 THIN = 1.0
 """What lies in the object farther than so many spacings from all nodes is lost."""
+KEPT = 4
+"""Meshes that are kept, those last asked for."""
+_kept: dict[tuple[Any, ...], ElementMesh] = {}
 FINE, MOST_LOOKED_AT = 0.25, 3e6
 """It is looked for at places so many spacings apart, and half a spacing where these are too many."""
 
@@ -184,9 +188,24 @@ def _told(held: Floats, corners: Floats, read: Read, name: str, line: Span | Non
 def filled(
     ref: Ref, spacing: float | None, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly
 ) -> ElementMesh:
-    """The mesh of an object. Raises ScriptError where it cannot be filled, LimitRefused for too many elements."""
-    with doing(f"filling {ref.name}"):
-        return _filled(Inside(ref, assembly), spacing_of(ref, spacing, assembly), element, finer, assembly.line())
+    """The mesh of an object. Raises ScriptError where it cannot be filled, LimitRefused for too many elements.
+
+    That of a field at a spacing is kept: variants, studies and twins fill the same again and again.
+    """
+    inside, spacing = Inside(ref, assembly), spacing_of(ref, spacing, assembly)
+    key = None
+    if inside.field is not None and not finer:
+        parts = (inside.field.code, inside.field.constants, inside.field.parts, inside.low, inside.high)
+        key = (element, spacing, *(part.tobytes() for part in parts))
+    if key is None or (mesh := _kept.pop(key, None)) is None:
+        with doing(f"filling {ref.name}"):
+            mesh = _filled(inside, spacing, element, finer, assembly.line())
+    if key is not None:
+        _kept[key] = mesh
+        if len(_kept) > KEPT:
+            del _kept[next(iter(_kept))]
+        mesh = replace(mesh, points=mesh.points.copy(), cells=mesh.cells.copy())
+    return mesh
 
 
 def spacing_of(ref: Ref, spacing: float | None, assembly: Assembly) -> float:

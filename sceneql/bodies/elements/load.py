@@ -132,7 +132,7 @@ def _add_pressure(
         own = np.concatenate([ints, np.ravel(held)])
         return Slopes("sceneql.bodies.elements.load_slopes_kernels:pressure", rows, columns, own, blocks=True)
 
-    assembly.term("internal", "sceneql.bodies.elements.load_kernels:pressure", ints.tolist(), derivatives)
+    assembly.term("internal", "sceneql.bodies.elements.load_kernels:pressure", ints, derivatives)
 
 
 def _add_torque(

@@ -186,7 +186,7 @@ def add_strain(
     assembly.term(
         "internal",
         "sceneql.bodies.elements.strain_kernels:strain",
-        ints.tolist(),
+        ints,
         slopes,
         energy="sceneql.bodies.elements.strain_energy_kernels:energy",
         damped=retardation > 0.0,

@@ -16,7 +16,7 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from sceneql.frame import Floats
+    from sceneql.frame import Floats, Tape
     from sceneql.system import Assembly
 
 CHUNK = 1 << 18
@@ -72,7 +72,7 @@ class Inside:
             self.low, self.high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
             if not (np.isfinite(self.low).all() and np.isfinite(self.high).all()):
                 raise TypeError("it has no end")
-            self.holds, self._exits = _test(kind, start)
+            self.holds, self._exits, self.field = _test(kind, start)
         except (TypeError, ValueError) as error:
             raise self.refusal(str(error)) from None
 
@@ -127,8 +127,11 @@ def chance_key(name: str, seed: int) -> int:
     return zlib.crc32(f"{seed}:{name}".encode())
 
 
-def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats] | None]:
-    """places (n, 3) -> (n,) bool, whether they lie in the object; for meshes also their exits (Winding.exits).
+def _test(
+    kind: Object, start: Any
+) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats] | None, Tape | None]:
+    """places (n, 3) -> (n,) bool, whether they lie in the object; for meshes their exits (Winding.exits), else the
+    field that is below 0 there.
 
     Raises TypeError where it has no inside.
     """
@@ -142,10 +145,10 @@ def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[
         from sceneql.bodies.filling.winding import winding
 
         mesh = winding(triangles(start))
-        return mesh.holds, mesh.exits
+        return mesh.holds, mesh.exits, None
     build = TapeBuilder()
     tape = build.finish(kind.implicit(build, build.x, build.y, build.z, start))
-    return lambda places: np.asarray(field_values(tape, places) < 0), None
+    return lambda places: np.asarray(field_values(tape, places) < 0), None, tape
 
 
 def filled(fill: Fill, name: str, assembly: Assembly) -> Floats:

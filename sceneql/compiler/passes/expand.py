@@ -95,9 +95,12 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
     """A map of each field that no object reads, in the name of its model, and in place of what would hide it."""
     read = {need for task in tasks.values() if isinstance(task.kind, Object) for need in task.needs}
     carriers = [task.kind.carrier() for task in tasks.values() if isinstance(task.kind, Interaction)]
-    for flow in carriers:  # a map of a deep flow's box would hide the skins in it
-        if flow is not None and len(getattr(tasks[flow.name].kind, "size", None) or ()) == 3:
-            read.add(flow.name)
+    shown = [tasks[name] for name in read if name in tasks and isinstance(tasks[name].kind, Model)]
+    carried = {need for task in shown for need in task.needs} | {flow.name for flow in carriers if flow is not None}
+    for name in sorted(carried & set(tasks)):  # a map of a deep flow's box would hide skins in it, and what it carries
+        kind = tasks[name].kind
+        if getattr(kind, "flows", False) and len(getattr(kind, "size", None) or ()) == 3:
+            read.add(name)
     for model in [task for task in tasks.values() if task.name not in read]:
         of = model.kind.shows(model.name) if isinstance(model.kind, Model) else None
         cls = None if of is None else catalogue.load("objects", "field_map")

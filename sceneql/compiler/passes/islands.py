@@ -8,7 +8,7 @@ from sceneql.compiler.passes.reads import reads
 from sceneql.compiler.passes.touchable import no_collider, touchable
 from sceneql.compiler.passes.uncarried import report_carried
 from sceneql.graph import Island, Task
-from sceneql.kinds import Contact, Interaction, Model, Object, Solver, Tie
+from sceneql.kinds import Contact, Interaction, Kind, Model, Object, Solver, Tie
 from sceneql.quantities.diagnostic import Diagnostics, Note
 
 
@@ -36,7 +36,8 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         kind = tasks[force].kind
         if isinstance(kind, Interaction) and kind.carrier() is not None:
             continue
-        if targets and not any(getattr(tasks[name].kind, "has_bodies", False) for name in targets):
+        weighed = isinstance(kind, Interaction) and kind.weighs
+        if targets and not any(_has_mass(tasks[name].kind, weighed) for name in targets):
             text = f"{tasks[force].word} acts on masses, and there are none in {' and '.join(targets)}"
             found.error("no-mass", text, tasks[force].span)
     report_carried(models, forces, tasks, found)
@@ -123,7 +124,12 @@ def acts_on(force: Task, models: list[Task], tasks: Mapping[str, Task]) -> tuple
     named = force.kind.targets()
     if named is not None:
         return tuple(name for name in named if not (name in tasks and isinstance(tasks[name].kind, Object)))
-    return tuple(t.name for t in models if isinstance(t.kind, Model) and t.kind.has_bodies)
+    return tuple(t.name for t in models if _has_mass(t.kind, force.kind.weighs))
+
+
+def _has_mass(kind: Kind, weighed: bool) -> bool:
+    """Whether a model has masses, or, where these are ``weighed``, holds a fluid of its own."""
+    return isinstance(kind, Model) and (kind.has_bodies or (weighed and kind.fluid() is not None))
 
 
 def _touching(

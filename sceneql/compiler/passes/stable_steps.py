@@ -9,8 +9,8 @@ from functools import cache, partial
 from typing import cast
 
 from sceneql.graph import Island, Task
-from sceneql.kinds import Interaction, Model, Solver
-from sceneql.kinds.stable_step import Oscillation, stable_step
+from sceneql.kinds import Interaction, Model, Object, Solver
+from sceneql.kinds.stable_step import Oscillation, StaticScene, stable_step
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
@@ -49,7 +49,7 @@ def warn_of_steps(
         damped = any(
             type(cast(Interaction, tasks[force].kind)).potential is Interaction.potential for force, _ in island.forces
         )
-        for name, modes in _modes(island, tasks):
+        for name, modes in _modes(island, tasks, end):
             entry = script.sections.get(tasks[name].family, {}).get(name)
             for fastest in modes:
                 wrong = _wrong(growth, stable, solver.word, step, fastest, end, damped)
@@ -63,11 +63,31 @@ def warn_of_steps(
                     break
 
 
-def _modes(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, tuple[Oscillation, ...]]]:
+def later_bound(island: Island, tasks: Mapping[str, Task], end: float) -> tuple[float, str] | None:
+    """The largest step [s] that a solver bears of what comes after the start, and what that is; None: nothing is known.
+
+    What the spectrum of the start tells is not among it.
+    """
+    stable = _stable_steps(cast(Solver, tasks[island.solver].kind).oscillation)
+    found = []
+    for name, modes in _modes(island, tasks, end):
+        for one in (mode for mode in modes if mode.later):
+            try:
+                step = stable(one.frequency / one.size, one.decay / one.size, one.turn / one.size) / one.size
+            except TypeError:  # this method tells no growth
+                continue
+            if 0.0 < step < math.inf:
+                span = tasks[name].span
+                found.append((step, one.what if span is None else f"{one.what} ({span.source.name}:{span.line})"))
+    return min(found, default=None)
+
+
+def _modes(island: Island, tasks: Mapping[str, Task], end: float) -> Iterator[tuple[str, tuple[Oscillation, ...]]]:
     """Each model and force by name, with bounds on its fastest oscillations."""
     models = {name: cast(Model, tasks[name].kind) for name in island.models}
+    scene = StaticScene({name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}, end)
     for name, model in models.items():
-        yield name, _known(partial(model.fastest, name))
+        yield name, _known(partial(model.fastest, name, scene))
     known = {name: model.static_masses() for name, model in models.items()}
     for force in dict.fromkeys(force for force, _ in island.forces):
         kind, on = cast(Interaction, tasks[force].kind), [model for other, model in island.forces if other == force]

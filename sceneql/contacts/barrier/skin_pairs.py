@@ -91,10 +91,10 @@ def add_pairs(
     names = np.repeat([one.model for one in surfaces], np.diff(firsts))
     _must_be_apart(start, ints, rest, names, assembly)
     _must_not_cross(rest, corners, edges, rows, names, assembly)
-    assembly.term("force", KERNELS, ints.tolist(), lambda: known.slopes(ints), energy=ENERGY)
-    assembly.limit(LIMIT, ints.tolist())
+    assembly.term("force", KERNELS, ints, lambda: known.slopes(ints), energy=ENERGY)
+    assembly.limit(LIMIT, ints)
     if rubs:
-        assembly.after_step(AFTER, ints.tolist())
+        assembly.after_step(AFTER, ints)
     assembly.grows(grow)
 
 

@@ -135,8 +135,8 @@ class MovingSolids:
             text = "a solid moves through a side of a closed box, and the flow cannot be compressed"
             help = "give a part of the boundary `outflow: {}`, or keep the solid inside"
             raise ScriptError([Diagnostic("no-way-out", text, assembly.line(), help)])
-        assembly.term("internal", GO, ints.tolist())
-        assembly.after_step(GO_ON, ints.tolist())
+        assembly.term("internal", GO, ints)
+        assembly.after_step(GO_ON, ints)
 
     def fractions(self) -> Floats:
         """The open part of each cell at the start (obstacles.Solids.fractions)."""

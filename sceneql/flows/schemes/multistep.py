@@ -139,6 +139,12 @@ def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, st
         _, _, part, spans = system.ranges[0]
         message = f"this solver marches an island with a flow, and '{part}' is none"
         raise ScriptError([Diagnostic("no-flow", message, spans[0], "let auto march it")])
+    if flow.varying:
+        _, _, part, spans = system.ranges[0]
+        message = "density or viscosity varies in this flow, which this solver does not know"
+        raise ScriptError(
+            [Diagnostic("invalid", message, spans[0], "take `imex_midpoint`, `chorin`, or let auto march")]
+        )
     velocities = [grid for grid in flow.components if _spreads(grid, system.floats)]
     fixed = [grid for grid in grids if not grid.varying]
     fields = [*velocities, *(grid for grid in fixed if _spreads(grid, system.floats))]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
-    from sceneql.grids.domain.cells import Cells
+    from sceneql.grids.domain.cells import BoundaryFaces
     from sceneql.grids.medium import Boundary
     from sceneql.grids.medium import Part as OfField
     from sceneql.kinds import Formula
@@ -34,6 +34,7 @@ class Condition:
     areas: Floats
     distances: Floats
     points: Floats
+    outward: Floats
     formula: Formula | None
     """The value outside or the flux; None: 0."""
     resistance: float
@@ -54,6 +55,26 @@ class Condition:
             return np.zeros(len(self.cells))
         weights: Floats = self.areas * d / (d * self.resistance + self.distances)
         return weights
+
+
+class Bounded(Protocol):
+    """What has a boundary: cells, or elements."""
+
+    @property
+    def boundary(self) -> BoundaryFaces:
+        """Its faces."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the boundary's pieces."""
+
+    @property
+    def flat(self) -> bool:
+        """Whether it has two dimensions."""
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Cells along the axes, of a box."""
 
 
 class Part(Protocol):
@@ -87,7 +108,9 @@ class Part(Protocol):
 Said = TypeVar("Said", bound=Part)
 
 
-def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[list[Condition], tuple[bool, bool, bool]]:
+def conditions(
+    boundary: Boundary, cells: Bounded, line: Span | None
+) -> tuple[list[Condition], tuple[bool, bool, bool]]:
     """The conditions of boundaries that are not closed, and which directions are periodic. Raises ScriptError.
 
     ``line``: the model's place in the script.
@@ -99,7 +122,7 @@ def conditions(boundary: Boundary, cells: Cells, line: Span | None) -> tuple[lis
 
 
 def shares(
-    boundary: Mapping[str, Said], cells: Cells, line: Span | None
+    boundary: Mapping[str, Said], cells: Bounded, line: Span | None
 ) -> tuple[list[tuple[Said, Any]], tuple[bool, bool, bool]]:
     """The parts with the indices (m,) of their boundary faces, and the periodic directions. Raises ScriptError."""
     faces = cells.boundary
@@ -141,7 +164,7 @@ def shares(
 HELP = "give each face to one part: say `where` or `near`, or name other sides"
 
 
-def _faces_of(name: str, part: Part, cells: Cells, taken: Any) -> Any:
+def _faces_of(name: str, part: Part, cells: Bounded, taken: Any) -> Any:
     """(faces,) bool."""
     faces = cells.boundary
     mine = ~taken if name == "rest" else np.ones(len(faces.cells), dtype=bool)
@@ -165,7 +188,7 @@ def _chosen(part: Part, points: Floats) -> Any:
     return found
 
 
-def _condition(part: OfField, cells: Cells, mine: Any) -> Condition:
+def _condition(part: OfField, cells: Bounded, mine: Any) -> Condition:
     faces = cells.boundary
     points = faces.points[mine]
     if cells.flat:
@@ -179,7 +202,7 @@ def _condition(part: OfField, cells: Cells, mine: Any) -> Condition:
     if part.open:
         resistance = float("inf")
     ways = faces.cells[mine], faces.areas[mine], faces.distances[mine]
-    return Condition(*ways, points, formula, resistance, part.open)
+    return Condition(*ways, points, faces.outward[mine], formula, resistance, part.open)
 
 
 def held_by(boundaries: Sequence[Boundary], names: tuple[str, ...]) -> Callable[[Floats, Any], Any] | None:

@@ -30,6 +30,8 @@ class BoundaryFaces:
     """(m,) from the cell's center [m]."""
     points: Floats
     """(m, 3) [m]."""
+    outward: Floats
+    """(m, 3) unit normals."""
     pieces: NDArray[int64]
     """(m,) index into the names of the boundary's pieces."""
 
@@ -116,10 +118,10 @@ def box(sides: tuple[float, ...], corner: tuple[float, ...], cell: float, depth:
     piece = np.repeat([side for _, side in faces], [len(cells) for cells, _ in faces])
     centers = low + (np.stack([owner % nx, owner // nx % ny, owner // (nx * ny)], axis=1) + 0.5) * spacing
     outward = np.zeros((len(owner), 3))
-    outward[np.arange(len(owner)), piece // 2] = np.where(piece % 2, 0.5, -0.5)
-    boundary = BoundaryFaces(
-        owner, (volume / spacing)[piece // 2], 0.5 * spacing[piece // 2], centers + outward * spacing, piece
-    )
+    outward[np.arange(len(owner)), piece // 2] = np.where(piece % 2, 1.0, -1.0)
+    distances = 0.5 * spacing[piece // 2]
+    points = centers + 0.5 * outward * spacing
+    boundary = BoundaryFaces(owner, (volume / spacing)[piece // 2], distances, points, outward, piece)
     names = SIDES[: 2 * len(sides)]
     return Cells(
         (nx, ny, nz),

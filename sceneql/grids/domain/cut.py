@@ -212,10 +212,12 @@ def cut(level: Level, grid: Frame, held: Callable[[Floats, Any], Any] | None = N
     place = np.full(len(phi), -1)
     place[near] = np.arange(len(near))
     steep = np.linalg.norm(slopes, axis=1)[place[owners]]
-    least = NEAREST * grid.spacing[list(axes)].min()
-    distances = np.maximum(-phi[owners] / np.maximum(steep, 1e-300), least)
-    points = centers[owners] + closing[owners] / size[:, None] * distances[:, None]
-    boundary = BoundaryFaces(owners, size, distances, points, level.pieces(points))
+    least, away = NEAREST * grid.spacing[list(axes)].min(), -phi[owners] / np.maximum(steep, 1e-300)
+    distances = np.maximum(away, least)
+    # Where the boundary is, also beyond a center outside: formulas of it are read there.
+    outward = closing[owners] / size[:, None]
+    points = centers[owners] + outward * away[:, None]
+    boundary = BoundaryFaces(owners, size, distances, points, outward, level.pieces(points))
     if stiff.any():
         boundary = _joined(boundary, _held_faces(level, grid, phi, (volumes > 0.0) & stiff, areas))
     volumes = _relieved(volumes, areas, grid)
@@ -239,14 +241,15 @@ def staircase(level: Level, grid: Frame) -> Cells:
             faces += [(np.flatnonzero(inside & (area == 0.0)), axis, -0.5, full)]
             faces += [(np.flatnonzero(inside & (after == 0.0)), axis, 0.5, full)]
     owners = np.concatenate([cells for cells, *_ in faces])
-    points = centers[owners]
+    outward = np.zeros((len(owners), 3))
     at = 0
     for cells, axis, way, _ in faces:
-        points[at : at + len(cells), axis] += way * grid.spacing[axis]
+        outward[at : at + len(cells), axis] = 2.0 * way
         at += len(cells)
+    points = centers[owners] + 0.5 * outward * grid.spacing
     size = np.concatenate([np.full(len(cells), full) for cells, _, _, full in faces])
     distances = np.concatenate([np.full(len(cells), 0.5 * grid.spacing[axis]) for cells, axis, _, _ in faces])
-    boundary = BoundaryFaces(owners, size, distances, points, level.pieces(points))
+    boundary = BoundaryFaces(owners, size, distances, points, outward, level.pieces(points))
     volumes = np.where(inside, whole, np.zeros(n))
     return grid.cells(volumes, areas, boundary, level.names)
 
@@ -289,7 +292,9 @@ def _held_faces(level: Level, grid: Frame, phi: Floats, cells: Any, areas: list[
             points = centers[mine]
             points[:, axis] -= way * distance
             full = np.full(len(mine), float(np.prod(grid.spacing)) / grid.spacing[axis])
-            parts.append(BoundaryFaces(mine, full, distance, points, level.pieces(points)))
+            outward = np.zeros_like(points)
+            outward[:, axis] = -way
+            parts.append(BoundaryFaces(mine, full, distance, points, outward, level.pieces(points)))
     found = parts[0]
     for part in parts[1:]:
         found = _joined(found, part)
@@ -297,9 +302,11 @@ def _held_faces(level: Level, grid: Frame, phi: Floats, cells: Any, areas: list[
 
 
 def _joined(one: BoundaryFaces, other: BoundaryFaces) -> BoundaryFaces:
-    names = ("cells", "areas", "distances", "points", "pieces")
-    cells, areas, distances, points, pieces = (np.concatenate([getattr(one, n), getattr(other, n)]) for n in names)
-    return BoundaryFaces(cells, areas, distances, points, pieces)
+    names = ("cells", "areas", "distances", "points", "outward", "pieces")
+    cells, areas, distances, points, outward, pieces = (
+        np.concatenate([getattr(one, name), getattr(other, name)]) for name in names
+    )
+    return BoundaryFaces(cells, areas, distances, points, outward, pieces)
 
 
 def _areas(level: Level, grid: Frame, axis: int, inside: Any, near: Any, stiff: Any) -> Floats:

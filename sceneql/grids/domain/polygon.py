@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 GROUP = 12
 """Sides in one box of the search for the nearest."""
+CORNER = 0.2
+"""Angle [rad] between sides that meet from which on they make a corner."""
 TILE = 4096
 """Points of one task of a thread."""
 
@@ -49,6 +51,19 @@ class Polygon:
         import numpy as np
 
         return np.append(self.starts.min(axis=0), 0.0), np.append(self.starts.max(axis=0), 0.0)
+
+    def corners(self) -> Floats:
+        """(k, 2) where sides meet at an angle, or pieces."""
+        import numpy as np
+
+        before = np.empty(len(self.starts), dtype=np.int64)
+        order = np.lexsort(self.starts.T), np.lexsort(self.ends.T)
+        before[order[0]] = order[1]
+        ways = self.ends - self.starts
+        ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+        bent = (ways * ways[before]).sum(axis=1) < np.cos(CORNER)
+        found: Floats = self.starts[bent | (self._piece != self._piece[before])]
+        return found
 
     def values(self, points: Floats) -> Floats:
         """Signed distance at points (k, 3), negative inside: (k,)."""

@@ -37,6 +37,8 @@ class Interpolation:
     last slopes where these agree in sign, else constant (the minmod limiter: Roe 1986), so that jumps do not overshoot.
     """
 
+    what = "cells"
+
     def __init__(self, layout: FieldLayout, inside: NDArray[np.bool_]) -> None:
         """``inside`` (cells,)."""
         nx, ny, nz = layout.shape
@@ -48,6 +50,15 @@ class Interpolation:
         self.known = known.copy()
         self._own = np.flatnonzero(known)
         self._layers = [layer for _ in range(LAYERS) if (layer := _layer(known)) is not None]
+
+    @property
+    def count(self) -> int:
+        """Number of cells of the domain."""
+        return len(self._own)
+
+    def gridded(self, field: Floats) -> Floats:
+        """A filled field is one on its grid."""
+        return field
 
     def filled(self, values: Floats) -> Floats:
         """The field with its surroundings, from the values in the domain's cells (k,)."""

@@ -17,9 +17,9 @@ from sceneql.shapes.solid import triple
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.grids.maps.interpolation import Interpolation
-    from sceneql.grids.medium import FieldLayout
+    from sceneql.grids.medium import Between, FieldLayout
     from sceneql.kinds import Moment
+    from sceneql.system import ModelState
 
 Field = Annotated[Value, Quantity(None, (None,))]
 """An expression of a field's values: ``lake.concentration``, ``dish.u - dish.v``."""
@@ -35,14 +35,20 @@ class Seen:
 
     model: Any
     layout: FieldLayout
-    interpolation: Interpolation
-    filled: Floats
+    interpolation: Between
+    held: Floats
+    """What it keeps of the field's values."""
     least: float
     largest: float
 
     def at(self, points: Floats) -> Floats:
         """The field at points (k, 3) [m] in its model's own coordinates: (k,)."""
-        return self.interpolation.at(self.filled, points)
+        return self.interpolation.at(self.held, points)
+
+    @property
+    def filled(self) -> Floats:
+        """(nz, ny, nx) at the centers of the cells of its layout, with a layer around them of a deep one."""
+        return self.interpolation.gridded(self.held)
 
     def nodes(self, place: Floats) -> tuple[Floats, Corner, Corner]:
         """(3, 4) map from the world to the nodes of ``filled``, and the corners of the grid's box there.
@@ -75,20 +81,25 @@ def seen(of: Value, moment: Moment) -> Seen:
     """The field of a value at a moment. Raises ValueError where the value reads no field."""
     import numpy as np
 
-    from sceneql.grids.maps.interpolation import interpolation
-
     task, output = of.links[0].task, of.links[0].output
     model: Any = moment.object(Ref(task, of.span))
     if not hasattr(model, "layout"):
         raise ValueError(f"'{task}' is no field on a grid")
     state = moment.state(task)
     layout = model.layout(state, output)
-    inside = state.floats[layout.volumes_at : layout.volumes_at + layout.count] > 0.0
+    own = getattr(model, "between", between_cells)
+    between = own(layout, state)
     values = np.asarray(moment.at(of), dtype=float)
-    if values.shape != (int(inside.sum()),):
-        raise ValueError(f"this has {values.size} values, but '{task}' has {inside.sum()} cells")
-    between = interpolation(layout, inside)
+    if values.shape != (between.count,):
+        raise ValueError(f"this has {values.size} values, but '{task}' has {between.count} {between.what}")
     return Seen(model, layout, between, between.filled(values), float(values.min()), float(values.max()))
+
+
+def between_cells(layout: FieldLayout, state: ModelState) -> Between:
+    """What a field on a grid is between the centers of its cells."""
+    from sceneql.grids.maps.interpolation import interpolation
+
+    return interpolation(layout, state.floats[layout.volumes_at : layout.volumes_at + layout.count] > 0.0)
 
 
 def swings(of: Value, moment: Moment) -> bool:

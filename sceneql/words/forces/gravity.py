@@ -54,6 +54,19 @@ class Gravity(Force):
         )
         assembly.remember(given, *parameters)
 
+    def assemble_weight(self, name: str, assembly: Assembly) -> None:
+        """Add g to what fluids of several densities weigh."""
+        from sceneql.flows.varying.fluid_layout import WEIGHT
+
+        flow = assembly.flow_of()
+        if flow is None or not flow.varying:  # it could not be made, which is told
+            return
+        vector = self.direction if self.acceleration is None else self.acceleration
+        given, parameters = int(self.acceleration is not None), (assembly.value(vector), assembly.value(self.strength))
+        ints = (given, *parameters, flow.varying[WEIGHT])
+        assembly.term("force", "sceneql.words.forces.gravity_weight_kernels:weigh", ints)
+        assembly.remember(given, *parameters)
+
     def potential(self, bodies: Bodies, state: ModelState) -> float:
         """Minus the sum of m g . x [J]."""
         from sceneql.bodies import bodies as masses

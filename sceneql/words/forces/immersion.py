@@ -18,8 +18,9 @@ class Immersion(Force):
 
     Velocities are read from faces and forces spread to them by the same composite B-splines, of order 4 along a
     component and 3 across, so that what is read is free of divergence, and no fluid passes the skin. Beside walls faces
-    are continued by reflection. The density of the fluid is that of the flow on both sides of the skin. Sources: Peskin
-    (2002), Acta Numerica 11, 479-517; Gruninger & Griffith (2025).
+    are continued by reflection. Where a skin holds a fluid of its own (`filling`), faces count by their mass besides,
+    so that the skin goes with the heavy one. Sources: Peskin (2002), Acta Numerica 11, 479-517; Gruninger & Griffith
+    (2025).
 
     `forces: [{immersion: {on: [balloon], in: air}}]`
     """
@@ -41,9 +42,10 @@ class Immersion(Force):
         cell = flow.cell
         if size is not None:
             cell, axes = min(side / n for side, n in zip(size, counts(size, cell), strict=False)), len(size)
-        decay = flow.viscosity / flow.density * axes / cell**2
+        decay = flow.thickest() / flow.density * axes / cell**2
         for name, skin in skins.items():
-            turn = (skin.largest_tension() / (flow.density * cell**3)) ** 0.5
+            inside = (skin.fluid() or (flow.density, 0.0))[0]
+            turn = (skin.largest_tension() / (0.5 * (flow.density + inside) * cell**3)) ** 0.5
             yield Oscillation(0.0, decay, f"the skin '{name}' in cells of {cell:g} m", ("on",), turn)
 
     def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:

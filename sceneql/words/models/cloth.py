@@ -13,7 +13,7 @@ from sceneql.bodies.nets import CORNERS, EDGES, Net, stiffest, turned
 from sceneql.bodies.nets import Cloth as Sheet
 from sceneql.bodies.springs import SpringModel, pin_problems
 from sceneql.kinds import Gives, Problem, Quantity, field
-from sceneql.kinds.stable_step import Oscillation, StaticMass
+from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.quantities import dimension as dim
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class Cloth(SpringModel):
         wide, high = (side / cells for side, cells in zip(self.size, self.cells, strict=True))
         return {"": StaticMass(0.25 * self.mass * wide * high, None, self.velocity)}
 
-    def fastest(self, name: str) -> tuple[Oscillation, ...]:
+    def fastest(self, name: str, scene: StaticScene) -> tuple[Oscillation, ...]:
         """Of a mass inside, by the springs around it: see `stiffest`."""
         wide, high = (side / cells for side, cells in zip(self.size, self.cells, strict=True))
         mass = self.mass * wide * high

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import PrivateAttr
 
 from sceneql.grids.medium import (
     SOURCE,
@@ -13,10 +16,11 @@ from sceneql.grids.medium import (
     Picture,
     gives_of,
     layout_of,
+    number_in,
 )
 from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
-from sceneql.kinds import Formula, Gives, Value, field
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds import Formula, Gives, Problem, Value, field
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.expression import Link, Type
@@ -25,9 +29,14 @@ if TYPE_CHECKING:
     from numpy import int64
     from numpy.typing import NDArray
 
+    from sceneql.galerkin.element_field import ElementField
+    from sceneql.grids.medium import Between
     from sceneql.system import Assembly, ModelState
 
 UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
+
+LEAST_RATES = {1: 8.0, 2: 150.0}
+"""D/cell^2 times so much is no more than the fastest decay on elements of such a degree: what was measured."""
 
 
 def _names(what: str) -> tuple[str, ...]:
@@ -36,17 +45,29 @@ def _names(what: str) -> tuple[str, ...]:
 
 
 class Diffusion(SpreadingMedium):
-    """Diffusion dc/dt = div(D grad c) + source by finite volumes on a grid of cells, which conserve what there is.
+    """Diffusion dc/dt = div(D grad c) + source by finite volumes on cells, or by finite elements. Both conserve.
 
     A face between two cells carries D area (difference)/(distance); D there is the harmonic mean of the cells' where it
     depends on the place alone (layers in a row), else the arithmetic one. On a boundary the value, the flux, or both in
     proportion are given; where nothing is said nothing crosses. In formulas x, y, z, t and the field c are plain
-    numbers in SI. A flat domain has x and y and a `depth`. Source: Patankar, Numerical Heat Transfer and Fluid Flow
-    (1980), 4.2; Crank, The Mathematics of Diffusion (1975).
+    numbers in SI. A flat domain has x and y and a `depth`.
+
+    With `method: elements` the field is that of Galerkin's weak form (Galerkin 1915) on triangles or tetrahedra, whose
+    sides lie on the boundary; given values are held by Nitsche's terms (1971), and nothing carries it. Source:
+    Patankar, Numerical Heat Transfer and Fluid Flow (1980), 4.2; Crank, The Mathematics of Diffusion (1975);
+    Zienkiewicz & Taylor, The Finite Element Method (2000).
     """
 
     of: Literal["concentration", "temperature", "number"] = field(
         "What spreads, which gives its unit, and a temperature's output its name.", "concentration"
+    )
+    method: Literal["cells", "elements"] = field(
+        "By finite volumes on cells, or by finite elements: triangles or tetrahedra with sides of a `cell`.", "cells"
+    )
+    element: Literal["p1", "p2"] | None = field(
+        "The elements: p1, linear, of order 2; or p2, quadratic with sides curved onto the boundary, of order 3, the "
+        "default.",
+        None,
     )
     coefficient: COEFFICIENT = field("The coefficient D [m^2/s].")
     initial: START | Picture | None = field("The field at the start, a formula or a picture; by default 0.", None)
@@ -62,7 +83,14 @@ class Diffusion(SpreadingMedium):
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
         """In the unit of what spreads."""
         what = str(written.get("of", "concentration"))
-        found = dict(gives_of("The field in every cell of the domain.", UNITS.get(what, dim.PLAIN), written))
+        by_elements = written.get("method") == "elements"
+        text = "The field at every node of the elements." if by_elements else "The field in every cell of the domain."
+        found = dict(gives_of(text, UNITS.get(what, dim.PLAIN), written))
+        if by_elements:
+            probes = written.get("probes")
+            of_nodes = dict.fromkeys(map(str, probes if isinstance(probes, Mapping) else ()), "The value there.")
+            for name, told in {"centers": "The places of these nodes.", **of_nodes}.items():
+                found[name] = replace(found[name], doc=told, computed=True)
         own = found.pop("field")
         return {**dict.fromkeys(_names(what), own), **found}
 
@@ -72,8 +100,8 @@ class Diffusion(SpreadingMedium):
         return UNITS.get(str(written.get("of", "concentration")))
 
     def field_count(self) -> int:
-        """One."""
-        return 1
+        """One on cells."""
+        return 1 if self.method == "cells" else 0
 
     def boundaries(self) -> Iterable[Boundary]:
         """That of its field."""
@@ -93,13 +121,51 @@ class Diffusion(SpreadingMedium):
         """Whether it is a concentration."""
         return self.of == "concentration"
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """What limits the explicit step."""
-        found = self.spreading(self.coefficient)
-        return () if found is None else (found,)
+        if self.method == "elements":
+            d = number_in(self.coefficient)
+            if d is not None:
+                rate = LEAST_RATES[self.degree] * d / self.cell**2
+                yield Oscillation(0.0, rate, f"the spread over elements of {self.cell:g} m", ("cell",))
+            return
+        found = self.spreading(self.coefficient, scene)
+        if found is not None:
+            yield found
+
+    _solved: ElementField | None = PrivateAttr(None)
+
+    def problems(self) -> Iterable[Problem]:
+        """Besides those of any medium what elements cannot do, and an element of cells."""
+        yield from super().problems()
+        if self.method == "cells":
+            if self.element is not None:
+                yield Problem("cells have no `element`: say `method: elements`, too", ("element",), at_key=True)
+            return
+        if self.drift is not None:
+            text = "elements carry nothing, they would swing: leave out `drift`, or `method: elements`"
+            yield Problem(text, ("drift",), at_key=True)
+        if "edges" in self.model_fields_set:
+            yield Problem(
+                "elements meet the boundary at their own sides: `edges` is for cells", ("edges",), at_key=True
+            )
+        for name, part in self.boundary.items():
+            if part.open:
+                yield Problem("`open` lets a drift through, and elements have none", ("boundary", name, "open"))
+
+    @property
+    def degree(self) -> int:
+        """Of the functions of its elements."""
+        return 1 if self.element == "p1" else 2
 
     def assemble(self, name: str, assembly: Assembly) -> None:
-        """Reserve a number a cell and one for the inflow, and add the terms of the rate. Raises ScriptError."""
+        """Reserve a number a cell or node and one for the inflow, and add the terms of the rate. Raises ScriptError."""
+        self._solved = None
+        if self.method == "elements":
+            from sceneql.galerkin import assembly as elements
+
+            self._solved = elements.add_field(self, self, self.boundary, self.degree, assembly)
+            return
         from sceneql.grids.assembly import add_field
         from sceneql.grids.domain.domain import cells_of
         from sceneql.grids.ground import Ground
@@ -112,6 +178,10 @@ class Diffusion(SpreadingMedium):
         assembly.remember(grid.at, *ground.memory)
         self.must_hold_probes(layout_of(grid.at, ground.memory, assembly.numbers()), assembly)
 
+    def remark(self, state: ModelState) -> str:
+        """Of elements how many, their worst angle, what bounds explicit steps, and what they do not keep."""
+        return "" if self._solved is None else self._solved.remark(self.element or "p2")
+
     def connect(self, name: str, assembly: Assembly) -> None:
         """Add the drift by a flow that is solved. Raises ScriptError."""
         if self.drift is not None and self.drift.by is not None:
@@ -123,7 +193,31 @@ class Diffusion(SpreadingMedium):
 
     def layout(self, state: ModelState, output: str = "concentration") -> FieldLayout:
         """Where its field lies, for pictures."""
+        if self._solved is not None:
+            return self._solved.layout
         return layout_of(state.ints[0], state.ints[1:], state.floats)
+
+    def between(self, layout: FieldLayout, state: ModelState) -> Between:
+        """What pictures of its field see between its values."""
+        from sceneql.grids.maps.seen import between_cells
+
+        return between_cells(layout, state) if self._solved is None else self._solved.between
+
+    def by_methods(self) -> Mapping[str, Diffusion]:
+        """Itself by every method, for `bench`; only itself where elements cannot do what it asks for."""
+        given = {"method": "elements", "edges": "cut_cell"}
+        if self.drift is not None or any(part.open for part in self.boundary.values()):
+            return {"cells": self}
+        cells = self.model_copy(update={"method": "cells", "element": None})
+        return {"cells": cells, **{one: self.model_copy(update={**given, "element": one}) for one in ("p1", "p2")}}
+
+    def samples(self, state: ModelState) -> tuple[Any, Any, Any]:
+        """Places (k, 3) [m], the field there (k,), and the volumes (k,) [m^3] that these stand for."""
+        if self._solved is not None:
+            return self._solved.samples(state)
+        layout = self.layout(state)
+        volumes = state.floats[layout.volumes_at : layout.volumes_at + layout.count]
+        return self.measure("centers", layout, state), self.measure("field", layout, state), volumes[volumes > 0.0]
 
     def shows(self, name: str) -> Value | None:
         """The field."""
@@ -131,8 +225,14 @@ class Diffusion(SpreadingMedium):
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells of the domain,), (cells, 3) or float."""
-        return self.measure("field" if output in _names(self.of) else output, self.layout(state), state)
+        what = "field" if output in _names(self.of) else output
+        if self._solved is not None:
+            return self._solved.measure(what, state)
+        return self.measure(what, self.layout(state), state)
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Of the cells, of probes, and of what has come in."""
-        return self.places_of("field" if output in _names(self.of) else output, self.layout(state), state)
+        what = "field" if output in _names(self.of) else output
+        if self._solved is not None:
+            return self._solved.places_of(what)
+        return self.places_of(what, self.layout(state), state)

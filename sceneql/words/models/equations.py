@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from sceneql.formulas.formula_rows import TIMES, Rows, states
 from sceneql.island.static_rates import told_slope
 from sceneql.kinds import FixedLength, Formula, Gives, Model, Problem, Record, Value, field, quantity_type
-from sceneql.kinds.stable_step import Oscillation, oscillations
+from sceneql.kinds.stable_step import Oscillation, StaticScene, oscillations
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -125,7 +125,7 @@ class Equations(Model):
         """Its invariants."""
         return tuple(self.invariants)
 
-    def fastest(self, name: str) -> Iterator[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterator[Oscillation]:
         """The modes at the start of the first copy, where nothing is read from other parts."""
         from sceneql.formulas.rate_program import derivatives
 

@@ -5,13 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
+from pydantic import PrivateAttr
+
 from sceneql import kinds
-from sceneql.flows.parts import FORCE, MOST_FACTORED, Buoyancy, Side, Start, fastest_turn
+from sceneql.flows.parts import (
+    FORCE,
+    MOST_FACTORED,
+    VISCOSITY,
+    Buoyancy,
+    Side,
+    Start,
+    fastest_solid,
+    fastest_turn,
+    thickest,
+)
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
-from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of
+from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of, number_in, spacing_of
 from sceneql.grids.multigrid.linear_solvers import Linear
 from sceneql.kinds import Gives, Model, Problem, Quantity, Value, field, quantity_type
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Link, Type
 
@@ -32,13 +44,16 @@ class Flow(Model):
     of order 1. In formulas x, y, z and t are plain numbers in SI. A flat flow has x and y and a `depth`. Sources:
     Harlow & Welch (1965), Phys. Fluids 8, 2182-2189; Chorin (1968), Math. Comp. 22, 745-762; Koren (1993).
 
-    The density is one, so gravity would add the pressure of the fluid's weight and no motion: the scene's `gravity` and
-    other forces leave a flow alone. `force: "[0, -9.81*1000]"` has that pressure; `buoyancy` has warm fluid rise.
+    One density would add the pressure of its weight and no motion: the scene's `gravity` and other forces leave a flow
+    alone. `force: "[0, -9.81*1000]"` has that pressure; `buoyancy` has warm fluid rise. What skins hold (`filling` of
+    `membrane`) weighs what it is heavier than the fluid around it, whose own pressure is left out. A `viscosity` that
+    varies gives the stress mu (grad u + grad u^T); fields, densities by formula and solids do not go with it.
 
     A lid that moves along a square: `air: {flow: {size: 1 1 m, cell: 2 cm, density: 1 kg/m^3, viscosity: 0.01 Pa*s,
     boundary: {top: {wall: {velocity: "[1, 0]"}}}}}`, seen by `{field_map: {of: air.speed}}` and `{streamlines: {of:
     air.velocity}}`; a `diffusion` in the same box with `drift: {by: air}` is carried by it. Solvers for flows are
-    `ark3` (that of `auto`), `sbdf2`, `cnab2` and `chorin`; explicit ones bear viscosity up to the step that `check`
+    `ark3` (that of `auto`), `sbdf2`, `cnab2` and `chorin`, of several fluids or with a viscosity that varies
+    `imex_midpoint` (that of `auto`) and `chorin`; explicit ones bear viscosity up to the step that `check`
     tells.
     """
 
@@ -58,7 +73,7 @@ class Flow(Model):
     depth: kinds.FixedLength = field("How thick a flat box is.", "1 m", above=0)
     cell: kinds.FixedLength = field("Largest side of a cell.", above=0)
     density: Annotated[float, Quantity(dim.DENSITY)] = field("The density.", above=0)
-    viscosity: Annotated[float, Quantity(dim.PRESSURE * dim.TIME)] = field("The dynamic viscosity.", at_least=0)
+    viscosity: VISCOSITY = field("The dynamic viscosity, a number or by place and time: `1e-3*(1 + x)`.")
     initial: Start | None = field("The flow at the start; by default at rest.", None)
     boundary: dict[str, Side] = field(
         "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z), on any part `where` a "
@@ -101,6 +116,9 @@ class Flow(Model):
         "largest_speed": Gives(quantity_type(dim.VELOCITY), "The largest speed.", computed=True),
     }
 
+    _masses_at: int = PrivateAttr(-1)
+    """Where the masses in the own cells of faces stand, of several fluids."""
+
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
         """Those of the flow, and of each solid."""
@@ -141,6 +159,9 @@ class Flow(Model):
 
     def problems(self) -> Iterable[Problem]:
         """Sides that do not fit, too many cells, boundaries of no side."""
+        viscosity = number_in(self.viscosity)
+        if viscosity is not None and viscosity < 0.0:
+            yield Problem(f"viscosity must be at least 0, and is {viscosity:g}", ("viscosity",), code="out-of-range")
         if (self.size is None) == (self.domain is None):
             yield Problem("a flow fills one of `domain` and `size`")
             return
@@ -184,30 +205,40 @@ class Flow(Model):
             text = f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
             yield Problem(text, ("boundary", name), at_key=True)
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann), and advection."""
-        size = self.size or (self.cell, self.cell)  # of a flat domain; rates of a deep one are larger
-        spacing = [side / n for side, n in zip(size, counts(size, self.cell), strict=False)]
-        decay = 4.0 * self.viscosity / self.density * sum(1.0 / side**2 for side in spacing)
+        spacing = spacing_of(self, scene)
+        decay = 4.0 * self.thickest() / self.density * sum(1.0 / side**2 for side in spacing)
         if decay > 0.0:
             yield Oscillation(0.0, decay, f"the viscosity over cells of {self.cell:g} m", ("viscosity",))
+        moved, mover = fastest_solid(self.around, scene, spacing)
+        if moved > 0.0:
+            what = f"the solid '{mover}' that moves through cells of {self.cell:g} m"
+            yield Oscillation(0.0, 0.5 * decay, what, ("cell",), moved, later=True)
         if self.size is None:
             return
         turn = fastest_turn(self.initial, self.boundary, self.corner or (0.0,) * len(self.size), self.size, spacing)
         if turn > 0.0:  # a wave of four cells, which advection turns fastest: viscosity has half its largest rate there
             yield Oscillation(0.0, 0.5 * decay, f"the flow through cells of {self.cell:g} m", ("cell",), turn)
 
+    def thickest(self) -> float:
+        """The viscosity [Pa s], of a formula the largest by samples of the start."""
+        low = self.corner or (0.0,) * len(self.size or ())
+        return thickest(self.viscosity, low, self.size or ())
+
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a face, and add the terms of the rate. Raises ScriptError."""
         from sceneql.flows.assembly import add_flow
         from sceneql.flows.fluid_box import box_of
+        from sceneql.flows.varying.fluid_layout import MASSES
         from sceneql.grids.ground import Ground
 
         size = self.size or ()
         corner = self.corner or (0.0,) * len(size)
         named = self.boundary
         ground = Ground(box_of(self.domain, self.flat, size, corner, self.cell, self.depth, named, assembly), assembly)
-        flow = add_flow(self, ground.cells, assembly)
+        flow = add_flow(name, self, ground.cells, assembly)
+        self._masses_at = flow.varying[MASSES] if flow.varying else -1
         assembly.remember(*ground.memory, *flow.ints)
 
     def connect(self, name: str, assembly: Assembly) -> None:
@@ -235,4 +266,4 @@ class Flow(Model):
 
             number = [ref.name for ref in self.skins].index(name)
             return on_solid(what, number, self.layout(state, output), state.ints[5:], self.density, state)
-        return measure(output, self.layout(state, output), state.ints[5:], self.density, state)
+        return measure(output, self.layout(state, output), state.ints[5:], self.density, state, self._masses_at)

@@ -25,7 +25,7 @@ from sceneql.bodies.nets import (
 from sceneql.bodies.solid_lattice import Filling
 from sceneql.bodies.springs import SpringModel, pin_problems
 from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, field, quantity_type
-from sceneql.kinds.stable_step import Oscillation, StaticMass
+from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
@@ -253,7 +253,7 @@ class MassSpring(SpringModel):
         """The pins that are names or numbers of masses."""
         return [pin for pin in self.pins if not isinstance(self.pins, dict) or self.pins[pin].where is None]
 
-    def fastest(self, name: str) -> tuple[Oscillation, ...]:
+    def fastest(self, name: str, scene: StaticScene) -> tuple[Oscillation, ...]:
         """The fastest spring, and the one that is damped most, by the stiffness at both its ends.
 
         (angular frequency)^2 <= max over springs of the sum over springs at its ends of k |cos| / m: the rows of the

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import PrivateAttr
 
 from sceneql import kinds
-from sceneql.kinds import Gives, Model, Problem, Record, Ref, field, quantity_type
+from sceneql.kinds import Gives, Model, Problem, Quantity, Record, Ref, field, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
@@ -64,6 +64,13 @@ class Law(Record):
             yield Problem("a skin has one of `springs`, `neo_hookean`, `skalak` and `tension`")
 
 
+class Filling(Record):
+    """A fluid that a skin holds: other than that around it."""
+
+    density: Annotated[float, Quantity(dim.DENSITY)] = field("Its density.", above=0)
+    viscosity: Annotated[float, Quantity(dim.PRESSURE * dim.TIME)] = field("Its dynamic viscosity.", above=0)
+
+
 class Membrane(Model):
     """A closed elastic skin without mass, full of fluid, that a `flow` carries and that pushes it (`immersion`).
 
@@ -71,6 +78,9 @@ class Membrane(Model):
     vertices evenly apart that move as the fluid does. What it holds stays: the fluid is incompressible, and after each
     step one number moves all vertices along the slope of the volume, X += s dV/dX, so that what is drawn keeps it
     exactly; `volume_correction` sums what that put back.
+
+    With a `filling` it holds a fluid other than that of its flow: treacle in air, which `gravity` weighs. Masses in
+    cells are what the drawn skin cuts off them, exactly; what crosses a side of a cell takes its momentum along.
 
     `models: {air: {flow: {size: 3 3 m, cell: 3/64 m, density: 1 kg/m^3, viscosity: 0.1 Pa*s}}, balloon: {membrane: {of:
     egg, law: {springs: {stretch: 10 N/m}}, prestress: 2 N/m}}}`, `forces: [{immersion: {on: [balloon], in: air}}]`,
@@ -83,6 +93,7 @@ class Membrane(Model):
     of: kinds.ObjectRef = field("The object whose outline, or surface, it is.")
     law: Law = field("How it pulls.")
     prestress: kinds.FixedStiffness = field("A tension that it has besides, always.", "0 N/m", at_least=0)
+    filling: Filling | None = field("What it holds; by default the fluid of its flow.", None)
     spacing: kinds.FixedLength | None = field(
         "How far its vertices are apart at the start; by default a quarter of a flat flow's cell, half a deep one's.",
         None,
@@ -171,6 +182,19 @@ class Membrane(Model):
         must_fit(made, self.of, assembly)
         assembly.membrane(made.membrane)
         self._made = made
+
+    def fluid(self) -> tuple[float, float] | None:
+        """What it holds."""
+        return None if self.filling is None else (self.filling.density, self.filling.viscosity)
+
+    def connect(self, name: str, assembly: Assembly) -> None:
+        """Tell its flow what it holds."""
+        fluid, flow = self.fluid(), assembly.flow_of()
+        if fluid is not None and flow is not None and self._made is not None:
+            from sceneql.flows.varying.fluids import fill
+
+            made = self._made
+            fill(flow, made.membrane, made.triangles, fluid, self.largest_tension(), assembly)
 
     @property
     def made(self) -> Line | Sheet:

@@ -11,7 +11,7 @@ from sceneql.formulas.formula_rows import TIMES, Rows
 from sceneql.grids.medium import SOURCE, Boundary, FieldLayout, gives_of, layout_of
 from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
 from sceneql.kinds import Formula, Gives, Problem, Record, Symbols, Value, field
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.dimension import Dimension
@@ -148,9 +148,9 @@ class ReactionDiffusion(SpreadingMedium):
         """Those of its species."""
         return [(one.coefficient, ("species", name, "coefficient")) for name, one in self.species.items()]
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """What limits the explicit step of each species' spread; what reactions add is not known before the run."""
-        found = [self.spreading(one.coefficient) for one in self.species.values()]
+        found = [self.spreading(one.coefficient, scene) for one in self.species.values()]
         return [one for one in found if one is not None]
 
     def assemble(self, name: str, assembly: Assembly) -> None:

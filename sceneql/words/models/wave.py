@@ -7,7 +7,6 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql import kinds
-from sceneql.grids.domain.cells import counts
 from sceneql.grids.medium import (
     ANY,
     PLACE,
@@ -19,11 +18,13 @@ from sceneql.grids.medium import (
     Medium,
     Part,
     Picture,
+    largest_in,
     layout_of,
     number_in,
+    spacing_of,
 )
 from sceneql.kinds import Formula, Gives, Problem, Record, Symbols, Value, field, quantity_type
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.expression import Link, Type
@@ -160,14 +161,14 @@ class Wave(Medium):
             if number is not None and number < 0.0:
                 yield Problem(f"the {name} must be at least 0, and is {number:g}", (name,), code="out-of-range")
 
-    def fastest(self, name: str) -> Iterable[Oscillation]:
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """The checkerboard's oscillation, at most 2 c times the root of the sum of 1/spacing^2."""
         speed, damping = number_in(self.speed), number_in(self.damping) if self.damping is not None else 0.0
+        if speed is None and self.size is not None:
+            speed = largest_in(self.speed, self.corner or (0.0,) * len(self.size), self.size)
         if not speed:
             return
-        spacing: tuple[float, ...] = (self.cell, self.cell)
-        if self.size is not None:
-            spacing = tuple(side / n for n, side in zip(counts(self.size, self.cell), self.size, strict=False))
+        spacing = spacing_of(self, scene)
         frequency = 2.0 * abs(speed) * math.sqrt(sum(1.0 / side**2 for side in spacing))
         what = f"the waves over cells of {self.cell:g} m"
         yield Oscillation(frequency, 2.0 * (damping or 0.0), what, ("cell",))

@@ -36,9 +36,9 @@ THIN = 1.5e-3
 class FieldMap(Object):
     """A field in colors: a flat one on its domain, cut along its shore; a deep one on its domain's surface.
 
-    With `cut` what lies before all these planes is taken away, and the field is seen inside. Between
-    the centers of cells it is linear. Under a sky of one color alone (`sky: {color: white}`) colors come out as the map
-    has them.
+    With `cut` what lies before all these planes is taken away, and the field is seen inside. Between the centers of
+    cells it is linear, on elements it is as their functions are. Under a sky of one color alone (`sky: {color: white}`)
+    colors come out as the map has them.
     """
 
     of: Field = field("The field: `lake.concentration`.")

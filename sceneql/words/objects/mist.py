@@ -16,18 +16,26 @@ if TYPE_CHECKING:
 
 
 class Mist(Object):
-    """A field that fills a space as mist: light on the way to the camera is absorbed (Beer 1852; Lambert 1760).
+    """A field that fills a space as mist or smoke: light that passes is absorbed (Beer 1852; Lambert 1760).
 
-    Of what is behind, the part exp(-integral of absorption times field) is left; the mist's own color stands for the
-    rest: black absorbs alone. The integral is exact for the field between the centers of cells. It throws no shadow, is
-    not seen in mirrors, and sprites do not stand in it.
+    Of light the part exp(-integral of absorption times field) is left, on its way to the camera, also by mirrors and
+    glass, and on that from a lamp or the sky: mist throws shadows on itself and on objects. Of the rest its color's
+    share is scattered in all directions alike (Chandrasekhar 1950): white loses no light, black throws shadows alone.
+    That of lamps is found at each center of a cell, what solids and mist leave of it; that of the sky, of surfaces and
+    of the mist itself at a few places in 24 directions, six times over. The integral is exact for the field between
+    the centers of cells. Of mists in one another one covers the other, and sprites do not stand in them.
     """
 
     of: Field = field("The field: `room.concentration`.")
     absorption: Annotated[Value, Quantity(None)] = field(
-        "How much a meter of a unit of the field absorbs: `30 m^2/kg` of a concentration.", at_least=0
+        "How much a meter of a unit of the field takes away: `30 m^2/kg` of a concentration.", at_least=0
     )
-    color: Color = field("What it looks like where it is thick.", "0.9 0.9 0.92")
+    color: Color = field("The share of the light taken away that goes on in other directions.", "0.9 0.9 0.92")
+    lit: bool = field(
+        "Without it, it throws no shadow, and its color is what it looks like where it is thick, whatever the light: "
+        "as a picture of data.",
+        True,
+    )
 
     def problems(self) -> Iterator[Problem]:
         """Fields of no part or of several; an absorption that is of something else."""
@@ -52,4 +60,4 @@ class Mist(Object):
         look = frame.Surface(color=linear(moment.at(self.color)))
         absorption = strength * np.maximum(cells, 0.0)
         to_cells, low, high = whole.nodes(place)
-        yield frame.Mist(name, look, to_cells, absorption, low, high)
+        yield frame.Mist(name, look, to_cells, absorption, low, high, self.lit)

@@ -12,6 +12,7 @@ from sceneql.words.solvers.dop853 import Dop853
 from sceneql.words.solvers.dopri5 import Dopri5
 from sceneql.words.solvers.exact import Exact
 from sceneql.words.solvers.gauss_radau15 import GaussRadau15
+from sceneql.words.solvers.imex_midpoint import ImexMidpoint
 from sceneql.words.solvers.radau import Radau
 from sceneql.words.solvers.tr_bdf2 import TrBdf2
 
@@ -46,11 +47,12 @@ class Auto(Solver):
     again as long as enough of the run is left; `explain` says the first and why. Few masses that nothing but forces at
     a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less. (On large nets
     tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty masses keep
-    it with dopri5, and so do ties of rigid bodies that have exact contacts. A field on a grid is marched by tr_bdf2,
-    and on a box whose coefficient and boundary do not vary by exact; a flow, with all that is solved with it, by ark3;
-    elastic solids that may touch by bdf2 in steps of 1/240 s, others of 6,000 unknowns or more by bdf2 with 100 times
-    the tolerance. Errors are measured as those of `radau` are. Sources: see these words; the sign of stiffness is that
-    of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
+    it with dopri5, and so do ties of rigid bodies that have exact contacts. A field on a grid, or on elements, is
+    marched by tr_bdf2, and on cells of a box whose coefficient and boundary do not vary by exact; a flow, with all that
+    is solved with it, by ark3, and by imex_midpoint where its density or viscosity varies; elastic solids that may
+    touch by bdf2 in steps of 1/240 s, others of 6,000 unknowns or more by bdf2 with 100 times the tolerance. Errors are
+    measured as those of `radau` are. Sources: see these words; the sign of stiffness is that of Hairer & Wanner,
+    Solving Ordinary Differential Equations II (1996), IV.2.
     """
 
     tolerance: FixedScalar = field(
@@ -93,6 +95,14 @@ class Auto(Solver):
             if axes_of(grid, island.floats()) is not None:
                 return Exact().choose(island)
             return TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1), absolute=self.absolute).choose(island)
+        if island.fields.on_elements:
+            there = "for a field on elements"
+            tr_bdf2 = TrBdf2(tolerance=min(100.0 * self.tolerance, 0.1), absolute=self.absolute)
+            return replace(tr_bdf2.choose(island), remark=there)
+        if island.fields.flow is not None and island.fields.flow.varying:
+            there = "as its density or viscosity varies"
+            several = ImexMidpoint(tolerance=min(100.0 * self.tolerance, 0.1))
+            return replace(several.choose(island), remark=there)
         if island.fields.flow is not None:
             return Ark3(tolerance=min(100.0 * self.tolerance, 0.1)).choose(island)
         if island.apart and self.tolerance != type(self)().tolerance:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.flows.schemes import multistep
-from sceneql.kinds import FixedTime, Solver, field
+from sceneql.kinds import FixedTime, Methods, Solver, field
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Stepper
+    from sceneql.system import IslandFacts, Stepper
 
 
 class Chorin(Solver):
@@ -26,6 +26,14 @@ class Chorin(Solver):
     def stepper(self) -> Stepper:
         """Fixed steps."""
         return multistep.stepper(multistep.CHORIN, 1, self.step)
+
+    def choose(self, island: IslandFacts) -> Methods:
+        """The same with masses that move, where density or viscosity varies."""
+        if island.fields.flow is None or not island.fields.flow.varying:
+            return super().choose(island)
+        from sceneql.flows.varying import schemes
+
+        return Methods(self, schemes.stepper(1, self.step))
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
         """Largest of the modes', whose decay is implicit and whose turning explicit."""

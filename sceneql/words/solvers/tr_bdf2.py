@@ -23,8 +23,8 @@ class TrBdf2(Solver):
 
     tolerance: FixedScalar = field("Relative error of a step.", "1e-5", at_least=1e-14, below=1)
     absolute: FixedScalar | None = field(
-        "Absolute error of a step, in SI units; by default the number of the relative (on a grid, that part of the "
-        "largest value at the start).",
+        "Absolute error of a step, in SI units; by default the number of the relative (of a field, that part of "
+        "its largest value at the start).",
         None,
         above=0,
     )

@@ -1,0 +1,1 @@
+"""Fluids of several densities and viscosities."""

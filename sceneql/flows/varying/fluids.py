@@ -1,0 +1,143 @@
+"""A flow of several fluids as numbers of an island: what its kernels (fluid_layout.py) read and write."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.flows import layout
+from sceneql.flows.edges import timed
+from sceneql.flows.varying import fluid_layout as own
+from sceneql.grids.at_points import at_points
+from sceneql.grids.cell_program import over_cells
+from sceneql.grids.medium import number_in
+from sceneql.quantities.derivative import components
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.expression import TIME_SYMBOL
+
+if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
+    from sceneql.flows.flow_fields import Model
+    from sceneql.flows.staggered import Faces
+    from sceneql.system import Assembly, Flow, Membrane
+
+FLAT, DEEP = "sceneql.flows.varying.flat_parts_kernels:measure", "sceneql.flows.varying.deep_parts_kernels:measure"
+FLOW_IN, DRIVE = "sceneql.flows.varying.mass_flow_kernels:flow_in", "sceneql.flows.varying.mass_flow_kernels:drive"
+FIXED = ("fast_transform", "direct")
+"""Solvers of the pressure for one density, whose equation stays."""
+
+
+class Fluids:
+    """What a flow of several fluids reserves; skins that hold them say so as they are made (`fill`)."""
+
+    def __init__(self, model: Model, densities: Sequence[float], faces: Faces, assembly: Assembly) -> None:
+        """``densities``: of the fluids that skins hold [kg/m^3]."""
+        self.model, self.count, self.faces, self.assembly = model, len(densities), faces, assembly
+        self.unequal = any(density != model.density for density in densities)
+        if model.around or model.domain is not None:
+            what = "skins in it hold other fluids" if self.count else "its viscosity varies"
+            text = f"the flow has solids in it or around it, and {what}"
+            help = "let the flow be without `around` and `domain`, or let it have one density and viscosity"
+            raise ScriptError([Diagnostic("invalid", text, assembly.line(), help)])
+
+    @property
+    def text(self) -> str:
+        """For `explain`."""
+        return f", of {1 + self.count} fluids" if self.count else ""
+
+    def solver(self, named: str) -> str:
+        """How the equation of the pressure is solved. Raises ScriptError for one that stays as it is."""
+        if not self.unequal:
+            return named
+        if named in FIXED:
+            text = f"skins hold fluids of other densities: the equation of the pressure changes, and not by `{named}`"
+            raise ScriptError([Diagnostic("invalid", text, self.assembly.line(), "take `pressure: auto`")])
+        return "multigrid" if named == "auto" else named
+
+    def add(self, flow: NDArray[int64], held: int, edges: int) -> tuple[int, ...]:
+        """The integers of all kernels, and the terms; ``held``: fluid_layout.HELD; ``edges``: at walls."""
+        assembly, faces = self.assembly, self.faces
+        cells, flat = faces.cells, faces.axes == 2
+        n = int(np.prod(cells.shape))
+        halves = n * (4 if flat else 8)
+        sizes: list[int] = []
+        starts: list[int] = []
+        for a, b in ((0, 1),) if flat else ((0, 1), (0, 2), (1, 2)):
+            starts.append(sum(sizes))
+            sizes.append(int(np.prod([m + (k in (a, b) and not faces.periodic[k]) for k, m in enumerate(cells.shape)])))
+        ints = np.zeros(own.HEAD, dtype=np.int64)
+
+        def zeros(count: int) -> int:
+            return assembly.floats(np.zeros(count))
+
+        ints[own.FLOW], ints[own.BASE], ints[own.HELD], ints[own.UNEQUAL] = own.HEAD, -1, held, self.unequal
+        box = [*faces.low, *cells.spacing]
+        ints[own.OWN] = assembly.floats([self.model.density, number_in(self.model.viscosity) or 0.0, *box])
+        if number_in(self.model.viscosity) is None:
+            ints[own.BASE] = self._by_formula(int(flow[layout.AT]))
+        ints[own.TABLE] = assembly.floats([0.0, float(zeros(own.ROW * self.count))])
+        for place in (own.DENSITY, own.MEAN, own.FLUIDITY, own.PART, own.COVER):
+            ints[place] = zeros(halves)
+        for place in (own.MASSES, own.MOMENTUM, own.MASS):
+            ints[place] = zeros(faces.count)
+        ints[own.NORMAL], ints[own.SHEAR], ints[own.WALLS] = zeros(n), zeros(sum(sizes)), zeros(edges)
+        ints[own.SHEARS : own.SHEARS + len(starts)] = starts
+        ints[own.WEIGHT], ints[own.MODE], ints[own.FASTEST] = zeros(3), zeros(1), zeros(1)
+        if not flat:
+            from sceneql.flows.varying.deep_parts_kernels import ROOM
+
+            ints[own.CLIPPED] = zeros(ROOM)
+        found = (*ints.tolist(), *flow.tolist())
+        assembly.term("velocity", FLAT if flat else DEEP, found)
+        assembly.term("close", FLOW_IN, found)
+        assembly.term("close", DRIVE, found)
+        return found
+
+    def _by_formula(self, at: int) -> int:
+        """Offset of the viscosity by half: blocks of those at the same place in their cells, as many as cells.
+
+        Raises ScriptError where it is not above 0 at the start.
+        """
+        assembly, cells, formula = self.assembly, self.faces.cells, self.model.viscosity
+        flat, n = self.faces.axes == 2, int(np.prod(cells.shape))
+        shifts = [(a, b, c) for c in ((0.0,) if flat else (-0.25, 0.25)) for b in (-0.25, 0.25) for a in (-0.25, 0.25)]
+        index = np.stack(np.meshgrid(*map(np.arange, cells.shape[::-1]), indexing="ij")[::-1], axis=-1).reshape(-1, 3)
+        first = self.faces.low - (0.0, 0.0, 0.5 * cells.spacing[2] if flat else 0.0)
+        values = [
+            at_points(formula, first + (index + 0.5 + np.array(shift)) * cells.spacing, t=0.0, **{TIME_SYMBOL: 0.0})
+            for shift in shifts
+        ]
+        found, ones = assembly.floats(np.concatenate(values)), assembly.floats(np.ones(n))
+        if not (np.concatenate(values) > 0.0).all():
+            text = f"the viscosity is {np.concatenate(values).min():.3g} Pa s at some places at the start"
+            raise ScriptError([Diagnostic("out-of-range", text, formula.span, "let it be above 0 everywhere")])
+        zeros = assembly.floats(np.zeros(n))
+        for number, shift in enumerate(shifts if timed(formula.expr) else ()):
+            box = assembly.floats([*(first + np.array(shift) * cells.spacing), *cells.spacing])
+            arrays = (found + n * number, zeros, ones)
+            kernel, ints = over_cells(assembly, components(formula.expr)[0], at, arrays, cells.shape, box)
+            assembly.term("velocity", kernel, ints)
+        return found
+
+
+def fill(
+    flow: Flow, skin: Membrane, triangles: Any, fluid: tuple[float, float], tension: float, assembly: Assembly
+) -> None:
+    """Say that a skin holds a fluid of a density [kg/m^3] and a viscosity [Pa s].
+
+    ``triangles``: (m, 3) of a deep one; ``tension``: Membrane.largest_tension [N/m].
+    """
+    ints, numbers = flow.varying, assembly.numbers()
+    density, viscosity = fluid
+    count, rows = (int(one) for one in numbers[ints[own.TABLE] : ints[own.TABLE] + 2])
+    corners = assembly.floats(np.ravel(triangles)) if len(triangles) else 0
+    row = [skin.count, skin.position_at, len(triangles), corners, density, viscosity]
+    assembly.write(rows + own.ROW * count, np.array(row, dtype=float))
+    assembly.write(ints[own.TABLE], np.array([count + 1.0]))
+    cell = min(flow.spacing[: len(flow.areas)])
+    turn = (tension / (0.5 * (density + flow.density) * cell**3)) ** 0.5
+    assembly.write(ints[own.FASTEST], np.array([max(turn, numbers[ints[own.FASTEST]])]))

@@ -1,0 +1,65 @@
+"""How steps of flows of several fluids are prepared (step_kernels.py), and what they bear."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sceneql.system import Control, Method, Needs, Prepared, Stepper
+
+if TYPE_CHECKING:
+    from sceneql.island.system import System
+
+UNSOLVED = "a value is no longer finite, or fluid crosses more than half a cell in a step: it is too long"
+"""What a failed step is told as."""
+
+
+def stepper(order: int, step: float | None, tolerance: float = 0.0, largest: float | None = None) -> Stepper:
+    """Steps of one length [s], or by the tolerance."""
+    method = Method(
+        step="sceneql.flows.varying.step_kernels:step", order=order, numbers=(order,), settings=(), last_stage=0
+    )
+    control = Control(
+        first_step=step or 0.0,
+        adaptive=step is None,
+        tolerance=0.0 if step is not None else tolerance,
+        absolute=0.0 if step is not None else tolerance,
+        largest_step=largest or float("inf"),
+        unsolved=UNSOLVED,
+    )
+    return Stepper(method, control, Needs(prepare="sceneql.flows.varying.schemes:prepare"))
+
+
+def prepare(system: System, stepper: Stepper) -> Prepared:
+    """The arrays of a step. Raises ScriptError where the island has no flow of several fluids."""
+    import numpy as np
+
+    from sceneql.flows.layout import FACES
+    from sceneql.flows.varying.step_kernels import HEAD, SIZES
+    from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+    flow = system.fields.flow
+    if flow is None or not flow.varying:
+        _, _, part, spans = system.ranges[0]
+        message = f"this solver marches a flow of several fluids, and '{part}' has one density and viscosity"
+        raise ScriptError([Diagnostic("no-flow", message, spans[0], "let auto march it")])
+    tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}
+    blocks = [(first, last - first - (last - 1 in tallies)) for first, last, *_ in system.ranges]
+    head = (*stepper.method.numbers, len(blocks), HEAD + 2 * len(blocks))
+    settings = np.zeros(SIZES + len(blocks))
+    settings[:SIZES] = -np.inf, -np.inf, 0.0, stepper.control.tolerance
+    cells = int(np.prod(flow.cells.shape))
+    return Prepared(
+        settings=settings,
+        numbers=np.array([*head, *np.ravel(blocks), *flow.varying], dtype=np.int64),
+        work=4 * len(system.y) + 12 * flow.ints[FACES] + 2 * cells,
+        text=f"mass takes momentum along, viscosity implicit by conjugate gradients, then a projection{flow.pressure}",
+    )
+
+
+def growth(order: int, decay: float, turn: float, step: float) -> float:
+    """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
+    implicit, explicit = -step * decay, 1j * step * turn
+    if order == 1:
+        return abs((1.0 + explicit) / (1.0 - implicit))
+    half = (1.0 + 0.5 * explicit + 0.25 * implicit) / (1.0 - 0.25 * implicit)
+    return abs((1.0 + explicit * half + implicit / 3.0 * (1.0 + half)) / (1.0 - implicit / 3.0))

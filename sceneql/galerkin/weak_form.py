@@ -1,0 +1,143 @@
+"""Integrals over elements and their outer sides: masses, Galerkin's matrices, Nitsche's terms. Imports numpy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sceneql.galerkin.field_mesh import FieldMesh, gradients, sized
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+CHUNK = 20_000
+"""Elements integrated at a time."""
+FIRM = 2.0
+"""Strength of what holds given values, in parts of the least with which the equations are those of a decay."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Edge:
+    """Points of outer sides (f, q): of the places of a rule on each."""
+
+    owners: Any
+    """(f,) elements."""
+    points: Floats
+    """(f, q, 3) [m]."""
+    weights: Floats
+    """(f, q) areas that they stand for [m^2]."""
+    functions: Floats
+    """(f, q, nodes) of the element."""
+    normal: Floats
+    """(f, q, nodes) their slopes outwards [1/m]."""
+    steep: Floats
+    """(f,) Simplex.steepness times area over volume of the element [1/m]."""
+
+
+class WeakForm:
+    """The integrals of a mesh; ``depth`` [m]: how thick a flat one is; ``rule``: places and weights, else its own."""
+
+    def __init__(self, mesh: FieldMesh, depth: float, rule: tuple[Floats, Floats] | None = None) -> None:
+        self.mesh, self.rule = mesh, mesh.element.rule if rule is None else rule
+        self.depth = depth if mesh.element.dimension == 2 else 1.0
+
+    @cached_property
+    def weights(self) -> Floats:
+        """(e, q) volumes [m^3] that the places of the rule stand for."""
+        mesh = self.mesh
+        places, weights = self.rule
+        found: Floats = sized(mesh.element, mesh.points[mesh.cells], places) * weights * self.depth
+        return found
+
+    @cached_property
+    def points(self) -> Floats:
+        """(e, q, 3) the places of the rule [m]."""
+        at = self.mesh.at(self.rule[0])
+        found = np.zeros((*at.shape[:2], 3))
+        found[..., : at.shape[2]] = at
+        return found
+
+    @property
+    def functions(self) -> Floats:
+        """(q, nodes) at these places."""
+        return self.mesh.element.functions(self.rule[0])
+
+    def gradients(self, chosen: Any = slice(None)) -> Floats:
+        """(e, q, nodes, d) at these places of some elements [1/m]."""
+        mesh = self.mesh
+        return gradients(mesh.element, mesh.points[mesh.cells[chosen]], self.rule[0])
+
+    @cached_property
+    def volumes(self) -> Floats:
+        """(unknowns,) integrals of the functions [m^3]."""
+        found = np.zeros(self.mesh.count)
+        np.add.at(found, self.mesh.unknowns, self.weights @ self.functions)
+        return found
+
+    def mass(self) -> Any:
+        """(unknowns, unknowns) integrals of products of functions [m^3]; of degree 1 those of its nodes alone."""
+        from scipy.sparse import diags_array
+
+        if self.mesh.element.degree == 1:
+            return diags_array(self.volumes).tocsr()
+        shapes = self.functions
+        products = (shapes[:, :, None] * shapes[:, None, :]).reshape(len(shapes), -1)
+        return self.gathered(self.weights @ products)
+
+    def stiffness(self, coefficient: Floats) -> Any:
+        """(unknowns, unknowns) integrals of D grad . grad [m^3/s]; D (e, q) at the places of the rule."""
+        held = self.weights * coefficient
+        parts = []
+        for first in range(0, len(held), CHUNK):
+            chosen = slice(first, first + CHUNK)
+            slopes = self.gradients(chosen)
+            parts.append(np.einsum("eq,eqia,eqja->eij", held[chosen], slopes, slopes, optimize=True))
+        return self.gathered(np.concatenate(parts))
+
+    def gathered(self, blocks: Floats, owners: Any = slice(None)) -> Any:
+        """The sparse sum of matrices (e, nodes, nodes) of some elements."""
+        from scipy.sparse import coo_array
+
+        unknowns = self.mesh.unknowns[owners]
+        k = unknowns.shape[1]
+        rows, columns = np.repeat(unknowns, k, axis=1).ravel(), np.tile(unknowns, (1, k)).ravel()
+        found = coo_array((blocks.ravel(), (rows, columns)), shape=(self.mesh.count,) * 2).tocsr()
+        found.sort_indices()
+        return found
+
+    def edge(self, faces: Any) -> Edge:
+        """The points of some outer sides (indices)."""
+        mesh, element = self.mesh, self.mesh.element
+        owners, across = mesh.faces[faces].T if len(faces) else np.zeros((2, 0), dtype=np.int64)
+        places, weights = element.side_rule()
+        at = places[across]
+        corners = mesh.points[mesh.cells[owners]]
+        slopes = element.slopes(at)
+        ends = np.array(element.sides)[across]
+        own = np.arange(len(owners))[:, None]
+        along = [slopes[own, :, :, ends[:, [k]]] - slopes[own, :, :, ends[:, [0]]] for k in range(1, element.dimension)]
+        ways = [np.einsum("fqn,fnd->fqd", way[:, 0], corners) for way in along]
+        if element.dimension == 2:
+            across_side = np.stack([ways[0][..., 1], -ways[0][..., 0]], axis=-1)
+        else:
+            across_side = 0.5 * np.cross(ways[0], ways[1])
+        area = np.linalg.norm(across_side, axis=-1)
+        outward = across_side / area[..., None]
+        functions = element.functions(at)
+        normal = np.einsum("fqnd,fqd->fqn", gradients(element, corners, at), outward)
+        points = np.zeros((*at.shape[:2], 3))
+        points[..., : element.dimension] = np.einsum("fqn,fnd->fqd", functions, corners)
+        volume = self.weights[owners].sum(axis=1)
+        held = area * weights * self.depth
+        return Edge(owners, points, held, functions, normal, element.steepness * held.sum(axis=1) / volume)
+
+
+def firmness(edge: Edge) -> Floats:
+    """(f,) the strength [1/m] that holds given values on sides: by the sum over the sides of each element."""
+    found = np.zeros(int(edge.owners.max(initial=-1)) + 1)
+    np.add.at(found, edge.owners, edge.steep)
+    strength: Floats = FIRM * found[edge.owners]
+    return strength

@@ -1,0 +1,147 @@
+"""The part of `bench` on a field by finite volumes and by finite elements: error of space against run time."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, cast
+
+from sceneql.failure import LimitRefused, RunFailure
+from sceneql.graph import Island, SimulationGraph
+from sceneql.quantities.diagnostic import ScriptError
+from sceneql.report.work_precision import run
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+LEVELS = (4.0, 2.0, 1.0, 0.5, 0.25)
+"""Sides of cells in parts of the script's own, from coarse to fine."""
+ENOUGH_SECONDS = 15.0
+"""Seconds of a run, with its set-up, after which no finer one is tried."""
+LONGEST = 10.0
+"""Seconds of compiled steps after which a run is given up."""
+REPEATS = 3
+TOLERANCE = 1e-6
+"""Tolerance in time."""
+
+
+@dataclass(frozen=True, slots=True)
+class MethodRun:
+    """A field at the end by one method, on one spacing."""
+
+    island: str
+    method: str
+    cell: float
+    """[m]"""
+    unknowns: int
+    error: float
+    """Root mean square over the volume, in parts of the largest value."""
+    seconds: float
+    """Median run time of the compiled steps."""
+    setup: float
+    """Seconds in which cells or elements and their matrices are made."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _End:
+    cell: float
+    seconds: float
+    setup: float
+    places: Floats
+    values: Floats
+    weights: Floats
+    unknowns: int
+    field: Any
+    """From places (k, 3) to values (k,), of elements."""
+
+
+def method_runs(graph: SimulationGraph, island: Island) -> list[MethodRun]:
+    """Runs by all methods of a model that has several, compared with its elements of highest order on the finest mesh.
+
+    Empty where it has one.
+    """
+    title = ", ".join(island.models)
+    kind: Any = graph.tasks[island.models[0]].kind
+    methods: Mapping[str, Any] = kind.by_methods() if hasattr(kind, "by_methods") else {}
+    if len(methods) < 2:
+        return []
+    ends = {name: _ends(graph, island, one, kind.cell) for name, one in methods.items()}
+    best = list(ends)[-1]
+    if not ends[best]:
+        return []
+    reference = ends[best].pop()
+    largest = float(abs(reference.values).max()) or 1.0
+    return [
+        MethodRun(title, name, end.cell, end.unknowns, _error(end, reference) / largest, end.seconds, end.setup)
+        for name, some in ends.items()
+        for end in some
+    ]
+
+
+def told(runs: Sequence[MethodRun]) -> list[str]:
+    """A line for each run, with the order between it and the coarser one."""
+    lines, before = [], None
+    for one in runs:
+        order = ""
+        if before is not None and before.method == one.method and one.error > 0.0:
+            order = f"  order {math.log(before.error / one.error) / math.log(before.cell / one.cell):5.2f}"
+        lines.append(
+            f"    {one.method:<6} cell {one.cell:<10.4g} m error {one.error:8.2e}  {one.seconds * 1e3:9.3f} ms"
+            f"  set-up {one.setup * 1e3:8.1f} ms  {one.unknowns:7d} unknowns{order}"
+        )
+        before = one
+    return lines
+
+
+def _ends(graph: SimulationGraph, island: Island, kind: Any, cell: float) -> list[_End]:
+    """From coarse to fine, those that can be made; the finest takes long, or is the last."""
+    found: list[_End] = []
+    for part in LEVELS:
+        try:
+            found.append(_end(graph, island, kind.model_copy(update={"cell": part * cell})))
+        except (ScriptError, LimitRefused):
+            continue
+        except RunFailure:
+            break
+        if found[-1].seconds + found[-1].setup > ENOUGH_SECONDS:
+            break
+    return found
+
+
+def _end(graph: SimulationGraph, island: Island, kind: Any) -> _End:
+    from sceneql.words.solvers.tr_bdf2 import TrBdf2
+
+    name = island.models[0]
+    patched = replace(graph, tasks={**graph.tasks, name: replace(graph.tasks[name], kind=kind)})
+    steps, whole = [], []
+    for _ in range(REPEATS):
+        begun = time.perf_counter()
+        _, march = run(patched, island, TrBdf2(tolerance=TOLERANCE), LONGEST)
+        steps.append(march.march.statistics.seconds)
+        whole.append(time.perf_counter() - begun - steps[-1])
+        if steps[-1] + whole[-1] > 0.5 * ENOUGH_SECONDS:
+            break
+    state = march.state(name)
+    places, values, weights = kind.samples(state)
+    between = kind.between(kind.layout(state), state)
+    held = between.filled(cast("Floats", kind.read(kind.shows(name).links[0].output, state)))
+    return _End(
+        kind.cell,
+        statistics.median(steps[1:] or steps),
+        min(whole),
+        places,
+        values,
+        weights,
+        between.count,
+        lambda points: between.at(held, points),
+    )
+
+
+def _error(end: _End, reference: _End) -> float:
+    import numpy as np
+
+    away = end.values - reference.field(end.places)
+    return float(np.sqrt(np.average(away**2, weights=end.weights)))
