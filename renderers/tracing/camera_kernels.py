@@ -22,12 +22,11 @@ def camera_ray(reals, px, py):
     v = (1.0 - 2.0 * py / height) * half_height
     pixel = half_height / height
     if reals[camera + 13] != 0.0:
-        # The window lies in the plane of the origin; objects before that plane are seen as well.
-        back = 1e4 * max(1.0, half_height)
+        # From the plane of the origin, which ``window`` has put before all that is drawn.
         return (
-            reals[camera] + u * reals[camera + 3] + v * reals[camera + 6] + back * reals[camera + 9],
-            reals[camera + 1] + u * reals[camera + 4] + v * reals[camera + 7] + back * reals[camera + 10],
-            reals[camera + 2] + u * reals[camera + 5] + v * reals[camera + 8] + back * reals[camera + 11],
+            reals[camera] + u * reals[camera + 3] + v * reals[camera + 6],
+            reals[camera + 1] + u * reals[camera + 4] + v * reals[camera + 7],
+            reals[camera + 2] + u * reals[camera + 5] + v * reals[camera + 8],
             -reals[camera + 9],
             -reals[camera + 10],
             -reals[camera + 11],

@@ -60,7 +60,8 @@ HAS_LIGHT, HAS_VISIBLE = 12, 13
 TOLERANCE, SAMPLES = 14, 15
 """Tolerance of roots of implicit objects, relative to the searched piece of a ray; number of samples on it instead."""
 CAMERA = 16
-"""Origin, right, up, back, half height, orthographic, width, height: 16."""
+"""Origin (of an orthographic camera as ``window`` moves it), right, up, back, half height, orthographic, width, height:
+16."""
 WIDTH, HEIGHT = CAMERA + 14, CAMERA + 15
 LIGHTS = 32
 """Offset of the first light."""

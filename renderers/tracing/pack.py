@@ -54,6 +54,10 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     head[layout.SKY : layout.SKY + 14] = _sky(frame)
     head[[layout.TOLERANCE, layout.SAMPLES]] = tolerance, samples
     head[layout.CAMERA : layout.CAMERA + 16] = _camera(frame.view)
+    if frame.view.orthographic:
+        from renderers.tracing.window import window
+
+        head[layout.CAMERA : layout.CAMERA + 3] = window(frame.view, nodes[1:2], tables.floors, len(endless))
     panels = _soft_boxes(frame.lights)
     surfaces_at = layout.LIGHTS + lights.size + panels.size
     nodes_at = surfaces_at + layout.SURFACE_SIZE * len(frame.shapes)
@@ -116,6 +120,8 @@ class Rows:
         self.thin = False
         """Whether there are capsules that the view may show thinner than a pixel."""
         self.boxes: list[Floats] = []
+        self.floors: list[Floats] = []
+        """(1, 4) of each half-space: the unit normal and the height of its face."""
         self.items: list[NDArray[np.int64]] = []
         self.surfaces: list[Floats] = []
         self.reals: list[Floats] = []
@@ -143,6 +149,7 @@ class Rows:
             if plane is None:
                 self._items(index, layout.QUADRIC, quadric_box(shape)[None, :], _quadric(shape))
             else:
+                self.floors.append(plane)
                 self._items(index, layout.HALF_SPACE, UNBOUNDED[None, :], plane)
         elif isinstance(shape, seen.Implicit):
             self._implicit(index, shape)

@@ -65,10 +65,8 @@ def local_point(map, k, x, y, z, w):
 
 
 @part
-def quadric(q, k, ox, oy, oz, dx, dy, dz, near, far):
-    """Crossing of a convex quadric solid clipped by its local box."""
-    o = local_point(q, k, ox, oy, oz, 1.0)
-    d = local_point(q, k, dx, dy, dz, 0.0)
+def along_ray(q, k, o, d):
+    """(a, b, c) of the quadratic a t^2 + b t + c that quadric k is along a ray in its local coordinates."""
     a = 0.0
     b = 0.0
     c = q[k + 18]
@@ -78,7 +76,21 @@ def quadric(q, k, ox, oy, oz, dx, dy, dz, near, far):
         a += s * d[axis] * d[axis]
         b += (2.0 * s * o[axis] + l) * d[axis]
         c += (s * o[axis] + l) * o[axis]
+    return a, b, c
+
+
+@part
+def quadric(q, k, ox, oy, oz, dx, dy, dz, near, far):
+    """Crossing of a convex quadric solid clipped by its local box."""
+    o = local_point(q, k, ox, oy, oz, 1.0)
+    d = local_point(q, k, dx, dy, dz, 0.0)
+    a, b, c = along_ray(q, k, o, d)
+    begin = 0.0
+    if a > 1e-14 * abs(b):  # from the middle between the roots: see round_span
+        begin = -0.5 * b / a
+        a, b, c = along_ray(q, k, (o[0] + begin * d[0], o[1] + begin * d[1], o[2] + begin * d[2]), d)
     enter, leave = roots(a, b, c)
+    enter, leave = begin + enter, begin + leave
     for axis in range(3):
         e, f = box_span(q[k + 19 + axis], q[k + 22 + axis], o[axis], inverse(d[axis]))
         enter = max(enter, e)
@@ -112,44 +124,44 @@ def round_span(r, k, radius2, ox, oy, oz, dx, dy, dz):
     px = ox - r[k]
     py = oy - r[k + 1]
     pz = oz - r[k + 2]
-    dd = dx * dx + dy * dy + dz * dz
-    pd = px * dx + py * dy + pz * dz
-    enter, leave = ball(px, py, pz, dx, dy, dz, dd, radius2)
+    over_dd = 1.0 / (dx * dx + dy * dy + dz * dz)
+    # From where the ray passes the first end: in squares of the way from a far origin, a small radius' would drown.
+    begin = -(px * dx + py * dy + pz * dz) * over_dd
+    px, py, pz = px + begin * dx, py + begin * dy, pz + begin * dz
+    enter, leave = ball(0.0, radius2 - (px * px + py * py + pz * pz), over_dd)
     uu = ux * ux + uy * uy + uz * uz
     if uu > 0.0:
-        e, f = ball(px - ux, py - uy, pz - uz, dx, dy, dz, dd, radius2)
+        ud = ux * dx + uy * dy + uz * dz
+        past = ud * over_dd
+        qx, qy, qz = px - ux + past * dx, py - uy + past * dy, pz - uz + past * dz
+        e, f = ball(past, radius2 - (qx * qx + qy * qy + qz * qz), over_dd)
         if e < f:
-            if enter < leave:
-                enter = min(enter, e)
-                leave = max(leave, f)
-            else:
-                enter, leave = e, f
+            enter = e if e < enter else enter
+            leave = f if f > leave else leave
+        # Across the axis: in squares of the length of a thin line the radius' would drown as well.
         pu = (px * ux + py * uy + pz * uz) / uu
-        du = (dx * ux + dy * uy + dz * uz) / uu
-        pp = px * px + py * py + pz * pz
-        e, f = roots(dd - du * du * uu, 2.0 * (pd - pu * du * uu), pp - pu * pu * uu - radius2)
+        du = ud / uu
+        wx, wy, wz = px - pu * ux, py - pu * uy, pz - pu * uz
+        vx, vy, vz = dx - du * ux, dy - du * uy, dz - du * uz
+        a, b = vx * vx + vy * vy + vz * vz, 2.0 * (vx * wx + vy * wy + vz * wz)
+        e, f = roots(a, b, wx * wx + wy * wy + wz * wz - radius2)
         if e < f:
             # The ends of the tube lie inside the balls, so only its round side can extend the span.
             if 0.0 <= pu + e * du <= 1.0:
-                enter = min(enter, e) if enter < leave else e
-                leave = max(leave, e)
+                enter = e if e < enter else enter
+                leave = e if e > leave else leave
             if 0.0 <= pu + f * du <= 1.0:
-                enter = min(enter, f)
-                leave = max(leave, f)
-    return enter, leave
+                enter = f if f < enter else enter
+                leave = f if f > leave else leave
+    return begin + enter, begin + leave
 
 
 @part
-def ball(px, py, pz, dx, dy, dz, dd, radius2):
-    """Interval inside a ball, from the point of closest approach, which is accurate for balls far away and small."""
-    t = -(px * dx + py * dy + pz * dz) / dd
-    cx = px + t * dx
-    cy = py + t * dy
-    cz = pz + t * dz
-    rest = radius2 - (cx * cx + cy * cy + cz * cz)
+def ball(t, rest, over_dd):
+    """Interval inside a ball that the ray is nearest to at t: ``rest`` of its squared radius less that distance's."""
     if rest <= 0.0:
         return np.inf, -np.inf
-    half = np.sqrt(rest / dd)
+    half = np.sqrt(rest * over_dd)
     return t - half, t + half
 
 
