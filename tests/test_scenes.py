@@ -36,7 +36,7 @@ FEWER = {
     "ripples": ["models.pond.wave.cell=5 cm", "solvers.main.verlet.step=10 ms"],
     "treacle_balloon": ["define.h=2.8 m/56"],
 }
-"""By scene, what takes less time: parts that no expectation names are coarser, or left out; fields have larger cells."""
+"""By scene, what takes less time: parts that no expectation names are coarser or left out; fields have larger cells."""
 COARSER = {
     "bell": [f"models.hum.elastic.{given}" for given in ROUGH],
     "bowl": ["models.parts.rigid.bodies={ring: {of: ring}, die: {of: die}, ball: {of: ball}}"],
