@@ -141,7 +141,7 @@ def within(seconds: float | None, doing: Callable[[], str]) -> Iterator[Limit]:
         limit.passed, limit.doing = True, doing()
         _thread.interrupt_main(number)
 
-    timer = threading.Timer(seconds, end)
+    timer = threading.Timer(min(seconds, threading.TIMEOUT_MAX), end)
     timer.daemon = True
     with raised():
         before = signal.signal(number, _press)

@@ -212,7 +212,8 @@ def _out_of_time(
         behind = min(run.islands, key=lambda island: island.march.time)
         part, now = next(iter(behind.island.models)), behind.march.time
     span = graph.tasks[part].span if part in graph.tasks else None
-    less = "a smaller `size` and `--draft`" if busy.doing == "making the frame" else "larger steps and coarser models"
+    drawn = busy.doing == "making the frame" and not doing.startswith("solving")  # as where a film is run ahead of
+    less = "a smaller `size` and `--draft`" if drawn else "larger steps and coarser models"
     help = f"allow more by `--limit`; {less} take less"
     return OutOfTime(f"{message}, when {doing or busy.doing}", part=part, time=now, span=span, help=help)
 

@@ -79,6 +79,27 @@ def test_the_program_fails_at_its_limit_though_ctrl_c_is_switched_off(tmp_path):
     assert "help: allow more by `--limit`" in process.stderr
 
 
+def test_a_film_that_is_run_ahead_of_too_long_is_helped_by_larger_steps(tmp_path):
+    """The colors of its first frame are those of all: what takes long there is no drawing."""
+    heat = "{size: 1 1 m, cell: 5 cm, coefficient: 0.05 m^2/s, source: sin(30*t)*x}"
+    script = (
+        f"clock: {{end: 1000 s, fps: 0.01}}\nmodels: {{heat: {{diffusion: {heat}}}}}\n"
+        "objects: {map: {field_map: {of: heat.concentration}}}\nsolvers: {main: {rk4: {step: 10 us}}}\n"
+        "outputs: {film: {images: {size: 32 18}}}\n"
+    )
+    with pytest.raises(OutOfTime) as found:
+        pipeline.render(pipeline.load(written(tmp_path, script)), folder=tmp_path, limit=2.0)
+    assert "when solving" in found.value.message
+    assert "larger steps and coarser models take less" in found.value.diagnostic.help
+
+
+def test_a_limit_beyond_what_a_clock_counts_is_none(tmp_path, capfd):
+    path = written(tmp_path, FILM)
+    report = pipeline.render(pipeline.load(path, sets=["clock.end=0.1 s"]), folder=tmp_path, limit=1e300)
+    assert [made.name for made in report.files] == ["s.mp4"]
+    assert capfd.readouterr().err == ""
+
+
 @pytest.mark.parametrize("limit", ["3 kg", "0", "-1 s", "soon"])
 def test_what_is_no_time_is_refused(tmp_path, limit):
     path = written(tmp_path, FILM)

@@ -383,6 +383,39 @@ def test_an_island_that_a_method_refuses_is_mapped_by_the_others(tmp_path, few):
     assert {cell["outcome"] for cell in cells if cell["solver"] == "rk4"} == {"stable"}
 
 
+SKIN = """\
+clock: {end: 4 ms}
+models:
+  air: {flow: {size: 1 1 m, cell: 1/CELLS m, density: 1 kg/m^3, viscosity: 0.1 Pa*s}}
+  egg: {membrane: {of: ball, law: {tension: 1 N/m}FILLING}}
+objects: {ball: {implicit: {field: x^2 + y^2 - 0.09, position: 0.5 0.5 0 m}}}
+forces: [{immersion: {on: [egg], in: air}}]
+solvers: {main: {chorin: {step: 1 ms}}}
+outputs: {data: {record: {of: [egg.area]}}}
+"""
+
+
+FILLING = ", filling: {density: 3 kg/m^3, viscosity: 0.1 Pa*s}"
+
+
+@pytest.mark.parametrize(
+    ("cells", "filling", "refusing", "text"),
+    [(32, "", "implicit_euler", "gives no slopes"), (8, FILLING, "sbdf2", "density or viscosity varies")],
+    ids=["large", "full"],
+)
+def test_a_skin_in_a_flow_is_mapped_by_what_marches_it(tmp_path, monkeypatch, cells, filling, refusing, text):
+    """Implicit methods refuse many vertices, and some of those for flows what holds another fluid."""
+    words = Catalogue.words
+    kept = {"dopri5", "implicit_euler", "sbdf2", "chorin"}
+    monkeypatch.setattr(Catalogue, "words", lambda self, family: [w for w in words(self, family) if w in kept])
+    script = SKIN.replace("FILLING", filling).replace("CELLS", str(cells))
+    _, tried = dry_run(tmp_path, script, sweep="step=1e-3..2e-3", points=2)
+    skipped = {cell["solver"]: cell["why"] for cell in tried if cell["outcome"] == "skipped"}
+    assert skipped[refusing].startswith(f"{refusing} does not apply: ")
+    assert text in skipped[refusing]
+    assert "does not apply" not in skipped.get("chorin", "")
+
+
 def test_many_masses_in_free_flight_have_no_step_to_bound(tmp_path):
     """More than their spectrum is worked out for whole: nothing that iterates finds a mode of what only falls."""
     rain = "models: {rain: {particles: {emit: {rate: 1 kHz, from: 0 5 0 m, lifetime: 1 s}}}}\nforces: [gravity]\n"

@@ -11,6 +11,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Solver
+from sceneql.quantities.diagnostic import ScriptError
 from sceneql.report.reference import reference
 from sceneql.report.stability_sweep import Sweep, around
 from sceneql.report.work_precision import Reference, TooLong, adaptive, at, prepared, run, setting_of, solvers
@@ -130,7 +131,7 @@ def _cell(
         why = long.message
     except RunFailure as failure:
         outcome, why = "failed", failure.diagnostic.message
-    except (ValueError, TypeError, LimitRefused) as refused:
+    except (ValueError, TypeError, LimitRefused, ScriptError) as refused:
         why = f"{word} does not apply: {refused}"
     bound = _bound(graph, island, solver)
     title = ", ".join(island.models)
@@ -144,5 +145,8 @@ def _bound(graph: SimulationGraph, island: Island, solver: Solver) -> float:
 
     if adaptive(solver):
         return math.inf
-    chosen = Run(prepared(graph, island, solver)).islands[0]
+    try:
+        chosen = Run(prepared(graph, island, solver)).islands[0]
+    except (LimitRefused, ScriptError):  # told where it is run
+        return math.nan
     return math.nan if len(chosen.march.system.y) > DENSE else stability(chosen.march, chosen.methods.bounding).step
