@@ -9,6 +9,7 @@ import pytest
 
 import stage
 from renderers.rastering.triangles import triangles
+from renderers.tracing.layout import ITEMS
 from renderers.tracing.pack import pack
 from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.surface_kernels import normal_at
@@ -85,7 +86,7 @@ def test_a_painted_mesh_has_at_a_point_the_color_of_its_material_there():
     mesh = Mesh("skin", WHITE, place, order, None, None, rest, paint)
     scene, rows = pack(frame(stage.implicit_sphere(WHITE), mesh, replace(mesh, vertices=place + 5, paint=None)))
     memory, seen = scratch(rows), 0
-    for item, row in enumerate(scene.ints[11 : 11 + 4 * 5].reshape(5, 4)):
+    for item, row in enumerate(scene.ints[ITEMS : ITEMS + 4 * 5].reshape(5, 4)):
         if row[3] == 0:
             continue
         k = int(row[1])
