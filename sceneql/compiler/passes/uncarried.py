@@ -35,10 +35,10 @@ def report_carried(
         if not (isinstance(task.kind, Model) and task.kind.carried):
             continue
         by = carriers.get(task.name, [])
-        if not by:
+        if not by and not found.errors:  # a force that is refused is not among these
             text = f"no flow carries '{task.name}', and by itself it does not move"
             help = f"write `forces: [{{immersion: {{on: [{task.name}], in: ...}}}}]` with the name of a flow"
             found.error("not-carried", text, task.span, help=help)
-        elif len(by) > 1:
+        if len(by) > 1:
             notes = [Note("the other is here", by[0].span)] if by[0].span else []
             found.error("carried-twice", f"'{task.name}' is carried by two forces", by[1].span, notes=notes)
