@@ -1,11 +1,13 @@
 """Convection between plates: how rolls decay and grow beside the eigenvalues of the linear equations."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from flows import Air
+from rolls import nusselt
 
 WIDE, PRANDTL = 2.0158, 0.71
 GROWTH = {1680: -0.186398, 1740: 0.214635}
@@ -35,3 +37,9 @@ def test_rolls_decay_below_the_critical_rayleigh_number_and_grow_above_it(tmp_pa
     found = np.array([growth(tmp_path, rayleigh, cells) for cells in (12, 24)])
     assert np.sign(found[1]) == np.sign(GROWTH[rayleigh])
     assert found[1] + (found[1] - found[0]) / 3.0 == pytest.approx(GROWTH[rayleigh], abs=0.01)
+
+
+def test_the_scene_of_rolls_expects_the_heat_of_series():
+    script = (Path(__file__).parent.parent / "scenes" / "benard.yaml").read_text()
+    assert nusselt(1e4, 0.71, 2.0158) == pytest.approx(2.6525, abs=1e-4)
+    assert "value: 2.6525" in script
