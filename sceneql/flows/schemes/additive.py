@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sceneql.flows.schemes.multistep import UNSOLVED
-from sceneql.system import Control, Method, Needs, Prepared, Stepper
+from sceneql.flows.schemes.multistep import UNSOLVED, control
+from sceneql.system import Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.island.system import System
@@ -55,15 +55,8 @@ def stepper(tolerance: float, step: float | None, largest: float | None) -> Step
         settings=tableau,
         last_stage=0,
     )
-    control = Control(
-        first_step=step or 0.0,
-        adaptive=step is None,
-        tolerance=0.0 if step is not None else tolerance,
-        absolute=0.0 if step is not None else tolerance,
-        largest_step=largest or float("inf"),
-        unsolved=UNSOLVED,
-    )
-    return Stepper(method, control, Needs(prepare="sceneql.flows.schemes.additive:prepare"))
+    steps = control(step, tolerance, largest, UNSOLVED)
+    return Stepper(method, steps, Needs(prepare="sceneql.flows.schemes.additive:prepare"))
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:

@@ -30,6 +30,19 @@ def stepper(scheme: int, order: int, step: float) -> Stepper:
     )
 
 
+def control(step: float | None, tolerance: float, largest: float | None, unsolved: str) -> Control:
+    """Of steps of one length [s], or by a tolerance; ``unsolved``: what a failed one is told as."""
+    by = 0.0 if step is not None else tolerance
+    return Control(
+        first_step=step or 0.0,
+        adaptive=step is None,
+        tolerance=by,
+        absolute=by,
+        largest_step=largest or float("inf"),
+        unsolved=unsolved,
+    )
+
+
 class Tables:
     """Numbers that the transforms of operators read."""
 

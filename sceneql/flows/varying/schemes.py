@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sceneql.system import Control, Method, Needs, Prepared, Stepper
+from sceneql.flows.schemes.multistep import control
+from sceneql.system import Method, Needs, Prepared, Stepper
 
 if TYPE_CHECKING:
     from sceneql.island.system import System
@@ -18,15 +19,8 @@ def stepper(order: int, step: float | None, tolerance: float = 0.0, largest: flo
     method = Method(
         step="sceneql.flows.varying.step_kernels:step", order=order, numbers=(order,), settings=(), last_stage=0
     )
-    control = Control(
-        first_step=step or 0.0,
-        adaptive=step is None,
-        tolerance=0.0 if step is not None else tolerance,
-        absolute=0.0 if step is not None else tolerance,
-        largest_step=largest or float("inf"),
-        unsolved=UNSOLVED,
-    )
-    return Stepper(method, control, Needs(prepare="sceneql.flows.varying.schemes:prepare"))
+    steps = control(step, tolerance, largest, UNSOLVED)
+    return Stepper(method, steps, Needs(prepare="sceneql.flows.varying.schemes:prepare"))
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
