@@ -231,12 +231,12 @@ class Collision(Contact):
         carried = [name for name, model in models.items() if model.carried]
         if carried:
             yield from self._refused_by_skins(carried[0], len(carried) == len(models))
-            soft_one = next((name for name, model in models.items() if model.has_skin), None)
-            if soft_one is not None:
+            solid = next((name for name, model in models.items() if model.has_skin), None)
+            if solid is not None:
                 message = (
-                    f"'{carried[0]}' is a skin in a flow, and does not collide with elastic solids as '{soft_one}'"
+                    f"'{carried[0]}' is a skin in a flow, and does not collide with elastic solids as '{solid}'"
                 )
-                written = next((ref.span for ref in self.between or () if ref.name == soft_one), None)
+                written = next((ref.span for ref in self.between or () if ref.name == solid), None)
                 yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
             models = {name: model for name, model in models.items() if not model.carried}
         soft = self.mode in ("auto", "barrier") and any(model.has_skin for model in models.values())
