@@ -233,9 +233,7 @@ class Collision(Contact):
             yield from self._refused_by_skins(carried[0], len(carried) == len(models))
             solid = next((name for name, model in models.items() if model.has_skin), None)
             if solid is not None:
-                message = (
-                    f"'{carried[0]}' is a skin in a flow, and does not collide with elastic solids as '{solid}'"
-                )
+                message = f"'{carried[0]}' is a skin in a flow, and does not collide with elastic solids as '{solid}'"
                 written = next((ref.span for ref in self.between or () if ref.name == solid), None)
                 yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
             models = {name: model for name, model in models.items() if not model.carried}
