@@ -10,12 +10,12 @@ from renderers.tracing.gather_kernels import DARK, DOUBTED, GATHERED, LIVE, QUIC
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.light_kernels import backdrop, sharpness
 from renderers.tracing.light.sampling_kernels import sample_of
-from renderers.tracing.light.visibility_kernels import look_around
+from renderers.tracing.light.visibility_kernels import AWAITED, look_around
 from renderers.tracing.path_kernels import describe_by, faded
 from renderers.tracing.record_kernels import OWNER, UNSURE, WEIGHT, erase
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part
-from renderers.tracing.solids.intersect_kernels import put_ray, tell, told_alone, walk
-from renderers.tracing.solids.surface_kernels import normal_at
+from renderers.tracing.solids.intersect_kernels import join, put_ray, tell, walk
+from renderers.tracing.solids.surface_kernels import skin_of
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -108,7 +108,7 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
     """
     counter = scratch.shape[0] - 1
     together = asked.shape[1] > layout.ANSWERS
-    alone, last = together and asked[0, layout.ALONE] != 0.0, len(records) - 1
+    alone, last = asked[0, layout.ALONE] != 0.0, len(records) - 1
     paths_now = hits_now = dark = 0
     for i in range(count):
         k, ray = at[i], asked[1 + i]
@@ -121,7 +121,7 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
             scratch[counter, 0] = 0.0
             told, t, item = False, np.inf, -1
             if alone:
-                told, t, item = told_alone(scratch, asked, 1 + i)
+                told, t, item, _ = join(scene, scratch, asked, 1 + i, np.inf, False)
             if not told:
                 tell(scratch, asked, 1 + i)
                 t, item, _ = walk(scene, scratch, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5], 0.0, np.inf, False)
@@ -149,7 +149,7 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
             hits_now += 1
         else:
             x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
-            see_matte(scene, item, normal_at(scene, scratch, item, x, y, z), t, ray, cones[i], first, own)
+            see_matte(scene, item, skin_of(scene, scratch, item, x, y, z), t, ray, cones[i], first, own)
         own[3] = 1.0 if scratch[counter, 0] > 0.0 else 0.0
     return paths_now, hits_now, dark
 
@@ -248,12 +248,13 @@ def look_from(scene, scratch, asked, ways, first, last, at, records, visibility)
     """
     width = int(scene.reals[layout.WIDTH])
     room = asked.shape[0] - 2 * (1 + scene.ints[layout.LIGHT_COUNT])
+    ending = asked[0, layout.MODE] == layout.ENDING
     for i in range(first, last):
         if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         k = at[i]
         number = sample_of(k % width, k // width)
         for layer in range(len(records)):
-            if records[layer, k, OWNER] > 0.0:
+            if records[layer, k, OWNER] > 0.0 and (not ending or visibility[layer, k, 0] == AWAITED):
                 look_around(scene, scratch, asked, ways, records[layer, k], number, 1, 1, visibility[layer, k])
     return last
