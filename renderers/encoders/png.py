@@ -106,7 +106,7 @@ def by_left(picture: NDArray[uint8], comment: str, compression: int) -> bytes:
             b"\x89PNG\r\n\x1a\n",
             chunk(b"IHDR", head),
             chunk(b"tEXt", b"Comment\0" + comment.encode("latin-1", "replace")),
-            chunk(b"IDAT", zlib.compress(rows, compression)),
+            chunk(b"IDAT", zlib.compress(rows.data, compression)),
             chunk(b"IEND", b""),
         )
     )

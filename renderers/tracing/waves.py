@@ -19,6 +19,7 @@ from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.light import look_lanes_kernels as looks
 from renderers.tracing.light.bounce_kernels import WAY, dress_hits, follow_all, look_about, step_all
+from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_paths
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.scratch import scratch_beside
 from renderers.tracing.solids.plain_lanes import lanes_for
@@ -177,8 +178,8 @@ class Waves:
             self.spares,
         )
         out = at, records, gathered
-        own = self.paths, self.of, self.hits, met, spares
-        started, hits, dark = meet_first(scene, self.scratch, asked, count, cones, *out, *own)
+        own = self.paths, self.of, self.hits, met
+        started, hits = meet_first(scene, self.scratch, asked, count, cones, *out, *own)
         if hits and self.packets is not None:
             self.packets.skin(scene, self.hits[:hits], met, self.skins)
             describe_hits(scene, asked, cones, *out, self.hits[:hits], met, self.skins)
@@ -187,13 +188,26 @@ class Waves:
         paths, of = self.paths[:started], self.of[:started]
         own_at = at[of]
         while True:
-            if dark:
+            if self.packets is not None:
+                self._dress(paths)
+            if advance_paths(scene, self.scratch, asked, paths, own_at, records, spares):
                 self._ask(0, started, lambda i, end: self._light(i, end, paths))
             if not ask_paths(paths, asked):
                 break
             self._meet()
-            dark = advance_paths(scene, self.scratch, asked, paths, own_at, records, spares)
         end_paths(paths, of, gathered)
+
+    def _dress(self, paths: Array) -> None:
+        """Find the normals of implicit solids where live paths meet them, and beside these places."""
+        assert self.packets is not None
+        scene, hits, met, skins = self.scene, self.hits, self.met, self.skins
+        count = meet_paths(scene, self.scratch, self.asked, paths, hits, met)
+        if count:
+            self.packets.skin(scene, hits[:count], met, skins)
+            count = dress_paths(scene, paths, hits[:count], met, skins, self.spares)
+        if count:
+            self.packets.skin(scene, hits[:count], met, skins)
+            bend_paths(paths, hits[:count], skins)
 
     def _meet(self) -> None:
         """Answer all listed rays."""
