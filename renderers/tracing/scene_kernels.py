@@ -9,12 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import types
 
-from sceneql.compiled.kernels import HELPER, function_at, lean_inlined, njit
+from sceneql.compiled.kernels import HELPER, function_at, njit
 
-part = lean_inlined
-"""Decorator of functions called by kernels alone: no reference counts, for which threads would compete."""
-part_in_place = njit(_nrt=False, forceinline=True, **HELPER)
-"""The same for large ones that are called once for each pixel: a call hands over each number of a scene's arrays."""
+part = njit(_nrt=False, forceinline=True, **HELPER)
+"""Decorator of functions called by kernels alone: no reference counts, for which threads would compete. They become
+part of each kernel: a call would hand over each number of a scene's arrays, some fifty."""
 
 
 class Scene(NamedTuple):
