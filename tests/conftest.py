@@ -28,10 +28,8 @@ def pytest_collection(session):
     """
     if int(os.environ.get("PYTEST_XDIST_WORKER", "gw0")[2:]) % 2:
         asked = [Path(session.config.rootpath, one.partition("::")[0]) for one in session.config.args]
-        files = (
-            path for one in asked for path in (sorted(one.glob("test_*.py")) if one.is_dir() else [one] * one.is_file())
-        )
-        texts = "\n".join(path.read_text(encoding="utf-8") for path in files)
+        files = (path for one in asked for path in (sorted(one.glob("test_*.py")) if one.is_dir() else [one]))
+        texts = "\n".join(path.read_text(encoding="utf-8") for path in files if path.is_file())
         for name in dict.fromkeys(reversed(re.findall(r"^from ((?:sceneql|renderers)\.\S+) import ", texts, re.M))):
             import_module(name)
 
