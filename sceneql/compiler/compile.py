@@ -72,7 +72,7 @@ def compile_script(
     report_probes(script, tasks, found)
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
-    warn_of_doubts(tasks, found)
+    warn_of_doubts(tasks, checked.settings.clock, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
     found.raise_errors()
