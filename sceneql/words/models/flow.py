@@ -19,7 +19,7 @@ from sceneql.flows.parts import (
     fastest_turn,
     thickest,
 )
-from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts
+from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts, too_far
 from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of, number_in, spacing_of
 from sceneql.grids.multigrid.linear_solvers import Linear
 from sceneql.kinds import Gives, Model, Problem, Quantity, Value, field, quantity_type
@@ -178,6 +178,8 @@ class Flow(Model):
         if self.cell < SHORTEST or min(self.size) < SHORTEST:
             yield Problem(f"a cell is at least {SHORTEST:g} m", ("cell",), code="out-of-range")
             return
+        if self.corner is not None and (wrong := too_far(self.corner, self.cell)):
+            yield Problem(wrong, ("corner",), code="out-of-range")
         shape = counts(self.size, self.cell)
         cells = shape[0] * shape[1] * shape[2]
         if cells > MOST_CELLS:
