@@ -30,6 +30,8 @@ from sceneql.quantities.expression import Link, Type
 if TYPE_CHECKING:
     from sceneql.system import Assembly, ModelState
 
+THICKEST = 1e100
+"""Largest viscosity [Pa s]: its products with lengths do not overflow."""
 FIELDS = ("speed", "vorticity", "pressure")
 AT_ONCE = ("auto", "fast_transform", "direct")
 """Solvers of the pressure without a history of residuals."""
@@ -160,8 +162,9 @@ class Flow(Model):
     def problems(self) -> Iterable[Problem]:
         """Sides that do not fit, too many cells, boundaries of no side."""
         viscosity = number_in(self.viscosity)
-        if viscosity is not None and viscosity < 0.0:
-            yield Problem(f"viscosity must be at least 0, and is {viscosity:g}", ("viscosity",), code="out-of-range")
+        if viscosity is not None and not 0.0 <= viscosity <= THICKEST:
+            ends = f"at least 0 and at most {THICKEST:g}"
+            yield Problem(f"viscosity must be {ends}, and is {viscosity:g}", ("viscosity",), code="out-of-range")
         if (self.size is None) == (self.domain is None):
             yield Problem("a flow fills one of `domain` and `size`")
             return
