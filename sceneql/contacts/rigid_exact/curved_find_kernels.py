@@ -262,6 +262,7 @@ def at_corners(floats, ints, who, margin, next, most):
             if dot(nx, ny, nz, px, py, pz) < -LEAST * math.sqrt(px * px + py * py + pz * pz):
                 nearest = False
         if not nearest:
+            least = min(least, gap) if gap < 0.0 else least  # they overlap, whatever else is found
             continue
         least = min(least, gap)
         if gap > margin or count == most:
@@ -343,7 +344,9 @@ def on_edges(floats, ints, who, margin, next, most):
                     )
                     gap, far = (deep, on) if side != 0.0 else (gap, far)
                 known = side != 0.0 or goes_away(floats, ints, sb, edge, ma, mb, nx, ny, nz)
-                if (gap < least or gap <= margin) and known:
+                if (gap < least or gap <= margin) and not known and gap < 0.0:
+                    least = min(least, gap)  # they overlap, whatever else is found
+                elif (gap < least or gap <= margin) and known:
                     least = min(least, gap)
                     if gap <= margin and count < most:
                         rec = next + RECORD * count
