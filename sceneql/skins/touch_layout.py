@@ -9,9 +9,6 @@ ANCHORS = objects_layout.LAGGED
 """For each point and object the place (3) in the object's axes at which friction holds the point; NaN where none
 does."""
 
-GRIP = objects_layout.SLIP
-"""Of NUMBERS: how much friction grows by area with the distance from there, until it slides [Pa/m]."""
-
 BODIES = objects_layout.INVERSE
 """Where in these integers those of the masses and rigid bodies begin that the objects are of; for each BODY of them:
 those of its system.Place, and RELATIVE."""

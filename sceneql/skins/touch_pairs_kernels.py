@@ -10,9 +10,9 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.barrier.barrier_kernels import push
 from sceneql.contacts.barrier.distance_kernels import point_triangle
 from sceneql.skins import touch_pairs_layout as layout
+from sceneql.skins.touch_push_kernels import push
 from sceneql.system.signatures_kernels import LIMIT, TERM, A, F, I, N
 
 KEPT = 0.9

@@ -90,7 +90,7 @@ def _ints(assembly: Assembly, skin: Membrane, count: int, objects: Sequence[int]
     head = [0] * layout.HEAD
     head[layout.POSITION], head[own.FORCE], head[layout.NODES] = skin.position_at, skin.force_at, skin.count
     head[layout.LIST], head[layout.OBJECTS], head[layout.ARMS] = layout.HEAD + len(objects), count, -1
-    head[layout.NUMBERS] = assembly.floats([skin.stiffness, touch.gap, skin.stiffness / touch.gap])
+    head[layout.NUMBERS] = assembly.floats([skin.stiffness, touch.gap])
     head[layout.FRICTION], head[layout.AREAS] = touch.friction_at, assembly.floats(skin.areas)
     head[own.ANCHORS] = assembly.floats(np.full(3 * pairs, np.nan))
     head[layout.KNOWN] = assembly.floats(np.full(layout.KNOW * pairs, -1.0))
