@@ -12,7 +12,7 @@ from sceneql.contacts import layout as surfaces
 from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.objects_kernels import distance
 from sceneql.contacts.shape_kernels import inward, turn
-from sceneql.skins.touch_layout import ANCHORS, FORCE
+from sceneql.skins.touch_layout import ANCHORS, FORCE, STEEP
 from sceneql.skins.touch_push_kernels import push
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM
 
@@ -22,7 +22,7 @@ def load(floats, ints, p, d):
     """The normal force [N] on a point at a distance."""
     numbers = ints[layout.NUMBERS]
     area = floats[ints[layout.AREAS] + p]
-    return area * floats[numbers + layout.STIFFNESS] * push(d / floats[numbers + layout.GAP])
+    return area * floats[numbers + layout.STIFFNESS] * push(d / floats[numbers + layout.GAP], floats[numbers + STEEP])
 
 
 @lean_inlined
