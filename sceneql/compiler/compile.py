@@ -18,6 +18,7 @@ from sceneql.compiler.passes.insides import report_hollow
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.open_meshes import warn_of_open_meshes
+from sceneql.compiler.passes.probes import report_probes
 from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.readable import report_unreadable
 from sceneql.compiler.passes.sizes import check_sizes
@@ -68,6 +69,7 @@ def compile_script(
         _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()
     check_fillings(tasks, found)
+    report_probes(script, tasks, found)
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
     warn_of_doubts(tasks, found)

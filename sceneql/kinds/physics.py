@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
+from sceneql.kinds.probed import Probed
 from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Quantity, Ref, Value
@@ -127,6 +128,10 @@ class Model(Kind):
 
     def insides(self) -> Iterable[Ref]:
         """Objects whose insides it fills or spreads in."""
+        return ()
+
+    def probed(self) -> Iterable[Probed]:
+        """Places of which it tells, which have to lie inside objects that it spreads in or fills."""
         return ()
 
     def shaped(self) -> Iterable[Ref]:
