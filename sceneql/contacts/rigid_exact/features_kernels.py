@@ -61,7 +61,6 @@ from sceneql.contacts.rigid_exact.curved_contact_kernels import (
     ON_EDGE,
     ON_FACE,
     ON_RIM,
-    ON_RIMS,
     follow,
     own,
     speed_at,
@@ -330,12 +329,11 @@ def extent(floats, ints, rec):
     """How far a contact is inside the feature that it is on: as far as it can go until it leaves it [m]; infinity
     where that is not known."""
     kind, of = int(floats[rec + WHICH]), int(floats[rec + OF])
-    on_end = kind == ON_FACE and ints[ints[SHAPES_AT] + SHAPE * int(floats[rec + SHAPE_B]) + KIND] == CURVED
-    if on_end or kind == ON_RIM or kind == ON_RIMS:
-        return inside_round(floats, ints, rec)
     if kind == EDGES:
         return min(inside_line(floats, ints, rec, 0), inside_line(floats, ints, rec, 1))
-    on_face = kind == CORNER_FACE or kind == FACE_CORNER or kind == ON_FACE
+    on_face, other = kind == CORNER_FACE or kind == FACE_CORNER or kind == ON_FACE, int(floats[rec + SHAPE_B])
+    if kind >= ON_RIM or (kind == ON_FACE and ints[ints[SHAPES_AT] + SHAPE * other + KIND] == CURVED):
+        return inside_round(floats, ints, rec)
     if not on_face and of < 0:
         return math.inf
     side = 0 if kind == FACE_CORNER or kind == EDGE_CORNER else 1
