@@ -6,9 +6,11 @@ from scipy.spatial.transform import Rotation
 
 import rigid_scenes
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R, AT_V, AT_W, AT_X, MOVED
+from sceneql.contacts.distance import convex
 from sceneql.contacts.rigid_exact import contact_kernels as contact
 from sceneql.contacts.rigid_exact.curved import column
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_RIM, ON_RIMS, follow
+from sceneql.contacts.rigid_exact.exact_shapes import gap_of
 
 
 @pytest.mark.parametrize("kind", [ON_RIM, ON_RIMS])
@@ -123,3 +125,25 @@ def test_what_strikes_a_rim_has_the_impulse_of_its_normal(tmp_path, what):
     np.testing.assert_allclose(after, [-impulse / 2 * normal, v + impulse * normal], atol=1e-10)
     np.testing.assert_allclose(spin, -impulse * np.linalg.solve(below, two), atol=1e-6)
     np.testing.assert_allclose(turn, impulse * np.linalg.solve(inertia, one), atol=1e-6)
+
+
+def test_a_box_whose_edge_is_in_a_cylinder_overlaps_it():
+    """In any pose: also where no corner, edge or face is the nearest of what is around it."""
+    signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    corners = 0.5 * np.array([0.216, 0.162, 0.216]) * signs
+    box, drum = convex.box(corners[-1].tolist()), column(0.125, 0.2155).shape(np.zeros(3))
+    chance, upright, deep = np.random.default_rng(5), np.array([0, 0, 0, 1.0, 0, 0, 0]), 0
+    for _ in range(300):
+        turn = Rotation.random(rng=chance)
+        place = chance.normal(size=3)
+        place *= chance.uniform(0.1, 0.35) / np.linalg.norm(place)
+        ends = turn.apply(corners) + place
+        edges = [(i, j) for i in range(8) for j in range(i) if np.abs(signs[i] - signs[j]).sum() == 2]
+        points = np.concatenate([np.linspace(ends[i], ends[j], 41) for i, j in edges])
+        inside = np.minimum(0.125 - np.hypot(points[:, 0], points[:, 2]), 0.2155 - np.abs(points[:, 1])).max()
+        x, y, z, w = turn.as_quat()
+        gap, _ = gap_of(drum, upright, box, np.array([*place, w, x, y, z]), np.zeros(0))
+        if inside > 1e-3:
+            deep += 1
+            assert gap < 0
+    assert deep > 50

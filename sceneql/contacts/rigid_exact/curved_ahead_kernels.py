@@ -41,12 +41,13 @@ from sceneql.contacts.rigid_exact.curved_find_kernels import (
     SHAPE_OF_A,
     SHAPE_OF_B,
     in_axes_of_a,
+    is_plain,
     slope_along,
 )
 from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
 from sceneql.contacts.rigid_exact.curved_surface_kernels import into
 from sceneql.contacts.rigid_exact.exact_rows_kernels import mover_at
-from sceneql.contacts.rigid_exact.features_kernels import AHEAD, LIMIT, extent, is_plain, smaller, way_ahead
+from sceneql.contacts.rigid_exact.features_kernels import AHEAD, LIMIT, extent, smaller, way_ahead
 from sceneql.system.signatures_kernels import A, F, I, N
 
 APART = 1e-4

@@ -55,7 +55,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
-from sceneql.contacts.rigid_exact.curved import CURVED, ELLIPSOID, FORM
+from sceneql.contacts.rigid_exact.curved import CURVED
 from sceneql.contacts.rigid_exact.curved_contact_kernels import (
     ON_CORNER,
     ON_EDGE,
@@ -114,13 +114,6 @@ def size_at(floats, ints, rec):
     if floats[rec + WHICH] == STOP:
         return floats[int(floats[rec + OWN_A]) + SIZE]
     return smaller(floats, ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
-
-
-@lean(types.boolean(A, I, N))
-def is_plain(floats, ints, m):
-    """Whether a shape has no circle that may lie flat: its contacts with a polyhedron change at events alone."""
-    shape = ints[SHAPES_AT] + SHAPE * m
-    return ints[shape + KIND] == CORE or floats[ints[shape + FLOATS] + FORM] == ELLIPSOID
 
 
 @lean(N(I, N, N))

@@ -28,7 +28,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as KIND_OF
 from sceneql.contacts.rigid_exact.curved import FIELD, FORM
-from sceneql.contacts.rigid_exact.curved_find_kernels import ask, beyond_face, is_curved
+from sceneql.contacts.rigid_exact.curved_find_kernels import ask, beyond_face, is_curved, is_plain
 from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     A_COLUMN,
@@ -59,7 +59,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     put_places,
     spots,
 )
-from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, is_plain, own, smaller
+from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, own, smaller
 from sceneql.contacts.rigid_exact.find_kernels import TOUCHES
 from sceneql.contacts.rigid_exact.rim_kernels import lying
 from sceneql.contacts.rigid_exact.stop_kernels import FAR, GREATEST, LEAST, SIGNS, SLIPS, STOP, SURE, slip
