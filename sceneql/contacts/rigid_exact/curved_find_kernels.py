@@ -48,7 +48,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.crowd_kernels import LIES
-from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FORM, RING, SIZES
+from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, ELLIPSOID, FORM, RING, SIZES
 from sceneql.contacts.rigid_exact.curved_contact_kernels import FLAT, ON_CORNER, ON_EDGE, ON_FACE, ON_RIM, own
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, into, slant
 from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT, core_at, pull_at
@@ -78,6 +78,13 @@ that of a's axis; whether a circle of a may have rocked so often that it comes t
 def is_curved(ints, a):
     """Whether a shape is a curved one."""
     return ints[a + KIND] == CURVED
+
+
+@lean(types.boolean(A, I, N))
+def is_plain(floats, ints, m):
+    """Whether a shape has no circle that may lie flat: its contacts with a polyhedron change at events alone."""
+    shape = ints[SHAPES_AT] + SHAPE * m
+    return ints[shape + KIND] == CORE or floats[ints[shape + FLOATS] + FORM] == ELLIPSOID
 
 
 @lean(N(I, N, N, N, N, N))

@@ -55,13 +55,12 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
-from sceneql.contacts.rigid_exact.curved import CURVED, ELLIPSOID, FORM
+from sceneql.contacts.rigid_exact.curved import CURVED
 from sceneql.contacts.rigid_exact.curved_contact_kernels import (
     ON_CORNER,
     ON_EDGE,
     ON_FACE,
     ON_RIM,
-    ON_RIMS,
     follow,
     own,
     speed_at,
@@ -115,13 +114,6 @@ def size_at(floats, ints, rec):
     if floats[rec + WHICH] == STOP:
         return floats[int(floats[rec + OWN_A]) + SIZE]
     return smaller(floats, ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
-
-
-@lean(types.boolean(A, I, N))
-def is_plain(floats, ints, m):
-    """Whether a shape has no circle that may lie flat: its contacts with a polyhedron change at events alone."""
-    shape = ints[SHAPES_AT] + SHAPE * m
-    return ints[shape + KIND] == CORE or floats[ints[shape + FLOATS] + FORM] == ELLIPSOID
 
 
 @lean(N(I, N, N))
@@ -330,12 +322,11 @@ def extent(floats, ints, rec):
     """How far a contact is inside the feature that it is on: as far as it can go until it leaves it [m]; infinity
     where that is not known."""
     kind, of = int(floats[rec + WHICH]), int(floats[rec + OF])
-    on_end = kind == ON_FACE and ints[ints[SHAPES_AT] + SHAPE * int(floats[rec + SHAPE_B]) + KIND] == CURVED
-    if on_end or kind == ON_RIM or kind == ON_RIMS:
-        return inside_round(floats, ints, rec)
     if kind == EDGES:
         return min(inside_line(floats, ints, rec, 0), inside_line(floats, ints, rec, 1))
-    on_face = kind == CORNER_FACE or kind == FACE_CORNER or kind == ON_FACE
+    on_face, other = kind == CORNER_FACE or kind == FACE_CORNER or kind == ON_FACE, int(floats[rec + SHAPE_B])
+    if kind >= ON_RIM or (kind == ON_FACE and ints[ints[SHAPES_AT] + SHAPE * other + KIND] == CURVED):
+        return inside_round(floats, ints, rec)
     if not on_face and of < 0:
         return math.inf
     side = 0 if kind == FACE_CORNER or kind == EDGE_CORNER else 1
