@@ -32,6 +32,7 @@ FEWER = {
     "bowl": ["models.parts.rigid.bodies={drilled: {of: drilled}, die: {of: die}, pipe: {of: pipe}, ball: {of: ball}}"],
     "capsules": ["define.h=12 mm/30", "solvers.main.sbdf2.step=1 ms"],
     "cushion": ["define.h=2.4 m/48"],
+    "pile": [f"models.{name}.elastic.spacing=11 cm" for name in ("star", "worm", "bun")],
     "plume": ["define.h=5 cm", "solvers.main.sbdf2.step=25 ms"],
     "ripples": ["models.pond.wave.cell=5 cm", "solvers.main.verlet.step=10 ms"],
     "treacle_balloon": ["define.h=2.8 m/56"],
