@@ -1,9 +1,10 @@
 """Our modules as files: what each defines, imports and names in strings."""
 
 import ast
+import gc
 import re
 from collections import defaultdict
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent
@@ -83,13 +84,22 @@ def text_of(node, known):
     return "".join(parts)
 
 
+@cache
+def whole_house():
+    """All modules, read once in a process, and not while tests are collected: their trees are large."""
+    return House()
+
+
 class House:
     """All modules, and what ties them."""
 
     def __init__(self):
         paths = sorted(path for top in TOPS for path in (ROOT / top).rglob("*.py"))
+        gc.disable()  # all that is made stays: to look it over again and again took three quarters of the time
         self.files = [File(path) for path in paths]
         self.by_module = {file.module: file for file in self.files}
+        gc.freeze()
+        gc.enable()
 
     @cached_property
     def imports(self):

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from modules import whole_house
 from sceneql import pipeline
 from sceneql.failure import LimitRefused, RunFailure
 from sceneql.quantities.diagnostic import ScriptError
 
 FOLDER = Path(__file__).parent / "errors"
 SCRIPTS = sorted(FOLDER.glob("*.yaml"))
-SOURCES = [path for folder in ("sceneql", "renderers") for path in sorted((FOLDER.parents[1] / folder).rglob("*.py"))]
 CODE = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 TELLING = {"Diagnostic", "MismatchError", "_Fault", "_error", "_fail", "error", "stop", "warning"}
 """Functions whose first text is a code."""
@@ -80,7 +80,7 @@ def test_every_code_has_a_pair():
 
 def codes() -> set[str]:
     """The literal first arguments of the calls that make diagnostics."""
-    calls = (node for path in SOURCES for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call))
+    calls = (node for file in whole_house().files for node in file.nodes[ast.Call])
     return {
         call.args[0].value
         for call in calls

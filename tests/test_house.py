@@ -3,7 +3,7 @@
 import pytest
 
 from house import BARS, lazy_links
-from modules import House
+from modules import whole_house
 
 LAZY = {
     "bodies.rigid.moved_bodies_kernels": {
@@ -43,7 +43,7 @@ LAZY = {
 @pytest.fixture(scope="module")
 def house():
     """All files, read once."""
-    return House()
+    return whole_house()
 
 
 @pytest.mark.parametrize("bar", [bar for bar in BARS if bar.today is None], ids=lambda bar: bar.name)

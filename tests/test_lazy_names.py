@@ -6,13 +6,13 @@ import re
 import pytest
 
 from house import unresolved
-from modules import House, text_of
+from modules import text_of, whole_house
 
 
 @pytest.fixture(scope="module")
 def house():
     """All files, read once, and not while tests are collected: their trees are large."""
-    return House()
+    return whole_house()
 
 
 def test_names_are_found_in_strings(house):

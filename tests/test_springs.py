@@ -205,12 +205,20 @@ def test_a_cloth_faces_along_a_direction_of_any_length(tmp_path, long):
     np.testing.assert_allclose(other, one, atol=1e-15)
 
 
+@pytest.mark.parametrize("long", [1e-200, 1e300])
+def test_gravity_pulls_along_a_direction_of_any_length(tmp_path, long):
+    """Its square overflowed or vanished: nothing fell."""
+    script = "models: {stone: {particles: {list: {a: {mass: 1 kg, position: 0 0 0 m}}}}}\nforces: [{gravity: {%s}}]\n"
+    ((x,),) = watch(tmp_path, script % f"direction: {0.6 * long} {-0.8 * long} 0", [1], "stone.a.position")
+    np.testing.assert_allclose(x, [0.6 * 9.81 / 2, -0.8 * 9.81 / 2, 0.0], rtol=1e-12)
+
+
 WRONG = {
     "{cloth: {stretch: 0 N/m}}": "must be above 0",
     "{cloth: {mass: -1 kg/m^2}}": "must be above 0",
     "{cloth: {pins: [middle]}}": "no mass is called 'middle'",
     "{cloth: {tear: {at: 1}}}": "must be above 1",
-    "{cloth: {facing: 0 0 0}}": "faces nowhere",
+    "{cloth: {facing: 0 0 0}}": "gives a direction, which 0 0 0 does not have",
     "{cloth: {size: 2 99999999999 m}}": "at most 1,000,000 times as long as wide",
     "{cloth: {cells: 100000 100000}}": "at most",
     "{mass_spring: {rope: {}, pins: {lid: {}}}}": "no mass is called 'lid'",

@@ -65,6 +65,8 @@ objects:
   ring: {torus: {radius: 0.4 m, tube: 0.1 m, position: 0 0.2 1 m}}
   form: {implicit: {field: x^4 + y^4 + z^4 - 1, unit: 0.2 m, bounds: {ball: 1.6}, position: 1 0.3 1 m, hidden: yes}}
   brick: {polygonised: {of: form, cell: 0.2 m, edges: no}}
+  floor: plane
+cameras: {view: {perspective: {position: 2.1 2.2 4.2 m, look_at: 0 0.8 0.1 m, field_of_view: 38 deg}}}
 outputs: {still: {image: {size: 12 8, time: 0 s, renderer: {trace: {tolerance: TOLERANCE, samples: 1}}}}}
 """
 

@@ -233,8 +233,6 @@ class Cloth(Record):
         if not long <= THINNEST * narrow:
             told = f"cells of {narrow:.3g} by {long:.3g} m: at most {THINNEST:,.0f} times as long as wide are simulated"
             yield Problem(told, ("size",))
-        if not any(self.facing):
-            yield Problem("a cloth that faces 0 0 0 faces nowhere", ("facing",))
 
     def mass_count(self) -> int:
         """Number of masses."""

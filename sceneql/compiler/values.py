@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 
@@ -23,6 +24,8 @@ from sceneql.quantities.units import describe, in_words, unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
+SHORTEST, LONGEST = 1e-100, 1e100
+"""Lengths of directions between which no product of a few of them vanishes or overflows."""
 
 
 def read_value(node: Node, quantity: Quantity, what: str, names: Names, found: Diagnostics) -> Value | None:
@@ -37,7 +40,20 @@ def _checked(expr: Expr | None, node: Node, quantity: Quantity, what: str, found
         return None
     if not quantity.over_time and not momentary(expr, node.span, found):
         return None
-    return Value(expr, node.span)
+    return Value(_scaled(expr) if quantity.direction else expr, node.span)
+
+
+def _scaled(expr: Expr) -> Expr:
+    """A direction; one of numbers whose squares overflow or vanish is scaled by a power of two, which turns nothing."""
+    if not Value(expr).constant:
+        return expr
+    given = [float(x) for x in numbers(evaluate(expr, {}))]
+    largest = max(map(abs, given))
+    if SHORTEST < largest < LONGEST or not math.isfinite(largest):
+        return expr
+    power = -math.frexp(largest)[1]
+    items = tuple(Number(math.ldexp(x, power)) for x in given)
+    return Vector(items, Type((len(items),), PLAIN), expr.span)
 
 
 def read_expr(

@@ -67,10 +67,11 @@ def add_field(model: Medium, spreading: Spreading, boundary: Boundary, degree: i
 
 
 def _probed(between: BetweenNodes, name: str, place: tuple[float, ...], assembly: Assembly) -> Any:
-    weights, inside = between.weights(np.array([[*place, 0.0][:3]]))
-    if not inside.all():
-        raise ScriptError([Diagnostic("no-cell", f"the probe '{name}' stands outside the domain", assembly.line())])
-    return weights
+    point = np.array([[*place, 0.0][:3]])
+    if not between.beside(point).all():
+        text = f"the probe '{name}' stands outside the domain"
+        raise ScriptError([Diagnostic("probe-outside", text, assembly.line())])
+    return between.weights(point)[0]
 
 
 @dataclass

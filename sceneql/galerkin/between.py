@@ -85,6 +85,10 @@ class BetweenNodes:
         starts = np.arange(len(points) + 1) * element.nodes
         return csr_array((shapes.ravel(), mesh.unknowns[owner].ravel(), starts), (len(points), mesh.count)), inside
 
+    def beside(self, points: Floats) -> Any:
+        """Which points (k, 3) lie in elements, or as little outside as a field is continued: (k,)."""
+        return (self._located(points[:, : self.mesh.element.dimension])[1] > -BEYOND).all(axis=1)
+
     def _located(self, points: Floats) -> tuple[Any, Floats]:
         """Elements (k,) of points (k, d), or those that they are least outside of, and barycentric places there."""
         owner = np.zeros(len(points), dtype=np.int64)

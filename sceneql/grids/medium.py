@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol
 from sceneql import kinds
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, centers_of, counts
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Record, Symbols, field, quantity_type
+from sceneql.kinds.probed import Probed
 from sceneql.kinds.stable_step import StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
@@ -58,6 +59,10 @@ class Spaced(Protocol):
         """Largest side of a cell [m]."""
 
 
+ON_SIDE = 1e-9
+"""Cells beyond a side of the grid that count as rounding."""
+
+
 @dataclass(frozen=True, slots=True)
 class FieldLayout:
     """A field on its grid: cell (i, j, k) is y[at + i + nx (j + ny k)]; where its volume is 0 it is outside."""
@@ -77,11 +82,14 @@ class FieldLayout:
         return self.shape[0] * self.shape[1] * self.shape[2]
 
     def cell(self, place: tuple[float, ...]) -> int:
-        """The number of the cell at a place [m]; -1 beyond the grid."""
-        index = [math.floor((x - low) / side) for x, low, side in zip(place, self.low, self.spacing, strict=False)]
-        i, j, k = (*index, 0)[:3]
-        nx, ny, nz = self.shape
-        return i + nx * (j + ny * k) if 0 <= i < nx and 0 <= j < ny and 0 <= k < nz else -1
+        """The number of the cell at a place [m], on the outer sides of the one beside it; -1 beyond the grid."""
+        index = [0, 0, 0]
+        for axis, (x, low, side, n) in enumerate(zip(place, self.low, self.spacing, self.shape, strict=False)):
+            at = (x - low) / side
+            if not -ON_SIDE <= at <= n + ON_SIDE:
+                return -1
+            index[axis] = min(max(math.floor(at), 0), n - 1)
+        return index[0] + self.shape[0] * (index[1] + self.shape[1] * index[2])
 
     def centers(self) -> Floats:
         """(cells, 3) [m]."""
@@ -255,6 +263,12 @@ class Medium(Model):
         """The boundary conditions of every field."""
         raise NotImplementedError
 
+    def probed(self) -> Iterable[Probed]:
+        """Those in an object: a cell of which a part lies inside is large enough."""
+        if self.domain is not None:
+            for name, place in self.probes.items():
+                yield Probed(("probes", name), place, self.domain, self.cell)
+
     def problems(self) -> Iterable[Problem]:
         """Two places or none, sides that do not fit, too many cells, boundaries of no side."""
         if (self.size is None) == (self.domain is None):
@@ -285,6 +299,13 @@ class Medium(Model):
         if min(self.size) < SHORTEST:
             yield Problem(f"a side is at least {SHORTEST:g} m", ("size",), code="out-of-range")
             return
+        corner = self.corner or (0.0,) * len(self.size)
+        for name, place in self.probes.items():
+            if any(not 0.0 <= x - low <= side for x, low, side in zip(place, corner, self.size, strict=False)):
+                ends = corner, [low + side for low, side in zip(corner, self.size, strict=True)]
+                box = " to ".join(", ".join(f"{x:g}" for x in end) for end in ends)
+                text = f"the probe '{name}' stands outside of the box from {box} m"
+                yield Problem(text, ("probes", name), code="probe-outside")
         shape = counts(self.size, self.cell)
         cells = shape[0] * shape[1] * shape[2]
         if cells > MOST_CELLS:
@@ -310,7 +331,7 @@ class Medium(Model):
             cell = layout.cell(place)
             if cell < 0 or not volumes[cell] > 0.0:
                 raise ScriptError(
-                    [Diagnostic("no-cell", f"the probe '{name}' stands outside the domain", assembly.line())]
+                    [Diagnostic("probe-outside", f"the probe '{name}' stands outside the domain", assembly.line())]
                 )
 
     def measure(self, what: str, layout: FieldLayout, state: ModelState) -> Any:

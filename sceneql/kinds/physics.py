@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
+from sceneql.kinds.probed import Probed
 from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Quantity, Ref, Value
@@ -129,6 +130,10 @@ class Model(Kind):
         """Objects whose insides it fills or spreads in."""
         return ()
 
+    def probed(self) -> Iterable[Probed]:
+        """Places of which it tells, which have to lie inside objects that it spreads in or fills."""
+        return ()
+
     def shaped(self) -> Iterable[Ref]:
         """Objects whose shape it takes as it is at the start: they may be moved and turned, but as a whole alone."""
         return ()
@@ -176,6 +181,10 @@ class Model(Kind):
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Drawn]:
         """How it draws itself where no object of the script does, or it is asked to."""
         return ()
+
+    def shown_at(self, outputs: Collection[str]) -> bool:
+        """Whether an object whose position reads these outputs shows it, so that it does not draw itself."""
+        return True
 
     def asked_to_draw(self) -> bool:
         """Whether the script says how it draws itself: then it does, whatever shows it besides."""

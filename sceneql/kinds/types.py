@@ -25,7 +25,7 @@ Points = Annotated[Value, Quantity(dim.LENGTH, (None, 3))]
 Lengths = Annotated[Value, Quantity(dim.LENGTH, (None,))]
 Color = Annotated[Value, Paint()]
 Rotation = Annotated[Value, Turn()]
-Axis = Annotated[tuple[float, float, float], Quantity(dim.PLAIN, (3,))]
+Axis = Annotated[tuple[float, float, float], Quantity(dim.PLAIN, (3,), direction=True)]
 
 FixedScalar = Annotated[float, Quantity(dim.PLAIN)]
 FixedLength = Annotated[float, Quantity(dim.LENGTH)]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from collections.abc import Mapping as Table
 from dataclasses import dataclass, field
 
-from sceneql.language.tree import Node
+from sceneql.language.tree import Mapping, Node, Sequence
 from sceneql.quantities.span import Span
 
 
@@ -42,6 +43,18 @@ class Entry:
     span: Span
     word_span: Span
     scope: Scope | None
+
+    def place(self, path: Iterable[str | int]) -> Span | None:
+        """Where a field stands; the entry itself where it is not written."""
+        node: Node | None = self.fields
+        for step in path:
+            if isinstance(node, Mapping) and step in node.entries:
+                node = node.entries[step]
+            elif isinstance(node, Sequence) and isinstance(step, int):
+                node = node.items[step]
+            else:
+                return self.span
+        return None if node is None else node.span
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -91,7 +91,6 @@ class Assembled:
             orbits=bool(forces) and made.moved_by_forces_alone and all(force.at_a_distance() for force in forces),
             apart="barrier" in made.contact_mode,
             in_solids=sum(3 * one.count for one in self.bodies.values() if one is not None and one.skin is not None),
-            tied_contacts="exact" in made.contact_mode and bool(made.ties),
         )
 
     def act(self) -> None:

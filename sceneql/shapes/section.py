@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from sceneql.kinds import FixedPosition, Problem, Record, field
+from sceneql.kinds import FixedPosition, Record, field
 from sceneql.kinds.types import Axis
 
 
@@ -13,8 +11,3 @@ class Section(Record):
 
     through: FixedPosition = field("A point of the plane.", "0 0 0 m")
     normal: Axis = field("The direction that it faces, of any length.", "0 0 1")
-
-    def problems(self) -> Iterator[Problem]:
-        """A normal of no direction."""
-        if not any(self.normal):
-            yield Problem("a plane needs a direction that it faces", ("normal",))

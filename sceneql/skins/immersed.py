@@ -11,8 +11,8 @@ KERNELS = "sceneql.skins.spline_kernels"
 BY_MASS = "sceneql.skins.spline_by_mass_kernels"
 
 
-def immerse(flow: Flow, skin: Membrane, assembly: Assembly) -> None:
-    """Add what the flow does to a skin, and the skin to it."""
+def immerse(flow: Flow, skin: Membrane, peskin: bool, assembly: Assembly) -> None:
+    """Add what the flow does to a skin, and the skin to it, by splines or Peskin's kernel."""
     box, kernels = assembly.floats([*flow.low, *flow.spacing]), KERNELS
     if flow.varying:
         from sceneql.flows.varying.fluid_layout import MASSES
@@ -20,6 +20,6 @@ def immerse(flow: Flow, skin: Membrane, assembly: Assembly) -> None:
         kernels, dense = BY_MASS, flow.varying[MASSES]
     else:
         dense = assembly.floats([flow.density])
-    ints = (skin.count, skin.position_at, skin.force_at, box, dense, *flow.ints)
+    ints = (skin.count, skin.position_at, skin.force_at, box, dense, int(peskin), *flow.ints)
     assembly.term("velocity", f"{kernels}:carry", ints)
     assembly.term("close", f"{kernels}:push", ints)

@@ -3,9 +3,9 @@
 COUNT, POSITION_AT, FORCE_AT = 0, 1, 2
 """Of all of them: vertices, the first one's place in y, the first one's force [N]."""
 
-BOX_AT, DENSITY_AT, FLOW = 3, 4, 5
+BOX_AT, DENSITY_AT, PESKIN, FLOW = 3, 4, 5, 6
 """Of what ties a skin to a flow: low corner and sides of a cell (6 floats), density, or in a flow of several fluids by
-face the mass in its own cell; from FLOW on the flow's integers
+face the mass in its own cell; 1 for Peskin's kernel of four points, 0 for splines; from FLOW on the flow's integers
 (flows/layout.py)."""
 
 PRETENSION_AT, STIFFNESS_AT, LENGTHS_AT, MODULUS_AT = 3, 4, 5, 6

@@ -7,7 +7,7 @@ the light one would be thrown about; and a skin moves as the heavy one does, and
 light one that slips past makes waves. A factor linear in the place keeps the mean place of what counts at the point, so
 that linear velocities are read as they are, and a force has its torque (moving least squares: Vanella & Balaras 2009,
 J. Comput. Phys. 228, 6617-6628). The power of forces is that of the skin. Where densities are equal these are the
-splines alone.
+splines alone. Solids leave less of cells than their faces count by: what these are pushed by is not less.
 """
 
 import math
@@ -16,29 +16,19 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows import layout as flow
-from sceneql.skins.skin_layout import BOX_AT, COUNT, DENSITY_AT, FLOW, FORCE_AT, POSITION_AT
-from sceneql.skins.spline_kernels import across, along, beside, wrapped
+from sceneql.skins.skin_layout import BOX_AT, COUNT, DENSITY_AT, FLOW, FORCE_AT, PESKIN, POSITION_AT
+from sceneql.skins.spline_kernels import beside, stencil, wrapped
 from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
 LARGEST = 1.0
 """Of the distance that the factor makes up for, in standard deviations of what counts."""
 
 
-@lean(types.UniTuple(F, 4)(A, N, F, F, F, I))
-def factor(masses, component, x, y, z, ints):
+@lean(types.UniTuple(F, 4)(A, N, F, F, F, types.boolean, I))
+def factor(masses, component, x, y, z, peskin, ints):
     """a, b of the factor (a + b . d) at faces d cells off a point, by which masses times splines have the sum 1 and the
     mean place 0."""
-    px, py, pz = ints[flow.PERIODIC] == 1, ints[flow.PERIODIC + 1] == 1, ints[flow.PERIODIC + 2] == 1
-    nx, ny, nz = ints[flow.CELLS], ints[flow.CELLS + 1], ints[flow.CELLS + 2]
-    i, wx = along(x, nx, px) if component == 0 else across(x, nx, px)
-    j, wy = along(y, ny, py) if component == 1 else across(y, ny, py)
-    k, wz, layers = 0, (1.0, 0.0, 0.0, 0.0), 1
-    if ints[flow.AXES] == 3:
-        k, wz = along(z, nz, pz) if component == 2 else across(z, nz, pz)
-        layers = 4
-    nx += component == 0 and not px
-    ny += component == 1 and not py
-    nz += component == 2 and not pz
+    (i, j, k), (wx, wy, wz), (nx, ny, nz), (px, py, pz), layers = stencil(component, x, y, z, peskin, ints)
     u, v = i + (0.0 if component == 0 else 0.5) - x, j + (0.0 if component == 1 else 0.5) - y
     w = k + (0.0 if component == 2 else 0.5) - z if layers > 1 else 0.0
     whole = sx = sy = sz = xx = xy = xz = yy = yz = zz = 0.0
@@ -72,21 +62,11 @@ def factor(masses, component, x, y, z, ints):
     return (1.0 + part * off) / whole, -part * bx / whole, -part * by / whole, -part * bz / whole
 
 
-@lean(types.float64(A, N, F, F, F, types.UniTuple(F, 4), F, types.boolean, I))
-def through(u, component, x, y, z, by, amount, spreading, ints):
+@lean(types.float64(A, N, F, F, F, types.UniTuple(F, 4), F, types.boolean, types.boolean, I))
+def through(u, component, x, y, z, by, amount, spreading, peskin, ints):
     """What the faces ``u`` of a component say at a place in cells from the low corner, each by its spline and the
     factor ``by``; where ``spreading``, they get ``amount`` from there."""
-    px, py, pz = ints[flow.PERIODIC] == 1, ints[flow.PERIODIC + 1] == 1, ints[flow.PERIODIC + 2] == 1
-    nx, ny, nz = ints[flow.CELLS], ints[flow.CELLS + 1], ints[flow.CELLS + 2]
-    i, wx = along(x, nx, px) if component == 0 else across(x, nx, px)
-    j, wy = along(y, ny, py) if component == 1 else across(y, ny, py)
-    k, wz, layers = 0, (1.0, 0.0, 0.0, 0.0), 1
-    if ints[flow.AXES] == 3:
-        k, wz = along(z, nz, pz) if component == 2 else across(z, nz, pz)
-        layers = 4
-    nx += component == 0 and not px
-    ny += component == 1 and not py
-    nz += component == 2 and not pz
+    (i, j, k), (wx, wy, wz), (nx, ny, nz), (px, py, pz), layers = stencil(component, x, y, z, peskin, ints)
     at, bx, by_, bz = by
     at += bx * (i + (0.0 if component == 0 else 0.5) - x) + by_ * (j + (0.0 if component == 1 else 0.5) - y)
     at += bz * (k + (0.0 if component == 2 else 0.5) - z)
@@ -118,8 +98,9 @@ def place(y, at, box, floats):
 @lean(TERM, inner=True)
 def carry(t, y, rate, floats, ints):
     """The velocity of each vertex is the mean of the flow's there; its force begins at 0."""
-    one, box, masses = ints[FLOW:], ints[BOX_AT], ints[DENSITY_AT]
+    one, box = ints[FLOW:], ints[BOX_AT]
     axes, faces = one[flow.AXES], one[flow.FACES]
+    masses = ints[DENSITY_AT] + faces
     momenta = floats[one[flow.WORK] : one[flow.WORK] + faces]
     for face in range(faces):
         momenta[face] = floats[masses + face] * y[one[flow.AT] + face]
@@ -135,15 +116,18 @@ def carry(t, y, rate, floats, ints):
                 start = one[flow.STARTS + component]
                 rate[at + component] = math.nan
                 if within:
-                    by = factor(floats[masses + start :], component, x, y_, z, one)
-                    rate[at + component] = through(momenta[start:], component, x, y_, z, by, 0.0, False, one)
+                    by = factor(floats[masses + start :], component, x, y_, z, ints[PESKIN] == 1, one)
+                    rate[at + component] = through(
+                        momenta[start:], component, x, y_, z, by, 0.0, False, ints[PESKIN] == 1, one
+                    )
 
 
 @lean(TERM, inner=True)
 def push(t, y, rate, floats, ints):
     """The acceleration of the faces around each vertex by its force."""
-    one, box, masses = ints[FLOW:], ints[BOX_AT], ints[DENSITY_AT]
+    one, box = ints[FLOW:], ints[BOX_AT]
     faces = one[flow.FACES]
+    masses = ints[DENSITY_AT] + faces
     moved = floats[one[flow.WORK] : one[flow.WORK] + faces]
     for face in range(faces):
         moved[face] = 0.0
@@ -152,9 +136,10 @@ def push(t, y, rate, floats, ints):
         if math.isfinite(x + y_ + z):
             for component in range(one[flow.AXES]):
                 start, newtons = one[flow.STARTS + component], floats[ints[FORCE_AT] + 3 * v + component]
-                by = factor(floats[masses + start :], component, x, y_, z, one)
+                by = factor(floats[masses + start :], component, x, y_, z, ints[PESKIN] == 1, one)
                 if math.isfinite(by[0]):
-                    through(moved[start:], component, x, y_, z, by, newtons, True, one)
+                    through(moved[start:], component, x, y_, z, by, newtons, True, ints[PESKIN] == 1, one)
     own_rate = rate[one[flow.AT] : one[flow.AT] + faces]
     for face in range(faces):
-        own_rate[face] += moved[face] if floats[one[flow.INVERSES] + face] > 0.0 else 0.0
+        if floats[one[flow.INVERSES] + face] > 0.0:
+            own_rate[face] += moved[face] * (floats[masses + face] / floats[ints[DENSITY_AT] + face])

@@ -1,11 +1,12 @@
 # mypy: ignore-errors
-"""What a flow on a staggered grid does to the points of a skin, and they to it, by composite B-splines.
+"""What a flow on a staggered grid does to the points of a skin, and they to it, by composite B-splines or as Peskin.
 
 A component of the velocity is read, and of the force spread, by the cubic B-spline along its own axis and by quadratic
 ones across (Gruninger & Griffith 2025, composite B-spline regularized delta functions), so that the divergence of what
 is read is the quadratic spline of the grid's divergence: none. Beside a wall faces are continued by reflection, the
 component across the wall odd, u(-k) = 2 u(0) - u(k), those along it even, which keeps that so. Forces are spread by the
-transposed weights: their power is that of the forces at the points.
+transposed weights: their power is that of the forces at the points. The kernel of four points is to compare (Peskin
+2002, equation 6.27): the same along and across, and what it reads has a divergence, by which a skin loses its volume.
 """
 
 import math
@@ -14,7 +15,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows import layout as flow
-from sceneql.skins.skin_layout import BOX_AT, COUNT, DENSITY_AT, FLOW, FORCE_AT, POSITION_AT
+from sceneql.skins.skin_layout import BOX_AT, COUNT, DENSITY_AT, FLOW, FORCE_AT, PESKIN, POSITION_AT
 from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
 OUTSIDE = 1.0
@@ -22,7 +23,14 @@ OUTSIDE = 1.0
 
 
 @lean_inlined
-def along(place, count, periodic):
+def four_points(f):
+    """Peskin's weights of the places -1, 0, 1, 2 at f from 0 to 1."""
+    near, far = math.sqrt(1.0 + 4.0 * f - 4.0 * f * f), 3.0 - 2.0 * f
+    return (far - near) / 8.0, (far + near) / 8.0, (4.0 - far + near) / 8.0, (4.0 - far - near) / 8.0
+
+
+@lean_inlined
+def along(place, count, periodic, peskin):
     """The weights of four faces at 0, 1, ... ``count`` and the first one's number."""
     first = min(max(math.floor(place), 0), count - 1)
     if periodic:
@@ -31,6 +39,8 @@ def along(place, count, periodic):
     g = 1.0 - f
     a, d = g * g * g / 6.0, f * f * f / 6.0
     b, c = (3.0 * f * f * f - 6.0 * f * f + 4.0) / 6.0, (3.0 * g * g * g - 6.0 * g * g + 4.0) / 6.0
+    if peskin:
+        a, b, c, d = four_points(min(max(f, 0.0), 1.0))
     if not periodic:
         if first == 0:
             a, b, c = 0.0, b + 2.0 * a, c - a
@@ -40,8 +50,10 @@ def along(place, count, periodic):
 
 
 @lean_inlined
-def across(place, count, periodic):
-    """The weights of three faces, and 0, in the middles of ``count`` cells and the first one's number."""
+def across(place, count, periodic, peskin):
+    """The weights of four faces, of splines three, in the middles of ``count`` cells and the first one's number."""
+    if peskin:
+        return across_by_four(place, count, periodic)
     first = min(max(math.floor(place), 0), count - 1)
     if periodic:
         first = math.floor(place)
@@ -56,26 +68,53 @@ def across(place, count, periodic):
 
 
 @lean_inlined
+def across_by_four(place, count, periodic):
+    """The weights of Peskin's kernel there."""
+    first = min(max(math.floor(place - 0.5), -1), count - 1)
+    if periodic:
+        first = math.floor(place - 0.5)
+    a, b, c, d = four_points(min(max(place - 0.5 - first, 0.0), 1.0))
+    if not periodic:
+        if first == -1:
+            a, b, c, d = 0.0, 0.0, b + c, a + d
+        if first == 0:
+            a, b = 0.0, a + b
+        if first == count - 2:
+            c, d = c + d, 0.0
+        if first == count - 1:
+            a, b, c, d = a + d, b + c, 0.0, 0.0
+    return first - 1, (a, b, c, d)
+
+
+@lean_inlined
+def stencil(component, x, y, z, peskin, ints):
+    """Of the faces of a component around a place in cells from the low corner: by axis the first one's number, four
+    weights, how many there are, whether the last one is beside the first; and how many layers along z have any."""
+    px, py, pz = ints[flow.PERIODIC] == 1, ints[flow.PERIODIC + 1] == 1, ints[flow.PERIODIC + 2] == 1
+    nx, ny, nz = ints[flow.CELLS], ints[flow.CELLS + 1], ints[flow.CELLS + 2]
+    i, wx = along(x, nx, px, peskin) if component == 0 else across(x, nx, px, peskin)
+    j, wy = along(y, ny, py, peskin) if component == 1 else across(y, ny, py, peskin)
+    k, wz, layers = 0, (1.0, 0.0, 0.0, 0.0), 1
+    if ints[flow.AXES] == 3:
+        k, wz = along(z, nz, pz, peskin) if component == 2 else across(z, nz, pz, peskin)
+        layers = 4
+    nx += component == 0 and not px
+    ny += component == 1 and not py
+    nz += component == 2 and not pz
+    return (i, j, k), (wx, wy, wz), (nx, ny, nz), (px, py, pz), layers
+
+
+@lean_inlined
 def wrapped(first, k, size, periodic):
     """The number of a face; one that has no weight beyond a wall is any."""
     return (first + k) % size if periodic else min(max(first + k, 0), size - 1)
 
 
-@lean(types.float64(A, N, F, F, F, F, types.boolean, I))
-def through(u, component, x, y, z, amount, spreading, ints):
+@lean(types.float64(A, N, F, F, F, F, types.boolean, types.boolean, I))
+def through(u, component, x, y, z, amount, spreading, peskin, ints):
     """What the faces ``u`` of a component say at a place in cells from the low corner; where ``spreading``, they get
     ``amount`` from there."""
-    px, py, pz = ints[flow.PERIODIC] == 1, ints[flow.PERIODIC + 1] == 1, ints[flow.PERIODIC + 2] == 1
-    nx, ny, nz = ints[flow.CELLS], ints[flow.CELLS + 1], ints[flow.CELLS + 2]
-    i, wx = along(x, nx, px) if component == 0 else across(x, nx, px)
-    j, wy = along(y, ny, py) if component == 1 else across(y, ny, py)
-    k, wz, layers = 0, (1.0, 0.0, 0.0, 0.0), 1
-    if ints[flow.AXES] == 3:
-        k, wz = along(z, nz, pz) if component == 2 else across(z, nz, pz)
-        layers = 4
-    nx += component == 0 and not px
-    ny += component == 1 and not py
-    nz += component == 2 and not pz
+    (i, j, k), (wx, wy, wz), (nx, ny, nz), (px, py, pz), layers = stencil(component, x, y, z, peskin, ints)
     total = 0.0
     for c in range(layers):
         for b in range(4):
@@ -113,7 +152,9 @@ def carry(t, y, rate, floats, ints):
             floats[ints[FORCE_AT] + 3 * v + component] = 0.0
             if component < axes:
                 u = y[one[flow.AT] + one[flow.STARTS + component] :]
-                rate[at + component] = through(u, component, x, y_, z, 0.0, False, one) if within else math.nan
+                rate[at + component] = (
+                    through(u, component, x, y_, z, 0.0, False, ints[PESKIN] == 1, one) if within else math.nan
+                )
 
 
 @lean(TERM, inner=True)
@@ -132,7 +173,7 @@ def push(t, y, rate, floats, ints):
         if math.isfinite(x + y_ + z):
             for component in range(one[flow.AXES]):
                 got = newtons[one[flow.STARTS + component] :]
-                through(got, component, x, y_, z, floats[own + component], True, one)
+                through(got, component, x, y_, z, floats[own + component], True, ints[PESKIN] == 1, one)
     inverses = floats[one[flow.INVERSES] : one[flow.INVERSES] + faces]
     own_rate = rate[one[flow.AT] : one[flow.AT] + faces]
     for face in range(faces):

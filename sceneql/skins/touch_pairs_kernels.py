@@ -10,9 +10,9 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.contacts.barrier.barrier_kernels import push
 from sceneql.contacts.barrier.distance_kernels import point_triangle
 from sceneql.skins import touch_pairs_layout as layout
+from sceneql.skins.touch_push_kernels import push
 from sceneql.system.signatures_kernels import LIMIT, TERM, A, F, I, N
 
 KEPT = 0.9
@@ -215,7 +215,7 @@ def force(t, y, rate, floats, ints):
             f, n = int(floats[found + layout.FACE]), found + layout.NORMAL
             area = 0.5 * floats[weights + 2 * p]
             stiffness = min(floats[weights + 2 * p + 1], floats[weights + 2 * corner(ints, f, 0) + 1])
-            pressed = area * stiffness * push(floats[found] / gap)
+            pressed = area * stiffness * push(floats[found] / gap, floats[numbers + layout.STEEP])
             x, y_, z = pressed * floats[n], pressed * floats[n + 1], pressed * floats[n + 2]
             if friction > 0.0:
                 at = ints[own + layout.POSITION]

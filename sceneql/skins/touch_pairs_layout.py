@@ -10,9 +10,9 @@ last, its end; that list."""
 POSITION, FORCE, SKIN, VERTEX = range(4)
 """Offsets in y of the place and in the floats of the force of a vertex; number of its skin."""
 
-GAP, IMPEDANCE, SIDE = range(3)
+GAP, IMPEDANCE, SIDE, STEEP = range(4)
 """NUMBERS: the gap [m]; the most that friction grows by area with the speed of slip [Pa s/m]; the longest side of a
-face in the state that was looked at last [m]."""
+face in the state that was looked at last [m]; touch_layout.STEEP."""
 
 LOW, SCALE, ACROSS, STARTS = 0, 3, 4, 7
 CELLS = 4

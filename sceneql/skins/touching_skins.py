@@ -9,6 +9,7 @@ import numpy as np
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.skins import touch_pairs_layout as layout
+from sceneql.skins.touch_layout import STEEPER
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -43,7 +44,7 @@ def add_pairs(assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], fric
     head = [0] * layout.HEAD
     head[layout.VERTICES], head[layout.FACES] = count, len(faces)
     head[layout.CORNERS], head[layout.SKINS] = corners, len(skins)
-    head[layout.NUMBERS] = assembly.floats([gap, impedance, 0.0])
+    head[layout.NUMBERS] = assembly.floats([gap, impedance, 0.0, STEEPER])
     head[layout.FRICTION] = friction_at
     head[layout.WEIGHTS] = assembly.floats(np.concatenate(weights))
     head[layout.REST] = assembly.floats(np.concatenate(rest))
@@ -52,15 +53,20 @@ def add_pairs(assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], fric
     head[layout.BEST] = assembly.floats(np.zeros(layout.FOUND * len(skins)))
     lists = (np.concatenate(table), faces, begins, order // corners)
     ints = (*head, *(int(one) for part in lists for one in np.ravel(part)))
-    _must_be_apart(assembly, made, rest, np.array(ints, dtype=np.int64), gap)
+    d = _must_be_apart(assembly, made, rest, np.array(ints, dtype=np.int64), gap)
+    if not assembly.went_on:
+        assembly.write(head[layout.NUMBERS] + layout.STEEP, np.array([min(STEEPER, 0.5 * d / gap)]))
     assembly.term("force", f"{KERNELS}:force", ints)
     assembly.limit(f"{KERNELS}:limit", ints)
 
 
 def _must_be_apart(
     assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], places: Sequence[Floats], ints: Any, gap: float
-) -> None:
-    """Raise ScriptError where a skin crosses or touches another; one may stand inside another."""
+) -> float:
+    """The least distance between skins at the start [m], endless beyond the gap.
+
+    Raises ScriptError where one crosses or touches another; one may stand inside another.
+    """
     from sceneql.skins.touch_start_kernels import least
 
     all_points = [place.reshape(-1, 3) for place in places]
@@ -82,3 +88,4 @@ def _must_be_apart(
         what = f"'{made[skin][0]}'" if own != skin else "itself"
         text = f"'{made[own][0]}' touches {what} at the start, at ({x:.4g}, {y:.4g}, {z:.4g}) m"
         raise ScriptError([Diagnostic("starts-inside", text, assembly.line(), help)])
+    return float(d)

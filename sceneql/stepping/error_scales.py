@@ -37,7 +37,7 @@ def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
     for grid in system.grids:
         group[grid.at : grid.at + int(np.prod(grid.cells.shape))] = shared
         shared += 1
-    sums = _sums(system) if system.pattern is None else system.pattern.tallies
+    sums = system.pattern.tallies if system.pattern is not None and system.pattern.exact else _sums(system)
     tallies = sums[group[sums] < 0]
     group[tallies] = shared + np.arange(len(tallies))
     alone = np.flatnonzero(group < 0)

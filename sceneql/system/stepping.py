@@ -137,5 +137,3 @@ class IslandFacts:
     """Whether a barrier keeps surfaces apart, towards which explicit steps would creep."""
     in_solids: int = 0
     """Velocities of the nodes of elastic solids: each is tied to so many others that factors fill up."""
-    tied_contacts: bool = False
-    """Whether ties and exact contacts of rigid bodies are solved together: implicit steps have no matrix for both."""

@@ -20,6 +20,8 @@ TETRAHEDRON = 500
 Corners = Annotated[tuple[tuple[float, float, float], ...], Quantity(dim.LENGTH, (None, 3))]
 UPRIGHT = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
 """The eight corners in their order, by x, y and z."""
+ROUNDING = 1e-9
+"""Part of a block's places by which a probe may lie outside."""
 CUT = {"six": 6, "five": 5}
 
 
@@ -49,6 +51,16 @@ class Block(Record):
             bounded(float(prod(self.cells)) * CUT[self.cut], "tetrahedra", TETRAHEDRON)
         except Exceeds as error:
             yield Problem(str(error), ("cells",), code="limit-refused")
+
+    def may_hold(self, place: tuple[float, float, float]) -> bool:
+        """Whether a place [m] lies inside; of corners, in the box around them."""
+        if self.corners is not None:
+            sides = [(min(row), max(row)) for row in zip(*self.corners, strict=True)]
+        else:
+            assert self.size is not None
+            sides = [(c - 0.5 * s, c + 0.5 * s) for c, s in zip(self.center, self.size, strict=True)]
+        room = ROUNDING * max(abs(x) for side in sides for x in side)
+        return all(low - room <= x <= high + room for x, (low, high) in zip(place, sides, strict=True))
 
     @property
     def finest(self) -> float:

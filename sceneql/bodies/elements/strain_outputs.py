@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.kinds import Gives, quantity_type
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
     from sceneql.bodies.elements.element_mesh import ElementMesh
     from sceneql.bodies.elements.strain import Strain
     from sceneql.frame import Floats
+    from sceneql.quantities.span import Span
     from sceneql.system import ModelState
 
 STEPS = 8
 """Of Newton's method, by which a place is found in a curved element."""
+BEYOND = 1.0
+"""How far outside of its element, in barycentric coordinates, a place is still told of: surfaces are curved."""
 NODES = "of each node, the mean of the elements there"
 OUTPUTS: Mapping[str, Gives] = {
     "displacements": Gives(
@@ -163,8 +167,11 @@ def at_nodes(solid: Strain, values: Floats) -> Floats:
     return np.stack(sums, axis=1).reshape(count, *values.shape[2:])
 
 
-def probe(mesh: ElementMesh, place: Floats) -> tuple[Any, Floats]:
-    """Nodes (k,) and weights (k,) of a place of the material; outside that of the nearest element."""
+def probe(name: str, mesh: ElementMesh, place: Floats, line: Span | None) -> tuple[Any, Floats]:
+    """Nodes (k,) and weights (k,) of a place of the material; a little outside that of the nearest element.
+
+    Raises ScriptError where the place is farther outside.
+    """
     import numpy as np
 
     corners = mesh.points[mesh.cells[:, :4]]
@@ -173,6 +180,9 @@ def probe(mesh: ElementMesh, place: Floats) -> tuple[Any, Floats]:
     at = np.concatenate([1.0 - local.sum(axis=1, keepdims=True), local], axis=1)
     k = int(np.argmax(at.min(axis=1)))
     own = at[k]
+    if own.min() < -BEYOND:
+        text = f"the probe '{name}' stands outside of the solid"
+        raise ScriptError([Diagnostic("probe-outside", text, line)])
     cell, element = mesh.points[mesh.cells[k]], mesh.element
     for _ in range(STEPS if element.edges else 0):  # Newton's method, where edges are curved
         slopes = element.slopes(own[None])[0]

@@ -11,13 +11,9 @@ from typing import cast
 from sceneql.graph import Island, Task
 from sceneql.kinds import Interaction, Model, Object, Solver
 from sceneql.kinds.stable_step import Oscillation, StaticScene, stable_step
-from sceneql.language.scope import Entry
 from sceneql.language.script import Script
-from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Sequence
 from sceneql.march.pace import MOST_STEPS
 from sceneql.quantities.diagnostic import Diagnostics
-from sceneql.quantities.span import Span
 
 Growth = Callable[[float, float, float, float], float | None]
 """`Solver.oscillation`."""
@@ -39,7 +35,7 @@ def warn_of_steps(
         if not isinstance(step, float):
             continue
         written = script.sections.get("solvers", {}).get(island.solver)
-        at = solver.span if written is None else _place(written, ("step",))
+        at = solver.span if written is None else written.place(("step",))
         if step * MOST_STEPS < end:
             message = f"{end / step:.2g} steps of {duration(step)} are more than {MOST_STEPS:.0e}"
             found.error("limit-refused", message, at, help="take a longer step, or let auto march it")
@@ -55,7 +51,7 @@ def warn_of_steps(
                 wrong = _wrong(growth, stable, solver.word, step, fastest, end, damped)
                 if wrong is not None:
                     message, smaller = wrong
-                    place = (None if entry is None else _place(entry, fastest.at)) or tasks[name].span
+                    place = (None if entry is None else entry.place(fastest.at)) or tasks[name].span
                     origin = "" if place is None else f" ({place.source.name}:{place.line})"
                     help = f"{'take a smaller step, or ' if smaller else ''}let auto march it"
                     text = message.format(what=f"{fastest.what}{origin}")
@@ -149,19 +145,6 @@ def _wrong(
         return None
     swing = f"{{what}} swings 1e{logarithm:.0f} times as far after {duration(end)}"
     return f"{word} is stable at no step: with dt = {duration(step)} {swing}", False
-
-
-def _place(entry: Entry, path: Iterable[str | int]) -> Span | None:
-    """Where a field stands; the entry itself where it is not written."""
-    node: Node | None = entry.fields
-    for step in path:
-        if isinstance(node, MappingNode) and step in node.entries:
-            node = node.entries[step]
-        elif isinstance(node, Sequence) and isinstance(step, int):
-            node = node.items[step]
-        else:
-            return entry.span
-    return None if node is None else node.span
 
 
 def duration(seconds: float) -> str:

@@ -308,7 +308,7 @@ def begin(t, y, floats, ints, same):
         # (From where it began, so that what creeps over a border is told.)
         floats[rec + EXTENT] = max(inside, floats[rec + EXTENT]) if floats[rec + OF] >= 0.0 else inside
     for d in range(ints[DRIVES]):
-        same = begin_slips(floats, driven_at(ints, d), STILL) and same
+        same = begin_slips(floats, driven_at(ints, d)) and same
     floats[memory + UNDECIDED] = 1.0
     if not same:
         floats[memory + SINCE] = t

@@ -34,6 +34,8 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.system.signatures_kernels import A, F, N
 
+SURE = 1e-9
+"""Slip at the start of a step [m/s, rad/s] for its end to be watched."""
 STOP = 9
 """Kind of a contact, beside those of contact_kernels and curved_contact_kernels. SIGN: 1 at the least, -1 at the
 greatest of the motion; OWN_A: where the floats of the tie's motion begin."""
@@ -89,18 +91,18 @@ def slip(floats, own, j):
 
 
 @lean_inlined
-def stuck(floats, own, j, least):
-    """Slip up to which it does not slip."""
-    return least * (1.0 + abs(floats[own + FAST]) + abs(floats[own + TARGETS + j]))
+def stuck(floats, own, j):
+    """Slip up to which it does not slip: none that is not watched, as its end would be missed."""
+    return SURE * (1.0 + abs(floats[own + FAST]) + abs(floats[own + TARGETS + j]))
 
 
-@lean(types.boolean(A, N, F))
-def begin_slips(floats, own, least):
+@lean(types.boolean(A, N))
+def begin_slips(floats, own):
     """Keep which way a motor and friction slip now; whether that is as before."""
     same = True
     for j in range(2):
         now = slip(floats, own, j)
-        way = 0.0 if abs(now) <= stuck(floats, own, j, least) else math.copysign(1.0, now)
+        way = 0.0 if abs(now) <= stuck(floats, own, j) else math.copysign(1.0, now)
         same = same and way == floats[own + SIGNS + j]
         floats[own + SIGNS + j], floats[own + SLIPS + j], floats[own + BROKEN + j] = way, abs(now), 0.0
     return same

@@ -61,7 +61,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
 from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, is_plain, own, smaller
 from sceneql.contacts.rigid_exact.find_kernels import TOUCHES
 from sceneql.contacts.rigid_exact.rim_kernels import lying
-from sceneql.contacts.rigid_exact.stop_kernels import FAR, GREATEST, LEAST, SIGNS, SLIPS, STOP, slip
+from sceneql.contacts.rigid_exact.stop_kernels import FAR, GREATEST, LEAST, SIGNS, SLIPS, STOP, SURE, slip
 from sceneql.contacts.rigid_exact.true_gap_kernels import kept_gap, true_gap
 from sceneql.system.signatures_kernels import GAP as SIGNATURE
 from sceneql.system.signatures_kernels import A, F, I, N
@@ -74,8 +74,6 @@ PLAIN = 0.01
 """Distance, in the same parts, from which no gap is computed but a bound of it."""
 INSIDE = 1e-7
 """How far inside its face a corner is at the start, in parts of the body's size, for its leaving to be watched."""
-SURE = 1e-9
-"""Slip at the start of a step [m/s] for its end to be watched."""
 
 
 @lean(F(A, N, N, F, A, N))

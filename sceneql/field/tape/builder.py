@@ -57,7 +57,7 @@ class TapeBuilder:
         self._constants.append(float(value))
         return self._emit((ops.CONSTANT, len(self._constants) - 1, 0, 0))
 
-    def _known(self, register: int) -> float | None:
+    def number(self, register: int) -> float | None:
         """The number in a constant register, else None."""
         op, index, _, _ = self._rows[register]
         return self._constants[index] if op == ops.CONSTANT else None
@@ -81,7 +81,7 @@ class TapeBuilder:
             return self.op(name, first, self.op(name, *others)) if others else first
         a, b = registers
         if name == "pow":
-            exponent = self._known(b)
+            exponent = self.number(b)
             if exponent is None and not self._whole(b):
                 return self.op("exp", self.op("mul", b, self.op("log", a)))
             lowered = self._power(a, exponent)
@@ -112,7 +112,7 @@ class TapeBuilder:
 
     def _folded(self, name: str, registers: tuple[int, ...]) -> int | None:
         """The constant register of an operation on constants, where it has a finite value."""
-        known = [value for value in map(self._known, registers) if value is not None]
+        known = [value for value in map(self.number, registers) if value is not None]
         if len(known) < len(registers):
             return None
         try:
@@ -123,7 +123,7 @@ class TapeBuilder:
 
     def _simplified(self, name: str, a: int, b: int) -> int | None:
         """The register of a simpler expression equal to a op b, also for NaN and infinity; None without one."""
-        left, right = self._known(a), self._known(b)
+        left, right = self.number(a), self.number(b)
         if name == "mul" and a == b:
             return self.op("square", a)
         if (name, left) in (("mul", 1.0), ("add", 0.0)):
@@ -142,7 +142,7 @@ class TapeBuilder:
 
     def _power(self, a: int, exponent: float | None) -> int | None:
         """Integer exponents as squares and products, half-integer ones with a square root; None for all others."""
-        if exponent is None or self._known(a) is not None or abs(exponent) > LARGEST_POWER:
+        if exponent is None or self.number(a) is not None or abs(exponent) > LARGEST_POWER:
             return None
         if exponent < 0.0:
             positive = self._power(a, -exponent)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from numpy import int64
+    from numpy import bool_, int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats
@@ -51,6 +51,18 @@ class Polygon:
         import numpy as np
 
         return np.append(self.starts.min(axis=0), 0.0), np.append(self.starts.max(axis=0), 0.0)
+
+    def holds(self, points: Floats) -> NDArray[bool_]:
+        """Which points (k, 3) lie inside, without compiled code: for a few of them."""
+        import numpy as np
+
+        x, y = points[:, :1], points[:, 1:2]
+        (ax, ay), (bx, by) = self.starts.T, self.ends.T
+        crossed = (ay <= y) != (by <= y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            at = ax + (y - ay) / (by - ay) * (bx - ax)
+        found: NDArray[bool_] = (crossed & (x < at)).sum(axis=1) % 2 == 1
+        return found
 
     def corners(self) -> Floats:
         """(k, 2) where sides meet at an angle, or pieces."""

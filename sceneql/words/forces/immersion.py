@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.grids.domain.cells import counts
 from sceneql.kinds import Force, ModelRef, Problem, Ref, field
@@ -26,6 +26,10 @@ class Immersion(Force):
     """
 
     in_: ModelRef = field("The `flow`.")
+    kernel: Literal["splines", "peskin"] = field(
+        "What reads and spreads: composite splines, or to compare Peskin's kernel of four points, which leaks.",
+        "splines",
+    )
 
     def problems(self) -> Iterator[Problem]:
         """No skin."""
@@ -54,4 +58,4 @@ class Immersion(Force):
 
         skin, flow = assembly.membrane_of(model), assembly.flow_of(self.in_.name)
         if skin is not None and flow is not None:
-            immerse(flow, skin, assembly)
+            immerse(flow, skin, self.kernel == "peskin", assembly)

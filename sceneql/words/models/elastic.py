@@ -22,6 +22,7 @@ from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.filling.finer import Finer
 from sceneql.bodies.solid_modes import Bent
 from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
+from sceneql.kinds.probed import Probed
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import suggestion
 
@@ -147,6 +148,8 @@ class Elastic(Model):
                 yield Problem(
                     f"'{name}' is the name of a hold, too: outputs could not tell them apart", ("probes", name)
                 )
+            if self.block is not None and not self.block.may_hold(self.probes[name]):
+                yield Problem(f"the probe '{name}' stands outside of the block", ("probes", name), code="probe-outside")
 
     def doubts(self) -> Iterator[Doubt]:
         """Elements that lock."""
@@ -176,6 +179,12 @@ class Elastic(Model):
         from sceneql.bodies.elements.filled import bounded_by
 
         return () if self.of is None or self.spacing is None else ((self.of, bounded_by(self.spacing)),)
+
+    def probed(self) -> Iterable[Probed]:
+        """Its probes, of an object."""
+        if self.of is not None:
+            for name, place in self.probes.items():
+                yield Probed(("probes", name), place, self.of, self.spacing)
 
     def insides(self) -> Iterable[Ref]:
         """The object, and those that tell parts."""
@@ -260,7 +269,7 @@ class Elastic(Model):
             near = np.flatnonzero(weights)
             parts[called] = holding.Held(some, places[some], near, weights[near], ~held[near], rows)
         forces = holding.add_holds(self.hold, parts, assembly, bodies)
-        probes = {called: probe(mesh, np.asarray(place)) for called, place in self.probes.items()}
+        probes = {called: probe(called, mesh, np.asarray(place), line) for called, place in self.probes.items()}
         angles = worst_angle(mesh.points, mesh.cells[:, :4])
         drawn: Any = cache(partial(skins.Skin.of, mesh))
         if self.of is not None and self.look == "object":

@@ -214,7 +214,8 @@ class Membrane(Model):
 
         apart = widest(self.made, state)
         text = f"the vertices of its skin are {apart:.2g} cells apart at the end: fluid passes between them"
-        return (text, "take a smaller `spacing`") if apart > 1.0 else ("", "")
+        help = "take a smaller `spacing`, or a law that stretches less"
+        return (text, help) if apart > 1.0 else ("", "")
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Of its vertices."""

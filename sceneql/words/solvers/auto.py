@@ -48,12 +48,11 @@ class Auto(Solver):
     again as long as enough of the run is left; `explain` says the first and why. Few masses that nothing but forces at
     a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less. (On large nets
     tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty masses keep
-    it with dopri5, and so do ties of rigid bodies that have exact contacts. A field on a grid, or on elements, is
-    marched by tr_bdf2, and on cells of a box whose coefficient and boundary do not vary by exact; a flow, with all that
-    is solved with it, by ark3, and by imex_midpoint where its density or viscosity varies; elastic solids that may
-    touch by tr_bdf2 in steps of 1/480 s, others of 6,000 unknowns or more by bdf2 with 100 times the tolerance. Errors
-    are measured as those of `radau` are. Sources: see these words; the sign of stiffness is that of Hairer & Wanner,
-    Solving Ordinary Differential Equations II (1996), IV.2.
+    it with dopri5. A field on a grid, or on elements, is marched by tr_bdf2, and on cells of a box whose coefficient
+    and boundary do not vary by exact; a flow, with all that is solved with it, by ark3, and by imex_midpoint where its
+    density or viscosity varies; elastic solids that may touch by tr_bdf2 in steps of 1/480 s, others of 6,000 unknowns
+    or more by bdf2 with 100 times the tolerance. Errors are measured as those of `radau` are. Sources: see these words;
+    the sign of stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
     """
 
     tolerance: FixedScalar = field(
@@ -129,12 +128,12 @@ class Auto(Solver):
         if island.orbits and few and self.tolerance <= ORBITS:
             there = "for few masses that attract each other, at so small a tolerance"
             return replace(GaussRadau15(tolerance=IN_ORBITS).choose(island), remark=there)
-        stiff = None if island.tied_contacts else Radau(tolerance=self.tolerance, absolute=self.absolute).stepper()
+        stiff = Radau(tolerance=self.tolerance, absolute=self.absolute).stepper()
         of_order_5 = island.impacts and self.tolerance >= IN_CONTACT
         return Methods(
             self,
             self._order_5() if of_order_5 else self.stepper(),
-            stiff=stiff and replace(stiff, method=replace(stiff.method, name="radau")),
+            stiff=replace(stiff, method=replace(stiff.method, name="radau")),
             bounded_by=Dopri5(tolerance=self.tolerance) if of_order_5 else None,
         )
 
