@@ -33,6 +33,7 @@ FEWER = {
     "capsules": ["define.h=12 mm/30", "solvers.main.sbdf2.step=1 ms"],
     "cushion": ["define.h=2.4 m/48"],
     "notes_fluid": ["models.water.flow.pressure=auto"],
+    "pile": ["models.bun.elastic.spacing=9 cm"],
     "plume": ["define.h=5 cm", "solvers.main.sbdf2.step=25 ms"],
     "ripples": ["models.pond.wave.cell=5 cm", "solvers.main.verlet.step=10 ms"],
     "treacle_balloon": ["define.h=2.8 m/56"],
