@@ -23,6 +23,8 @@ class Elasticity:
     """That of Skalak's law [N/m]."""
     area: float = 0.0
     """How much it resists a change of area, in parts of that."""
+    bend: float = 0.0
+    """Stiffness against bending [J]."""
 
 
 def stiffness_in(flow: Flow, largest: float) -> tuple[float, float, float]:
