@@ -244,8 +244,7 @@ class Membrane(Model):
         return rows if output == "positions" else None
 
     def largest_tension(self, cell: float) -> float:
-        """Times k^3/density, k one over the side of a flow's ``cell``, the square of the angular velocity of its fastest
-        wave [N/m].
+        """Times k^3/density, k one over the side of a flow's ``cell``, how fast its waves turn, squared [N/m].
 
         That of waves across it follows from its tension and its bending, of those along it from its stretch, all as the
         splines leave them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py).
