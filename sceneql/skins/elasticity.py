@@ -27,8 +27,8 @@ class Elasticity:
     """Stiffness against bending [J]."""
 
 
-def stiffness_in(flow: Flow, largest: float) -> tuple[float, float, float]:
-    """The pressure by which contacts push a skin off [Pa], the density around it, and the side of a cell [m];
+def stiffness_in(flow: Flow, largest: float) -> tuple[float, float]:
+    """The pressure by which contacts push a skin off [Pa], and the side of a cell [m];
     ``largest``: of Membrane.largest_tension [N/m]."""
     cell = min(flow.spacing[: len(flow.areas)])
-    return largest / cell, flow.density, cell
+    return largest / cell, cell
