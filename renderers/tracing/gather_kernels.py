@@ -14,11 +14,24 @@ from renderers.tracing.light.shade_kernels import facing_ratio, mean_specular, s
 from renderers.tracing.light.soft_boxes_kernels import soft_boxes
 from renderers.tracing.light.through_kernels import CLEAR
 from renderers.tracing.light.visibility_kernels import look_around
-from renderers.tracing.path_kernels import behind, bend, beneath, describe, faded, mirrored, refracted, refracted_spread
-from renderers.tracing.record_kernels import IMAGED, SURFACE, TINT, TRACED, WEIGHT, copy_record, start_of
+from renderers.tracing.path_kernels import (
+    behind,
+    bend,
+    beneath,
+    beside,
+    describe,
+    describe_by,
+    faded,
+    mirrored,
+    refracted,
+    refracted_spread,
+)
+from renderers.tracing.record_kernels import IMAGED, ITEM, SURFACE, TINT, TRACED, WEIGHT, copy_record, start_of
 from renderers.tracing.record_kernels import RADIUS as BROAD
-from renderers.tracing.scene_kernels import ROW, SCENE, SCRATCH, mists_at, part
+from renderers.tracing.scene_kernels import ROW as RECORD
+from renderers.tracing.scene_kernels import SCENE, SCRATCH, mists_at, part
 from renderers.tracing.solids.intersect_kernels import walk
+from renderers.tracing.solids.surface_kernels import normal_at
 from renderers.tracing.solids.thin_capsules_kernels import coverage
 from sceneql.compiled.kernels import kernel
 
@@ -52,7 +65,7 @@ RADIUS, SPREAD, LIGHT_WEIGHT, GATHERED, STRAIGHT, KEEP, BOUNCE, PERSPECTIVE, LIV
 (3 each); whether it was only refracted, so that it sees the backdrop; whether its second record is still to be found;
 surfaces so far; whether the camera is a perspective one; whether it goes on; whether a root was undecided; whether its
 last surface is still to be lit."""
-WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PAST, LINES, SAMPLE, CLEARED, PATH = (
+WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PAST, LINES, SAMPLE, CLEARED, ROW = (
     21,
     22,
     *range(28, 38),
@@ -60,7 +73,12 @@ WAITING, LATER, LATER_WEIGHT, LATER_RADIUS, LATER_SPREAD, LATER_LAMPS, LAMPS, PA
 """Glass splits a ray: whether the mirrored one waits, and its begin. Share of the lamps that a ray sees: none unless it
 was mirrored, and has met nothing but clear glass since then. Distance up to which a camera's ray is through with thin
 capsules, and how many it has met; number of the path's sample in its pixel; distance up to which mists on the ray are
-counted. Numbers of a path."""
+counted; row of its ray in the list."""
+KNOWN, HIT_AT, HIT_ITEM, HIT_SKIN, HIT_TURNED, PATH = 38, 39, 40, 41, 47, 50
+"""What is known of the next hit: how much, its t, its item, normal and paint (6), the normal beside it. Numbers of a
+path."""
+MET, DRESSED, BENT = 1.0, 2.0, 3.0
+"""Values of KNOWN, beside 0: t and item, normal and paint too, all of it."""
 
 
 @part
@@ -74,10 +92,29 @@ def begin(path, ray, cone):
         path[GATHERED + c] = 0.0
     path[STRAIGHT], path[KEEP], path[BOUNCE], path[LIVE] = 1.0, 1.0, 0.0, 1.0
     path[PERSPECTIVE] = 1.0 if cone[1] > 0.0 else 0.0
-    path[WAITING] = path[DOUBTED] = path[DARK] = path[LAMPS] = path[PAST] = path[LINES] = path[CLEARED] = 0.0
+    path[KNOWN] = path[WAITING] = path[DOUBTED] = path[DARK] = path[LAMPS] = path[PAST] = path[LINES] = path[
+        CLEARED
+    ] = 0.0
 
 
-@kernel(types.void(SCENE, SCRATCH, PLACES, ROW, ROW, ROW), _nrt=False, inner=True)
+@part
+def dressed(path):
+    """What ``surface_kernels.normal_at`` says of the hit of a path that is DRESSED."""
+    nx, ny, nz = path[HIT_SKIN], path[HIT_SKIN + 1], path[HIT_SKIN + 2]
+    return nx, ny, nz, nx, ny, nz, 0.0, 0.0, path[HIT_SKIN + 3], path[HIT_SKIN + 4], path[HIT_SKIN + 5]
+
+
+@part
+def turn_of(scene, scratch, path, record):
+    """Turn of the normal within a pixel's radius along the ray of a path that has come to a record."""
+    x, y, z, nv = beside(record)
+    if path[KNOWN] == BENT:
+        return bend(record, nv, path[HIT_TURNED], path[HIT_TURNED + 1], path[HIT_TURNED + 2])
+    mx, my, mz, _, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[ITEM]), x, y, z)
+    return bend(record, nv, mx, my, mz)
+
+
+@kernel(types.void(SCENE, SCRATCH, PLACES, RECORD, RECORD, RECORD), _nrt=False, inner=True)
 def advance(scene, scratch, path, first, second, spare):
     """Take a path to the surface that its ray meets, and let it go on from there or end.
 
@@ -97,7 +134,10 @@ def advance(scene, scratch, path, first, second, spare):
         scratch[counter, layout.WIDE_RADIUS], scratch[counter, layout.WIDE_SPREAD] = radius, spread
     if bounce == 0:
         scratch[counter, layout.WIDE_FROM] = path[PAST]
-    t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
+    if path[KNOWN] != 0.0:
+        t, item = path[HIT_AT], int(path[HIT_ITEM])
+    else:
+        t, item, _ = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, np.inf, False)
     scratch[counter, layout.TOLD] = scratch[counter, layout.WIDE_FROM] = 0.0
     if widens:
         scratch[counter, layout.WIDE_RADIUS] = scratch[counter, layout.WIDE_SPREAD] = 0.0
@@ -135,7 +175,9 @@ def advance(scene, scratch, path, first, second, spare):
         cr, cg, cb = cr + wr * r, cg + wg * g, cb + wb * b
     else:
         radius += spread * t
-        outside = describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, abs(radius), spare)
+        x, y, z = ox + t * dx, oy + t * dy, oz + t * dz
+        skin = dressed(path) if path[KNOWN] >= DRESSED else normal_at(scene, scratch, item, x, y, z)
+        outside = describe_by(scene, item, skin, x, y, z, dx, dy, dz, abs(radius), spare)
         if not outside and scene.reals[int(spare[SURFACE]) + layout.TRANSMISSION] > 0.0:
             under = beneath(scene, scratch, spare)
             if under >= 0:
@@ -160,7 +202,7 @@ def advance(scene, scratch, path, first, second, spare):
         elif bounce < BOUNCES:
             traced = sharpness(scene.reals[s + layout.ROUGHNESS])
             if traced > 0.0:
-                turn = bend(scene, scratch, spare)
+                turn = turn_of(scene, scratch, path, spare)
                 if bounce > 0:
                     traced *= 1.0 - smoothstep(0.5 * WIDE, WIDE, abs(spread) + 2.0 * turn)
                 sr, sg, sb = mean_specular(scene.reals, spare, nv)
@@ -169,7 +211,7 @@ def advance(scene, scratch, path, first, second, spare):
         goes_on = (glass or traced > 0.0) and bounce < BOUNCES
         if goes_on:
             if glass:
-                turn = bend(scene, scratch, spare)
+                turn = turn_of(scene, scratch, path, spare)
             if outside or not glass:
                 lamps = polish(scene.reals[s + layout.ROUGHNESS])
             if bounce > 0:

@@ -71,8 +71,8 @@ def refracted(record, ratio):
 
 
 @part
-def bend(scene, scratch, record):
-    """Turn of the normal within a pixel's radius along the ray: reflections spread by twice that."""
+def beside(record):
+    """(point a pixel's radius along the mirrored ray, that ray's cosine to the normal)."""
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     rx, ry, rz = mirrored(record)
     nv = rx * nx + ry * ny + rz * nz
@@ -81,8 +81,13 @@ def bend(scene, scratch, record):
     if length < 1e-3:
         hx, hy, hz, length = ny, nz, nx, 1.0
     step = record[records.RADIUS] / length
-    x, y, z = record[PLACE] + step * hx, record[PLACE + 1] + step * hy, record[PLACE + 2] + step * hz
-    mx, my, mz, _, _, _, _, _, _, _, _ = normal_at(scene, scratch, int(record[records.ITEM]), x, y, z)
+    return record[PLACE] + step * hx, record[PLACE + 1] + step * hy, record[PLACE + 2] + step * hz, nv
+
+
+@part
+def bend(record, nv, mx, my, mz):
+    """Turn of the normal to (mx, my, mz) ``beside`` a record: reflections spread by twice that."""
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     side = 1.0 if mx * nx + my * ny + mz * nz >= 0.0 else -1.0
     # Of the difference: the cosine of a record's normal, in single precision, would turn flat surfaces by 3e-4.
     mx, my, mz = side * mx - nx, side * my - ny, side * mz - nz

@@ -22,7 +22,8 @@ def scratch(rows: int) -> Floats:
 def scratch_beside(asked: Floats, scene: Scene, rows: int) -> Floats:
     """The same beside a list of rays for packets: the rows of the shapes that these know tell their items.
 
-    They hold no crossings yet. Whether packets know all of the scene is noted in the list.
+    They hold no crossings yet. Whether packets know all of the scene is noted in the list, in which rays meet nothing
+    past them then.
     """
     out = scratch(rows)
     out[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan
@@ -32,4 +33,5 @@ def scratch_beside(asked: Floats, scene: Scene, rows: int) -> Floats:
         known = np.flatnonzero(items[:, layout.KIND] == layout.IMPLICIT)
         out[-2 - items[known, layout.SHAPE], layout.ITEM_OF] = known
         asked[0, layout.ALONE] = len(known) == count
+        asked[1:, [layout.REST_AT, layout.REST_ITEM, layout.REST_LIGHT]] = np.inf, -1.0, 1.0
     return out

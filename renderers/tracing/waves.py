@@ -2,7 +2,7 @@
 
 The camera's rays of some tiles make a wave, and so do the shadow rays and rays to the sky from what they meet, and each
 step of all their paths: mirrored and refracted rays, with the light on their surfaces. Single are rays that light what
-hides the sky, and all where no shape suits packets.
+hides the sky, and all where no shape suits packets and there is more than a few balls, boxes and floors.
 """
 
 from __future__ import annotations
@@ -17,9 +17,12 @@ from renderers.tracing.filter.edges_kernels import TRIAL, add_samples, list_edge
 from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE
 from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
+from renderers.tracing.light import look_lanes_kernels as looks
 from renderers.tracing.light.bounce_kernels import WAY, dress_hits, follow_all, look_about, step_all
+from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_paths
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.scratch import scratch_beside
+from renderers.tracing.solids.plain_lanes import lanes_for
 from renderers.tracing.tiles_kernels import fill_background, mark_busy
 from renderers.tracing.waves_kernels import (
     advance_paths,
@@ -63,11 +66,19 @@ class Waves:
         width = -(-int(scene.reals[layout.WIDTH]) // TILE) * TILE
         self.asked = np.zeros((1 + RAYS, layout.ANSWERS)) if packets is None else packets.asked(RAYS)
         self.scratch = scratch_beside(self.asked, scene, rows)
+        self.lanes = lanes_for(scene, packets is not None)
+        if self.lanes is not None:
+            self.asked[0, layout.ALONE] = 1.0
+        self.listed = packets is not None or self.lanes is not None
+        lights, others = scene.ints[layout.LIGHT_COUNT], scene.ints[[layout.EMBERS, layout.MISTS]]
+        alone = self.asked[0, layout.ALONE] != 0.0
+        self.looks = np.zeros(looks.ROOM) if alone and lights <= looks.MOST_LIGHTS and not others.any() else None
+        self.waiting = np.zeros(2 + RAYS, dtype=np.int64)
         self.cones, self.at, self.each = np.zeros((ROOM, 3)), np.zeros(ROOM, np.int64), np.arange(ROOM, dtype=np.int64)
         self.paths, self.of = np.zeros((ROOM, PATH)), np.zeros(ROOM, dtype=np.int64)
         self.hits, self.met, self.skins = np.zeros(ROOM, dtype=np.int64), np.zeros((ROOM, 5)), np.zeros((ROOM, 6))
         self.gathered = np.zeros((ROOM, 4))
-        count = 1 if packets is None else RAYS
+        count = RAYS if self.listed else 1
         self.ways, self.live, self.ways_hit = (
             np.zeros((count, WAY)),
             np.zeros(count, np.int64),
@@ -105,15 +116,22 @@ class Waves:
         scene, asked, at = self.scene, self.asked, self.at
         count = list_pixels(scene, start, stop, tiles, asked, self.cones, at)
         self._follow(count, at, records)
-        self._ask(
-            0, count, lambda i, end: look_from(scene, self.scratch, asked, self.ways, i, end, at, records, visibility)
-        )
+
+        def look(first: int, last: int) -> int:
+            if self.looks is not None and asked[0, layout.MODE] == layout.ASKING:
+                return int(looks.list_looks(scene, asked, first, last, at, records, self.looks))
+            telling = self.looks is not None and asked[0, layout.MODE] == layout.TELLING
+            kernel = looks.tell_looks if telling else look_from
+            return int(kernel(scene, self.scratch, asked, self.ways, first, last, at, records, visibility))
+
+        self._ask(0, count, look)
         counts: tuple[int, int] = end_pixels(self.gathered[:count], at, records, radiance)
         return counts
 
     def refine(self, start: int, stop: int, *more: Array) -> None:
         """As refine_kernels.refine."""
-        self._ask(start, stop, lambda i, end: refine(self.scene, self.scratch, self.asked, self.ways, i, end, *more))
+        own = self.scene, self.scratch, self.asked, self.ways
+        self._ask(start, stop, lambda i, end: refine(*own, i, end, self.waiting, *more))
 
     def smooth(
         self, start: int, stop: int, points: Array, undecided: int, busy: Array, planes: Array, records: Array,
@@ -150,8 +168,7 @@ class Waves:
 
     def _follow(self, count: int, at: Array, records: Array) -> None:
         """Follow ``count`` listed rays of the camera, and their paths to the ends: see waves_kernels.meet_first."""
-        if self.packets is not None:
-            self.packets.meet(self.asked)
+        self._meet()
         scene, asked, cones, gathered, met, spares = (
             self.scene,
             self.asked,
@@ -161,8 +178,8 @@ class Waves:
             self.spares,
         )
         out = at, records, gathered
-        own = self.paths, self.of, self.hits, met, spares
-        started, hits, dark = meet_first(scene, self.scratch, asked, count, cones, *out, *own)
+        own = self.paths, self.of, self.hits, met
+        started, hits = meet_first(scene, self.scratch, asked, count, cones, *out, *own)
         if hits and self.packets is not None:
             self.packets.skin(scene, self.hits[:hits], met, self.skins)
             describe_hits(scene, asked, cones, *out, self.hits[:hits], met, self.skins)
@@ -171,14 +188,35 @@ class Waves:
         paths, of = self.paths[:started], self.of[:started]
         own_at = at[of]
         while True:
-            if dark:
+            if self.packets is not None:
+                self._dress(paths)
+            if advance_paths(scene, self.scratch, asked, paths, own_at, records, spares):
                 self._ask(0, started, lambda i, end: self._light(i, end, paths))
             if not ask_paths(paths, asked):
                 break
-            if self.packets is not None:
-                self.packets.meet(asked)
-            dark = advance_paths(scene, self.scratch, asked, paths, own_at, records, spares)
+            self._meet()
         end_paths(paths, of, gathered)
+
+    def _dress(self, paths: Array) -> None:
+        """Find the normals of implicit solids where live paths meet them, and beside these places."""
+        assert self.packets is not None
+        scene, hits, met, skins = self.scene, self.hits, self.met, self.skins
+        count = meet_paths(scene, self.scratch, self.asked, paths, hits, met)
+        if count:
+            self.packets.skin(scene, hits[:count], met, skins)
+            count = dress_paths(scene, paths, hits[:count], met, skins, self.spares)
+        if count:
+            self.packets.skin(scene, hits[:count], met, skins)
+            bend_paths(paths, hits[:count], skins)
+
+    def _meet(self) -> None:
+        """Answer all listed rays."""
+        if self.packets is not None:
+            self.packets.meet(self.asked)
+        if self.lanes is not None:
+            from renderers.tracing.solids.plain_lanes_kernels import meet_plain
+
+            meet_plain(self.scene, self.asked, self.lanes)
 
     def _light(self, start: int, stop: int, paths: Array) -> int:
         """Light surfaces beyond the records of paths start..stop; returns where it ends."""
@@ -192,7 +230,7 @@ class Waves:
 
         And once more where light from around has taken ways, when these have ended. Without packets only once, on all.
         """
-        if self.packets is None:
+        if not self.listed:
             work(start, stop)
             return
         while start < stop:
@@ -207,19 +245,17 @@ class Waves:
 
     def _twice(self, start: int, stop: int, work: Callable[[int, int], int]) -> int:
         """List the rays of as much of start..stop as fits, and use their answers; returns where it ends."""
-        assert self.packets is not None
         head = self.asked[0]
         head[layout.MODE], head[layout.NEXT] = layout.ASKING, 1
         end = work(start, stop)
         if head[layout.NEXT] > 1:
-            self.packets.meet(self.asked)
+            self._meet()
         head[layout.MODE], head[layout.NEXT] = layout.TELLING, 1
         work(start, end)
         return end
 
     def _light_ways(self, count: int) -> None:
         """Follow the first ``count`` of the ways to their ends, in waves; the last FEW one by one."""
-        assert self.packets is not None
         scene, asked, ways, live, hits = self.scene, self.asked, self.ways, self.live, self.ways_hit
         live[:count] = np.arange(count)
         few = 1 if asked[0, layout.ALONE] else FEW
@@ -229,7 +265,7 @@ class Waves:
                 asked[0, layout.MODE] = layout.PLAIN
                 follow_all(scene, self.scratch, asked, ways, live[:count])
                 return
-            if some:
+            if some and self.packets is not None:
                 self.packets.skin(scene, hits[:some], self.ways_met, self.ways_skins)
                 dress_hits(ways, hits[:some], self.ways_skins)
             start = 0

@@ -6,16 +6,30 @@ from numba import types
 
 from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE, camera_ray, place_of
-from renderers.tracing.gather_kernels import DARK, DOUBTED, GATHERED, LIVE, QUICK, advance, begin, light_behind
+from renderers.tracing.gather_kernels import (
+    DARK,
+    DOUBTED,
+    GATHERED,
+    HIT_AT,
+    HIT_ITEM,
+    KNOWN,
+    LIVE,
+    MET,
+    QUICK,
+    ROW,
+    advance,
+    begin,
+    light_behind,
+)
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.light_kernels import backdrop, sharpness
 from renderers.tracing.light.sampling_kernels import sample_of
-from renderers.tracing.light.visibility_kernels import look_around
+from renderers.tracing.light.visibility_kernels import AWAITED, look_around
 from renderers.tracing.path_kernels import describe_by, faded
 from renderers.tracing.record_kernels import OWNER, UNSURE, WEIGHT, erase
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part
-from renderers.tracing.solids.intersect_kernels import put_ray, tell, told_alone, walk
-from renderers.tracing.solids.surface_kernels import normal_at
+from renderers.tracing.solids.intersect_kernels import join, put_ray, tell, walk
+from renderers.tracing.solids.surface_kernels import skin_of
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -96,23 +110,23 @@ def list_pixels(scene, start, stop, tiles, asked, cones, at):
     return n
 
 
-@kernel(types.UniTuple(_i, 3)(SCENE, SCRATCH, ASKED, _i, _paths, _many, _stack, _paths, _paths, _many, _many, _paths,
-        _rows), _nrt=False)  # fmt: skip
-def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths, of, hits, met, spares):
+@kernel(types.UniTuple(_i, 2)(SCENE, SCRATCH, ASKED, _i, _paths, _many, _stack, _paths, _paths, _many, _many, _paths),
+        _nrt=False)  # fmt: skip
+def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths, of, hits, met):
     """Follow ``count`` listed rays of the camera to what they meet first; ray i has the records ``at[i]``.
 
     What is seen without more rays, the background and matte surfaces, is done then: its light but for the records is
     in ``gathered[i]`` (r, g, b, and as DOUBTED). Of matte hits of solids that packets know the records are left to
-    ``describe_hits``: they are listed in ``hits``, with (t, item, point) in ``met``. The rest are paths of rays ``of``.
-    Returns the numbers of paths, of hits, and of paths whose surface, left in ``spares``, is to be lit.
+    ``describe_hits``: they are listed in ``hits``, with (t, item, point) in ``met``. The rest begin as paths, of rays
+    ``of``. Returns the numbers of paths and of hits.
     """
     counter = scratch.shape[0] - 1
     together = asked.shape[1] > layout.ANSWERS
-    alone, last = together and asked[0, layout.ALONE] != 0.0, len(records) - 1
-    paths_now = hits_now = dark = 0
+    alone, last = asked[0, layout.ALONE] != 0.0, len(records) - 1
+    paths_now = hits_now = 0
     for i in range(count):
         k, ray = at[i], asked[1 + i]
-        first, second = records[0, k], records[last, k]
+        first = records[0, k]
         for layer in range(last + 1):
             erase(records[layer, k])
         item = -1
@@ -121,19 +135,21 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
             scratch[counter, 0] = 0.0
             told, t, item = False, np.inf, -1
             if alone:
-                told, t, item = told_alone(scratch, asked, 1 + i)
+                told, t, item, _ = join(scene, scratch, asked, 1 + i, np.inf, False)
             if not told:
                 tell(scratch, asked, 1 + i)
                 t, item, _ = walk(scene, scratch, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5], 0.0, np.inf, False)
             plain = item < 0 or matte(scene, item)
         if not plain:
-            tell(scratch, asked, 1 + i)
             path = paths[paths_now]
             begin(path, ray, cones[i])
-            advance(scene, scratch, path, first, second, spares[paths_now])
+            path[ROW] = 1 + i
+            if scene.ints[layout.HAS_THIN] == 0:
+                path[KNOWN], path[HIT_AT], path[HIT_ITEM] = MET, t, item
+                path[DOUBTED] = 1.0 if scratch[counter, 0] > 0.0 else 0.0
+                scratch[counter, layout.TOLD] = 0.0
             of[paths_now] = i
             paths_now += 1
-            dark += path[DARK] > 0.0
             continue
         scratch[counter, layout.TOLD] = 0.0
         own = gathered[i]
@@ -149,9 +165,9 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
             hits_now += 1
         else:
             x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
-            see_matte(scene, item, normal_at(scene, scratch, item, x, y, z), t, ray, cones[i], first, own)
+            see_matte(scene, item, skin_of(scene, scratch, item, x, y, z), t, ray, cones[i], first, own)
         own[3] = 1.0 if scratch[counter, 0] > 0.0 else 0.0
-    return paths_now, hits_now, dark
+    return paths_now, hits_now
 
 
 @kernel(types.void(SCENE, ASKED, _paths, _many, _stack, _paths, _many, _paths, _paths), _nrt=False)
@@ -171,6 +187,7 @@ def ask_paths(paths, asked):
         if paths[i, LIVE] != 0.0:
             path = paths[i]
             put_ray(asked, row, path[0], path[1], path[2], path[3], path[4], path[5], np.inf, layout.FIRST)
+            path[ROW], path[KNOWN] = row, 0.0
             row += 1
     asked[0, layout.NEXT] = row
     return row - 1
@@ -182,13 +199,12 @@ def advance_paths(scene, scratch, asked, paths, at, records, spares):
 
     Returns the number of paths whose surface beyond these, left in ``spares`` (n, COLUMNS), is to be lit.
     """
-    row = 1
     dark = 0
     for i in range(paths.shape[0]):
         if paths[i, LIVE] != 0.0:
             k = at[i]
-            tell(scratch, asked, row)
-            row += 1
+            if paths[i, KNOWN] == 0.0:
+                tell(scratch, asked, int(paths[i, ROW]))
             advance(scene, scratch, paths[i], records[0, k], records[len(records) - 1, k], spares[i])
             dark += paths[i, DARK] > 0.0
     return dark
@@ -248,12 +264,13 @@ def look_from(scene, scratch, asked, ways, first, last, at, records, visibility)
     """
     width = int(scene.reals[layout.WIDTH])
     room = asked.shape[0] - 2 * (1 + scene.ints[layout.LIGHT_COUNT])
+    ending = asked[0, layout.MODE] == layout.ENDING
     for i in range(first, last):
         if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         k = at[i]
         number = sample_of(k % width, k // width)
         for layer in range(len(records)):
-            if records[layer, k, OWNER] > 0.0:
+            if records[layer, k, OWNER] > 0.0 and (not ending or visibility[layer, k, 0] == AWAITED):
                 look_around(scene, scratch, asked, ways, records[layer, k], number, 1, 1, visibility[layer, k])
     return last

@@ -82,6 +82,16 @@ def mark_edges(y, planes, size, chunk, same, marks):
 
 
 @part
+def marked(marks, first, start, stop):
+    """Whether any pixel of a tile is marked, the rows start..stop of TILE columns from the ``first`` one on."""
+    found = False
+    for y in range(stop - start):
+        for x in range(first, first + TILE):
+            found = found | (marks[y, x] > ZERO)
+    return found
+
+
+@part
 def unlike(records, radiance, k, x, y, width, height):
     """Whether a pixel's neighborhood has an undecided root, a thin capsule or, if it is a mirror, another radiance."""
     glossy = records[0, k, TRACED] > 0.0
@@ -115,7 +125,7 @@ def borrow(records, visibility, record, x, y, width, height, found):
 
 @kernel(_i(_i, _i, _i, _i, _i, MARKS, _rows, _stack, _rows, _rows, _rows, LINE, _many), _nrt=False)
 def list_edges(start, stop, width, size, undecided, busy, planes, records, radiance, picture, marks, same, edges):
-    """List the pixels of rows start..stop, at most TILE, that are to be drawn anew; write the others to the picture.
+    """List the pixels of rows start..stop, at most TILE, that are to be drawn anew; all get their light in the picture.
 
     ``size`` of a chunk of ``planes``, those of the first records; ``undecided`` roots in the picture, or thin capsules:
     pixels with one are drawn anew as well. ``busy`` (rows of tiles, tiles) are 0 of tiles of nothing but background.
@@ -126,15 +136,17 @@ def list_edges(start, stop, width, size, undecided, busy, planes, records, radia
         if busiest(busy, row, ACROSS * chunk, ACROSS * chunk + ACROSS - 1) != 0:
             for y in range(start, stop):
                 mark_edges(y, planes, size, chunk, same, marks[y - start, chunk * LANES :])
+    for k in range(start * width, stop * width):
+        for c in range(3):
+            picture[k, c] = radiance[k, c]
+    mirrors = len(records) > 1  # see waves_kernels.layers_of
     n, i = 0, -1
     while i + 1 < len(edges):
         i += 1
-        if i % (TILE * TILE) == 0 and busiest(busy, row, i // (TILE * TILE), i // (TILE * TILE)) == 0:
-            first, last = i // TILE, min(i // TILE + TILE, width)
-            for y in range(start, stop):
-                for k in range(y * width + first, y * width + last):
-                    for c in range(3):
-                        picture[k, c] = radiance[k, c]
+        if i % (TILE * TILE) == 0 and (
+            busiest(busy, row, i // (TILE * TILE), i // (TILE * TILE)) == 0
+            or not (mirrors or undecided > 0 or marked(marks, i // TILE, start, stop))
+        ):
             i += TILE * TILE - 1
             continue
         x, y = place_of(i)
@@ -143,14 +155,11 @@ def list_edges(start, stop, width, size, undecided, busy, planes, records, radia
             continue
         k = y * width + x
         edge = marks[y - start, x] > 0.0
-        if not edge and (undecided > 0 or records[0, k, TRACED] > 0.0):
+        if not edge and (undecided > 0 or (mirrors and records[0, k, TRACED] > 0.0)):
             edge = unlike(records, radiance, k, x, y, width, planes.shape[0])
         if edge:
             edges[n] = k
             n += 1
-        else:
-            for c in range(3):
-                picture[k, c] = radiance[k, c]
     return n
 
 

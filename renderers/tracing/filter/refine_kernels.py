@@ -9,7 +9,7 @@ from renderers.tracing.filter.filter_kernels import REACH
 from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import COUNT, SIDE, SKY_COUNT, sample_of
-from renderers.tracing.light.shade_kernels import shade
+from renderers.tracing.light.shade_kernels import shade_here
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, light_sample, look_around, shadow_sample
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
@@ -27,6 +27,8 @@ OWN = 16
 ROUGH = 0.03
 """Difference of a light's share from the mean of those SIDE pixels away on both sides, from which on a wide penumbra
 takes samples of its own: behind rows of thin things the one of each pixel in the filter's window is too few."""
+LEAST, MOST = 0.0001, 0.9999
+"""Shares of a light up to which it counts as hidden, and from which on as seen whole."""
 FEW, THIN = 20.0, 32
 """Pixels joined by the filter below which a pixel takes samples of the sky of its own, on small or thin surfaces, and
 how many it takes below half of FEW; above that half as many."""
@@ -78,62 +80,93 @@ def share_of_light(scene, scratch, asked, record, l, number):
     return total / (OWN // 2)
 
 
-@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, MARKS, _rows, _rows, _rows, _rows), _nrt=False)
-def refine(scene, scratch, asked, ways, start, stop, busy, records, visibility, means, fine):
+@part
+def is_even(scene, k, x, y, means, fine):
+    """Whether all lights are seen whole or not at all by all that was joined with pixel k, which then is refined."""
+    columns = fine.shape[1]
+    lights = int(scene.ints[layout.LIGHT_COUNT])
+    even = columns == FIRST_LIGHT + 2 * lights  # no mists
+    for l in range(lights):
+        share = mean_of(means, columns, x, y, 1 + FIRST_LIGHT + 2 * l)
+        even = even and (share > MOST or share < LEAST)
+        fine[k, FIRST_LIGHT + 2 * l], fine[k, FIRST_LIGHT + 2 * l + 1] = share, 0.0
+    return even
+
+
+@part
+def refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, records, visibility, means, fine):
+    """``refine`` for pixel k, at (x, y), of which the filter has joined so many ``pixels``."""
+    columns = visibility.shape[1]
+    if pixels < FEW:
+        samples = THIN if pixels < 0.5 * FEW else THIN // 2
+        told = look_around(scene, scratch, asked, ways, records[k], sample_of(x, y), samples, 0, fine[k])
+        for c in range(FIRST_LIGHT if told else 0):
+            joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
+            fine[k, c] = joined / (samples + pixels)
+    for column in range(FIRST_LIGHT + 2 * scene.ints[layout.LIGHT_COUNT], columns):  # what mists leave
+        fine[k, column] = mean_of(means, columns, x, y, 1 + column)
+    for l in range(int(scene.ints[layout.LIGHT_COUNT]) if asked[0, layout.MODE] != layout.ENDING else 0):
+        column = FIRST_LIGHT + 2 * l
+        share = mean_of(means, columns, x, y, 1 + column)
+        fine[k, column + 1] = 0.0
+        fine[k, column] = share
+        if share > MOST or share < LEAST:
+            continue
+        breadth = mean_of(means, columns, x, y, 2 + column)
+        edge = breadth / (1.0 - share) / (2.0 * records[k, RADIUS])
+        if edge >= SIDE:
+            if roughness(records, means, columns, x, y, column) > ROUGH:
+                fine[k, column] = share_of_light(scene, scratch, asked, records[k], l, sample_of(x, y))
+                fine[k, column + 1] = 2.0
+            continue
+        reach = 1 if edge < CRISP else (2 if edge < FINE else REACH)
+        if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
+            fine[k, column] = visibility[k, column]
+            continue
+        samples = OWN if reach < REACH else OWN // 2
+        total = 0.0
+        first = sample_of(x, y) * samples % COUNT
+        for sample in range(first, first + samples):
+            total += shadow_sample(scene, scratch, asked, records[k], l, sample, 1.0)[0]
+        fine[k, column] = total / samples
+        fine[k, column + 1] = 1.0 if reach == REACH else 0.0
+
+
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, types.int64[::1], MARKS, _rows, _rows, _rows, _rows), _nrt=False)
+def refine(scene, scratch, asked, ways, start, stop, waiting, busy, records, visibility, means, fine):
     """Fill rows of ``fine`` (n, V): for each light its share, and over how many pixels around that is to be smoothed.
 
     The sky's loss, already there, is resampled where few pixels were joined. For pixels start..stop, or until ``asked``
-    has no room for more rays; returns where it ends.
+    has no room for more rays; returns where it ends. Pixels that have listed rays are noted in ``waiting`` (1 + n,),
+    behind their number: when these have answers they alone are looked at.
     """
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     columns = visibility.shape[1]
     room = asked.shape[0] - THIN - OWN * scene.ints[layout.LIGHT_COUNT]
-    following = start
-    while following < stop:
-        k = following
+    asking = asked[0, layout.MODE] == layout.ASKING
+    first = asking or asked[0, layout.MODE] == layout.PLAIN
+    following, last = (start, stop) if first else (1, int(waiting[0]) + 1)
+    if first:
+        waiting[0] = 0
+    while following < last:
+        k = following if first else waiting[following]
         x, y = k % width, k // width
-        if busy[y // TILE, x // TILE] == 0:
+        if first and busy[y // TILE, x // TILE] == 0:
             following += min(TILE - x % TILE, width - x)
             continue
         following += 1
         pixels = mean_of(means, columns, x, y, 0)
         if pixels == 0.0:
             continue
-        if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
+        begin = asked[0, layout.NEXT]
+        if asking and begin > room:
             return k
-        if pixels < FEW:
-            samples = THIN if pixels < 0.5 * FEW else THIN // 2
-            told = look_around(scene, scratch, asked, ways, records[k], sample_of(x, y), samples, 0, fine[k])
-            for c in range(FIRST_LIGHT if told else 0):
-                joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
-                fine[k, c] = joined / (samples + pixels)
-        for column in range(FIRST_LIGHT + 2 * scene.ints[layout.LIGHT_COUNT], columns):  # what mists leave
-            fine[k, column] = mean_of(means, columns, x, y, 1 + column)
-        for l in range(int(scene.ints[layout.LIGHT_COUNT]) if asked[0, layout.MODE] != layout.ENDING else 0):
-            column = FIRST_LIGHT + 2 * l
-            share = mean_of(means, columns, x, y, 1 + column)
-            fine[k, column + 1] = 0.0
-            fine[k, column] = share
-            if share > 0.9999 or share < 0.0001:
-                continue
-            breadth = mean_of(means, columns, x, y, 2 + column)
-            edge = breadth / (1.0 - share) / (2.0 * records[k, RADIUS])
-            if edge >= SIDE:
-                if roughness(records, means, columns, x, y, column) > ROUGH:
-                    fine[k, column] = share_of_light(scene, scratch, asked, records[k], l, sample_of(x, y))
-                    fine[k, column + 1] = 2.0
-                continue
-            reach = 1 if edge < CRISP else (2 if edge < FINE else REACH)
-            if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
-                fine[k, column] = visibility[k, column]
-                continue
-            samples = OWN if reach < REACH else OWN // 2
-            total = 0.0
-            first = sample_of(x, y) * samples % COUNT
-            for sample in range(first, first + samples):
-                total += shadow_sample(scene, scratch, asked, records[k], l, sample, 1.0)[0]
-            fine[k, column] = total / samples
-            fine[k, column + 1] = 1.0 if reach == REACH else 0.0
+        if first and pixels >= FEW and is_even(scene, k, x, y, means, fine):
+            continue
+        refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, records, visibility, means, fine)
+        if asking and asked[0, layout.NEXT] > begin:
+            waiting[0] += 1
+            waiting[waiting[0]] = k
     return stop
 
 
@@ -181,7 +214,7 @@ def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
                     height,
                     visibility[layer, k],
                 )
-                r, g, b = shade(scene, records[layer, k], visibility[layer, k])
+                r, g, b = shade_here(scene, records[layer, k], visibility[layer, k])
                 radiance[k, 0] += r
                 radiance[k, 1] += g
                 radiance[k, 2] += b

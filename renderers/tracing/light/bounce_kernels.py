@@ -16,7 +16,7 @@ from renderers.tracing.light.sampling_kernels import NEXT_DISK, SKY_COUNT, acros
 from renderers.tracing.light.through_kernels import CLEAR, clearness, go_through
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part
 from renderers.tracing.solids.intersect_kernels import ask
-from renderers.tracing.solids.surface_kernels import color_at, normal_at
+from renderers.tracing.solids.surface_kernels import color_at, normal_at, skin_of
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -218,7 +218,7 @@ def look_about(scene, scratch, ways, live, count, hits, met):
             listed += 1
             met[i, 1], met[i, 2], met[i, 3], met[i, 4] = item, way[AT], way[AT + 1], way[AT + 2]
         else:
-            dress(way, normal_at(scene, scratch, item, way[AT], way[AT + 1], way[AT + 2]))
+            dress(way, skin_of(scene, scratch, item, way[AT], way[AT + 1], way[AT + 2]))
     return left, listed
 
 

@@ -113,8 +113,8 @@ def shade_matte(scene, record, visibility, s, nx, ny, nz, x, y, z):
     )
 
 
-@kernel(types.UniTuple(types.float64, 3)(SCENE, ROW, ROW), _nrt=False, inner=True)
-def shade(scene, record, visibility):
+@part
+def shade_here(scene, record, visibility):
     """Radiance (3) of a record times its weight, without the rays that are traced further."""
     u = scene.reals
     s = int(record[SURFACE])
@@ -171,3 +171,9 @@ def shade(scene, record, visibility):
         else:
             sums = sums[0], sums[1], total
     return sums
+
+
+@kernel(types.UniTuple(types.float64, 3)(SCENE, ROW, ROW), _nrt=False, inner=True)
+def shade(scene, record, visibility):
+    """``shade_here``, by a call."""
+    return shade_here(scene, record, visibility)

@@ -14,7 +14,7 @@ from renderers.tracing.light.sampling_kernels import COUNT, DISK, JITTER, SKY_CO
 from renderers.tracing.light.through_kernels import CLEAR, clearness, go_through
 from renderers.tracing.record_kernels import NORMAL, PLACE, RADIUS, SURFACE, TINT, start_of
 from renderers.tracing.scene_kernels import ASKED, ROW, SCENE, SCRATCH, mists_at, part
-from renderers.tracing.solids.intersect_kernels import answer, ask
+from renderers.tracing.solids.intersect_kernels import answer, seek
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -48,14 +48,6 @@ def toward(scene, l, x, y, z, disk_x, disk_y):
 
 
 @part
-def seen(scene, scratch, asked, l, x, y, z, disk_x, disk_y):
-    """(share, distance of the blocker) of the point (disk_x, disk_y) of light l's disk from a place."""
-    dx, dy, dz, far = toward(scene, l, x, y, z, disk_x, disk_y)
-    blocker, _, share = ask(scene, scratch, asked, x, y, z, dx, dy, dz, far, True)
-    return share, blocker
-
-
-@part
 def shadow_width(scene, l, x, y, z, blocker):
     """Width [m] of the penumbra that an edge at distance ``blocker`` throws on a surface facing light l."""
     _, _, _, far, _, _, _ = light_at(scene.reals, l, x, y, z)
@@ -83,7 +75,7 @@ def sky_loss(scene, scratch, asked, ways, record, sample):
         w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
         dx, dy, dz = u * ax + v * bx + w * nx, u * ay + v * by + w * ny, u * az + v * bz + w * nz
         x, y, z = start_of(record)
-        t, item, _ = ask(scene, scratch, asked, x, y, z, dx, dy, dz, np.inf, False)
+        t, item, _ = seek(scene, scratch, asked, x, y, z, dx, dy, dz, np.inf, False)
     if item < 0 and (scene.mist == 0 or (mode == layout.ASKING and asked[0, layout.OPEN] != 0.0)):
         return 0.0, 0.0, 0.0
     if item >= 0 and mode == layout.ASKING:  # found when rays have answers
@@ -212,7 +204,8 @@ def shadow_sample(scene, scratch, asked, record, l, sample, jitter):
     ax, ay, az, bx, by, bz = across(float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2]))
     u, v = 2.0 * jitter * record[RADIUS] * JITTER[sample, 0], 2.0 * jitter * record[RADIUS] * JITTER[sample, 1]
     x, y, z = x + u * ax + v * bx, y + u * ay + v * by, z + u * az + v * bz
-    share, blocker = seen(scene, scratch, asked, l, x, y, z, DISK[sample, 0], DISK[sample, 1])
+    dx, dy, dz, far = toward(scene, l, x, y, z, DISK[sample, 0], DISK[sample, 1])
+    blocker, _, share = seek(scene, scratch, asked, x, y, z, dx, dy, dz, far, True)
     width = shadow_width(scene, l, x, y, z, blocker) if blocker < np.inf else 0.0
     return share, width
 
@@ -222,8 +215,11 @@ def light_sample(scene, scratch, asked, record, l, sample):
     """Share of light l for one sample of the sky's net, which has more points than that of lights' disks."""
     if not facing(scene, record, l):
         return 1.0
+    if asked[0, layout.MODE] == layout.TELLING:
+        return answer(scene, scratch, asked, True)[2]
     x, y, z = start_of(record)
-    return seen(scene, scratch, asked, l, x, y, z, SKY_DISK[sample, 0], SKY_DISK[sample, 1])[0]
+    dx, dy, dz, far = toward(scene, l, x, y, z, SKY_DISK[sample, 0], SKY_DISK[sample, 1])
+    return seek(scene, scratch, asked, x, y, z, dx, dy, dz, far, True)[2]
 
 
 @kernel(types.boolean(SCENE, SCRATCH, ASKED, WAYS, ROW, _i, _i, _i, ROW), _nrt=False, inner=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,6 +38,9 @@ class Packets:
             box, clips = np.array([shape.low, shape.high], dtype=np.float64), clips_of(shape.tape)
             reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
             self.bounds.append((box, clips, np.abs(clips) @ reach, matrix))
+        self.asked_last: Floats | None = None
+        self.calls: list[tuple[Any, ...]] = []
+        """Arguments of ``meet_asked`` for the list of rays ``asked_last``."""
         self.chosen, self.spans = np.empty((2, 1 + RAYS), dtype=np.int64), np.empty((3, 2, RAYS))
         tapes = [shape.tape for i in solids if isinstance(shape := shapes[i], Implicit)]
         tapes += [shape.paint for i in solids if isinstance(shape := shapes[i], Implicit) and shape.paint is not None]
@@ -61,9 +64,13 @@ class Packets:
 
     def meet(self, asked: Floats) -> None:
         """Write the first crossings of all listed rays with the solids."""
-        for k, (memory, bounds) in enumerate(zip(self.memories, self.bounds, strict=True)):
-            more = *bounds, asked, layout.ANSWERS + k, self.chosen, self.spans
-            meet_asked(*memory.bundle, memory.found, *memory.rest, *more)
+        if self.asked_last is not asked:
+            self.asked_last, self.calls = asked, []
+            for k, (memory, bounds) in enumerate(zip(self.memories, self.bounds, strict=True)):
+                more = *bounds, asked, layout.ANSWERS + k, self.chosen, self.spans
+                self.calls.append((*memory.bundle, memory.found, *memory.rest, *more))
+        for arguments in self.calls:
+            meet_asked(*arguments)
 
     def skin(self, scene: Scene, hits: NDArray[int64], met: Floats, skins: Floats) -> None:
         """Normals and colors of the solids at ``hits``: see skins_kernels.skin_hits."""

@@ -119,22 +119,6 @@ def tell(scratch, asked, row):
 
 
 @part
-def told_alone(scratch, asked, row):
-    """(whether a listed ray's first hit is told by its row, its t, its item), where packets know all items.
-
-    It is not where a root is undecided, or where two items are hit at the same t: the walk meets one of them first.
-    """
-    nearest, of, told = NONE, 0, True
-    for column in range(layout.ANSWERS, asked.shape[1]):
-        t = asked[row, column]
-        told = told and t == t and (t != nearest or t == NONE)
-        if 0.0 <= t < nearest:
-            nearest, of = t, int(asked[0, column])
-    found = int(scratch[scratch.shape[0] - 2 - of, layout.ITEM_OF]) if nearest < NONE else -1
-    return told, nearest, found
-
-
-@part
 def join(scene, scratch, asked, row, far, anywhere):
     """(whether a listed ray is told by its row alone, what ``walk`` would return for it).
 
@@ -170,37 +154,36 @@ def join(scene, scratch, asked, row, far, anywhere):
     return True, nearest, found, light
 
 
-@kernel(MET(SCENE, SCRATCH, ASKED, types.boolean), _nrt=False, inner=True)
-def answer(scene, scratch, asked, anywhere):
-    """As ``walk`` for the next ray of the list, by its answers."""
-    row = int(asked[0, layout.NEXT])
-    asked[0, layout.NEXT] = row + 1
-    ray, far, last = asked[row], asked[row, layout.FAR], scratch.shape[0] - 1
-    told, t, item, light = join(scene, scratch, asked, row, far, anywhere)
-    if told:
-        return t, item, light
+@kernel(MET(SCENE, SCRATCH, ASKED, types.int64, types.boolean), _nrt=False, inner=True)
+def walk_told(scene, scratch, asked, row, anywhere):
+    """As ``walk`` for a listed ray, with its answers."""
+    ray, last = asked[row], scratch.shape[0] - 1
     tell(scratch, asked, row)
+    far = ray[layout.FAR]
     t, item, light = walk(scene, scratch, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5], 0.0, far, anywhere)
     scratch[last, layout.TOLD] = 0.0
     return t, item, light
 
 
+@part
+def answer(scene, scratch, asked, anywhere):
+    """As ``walk`` for the next ray of the list, by its answers."""
+    row = int(asked[0, layout.NEXT])
+    asked[0, layout.NEXT] = row + 1
+    told, t, item, light = join(scene, scratch, asked, row, asked[row, layout.FAR], anywhere)
+    if told:
+        return t, item, light
+    return walk_told(scene, scratch, asked, row, anywhere)
+
+
 @kernel(MET(SCENE, SCRATCH, ASKED, *RAY[1:], types.boolean), _nrt=False, inner=True)
-def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
-    """As ``walk`` from the ray's origin on, in the mode of ``asked``: in ASKING an open ray is listed and misses."""
-    mode = asked[0, layout.MODE]
-    if mode == layout.PLAIN:
+def walk_asking(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
+    """``seek`` in the mode PLAIN, and where packets do not know all of the scene."""
+    if asked[0, layout.MODE] == layout.PLAIN:
         return walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
-    if mode == layout.TELLING:
-        return answer(scene, scratch, asked, anywhere)
     row = int(asked[0, layout.NEXT])
     asked[0, layout.NEXT] = row + 1
     last = scratch.shape[0] - 1
-    if asked[0, layout.ALONE] != 0.0:
-        asked[row, layout.REST_AT], asked[row, layout.REST_ITEM], asked[row, layout.REST_LIGHT] = NONE, -1.0, 1.0
-        asked[0, layout.OPEN] = 1.0
-        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
-        return NONE, -1, 1.0
     scratch[last, layout.TOLD] = layout.PROBING
     t, item, light = walk(scene, scratch, ox, oy, oz, dx, dy, dz, 0.0, far, anywhere)
     reached = scratch[last, layout.TOLD]
@@ -214,3 +197,23 @@ def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
     asked[0, layout.OPEN] = 1.0
     put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
     return NONE, -1, 1.0
+
+
+@part
+def seek(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
+    """As ``walk`` from the ray's origin on, in the modes PLAIN and ASKING: in this an open ray is listed and misses."""
+    if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.ALONE] != 0.0:
+        row = int(asked[0, layout.NEXT])
+        asked[0, layout.NEXT] = row + 1
+        asked[0, layout.OPEN] = 1.0
+        put_ray(asked, row, ox, oy, oz, dx, dy, dz, far, layout.ANYWHERE if anywhere else layout.FIRST)
+        return NONE, -1, 1.0
+    return walk_asking(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere)
+
+
+@part
+def ask(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere):
+    """``seek``, or in the mode TELLING ``answer``."""
+    if asked[0, layout.MODE] == layout.TELLING:
+        return answer(scene, scratch, asked, anywhere)
+    return seek(scene, scratch, asked, ox, oy, oz, dx, dy, dz, far, anywhere)

@@ -12,6 +12,7 @@ from sceneql.bodies.rigid.rigid_kernels import to_world
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
 from sceneql.bodies.rigid.tie_rows_kernels import AT_V, AT_W, AT_X, put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import CORE, SHAPE
 from sceneql.contacts.distance.core_kernels import EDGES as EDGE_COUNT
 from sceneql.contacts.distance.core_kernels import (
@@ -55,11 +56,21 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.curved import CURVED, ELLIPSOID, FORM
-from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, follow, own, speed_at
+from sceneql.contacts.rigid_exact.curved_contact_kernels import (
+    ON_CORNER,
+    ON_EDGE,
+    ON_FACE,
+    ON_RIM,
+    ON_RIMS,
+    follow,
+    own,
+    speed_at,
+)
 from sceneql.contacts.rigid_exact.exact_rows_kernels import PLACE, PLACES_AT, SHAPES_AT, core_at, mover_at
 from sceneql.contacts.rigid_exact.stop_kernels import SIZE, STOP
 from sceneql.system.signatures_kernels import A, F, I, N
 
+inside_round = lazy("sceneql.contacts.rigid_exact.rim_crossing_kernels:inside_round", F(A, I, N))
 FEATURE = 1e-7
 """Distance from a feature, in parts of the body's size, up to which a point is on it."""
 AHEAD = 1e-6
@@ -319,6 +330,9 @@ def extent(floats, ints, rec):
     """How far a contact is inside the feature that it is on: as far as it can go until it leaves it [m]; infinity
     where that is not known."""
     kind, of = int(floats[rec + WHICH]), int(floats[rec + OF])
+    on_end = kind == ON_FACE and ints[ints[SHAPES_AT] + SHAPE * int(floats[rec + SHAPE_B]) + KIND] == CURVED
+    if on_end or kind == ON_RIM or kind == ON_RIMS:
+        return inside_round(floats, ints, rec)
     if kind == EDGES:
         return min(inside_line(floats, ints, rec, 0), inside_line(floats, ints, rec, 1))
     on_face = kind == CORNER_FACE or kind == FACE_CORNER or kind == ON_FACE

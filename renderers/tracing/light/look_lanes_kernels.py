@@ -1,0 +1,191 @@
+# mypy: ignore-errors
+"""One sample of the sky and of each light for many pixels, whose rays are made in lanes.
+
+For scenes of which packets and lanes know all, without mists and small spheres that glow. Rays, their order and what
+is found are those of ``visibility_kernels.look_around``, which does what is not just free or dark: light from around.
+"""
+
+import numpy as np
+from numba import types
+
+from renderers.tracing import layout
+from renderers.tracing.light.bounce_kernels import WAYS
+from renderers.tracing.light.lights_kernels import light_at
+from renderers.tracing.light.sampling_kernels import COUNT, DISK, SKY_DISK, across, sample_of
+from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY, facing, look_around, shadow_width, toward
+from renderers.tracing.record_kernels import LIFT, NORMAL, OWNER, PLACE, RADIUS
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
+from renderers.tracing.solids.intersect_kernels import join, put_ray
+from sceneql.compiled.kernels import kernel
+
+_i = types.int64
+_many = types.int64[::1]
+_stack = types.float32[:, :, ::1]
+LANES = 128
+NX, NY, NZ, PX, PY, PZ, OFF, OX, OY, OZ, DX, DY, DZ, FAR, U, V, SHOWN, ROW, NUMBER, PIXEL, ROOM = (
+    LANES * row for row in range(21)
+)
+"""Offsets in the memory of a batch, LANES numbers each: normal and place of a record, how far off it rays start, and
+where; direction of a ray, its end, its point of the net; whether the record faces the light at hand; row of its next
+ray in the list; number of the pixel's sample, and its place in the list of pixels; its size."""
+MOST_LIGHTS = 8
+
+
+@part
+def load(record, number, i, lanes):
+    """Copy a record and its sample's number into lane i."""
+    for axis in range(3):
+        lanes[NX + axis * LANES + i] = record[NORMAL + axis]
+        lanes[PX + axis * LANES + i] = record[PLACE + axis]
+    size = abs(record[PLACE]) + abs(record[PLACE + 1]) + abs(record[PLACE + 2])
+    lanes[OFF + i] = max(0.05 * record[RADIUS], 1e-6 * size) + record[LIFT]
+    lanes[NUMBER + i] = number
+
+
+@part
+def gather(width, start, last, at, records, lanes):
+    """Copy the records of the pixels ``at[start:last]`` into lanes, until these are full; (their number, the next)."""
+    n, i, layers = 0, start, len(records)
+    while i < last and n + layers <= LANES:
+        k = at[i]
+        for layer in range(layers):
+            if records[layer, k, OWNER] > 0.0:
+                load(records[layer, k], sample_of(k % width, k // width), n, lanes)
+                lanes[PIXEL + n] = i
+                n += 1
+        i += 1
+    until = i
+    for i in range(n):
+        off = lanes[OFF + i]
+        lanes[OX + i] = lanes[PX + i] + off * lanes[NX + i]
+        lanes[OY + i] = lanes[PY + i] + off * lanes[NY + i]
+        lanes[OZ + i] = lanes[PZ + i] + off * lanes[NZ + i]
+    return n, until
+
+
+@part
+def face(scene, l, n, lanes):
+    """Tell which of n records face light l: as ``visibility_kernels.facing``."""
+    for i in range(n):
+        dx, dy, dz, _, _, _, _ = light_at(scene.reals, l, lanes[PX + i], lanes[PY + i], lanes[PZ + i])
+        lanes[SHOWN + i] = 1.0 if lanes[NX + i] * dx + lanes[NY + i] * dy + lanes[NZ + i] * dz > 0.0 else 0.0
+
+
+@part
+def to_sky(n, lanes):
+    """Directions of rays to the sky, cosine-distributed: as ``visibility_kernels.sky_loss``."""
+    for i in range(n):
+        sample = int(lanes[NUMBER + i])
+        lanes[U + i], lanes[V + i] = SKY_DISK[sample, 0], SKY_DISK[sample, 1]
+    for i in range(n):
+        # In single precision, as records have them: products of two of these are rounded so.
+        nx, ny, nz = np.float32(lanes[NX + i]), np.float32(lanes[NY + i]), np.float32(lanes[NZ + i])
+        u, v = lanes[U + i], lanes[V + i]
+        ax, ay, az, bx, by, bz = across(nx, ny, nz)
+        w = np.sqrt(max(1.0 - u * u - v * v, 0.0))
+        lanes[DX + i] = u * ax + v * bx + w * nx
+        lanes[DY + i] = u * ay + v * by + w * ny
+        lanes[DZ + i] = u * az + v * bz + w * nz
+        lanes[FAR + i] = np.inf
+
+
+@part
+def to_light(scene, l, n, lanes):
+    """Rays to light l: as ``visibility_kernels.shadow_sample``."""
+    for i in range(n):
+        sample = int(lanes[NUMBER + i]) % COUNT
+        lanes[U + i], lanes[V + i] = DISK[sample, 0], DISK[sample, 1]
+    for i in range(n):
+        lanes[DX + i], lanes[DY + i], lanes[DZ + i], lanes[FAR + i] = toward(
+            scene, l, lanes[OX + i], lanes[OY + i], lanes[OZ + i], lanes[U + i], lanes[V + i]
+        )
+
+
+@part
+def put(asked, n, want, every, lanes):
+    """List the rays of n lanes, of all or of those SHOWN, in their rows."""
+    for i in range(n):
+        if every or lanes[SHOWN + i] != 0.0:
+            row = int(lanes[ROW + i])
+            put_ray(
+                asked, row, lanes[OX + i], lanes[OY + i], lanes[OZ + i], lanes[DX + i], lanes[DY + i], lanes[DZ + i],
+                lanes[FAR + i], want,
+            )  # fmt: skip
+            lanes[ROW + i] = float(row + 1)
+
+
+@kernel(_i(SCENE, ASKED, _i, _i, _many, _stack, types.float64[::1]), _nrt=False)
+def list_looks(scene, asked, first, last, at, records, lanes):
+    """List the rays by which the pixels ``at[first:last]`` look around, one sample of each light and of the sky.
+
+    Stops where ``asked`` has no room for more rays; returns where it ends. ``lanes`` (ROOM,) is working memory.
+    """
+    width, lights = int(scene.reals[layout.WIDTH]), int(scene.ints[layout.LIGHT_COUNT])
+    sky = scene.reals[layout.HAS_LIGHT] != 0.0
+    room = asked.shape[0] - 2 * (1 + lights)
+    row, start = int(asked[0, layout.NEXT]), first
+    while start < last:
+        n, start = gather(width, start, last, at, records, lanes)
+        for i in range(n):
+            lanes[ROW + i] = 1.0 if sky else 0.0
+        for l in range(lights):
+            face(scene, l, n, lanes)
+            for i in range(n):
+                lanes[ROW + i] += lanes[SHOWN + i]
+        for i in range(n):
+            if row > room and (i == 0 or lanes[PIXEL + i] != lanes[PIXEL + i - 1]):
+                n, last = i, int(lanes[PIXEL + i])
+                break
+            count = int(lanes[ROW + i])
+            lanes[ROW + i] = float(row)
+            row += count
+        if sky:
+            to_sky(n, lanes)
+            put(asked, n, layout.FIRST, True, lanes)
+        for l in range(lights):
+            face(scene, l, n, lanes)
+            to_light(scene, l, n, lanes)
+            put(asked, n, layout.ANYWHERE, False, lanes)
+    asked[0, layout.NEXT] = row
+    return last
+
+
+@part
+def is_free(scene, scratch, asked, record, visibility):
+    """Fill a row of visibility by the next answers, unless light from around is to be followed, or they do not tell."""
+    row = int(asked[0, layout.NEXT])
+    if scene.reals[layout.HAS_LIGHT] != 0.0:
+        told, _, item, _ = join(scene, scratch, asked, row, np.inf, False)
+        if not told or item >= 0:
+            return False
+        row += 1
+    for c in range(3):
+        visibility[SKY + c] = 0.0
+    for l in range(int(scene.ints[layout.LIGHT_COUNT])):
+        column = FIRST_LIGHT + 2 * l
+        visibility[column], visibility[column + 1] = 1.0, 0.0
+        if facing(scene, record, l):
+            told, blocker, _, share = join(scene, scratch, asked, row, asked[row, layout.FAR], True)
+            if not told:
+                return False
+            visibility[column] = share
+            if blocker < np.inf:
+                x, y, z = asked[row, 0], asked[row, 1], asked[row, 2]
+                visibility[column + 1] = max(0.0, shadow_width(scene, l, x, y, z, blocker))
+            row += 1
+    asked[0, layout.NEXT] = row
+    return True
+
+
+@kernel(_i(SCENE, SCRATCH, ASKED, WAYS, _i, _i, _many, _stack, _stack), _nrt=False)
+def tell_looks(scene, scratch, asked, ways, first, last, at, records, visibility):
+    """The visibility of the pixels ``at[first:last]``, whose listed rays have answers; returns ``last``."""
+    width = int(scene.reals[layout.WIDTH])
+    for i in range(first, last):
+        k = at[i]
+        for layer in range(len(records)):
+            record, own = records[layer, k], visibility[layer, k]
+            if record[OWNER] > 0.0 and not is_free(scene, scratch, asked, record, own):
+                own[0] = np.nan
+                look_around(scene, scratch, asked, ways, record, sample_of(k % width, k // width), 1, 1, own)
+    return last
