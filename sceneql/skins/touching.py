@@ -80,7 +80,7 @@ def assemble(
             numbered = list(_ints(assembly, skin, len(solids), (*heads, *data, *places), touch))
             numbered[own.BODIES] = at + len(data)
             _add(assembly, name, skin, [one.ref for one in solids], numbered, touch, BODIES, f"{BODIES}:limit")
-    add_pairs(assembly, skins, touch.friction_at, gap)
+    add_pairs(assembly, skins, touch.friction_at, rubs, gap)
     return (told,)
 
 

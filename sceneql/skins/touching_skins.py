@@ -24,7 +24,9 @@ NEAR = 0.01
 """Part of the gap below which skins touch at the start."""
 
 
-def add_pairs(assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], friction_at: int, gap: float) -> None:
+def add_pairs(
+    assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], friction_at: int, rubs: bool, gap: float
+) -> None:
     """Add what keeps skins apart, and each from itself. Raises ScriptError where they cross or touch at the start."""
     skins = [one.membrane for _, one in made]
     counts = [skin.count for skin in skins]
@@ -38,19 +40,20 @@ def add_pairs(assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], fric
     start = assembly.start()
     rest = [start[skin.position_at :][: 3 * skin.count] for skin in skins]
     weights = [np.column_stack([skin.areas, np.full(skin.count, skin.stiffness)]) for skin in skins]
-    impedance = min((skin.stiffness * skin.density) ** 0.5 for skin in skins)
     order = np.argsort(faces.ravel(), kind="stable")
     begins = np.searchsorted(faces.ravel()[order], np.arange(count + 1))
     head = [0] * layout.HEAD
     head[layout.VERTICES], head[layout.FACES] = count, len(faces)
     head[layout.CORNERS], head[layout.SKINS] = corners, len(skins)
-    head[layout.NUMBERS] = assembly.floats([gap, impedance, 0.0, STEEPER])
+    head[layout.NUMBERS] = assembly.floats([gap, 0.0, STEEPER])
     head[layout.FRICTION] = friction_at
     head[layout.WEIGHTS] = assembly.floats(np.concatenate(weights))
     head[layout.REST] = assembly.floats(np.concatenate(rest))
     room = layout.STARTS + (layout.CELLS + 1) * count + 1
     head[layout.ROOM] = assembly.floats(np.zeros(room))
     head[layout.BEST] = assembly.floats(np.zeros(layout.FOUND * len(skins)))
+    rows = np.tile([-1.0, 0.0, 0.0, 0.0], count * len(skins) if rubs else 0)
+    head[layout.HOLDS] = assembly.floats(rows)
     lists = (np.concatenate(table), faces, begins, order // corners)
     ints = (*head, *(int(one) for part in lists for one in np.ravel(part)))
     d = _must_be_apart(assembly, made, rest, np.array(ints, dtype=np.int64), gap)
@@ -58,6 +61,8 @@ def add_pairs(assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], fric
         assembly.write(head[layout.NUMBERS] + layout.STEEP, np.array([min(STEEPER, 0.5 * d / gap)]))
     assembly.term("force", f"{KERNELS}:force", ints)
     assembly.limit(f"{KERNELS}:limit", ints)
+    if rubs:
+        assembly.after_step(f"{KERNELS}:hold", ints)
 
 
 def _must_be_apart(
