@@ -9,10 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numba import types
 
-from sceneql.compiled.kernels import function_at, lean_inlined
+from sceneql.compiled.kernels import HELPER, function_at, lean_inlined, njit
 
 part = lean_inlined
 """Decorator of functions called by kernels alone: no reference counts, for which threads would compete."""
+part_in_place = njit(_nrt=False, forceinline=True, **HELPER)
+"""The same for large ones that are called once for each pixel: a call hands over each number of a scene's arrays."""
 
 
 class Scene(NamedTuple):

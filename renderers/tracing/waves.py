@@ -258,7 +258,7 @@ class Waves:
         """Follow the first ``count`` of the ways to their ends, in waves; the last FEW one by one."""
         scene, asked, ways, live, hits = self.scene, self.asked, self.ways, self.live, self.ways_hit
         live[:count] = np.arange(count)
-        few = 1 if asked[0, layout.ALONE] else FEW
+        few = 1 if self.lanes is None and asked[0, layout.ALONE] else FEW
         while True:
             count, some = look_about(scene, self.scratch, ways, live, count, hits, self.ways_met)
             if count < few:

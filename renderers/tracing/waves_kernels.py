@@ -27,7 +27,7 @@ from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.visibility_kernels import AWAITED, look_around
 from renderers.tracing.path_kernels import describe_by, faded
 from renderers.tracing.record_kernels import OWNER, UNSURE, WEIGHT, erase
-from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part, part_in_place
 from renderers.tracing.solids.intersect_kernels import join, put_ray, tell, walk
 from renderers.tracing.solids.surface_kernels import skin_of
 from sceneql.compiled.kernels import kernel
@@ -72,7 +72,7 @@ def see_mist(scene, ray, t, gathered):
     return left
 
 
-@part
+@part_in_place
 def see_matte(scene, item, skin, t, ray, cone, record, gathered):
     """Write the record of a matte item that a camera's ray meets at t; endless ones fade into the backdrop."""
     x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]

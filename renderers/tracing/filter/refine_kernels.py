@@ -12,7 +12,7 @@ from renderers.tracing.light.sampling_kernels import COUNT, SIDE, SKY_COUNT, sam
 from renderers.tracing.light.shade_kernels import shade_here
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, light_sample, look_around, shadow_sample
 from renderers.tracing.record_kernels import OWNER, RADIUS, alike
-from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part, part_in_place
 from renderers.tracing.tiles_kernels import MARKS
 from sceneql.compiled.kernels import kernel
 
@@ -93,7 +93,7 @@ def is_even(scene, k, x, y, means, fine):
     return even
 
 
-@part
+@part_in_place
 def refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, records, visibility, means, fine):
     """``refine`` for pixel k, at (x, y), of which the filter has joined so many ``pixels``."""
     columns = visibility.shape[1]
@@ -170,7 +170,7 @@ def refine(scene, scratch, asked, ways, start, stop, waiting, busy, records, vis
     return stop
 
 
-@part
+@part_in_place
 def settle(records, fine, lights, k, x, y, width, height, visibility):
     """Final visibility of a record: as refined; wider penumbras are averaged over 3 x 3 or 5 x 5 pixels."""
     for c in range(len(visibility)):

@@ -14,7 +14,7 @@ from renderers.tracing.light.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.light.lights_kernels import in_a_lamp, light_at, reach
 from renderers.tracing.light.sampling_kernels import NEXT_DISK, SKY_COUNT, across
 from renderers.tracing.light.through_kernels import CLEAR, clearness, go_through
-from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part, part_in_place
 from renderers.tracing.solids.intersect_kernels import ask
 from renderers.tracing.solids.surface_kernels import color_at, normal_at, skin_of
 from sceneql.compiled.kernels import kernel
@@ -67,7 +67,7 @@ def dress(way, skin):
         way[SKIN + c] = skin[c]
 
 
-@part
+@part_in_place
 def step(scene, scratch, asked, way):
     """Follow a way from its surface to the next one, in the mode of ``asked``; it is not LIVE when it has ended.
 

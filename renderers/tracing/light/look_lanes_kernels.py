@@ -14,7 +14,7 @@ from renderers.tracing.light.lights_kernels import light_at
 from renderers.tracing.light.sampling_kernels import COUNT, DISK, SKY_DISK, across, sample_of
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY, facing, look_around, shadow_width, toward
 from renderers.tracing.record_kernels import LIFT, NORMAL, OWNER, PLACE, RADIUS
-from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
+from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part, part_in_place
 from renderers.tracing.solids.intersect_kernels import join, put_ray
 from sceneql.compiled.kernels import kernel
 
@@ -150,7 +150,7 @@ def list_looks(scene, asked, first, last, at, records, lanes):
     return last
 
 
-@part
+@part_in_place
 def is_free(scene, scratch, asked, record, visibility):
     """Fill a row of visibility by the next answers, unless light from around is to be followed, or they do not tell."""
     row = int(asked[0, layout.NEXT])

@@ -11,7 +11,7 @@ from renderers.tracing.light.lights_kernels import light_at
 from renderers.tracing.light.soft_boxes_kernels import soft_boxes
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY
 from renderers.tracing.record_kernels import IMAGED, NORMAL, PLACE, SURFACE, TINT, TRACED, VIEW, WEIGHT
-from renderers.tracing.scene_kernels import ROW, SCENE, part
+from renderers.tracing.scene_kernels import ROW, SCENE, part, part_in_place
 from sceneql.compiled.kernels import kernel
 
 SHARPEST = 0.02
@@ -90,7 +90,7 @@ def share_seen(scene, visibility, l):
     return share
 
 
-@part
+@part_in_place
 def shade_matte(scene, record, visibility, s, nx, ny, nz, x, y, z):
     """``shade`` of a surface that reflects nothing specularly: bit for bit the same, since those terms are 0."""
     u = scene.reals
@@ -113,7 +113,7 @@ def shade_matte(scene, record, visibility, s, nx, ny, nz, x, y, z):
     )
 
 
-@part
+@part_in_place
 def shade_here(scene, record, visibility):
     """Radiance (3) of a record times its weight, without the rays that are traced further."""
     u = scene.reals
