@@ -25,6 +25,10 @@ class RunFailure(Exception):
         part = f"{name}.{self.part}" if self.part else name
         return type(self)(self.message, part=part, time=self.time, span=self.span or span, help=self.help)
 
+    def helped(self, help: str) -> RunFailure:
+        """The same failure, with what helps."""
+        return type(self)(self.message, part=self.part, time=self.time, span=self.span, help=help)
+
     def giving_way(self) -> GivesWay:
         """The same failure, where there is another way for what is left."""
         return GivesWay(self.message, part=self.part, time=self.time, span=self.span, help=self.help)

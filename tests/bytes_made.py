@@ -25,6 +25,10 @@ objects:
   floor: plane
   ball: {sphere: {position: 1 1 0 m, radius: 0.5 m, material: {glass: {}}}}
   drops: {blobby: {points: [-1 0.5 0 m, -0.7 0.6 0.2 m, -1.2 0.8 0 m], radius: 0.4 m, color: tomato}}
+OTHERS
+outputs: {still: {image: {size: 96 54, time: 0 s, renderer: {trace: {tolerance: TOLERANCE}}}}}
+"""
+OTHERS = """\
   worm:
     group:
       position: -0.3 1.3 0.4 m
@@ -39,7 +43,6 @@ objects:
               - {polygon: [0.3 0 -0.3 m, 0.6 0.3 -0.3 m, 0.2 0.4 -0.2 m], radius: 0.15 m, weight: 0.8}
   quartic:
     implicit: {field: x^4 + y^4 + z^4 - x^2 - y^2 - z^2 + 0.4, bounds: {ball: 1.6}, unit: 0.4 m, position: 0 0.5 1 m}
-outputs: {still: {image: {size: 96 54, time: 0 s, renderer: {trace: {tolerance: TOLERANCE}}}}}
 """
 PHYSICS = """sceneql: 1
 clock: {end: 0.2 s}
@@ -86,9 +89,12 @@ def _made(script: str, name: str) -> bytes:
 
 
 def trace() -> Iterator[bytes]:
-    """Traced pictures, by packets at the usual tolerance; in the long run ray by ray, too, whose code has no lanes."""
+    """A traced picture, by packets at the usual tolerance.
+
+    In the long run it has curved skeletons and a polynomial, too, and is traced ray by ray, by code without lanes.
+    """
     for tolerance in ("1e-9", "1e-8") if LONG else ("1e-9",):
-        yield _made(SCENE.replace("TOLERANCE", tolerance), "still.png")
+        yield _made(SCENE.replace("TOLERANCE", tolerance).replace("OTHERS", OTHERS if LONG else ""), "still.png")
 
 
 def physics() -> Iterator[bytes]:

@@ -2,7 +2,10 @@
 
 import gc
 import os
+import re
 import signal
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -16,6 +19,19 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell leaves it fo
 
 settings.register_profile("unhurried", deadline=None)
 settings.load_profile("unhurried")
+
+
+def pytest_collection(session):
+    """Every second worker imports what tests import from their end on: each compiles half, and loads the other's half.
+
+    Else all would compile the same kernels in the same order: one compiles, and the others wait for it.
+    """
+    if int(os.environ.get("PYTEST_XDIST_WORKER", "gw0")[2:]) % 2:
+        asked = [Path(session.config.rootpath, one.partition("::")[0]) for one in session.config.args]
+        files = (path for one in asked for path in (sorted(one.glob("test_*.py")) if one.is_dir() else [one]))
+        texts = "\n".join(path.read_text(encoding="utf-8") for path in files if path.is_file())
+        for name in dict.fromkeys(reversed(re.findall(r"^from ((?:sceneql|renderers)\.\S+) import ", texts, re.M))):
+            import_module(name)
 
 
 def pytest_collection_modifyitems(items):

@@ -191,9 +191,24 @@ def test_auto_takes_a_fast_soft_solid_through_its_impact(tmp_path):
         "contacts: {touch: {collision: {between: [jelly, floor], friction: 0.4}}}\n",
     )
     y, _ = island.march.advance(0.15)
-    assert 36 <= island.march.statistics.steps <= 72  # those of bdf2, some halved
+    assert 72 <= island.march.statistics.steps <= 108  # those of tr_bdf2, some halved
     bodies = island.bodies["jelly"]
     assert y[bodies.position_at : bodies.position_at + 3 * bodies.count].reshape(-1, 3)[:, 1].min() > 0.0
+
+
+def test_auto_leaves_a_soft_ball_its_energy_as_it_bounces(tmp_path):
+    """Nothing takes any: steps of bdf2 of 1/240 s took 8.6 J of the 26.8 J in 0.1 s, until it had left the floor."""
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        "clock: {end: 0.1 s}\nobjects: {floor: plane, round: {sphere: {radius: 0.15 m, position: 0 0.3 0 m}}}\n"
+        "models:\n  ball: {elastic: {of: round, spacing: 7 cm, element: p1, velocity: 0 -2 0 m/s, "
+        "law: {neo_hookean: {modulus: 100 kPa, poisson: 0.4}}}}\nforces: [gravity]\n"
+        "contacts: {touch: {collision: {between: [ball, floor]}}}\noutputs: {film: {image: {size: 32 18}}}\n",
+        encoding="utf-8",
+    )
+    run = Run(load(path, pruned=False))
+    first, kinetic = (float(run.at(0.0).read("ball", name)) for name in ("energy", "kinetic"))
+    assert float(run.at(0.1).read("ball", "energy")) == pytest.approx(first, abs=0.06 * kinetic)
 
 
 def test_friction_is_the_same_by_implicit_and_explicit_methods(tmp_path):

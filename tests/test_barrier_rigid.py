@@ -153,6 +153,22 @@ def test_nothing_passes_at_any_step_and_momentum_is_kept(tmp_path, solver, frict
     assert island.y[cube.velocity_at :][: 3 * cube.count : 3].mean() > 0.3
 
 
+def test_newtons_method_knows_all_slopes_of_a_solid_of_ten_nodes_beside_a_rigid_body(tmp_path):
+    # Its inertia is a matrix: what the barrier adds in its rows stood beside its stiffness, and one of both was lost.
+    island = run_of(
+        tmp_path,
+        "clock: {end: 0.1 s}\nsolvers: {main: {bdf2: {step: 5 ms}}}\nobjects: {b: {box: {size: 0.1 0.1 0.1 m}}}\n"
+        "models:\n  crate: {rigid: {of: b}}\n"
+        f"  cube: {{elastic: {{block: {{size: 0.2 0.2 0.2 m, cells: [1, 1, 1]}}, element: p2, {LAW}, "
+        "position: 0 1 0 m}}\n"
+        "forces: [gravity]\ncontacts: {touch: {collision: {between: [crate, cube]}}}\n",
+    )
+    island.advance(0.1)
+    settings, steps = island.march._settings, island.march.statistics.steps
+    assert steps <= 21
+    assert settings[newton_kernels.ITERATIONS] <= 3 * steps
+
+
 def at_rest(tmp_path, rigid, soft, end, density=500):
     """Rigid and soft one above the other on a floor, each given its object and its place."""
     return run_of(

@@ -24,6 +24,7 @@ LAWS = [
     "law: {springs: {stretch: 3 N/m}}, prestress: 1 N/m",
     "law: {neo_hookean: {modulus: 5 N/m}}",
     "law: {skalak: {modulus: 4 N/m, area: 2.5}}",
+    "law: {tension: 2 N/m}, bend: 0.03 J",
 ]
 
 

@@ -184,14 +184,11 @@ def test_a_flow_of_one_fluid_is_not_marched_as_several(tmp_path):
         ({"pressure": "direct"}, "changes, and not by `direct`"),
         ({"viscosity": '"0.5 - x"'}, "is -0.4"),
         ({"viscosity": "-1 Pa*s"}, "at least 0, and is -1"),
-        ({"boundary": WALLED, "around": "[pole]"}, "skins in it hold other fluids"),
     ],
 )
 def test_what_several_fluids_cannot_bear_is_told(tmp_path, fields, text):
-    egg = 'egg: {implicit: {field: "x^2 + y^2 - 0.04", position: 0.3 0.5 0 m}}'
-    objects = f"objects: {{{egg}, pole: {{sphere: {{radius: 0.1 m, position: 0.8 0.5 0 m}}}}}}\n"
     with pytest.raises(ScriptError, match=text):
-        filled(tmp_path, 10.0, objects=objects, **fields)
+        filled(tmp_path, 10.0, **fields)
 
 
 def test_a_heavy_bag_rests_on_a_floor_as_tall_and_wide_as_its_tension_lets_it(tmp_path):

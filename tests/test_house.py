@@ -15,6 +15,15 @@ LAZY = {
     "contacts.body_path_kernels": {"contacts.search_kernels": "when the first body comes near"},
     "contacts.shape_kernels": {"contacts.moving_kernels": "for surfaces that move"},
     "contacts.shapes.implicit_kernels": {"contacts.shapes.nearest_kernels": "when a body has come near the surface"},
+    "contacts.rigid_exact.curved_contact_kernels": {
+        "contacts.rigid_exact.rim_crossing_kernels": "for rims that touch sharp edges or rims",
+    },
+    "contacts.rigid_exact.curved_find_kernels": {
+        "contacts.rigid_exact.rim_meet_kernels": "for columns beside sharp edges",
+    },
+    "contacts.rigid_exact.features_kernels": {
+        "contacts.rigid_exact.rim_crossing_kernels": "for rims that touch sharp edges, rims or flat ends",
+    },
     "field.packets.packet_kernels": {
         "field.packets.enclose_kernels": "for fields that are more than a density",
         "field.packets.inside_kernels": "for solids that one with an exact form is cut by",

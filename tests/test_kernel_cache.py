@@ -54,41 +54,40 @@ print(moment.read("ball", "a.position")[0])
 """
 
 
-@pytest.fixture(scope="module")
-def cache(tmp_path_factory):
-    """A cache for all these runs: of what is not the words folder's they compile the same."""
-    return tmp_path_factory.mktemp("cache")
+STATEMENTS = {
+    "from sceneql_words.forces import shared_law": "shared_law",
+    "from . import shared_law": "shared_law",
+    "import sceneql_words.forces.shared_law as law": "law",
+    "import math; from sceneql_words.forces import shared_law": "shared_law",
+    "from sceneql_words.forces import (\n    shared_law as law,\n)": "law",
+    "from sceneql_words.forces import (  # the law (shared)\n    shared_law,\n)": "shared_law",
+    "from sceneql_words.forces.laws import *": "shared_law",
+}
 
 
-@pytest.mark.parametrize(
-    ("statement", "name"),
-    [
-        ("from sceneql_words.forces import shared_law", "shared_law"),
-        ("from . import shared_law", "shared_law"),
-        ("import sceneql_words.forces.shared_law as law", "law"),
-        ("import math; from sceneql_words.forces import shared_law", "shared_law"),
-        ("from sceneql_words.forces import (\n    shared_law as law,\n)", "law"),
-        ("from sceneql_words.forces import (  # the law (shared)\n    shared_law,\n)", "shared_law"),
-        ("from sceneql_words.forces.laws import *", "shared_law"),
-    ],
-)
-def test_a_kernel_of_a_words_folder_follows_the_modules_that_it_imports(tmp_path, cache, statement, name):
+def test_kernels_of_a_words_folder_follow_the_modules_that_they_import(tmp_path):
+    """Each of several forces, by the way in which its kernel imports the law: they add up by powers of ten."""
     forces = tmp_path / "forces"
-    forces.mkdir()
-    (forces / "even.py").write_text(FORCE)
-    (forces / "even_kernels.py").write_text(KERNEL.replace("IMPORT", statement).replace("NAME", name))
-    scene = tmp_path / "scene.yaml"
-    scene.write_text(SCRIPT)
-    environment = {**os.environ, "SCENEQL_CACHE": str(cache), "PYTHONDONTWRITEBYTECODE": "1"}
     laws = forces / "laws"
-    laws.mkdir()
+    laws.mkdir(parents=True)
+    for number, (statement, name) in enumerate(STATEMENTS.items()):
+        word = f"even{number}"
+        kernel = KERNEL.replace("IMPORT", statement).replace("NAME", f"{10.0**number} * {name}")
+        (forces / f"{word}_kernels.py").write_text(kernel)
+        (forces / f"{word}.py").write_text(
+            FORCE.replace("even_kernels", f"{word}_kernels").replace("Even", f"Even{number}")
+        )
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(SCRIPT.replace("[even]", f"[{', '.join(f'even{k}' for k in range(len(STATEMENTS)))}]"))
+    cache = str(tmp_path / "cache")
+    environment = {**os.environ, "SCENEQL_CACHE": cache, "PYTHONDONTWRITEBYTECODE": "1"}
     (laws / "__init__.py").write_text('__all__ = ["shared_law"]\n')
     for factor in (1.0, 2.0):
         (laws / "shared_law.py").write_text(f"FACTOR = {factor}\n")
         (forces / "shared_law.py").write_text(f"FACTOR = {factor}\n")
         run = [sys.executable, "-c", RUN, str(scene), str(tmp_path)]
         said = subprocess.run(run, env=environment, capture_output=True, text=True, check=True).stdout
-        assert float(said) == pytest.approx(factor / 2)
+        assert float(said) == pytest.approx(1111111 * factor / 2, rel=1e-9)
 
 
 def test_a_kernel_is_made_of_its_file_and_of_all_that_this_imports():

@@ -15,18 +15,33 @@ models:
       LOOK
       masses: {hook: {position: 0 1 0 m, fixed: yes}, bob: {position: 1 1 0 m}}
       springs: [{between: [hook, bob], stiffness: 20 N/m}]
-objects: {ball: {sphere: {position: net.bob.position}}}
+objects: {OBJECT}
 outputs: {still: {image: {time: 0 s}}}
 """
 
 
-@pytest.mark.parametrize(
-    ("look", "drawn"),
-    [("", ("ball",)), ("look: auto", ("ball",)), ("look: coil", ("ball", "net")), ("look: line", ("ball", "net"))],
-)
-def test_a_written_look_is_drawn_beside_an_object_that_shows_the_model(tmp_path, look, drawn):
-    (tmp_path / "scene.yaml").write_text(NET.replace("LOOK", look))
-    assert load(tmp_path / "scene.yaml").drawn["still"] == drawn
+COIL = "coil: {coil: {from: 0 1 0 m, to: net.bob.position}}"
+CUBE = "cube: {box: {position: 0.5*(net.hook.position + net.bob.position)}}"
+
+
+@pytest.mark.parametrize("shown", [COIL, CUBE])
+@pytest.mark.parametrize(("look", "drawn"), [("", 1), ("look: auto", 1), ("look: coil", 2), ("look: line", 2)])
+def test_a_written_look_is_drawn_beside_an_object_that_shows_the_model(tmp_path, shown, look, drawn):
+    (tmp_path / "scene.yaml").write_text(NET.replace("LOOK", look).replace("OBJECT", shown))
+    assert load(tmp_path / "scene.yaml").drawn["still"] == (shown.partition(":")[0], "net")[:drawn]
+
+
+def test_an_object_at_one_mass_hides_no_spring(tmp_path):
+    ball = "ball: {sphere: {position: net.bob.position}}"
+    net = NET.replace("LOOK", "").replace("OBJECT", ball)
+    (tmp_path / "scene.yaml").write_text(net)
+    assert load(tmp_path / "scene.yaml").drawn["still"] == ("ball", "net")
+    (tmp_path / "scene.yaml").write_text(net.replace(ball, f"{ball}, {COIL}"))
+    assert load(tmp_path / "scene.yaml").drawn["still"] == ("ball", "coil")
+    (tmp_path / "scene.yaml").write_text(
+        net.replace("springs: [{between: [hook, bob], stiffness: 20 N/m}]", "radius: 1 cm")
+    )
+    assert load(tmp_path / "scene.yaml").drawn["still"] == ("ball",)
 
 
 def test_listed_particles_have_colors_of_their_own(tmp_path):

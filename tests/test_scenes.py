@@ -28,10 +28,12 @@ RATES, FEW_RATES = (6, 15), (2, 5)
 """Numbers of frames of which the physics knows nothing; those of scenes with slow frames."""
 ROUGH = ["element=p1", "spacing=25 mm"]
 FEWER = {
-    "bell": [f"models.struck.elastic.{given}" for given in ROUGH],
+    "bell": [*(f"models.struck.elastic.{given}" for given in ROUGH), "solvers.main.modal.modes=10"],
     "bowl": ["models.parts.rigid.bodies={drilled: {of: drilled}, die: {of: die}, pipe: {of: pipe}, ball: {of: ball}}"],
     "capsules": ["define.h=12 mm/30", "solvers.main.sbdf2.step=1 ms"],
     "cushion": ["define.h=2.4 m/48"],
+    "notes_fluid": ["models.water.flow.pressure=auto"],
+    "pile": ["models.bun.elastic.spacing=9 cm"],
     "plume": ["define.h=5 cm", "solvers.main.sbdf2.step=25 ms"],
     "ripples": ["models.pond.wave.cell=5 cm", "solvers.main.verlet.step=10 ms"],
     "treacle_balloon": ["define.h=2.8 m/56"],
@@ -40,6 +42,7 @@ FEWER = {
 COARSER = {
     "bell": [f"models.hum.elastic.{given}" for given in ROUGH],
     "bowl": ["models.parts.rigid.bodies={ring: {of: ring}, die: {of: die}, ball: {of: ball}}"],
+    "face": ["models.face.elastic.spacing=24 mm"],
     "bracket_bends": [f"models.{name}.elastic.element=p1" for name in ("large", "small")],
 }
 """What else leaves a scene's steps as they are: of these alone the law of frame rates tells."""

@@ -157,6 +157,36 @@ def test_friction_holds_a_skin_by_springs_and_slides_by_coulombs_law(tmp_path):
 
 
 @pytest.mark.parametrize(("skins", "flow"), [(BESIDE, {}), (DEEP, ROOM)], ids=["flat", "deep"])
+def test_friction_holds_a_skin_on_another_by_springs_and_slides_by_coulombs_law(tmp_path, skins, flow):
+    law = "{between: [egg, other], friction: 0.4}"
+    scene, smooth = (Scene(tmp_path, skins, one, end=0.05, **flow) for one in (law, "{between: [egg, other]}"))
+    scene.run.advance(1e-3)
+    names = [name for name, task in scene.tasks.items() if getattr(task.kind, "carried", False)]
+    here, egg = [scene.read(name, "positions") for name in names], names.index("egg")
+
+    def rub(one, by):
+        """Forces (n, 3) on both skins where the first has gone along x."""
+        y, floats, rate = one.run.state("water").y.copy(), one.run.march.floats.copy(), np.zeros(len(one.system.y))
+        for number, places in enumerate(one.skins(y, floats)[0]):
+            places[:] = here[number] + [by * (number == egg), 0.0, 0.0]
+        one.run.march.driver.rate(1e-3, y, rate, floats, one.system.ints)
+        return one.skins(y, floats)[1]
+
+    def friction(by):
+        both = [np.array(one) - other for one, other in zip(rub(scene, by), rub(smooth, by), strict=True)]
+        assert sum(one.sum(axis=0) for one in both) == pytest.approx(np.zeros(3), abs=1e-13)
+        return both[egg].sum(axis=0)
+
+    start, near, twice = friction(0.0), friction(1e-7), friction(2e-7)
+    assert near[0] - start[0] < 0.0
+    assert twice[0] - start[0] == pytest.approx(2.0 * (near[0] - start[0]), rel=1e-4)
+    alone = Scene(tmp_path, skins, None, end=0.05, **flow)
+    normal = np.linalg.norm(np.array(rub(smooth, 0.04)[egg]) - rub(alone, 0.04)[egg], axis=1).sum()
+    # It slides. What pushes a vertex is not all along one line: the normal forces are a little more.
+    assert 0.25 * normal < -friction(0.04)[0] < 0.41 * normal
+
+
+@pytest.mark.parametrize(("skins", "flow"), [(BESIDE, {}), (DEEP, ROOM)], ids=["flat", "deep"])
 @pytest.mark.parametrize("seed", range(3))
 def test_no_vertex_passes_a_skin_in_what_a_step_may_change(tmp_path, skins, flow, seed):
     scene = Scene(tmp_path, skins, "{between: [egg, other]}", **flow)

@@ -168,6 +168,8 @@ def test_the_linear_solver_that_is_named_is_compiled_beside(linear):
 
 def test_auto_takes_a_tolerance_that_is_written_at_its_word_beside_a_barrier():
     apart = IslandFacts(600, apart=True)
-    assert Auto().choose(apart).first.control.adaptive is False
+    steps = Auto().choose(apart)
+    assert type(steps.solver) is TrBdf2
+    assert (steps.first.control.adaptive, steps.first.control.first_step) == (False, 1 / 480)
     chosen = Auto(tolerance=1e-5).choose(apart).first.control
     assert (chosen.adaptive, chosen.tolerance) == (True, 1e-5)

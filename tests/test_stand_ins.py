@@ -5,7 +5,7 @@ import pytest
 from sceneql import pipeline
 
 SCRIPT = """
-clock: {{end: 1 s}}
+clock: {{end: 20 ms}}
 objects:
   mold: {{box: {{size: 0.4 0.4 0.4 m, position: 0 1 0 m, color: crimson}}}}
 {more}

@@ -72,7 +72,7 @@ def compile_script(
     report_probes(script, tasks, found)
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
-    warn_of_doubts(tasks, found)
+    warn_of_doubts(tasks, checked.settings.clock, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
     found.raise_errors()
@@ -101,8 +101,8 @@ def compile_script(
 def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
     """What each output draws: objects that are not hidden and no child of another, and models that no object shows.
 
-    An object that decorates (a trail, an arrow) does not show the model that it reads. Models are drawn in any case
-    where the script says how they look.
+    An object that decorates (a trail, an arrow) does not show the model that it reads, nor one at a single mass of a
+    net. Models are drawn in any case where the script says how they look.
     """
     inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
     objects = [
@@ -112,8 +112,9 @@ def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
     shown_by = {t.name for t in tasks.values() if isinstance(t.kind, Object) and not t.kind.decorates}
     stack = [name for name in objects if name in shown_by]
     while stack:
-        for need in tasks[stack.pop()].needs:
-            if need not in shown:
+        one = tasks[stack.pop()]
+        for need in one.needs:
+            if need not in shown and _shows(one, tasks[need]):
                 shown.add(need)
                 stack.append(need)
     models = [
@@ -128,6 +129,16 @@ def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
             only = task.kind.shown()
             result[task.name] = (*objects, *models) if only is None else tuple(ref.name for ref in only)
     return result
+
+
+def _shows(task: Task, read: Task) -> bool:
+    """Whether a part shows what it reads: an object that stands at one mass of a net shows none of its springs."""
+    if not (isinstance(task.kind, Object) and isinstance(read.kind, Model)):
+        return True
+    placed = values_of(getattr(task.kind, "position", None))
+    there = {link.output for value in placed for link in value.links if link.task == read.name}
+    elsewhere = [value for value in values_of(task.kind) if value not in placed]
+    return any(link.task == read.name for value in elsewhere for link in value.links) or read.kind.shown_at(there)
 
 
 def _check_outputs(

@@ -12,6 +12,9 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import unit_of
 
+LARGEST_WHOLE = 2**53
+"""Beyond it doubles skip whole numbers; products of a few below it are doubles."""
+
 
 def finite(number: Any) -> bool:
     """Whether a number, or all numbers of nested tuples, are finite."""

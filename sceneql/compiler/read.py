@@ -366,6 +366,9 @@ class Reader:
             return number
         if not limits.finite(number) or number != int(number):
             raise self._fail("not-whole", f"{what} must be a whole number, not {number:g}", node.span)
+        if abs(number) > limits.LARGEST_WHOLE:
+            text = f"{what} must be at most {limits.LARGEST_WHOLE:,}, not {number:g}"
+            raise self._fail("out-of-range", text, node.span)
         return int(number)
 
     def _some(self, value: Any) -> Any:

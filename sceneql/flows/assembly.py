@@ -82,6 +82,8 @@ class _Builder:
             if model.domain is not None:
                 text, help = "solids move through a flow in a box alone, not in a `domain`", "give the flow a `size`"
                 raise ScriptError([Diagnostic("moves", text, model.domain.span or assembly.line(), help)])
+            if self.fluids is not None:
+                self.fluids.must_stand(True)
             self.moving = MovingSolids(model.around, model, self.faces, assembly)
         elif model.around or model.domain is not None:
             self.solids = Solids(model.around, self.faces, staircase, assembly, model.domain, model.boundary)
@@ -106,6 +108,8 @@ class _Builder:
         if self.solids is not None:
             skins = SkinVelocities(self.solids, self.model.boundary)
             passage = obstructed(self.solids, skins, passage, self.viscosity)
+            if self.fluids is not None:
+                self.fluids.must_stand(bool(passage.gains.any()) or bool(passage.walls.any()))
             areas, volumes = passage.areas, passage.volumes
             shut = areas == 0.0
             given = given | shut
@@ -157,7 +161,7 @@ class _Builder:
             assembly.term("close", "sceneql.flows.advection_kernels:rub", ints)
         else:
             held = int(plan[SINK]) if len(plan) else -1
-            varying = self.fluids.add(ints, held, len(edge_faces))
+            varying = self.fluids.add(ints, held, len(edge_faces), uncut, passage)
             text += self.fluids.text
         assembly.term("constrain", "sceneql.flows.projection_kernels:constrain", ints)
         assembly.state(self._projected(x, ints))

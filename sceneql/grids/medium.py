@@ -9,7 +9,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol
 
 from sceneql import kinds
-from sceneql.grids.domain.cells import MOST_CELLS, SIDES, centers_of, counts
+from sceneql.grids.domain.cells import MOST_CELLS, SIDES, centers_of, counts, too_far
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Record, Symbols, field, quantity_type
 from sceneql.kinds.probed import Probed
 from sceneql.kinds.stable_step import StaticScene
@@ -300,6 +300,8 @@ class Medium(Model):
             yield Problem(f"a side is at least {SHORTEST:g} m", ("size",), code="out-of-range")
             return
         corner = self.corner or (0.0,) * len(self.size)
+        if wrong := too_far(corner, self.cell):
+            yield Problem(wrong, ("corner",), code="out-of-range")
         for name, place in self.probes.items():
             if any(not 0.0 <= x - low <= side for x, low, side in zip(place, corner, self.size, strict=False)):
                 ends = corner, [low + side for low, side in zip(corner, self.size, strict=True)]

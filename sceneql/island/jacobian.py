@@ -89,7 +89,7 @@ def _pattern(
     size: int, slopes: Sequence[Slopes], masses: Triples, pairs: Triples
 ) -> tuple[Pattern, tuple[Numbers, Numbers, Numbers, Numbers]]:
     """The pattern; the table and parts of blocks; those of single values (whose table includes its end)."""
-    top, inverse = _masses_of(size, masses, pairs)
+    top, inverse, in_masses = _masses_of(size, masses, pairs)
     first = list(accumulate((one.entries for one in slopes), initial=0))
     blocks, singles = ([one for one in zip(slopes, first, strict=False) if one[0].blocks == kind] for kind in (1, 0))
     (rows, columns, parts), (block_rows, block_columns, block_parts) = _joined(singles), _joined(blocks)
@@ -102,7 +102,7 @@ def _pattern(
     diagonal = np.arange(size, dtype=np.int64)
     summed = np.repeat([True, False], [len(rows), size])
     rows, columns = np.concatenate([rows, diagonal]), np.concatenate([columns, diagonal])
-    inside = (inverse[rows] >= 0) & (top[columns] >= 0)
+    inside = in_masses[rows] & (top[columns] >= 0)
     block_keys = block_rows * size + block_columns
     inside_keys = top[rows[inside]] * size + top[columns[inside]]
     kept, starts, order = _distinct(block_keys, inside_keys)
@@ -135,18 +135,20 @@ def _pattern(
     return found, lists
 
 
-def _masses_of(size: int, masses: Triples, pairs: Triples) -> tuple[Numbers, Numbers]:
-    """For each entry of y the first entry of its mass's position or velocity, and for velocities the offset of the
-    inverse mass; -1 where there is none."""
+def _masses_of(size: int, masses: Triples, pairs: Triples) -> tuple[Numbers, Numbers, NDArray[np.bool_]]:
+    """For each entry of y the first entry of its mass's position or velocity, for velocities the offset of the inverse
+    mass, -1 where there is none; and whether it is the velocity of a mass."""
     top, inverse = np.full(size, -1, dtype=np.int64), np.full(size, -1, dtype=np.int64)
+    moving = np.zeros(size, dtype=bool)
     for velocity_at, inverse_at, count in masses:
         own = np.arange(count).repeat(3)
+        moving[velocity_at : velocity_at + 3 * count] = True
         top[velocity_at : velocity_at + 3 * count] = velocity_at + 3 * own
         inverse[velocity_at : velocity_at + 3 * count] = inverse_at + own if inverse_at >= 0 else -1
     for position, velocity, count in pairs:
         if (top[velocity : velocity + count : 3] == np.arange(velocity, velocity + count, 3)).all() and count % 3 == 0:
             top[position : position + count] = position + 3 * np.arange(count // 3).repeat(3)
-    return top, inverse
+    return top, inverse, moving
 
 
 def _joined(slopes: Sequence[tuple[Slopes, int]]) -> tuple[Numbers, Numbers, Numbers]:

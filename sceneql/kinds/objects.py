@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.field_builder import FieldBuilder
     from sceneql.kinds.moment import Moment, Shaped
+    from sceneql.kinds.physics import Doubt
+    from sceneql.kinds.settings import Clock
     from sceneql.kinds.volume_moments import VolumeMoments
     from sceneql.system import Assembly
 
@@ -76,6 +78,10 @@ class Object(Kind):
     def domain(self) -> Any:
         """Its inside as a flat domain of fields (grids.domain.cut.Level with bounds); None: it is none."""
         return None
+
+    def doubts(self, clock: Clock) -> Iterable[Doubt]:
+        """What its own fields and the film's time make doubtful, for warnings of `check`."""
+        return ()
 
     def holes(self) -> str:
         """The holes of what should be closed, as ``3 holes of 117 edges``; empty where there are none."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from sceneql.kinds.probed import Probed
@@ -181,6 +181,10 @@ class Model(Kind):
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Drawn]:
         """How it draws itself where no object of the script does, or it is asked to."""
         return ()
+
+    def shown_at(self, outputs: Collection[str]) -> bool:
+        """Whether an object whose position reads these outputs shows it, so that it does not draw itself."""
+        return True
 
     def asked_to_draw(self) -> bool:
         """Whether the script says how it draws itself: then it does, whatever shows it besides."""

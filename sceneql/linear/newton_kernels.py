@@ -28,6 +28,8 @@ from sceneql.linear.stage_kernels import (
     CORE_AT,
     POSITIONS,
     POSITIONS_AT,
+    TALLIES,
+    TALLIES_AT,
     UNKNOWNS,
     factor_stage,
     solve_stage,
@@ -61,6 +63,8 @@ MOST_TURNS = 8
 """Largest number of solutions of a stage, each with the loads of the one before (Li et al. 2020, 5.5)."""
 NOISE = 1e-4
 """Two updates in a row below this, in units of the tolerance, end the iteration: the rest is rounding."""
+NOISE_APART = TINY
+"""The same where surfaces are kept apart: of stiff solids that fly freely rounding leaves more."""
 NEWTON = types.boolean(I, F, F, A, A, A, A, A, A, A, A, I, A, I)
 
 search = lazy("sceneql.linear.newton_search_kernels:search", NEWTON)
@@ -161,10 +165,21 @@ def leave(rate, t, a, base, y, residual, plan, floats, ints):
         residual[plan[k]] = 0.0
 
 
+@lean_inlined
+def remain(functions, t, a, base, y, residual, plan, floats, ints):
+    """What `leave` does. Where surfaces are kept apart tallies, on which nothing depends, follow: the work of an impact
+    would be the last to converge."""
+    leave(rate_at(functions[AT_RATE]), t, a, base, y, residual, plan, floats, ints)
+    if functions[AT_LIMIT] != 0:
+        for k in range(plan[TALLIES_AT], plan[TALLIES_AT] + plan[TALLIES]):
+            y[plan[k]] += residual[plan[k]]
+            residual[plan[k]] = 0.0
+
+
 @lean(NEWTON, inner=True)
 def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints):
     """Solve for y with the loads of friction that are known."""
-    rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
+    slopes = jacobian_at(functions[AT_JACOBIAN])
     n = y.size
     change, residual, guess = scratch[:n], scratch[n : 2 * n], scratch[2 * n : 3 * n]
     if functions[AT_LIMIT] != 0:
@@ -174,10 +189,11 @@ def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, mem
     careful = definite = memory[CAREFUL] > 0.0
     stale = memory[FACTORED] == 0.0 or definite or memory[POSITIVE] > 0.0
     searches = functions[AT_ENERGY] != 0 or functions[AT_LIMIT] != 0
+    noise = NOISE_APART if functions[AT_LIMIT] != 0 else NOISE
     before, before_mean = 0.0, 0.0
     patience, limit = PLAIN_AFTER, 1.0
     iteration = since = 0
-    leave(rate, t, a, base, y, residual, plan, floats, ints)
+    remain(functions, t, a, base, y, residual, plan, floats, ints)
     while iteration < MOST or (careful and iteration < MOST_CAREFUL):
         if definite and searches:
             break
@@ -210,7 +226,7 @@ def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, mem
             foresee(y, change, floats)
             for k in range(n):
                 y[k], change[k] = change[k], change[k] - y[k]
-            leave(rate, t, a, base, y, residual, plan, floats, ints)
+            remain(functions, t, a, base, y, residual, plan, floats, ints)
             size = largest(change, y0, y, memory)
         mean = norm(change, y0, y, memory) if size < math.inf else math.inf
         if size < math.inf and since > 0:
@@ -219,7 +235,7 @@ def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, mem
         done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
         # Steps of a given length have no other error estimate: there, the contraction must come from two updates.
         done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
-        done = done or (since > 0 and max(size, before) <= NOISE)
+        done = done or (since > 0 and max(size, before) <= noise)
         # Where a few masses still buckle, by less than the tolerance, the largest update does not predict the next.
         if careful and since > 0 and size <= memory[SHARE]:
             done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
@@ -239,11 +255,11 @@ def converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, mem
             for k in range(n):
                 y[k] = guess[k]
             foresee(y0, y0, floats)
-            leave(rate, t, a, base, y, residual, plan, floats, ints)
+            remain(functions, t, a, base, y, residual, plan, floats, ints)
             since = 0
             continue
         # A stretched spring hides the residual across it: slopes of an earlier state do not predict the next update.
-        stale = definite or (since > 1 and contraction > SLOW)
+        stale = definite or (since > 1 and contraction > SLOW and size > noise)
         if stale and since > 1:
             memory[CONTRACTION] = 1.0
         if definite and since >= patience and contraction > SLOWED:

@@ -2,11 +2,13 @@
 """Newton's method for one implicit stage where the plain iteration fails: updates are searched for less.
 
 Where an island has a potential E, the stage's solution is a stationary point of (v - base) M (v - base)/2 + E(x) on
-x = base + a v; elsewhere what falls is the residual, in the same norm of the masses M. A stiff spring that turns first
-stretches, and the next update repairs it: so whole updates are taken as long as one of a few brings less than the least
-so far (watchdog: Chamberlain, Powell, Lemarechal & Pedersen 1982). Where none does, the search goes back to the least
-and goes from there along an update by Armijo's rule (Nocedal & Wright, Numerical Optimization, 2006, ch. 3); where
-surfaces are kept apart it does so along each update.
+x = base + a v; elsewhere what falls is the residual, in the same norm of the masses M; and where surfaces are kept
+apart without a potential, as beside bodies that turn, the next update that the same slopes would give: a residual is
+as large as their barriers are stiff (natural monotonicity: Deuflhard, Newton Methods for Nonlinear Problems, 2004,
+3.3). A stiff spring that turns first stretches, and the next update repairs it: so whole updates are taken as long as
+one of a few brings less than the least so far (watchdog: Chamberlain, Powell, Lemarechal & Pedersen 1982). Where none
+does, the search goes back to the least and goes from there along an update by Armijo's rule (Nocedal & Wright,
+Numerical Optimization, 2006, ch. 3); where surfaces are kept apart it does so along each update.
 
 Slopes are the positive ones (Slopes.positive); where these converge slowly, the true ones, as long as their matrix is
 positive definite, as the signs of its pivots tell.
@@ -20,11 +22,9 @@ from sceneql.compiled.pointers_kernels import (
     AT_ENERGY,
     AT_JACOBIAN,
     AT_LIMIT,
-    AT_RATE,
     energy_at,
     jacobian_at,
     limit_at,
-    rate_at,
 )
 from sceneql.linear.newton_kernels import (
     CAREFUL,
@@ -36,6 +36,7 @@ from sceneql.linear.newton_kernels import (
     LOADED,
     NEWTON,
     NOISE,
+    NOISE_APART,
     POSITIVE,
     SHARE,
     SLOW,
@@ -43,8 +44,8 @@ from sceneql.linear.newton_kernels import (
     UNSEEN,
     foresee,
     largest,
-    leave,
     norm,
+    remain,
 )
 from sceneql.linear.stage_kernels import (
     BORDER,
@@ -128,8 +129,14 @@ def shorter(part, low, slope, value):
 
 
 @lean_inlined
-def measure(functions, t, base, y, residual, change, scales, plan, floats, ints):
+def measure(functions, t, a, base, y, residual, change, jacobian, store, scales, plan, natural, floats, ints):
     """What is searched for less of, at a state whose residual is known; and its rounding error. ``change``: scratch."""
+    if natural:
+        for k in range(y.size):
+            change[k] = residual[k]
+        if not solve_stage(plan, a, jacobian, scales, store, change):
+            return math.inf, 0.0
+        return 0.5 * along(plan, scales, change, change), 0.0
     if functions[AT_ENERGY] == 0:
         return 0.5 * along(plan, scales, residual, residual), 0.0
     for k in range(y.size):
@@ -142,17 +149,22 @@ def measure(functions, t, base, y, residual, change, scales, plan, floats, ints)
 @lean(NEWTON, inner=True)
 def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints):
     """Solve for y as newton_kernels.newton does."""
-    rate, slopes = rate_at(functions[AT_RATE]), jacobian_at(functions[AT_JACOBIAN])
+    slopes = jacobian_at(functions[AT_JACOBIAN])
     has_potential, has_limit = functions[AT_ENERGY] != 0, functions[AT_LIMIT] != 0
+    noise = NOISE_APART if has_limit else NOISE
     n = y.size
     change, residual = scratch[:n], scratch[n : 2 * n]
     best, moved = scratch[2 * n : 3 * n], scratch[3 * n : 4 * n]
-    leave(rate, t, a, base, y, residual, plan, floats, ints)
+    remain(functions, t, a, base, y, residual, plan, floats, ints)
     prescribe(change, residual, y, plan)
-    leave(rate, t, a, base, y, residual, plan, floats, ints)
+    remain(functions, t, a, base, y, residual, plan, floats, ints)
     foresee(y0, y0, floats)
     memory[FACTORED] = 0.0
-    lowest, rounding = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
+    natural = False
+    lowest, rounding = measure(
+        functions, t, a, base, y, residual, moved, jacobian, store, scales, plan, natural, floats, ints
+    )
+    natural = has_limit and not has_potential
     floor = 0.0
     if has_limit and has_potential:
         # At rest a potential is the small difference of large numbers: what another rounding of the state makes of it.
@@ -190,9 +202,11 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if not regular or not solve_stage(plan, a, jacobian, scales, store, change):
             break
         left = along(plan, scales, residual, residual)
+        if natural:
+            lowest = 0.5 * along(plan, scales, change, change)
         slope = -along(plan, scales, residual, change) if has_potential else -2.0 * lowest
         # Beside energies of next to nothing all of an update may be rounding, however little that is.
-        tiny = has_limit and largest(change, y0, y, memory) <= NOISE
+        tiny = has_limit and largest(change, y0, y, memory) <= NOISE_APART
         noisy = has_limit and (tiny or -slope <= NOISY * rounding)
         part = 1.0
         aim(y, change, floats)
@@ -205,8 +219,10 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 part *= CLEAR
         longest = part
         go(y, change, part, floats)
-        leave(rate, t, a, base, y, residual, plan, floats, ints)
-        value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
+        remain(functions, t, a, base, y, residual, plan, floats, ints)
+        value, _ = measure(
+            functions, t, a, base, y, residual, moved, jacobian, store, scales, plan, natural, floats, ints
+        )
         noisy = noisy and (tiny or value <= lowest + NOISY * rounding)
         if has_limit and not noisy and not value <= lowest + ENOUGH * part * slope + rounding:
             # Friction learns where the whole update led (friction_slopes_kernels), though only a part of it is taken.
@@ -222,19 +238,21 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         ):
             part = shorter(part, lowest, slope, value)
             go(y, change, part, floats)
-            leave(rate, t, a, base, y, residual, plan, floats, ints)
-            value, _ = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
+            remain(functions, t, a, base, y, residual, plan, floats, ints)
+            value, _ = measure(
+                functions, t, a, base, y, residual, moved, jacobian, store, scales, plan, natural, floats, ints
+            )
         if part <= SHORTEST * longest and has_limit and has_potential:
             # Where the potential tells nothing of an update, the forces that are left do.
             go(y, change, longest, floats)
-            leave(rate, t, a, base, y, residual, plan, floats, ints)
+            remain(functions, t, a, base, y, residual, plan, floats, ints)
             if along(plan, scales, residual, residual) <= LESS * left:
                 part, value = longest, lowest
         if part <= SHORTEST * longest:
             if positive:
                 break
             go(y, change, 0.0, floats)
-            leave(rate, t, a, base, y, residual, plan, floats, ints)
+            remain(functions, t, a, base, y, residual, plan, floats, ints)
             positive = stale = True
             since = slow = 0
             patience = min(2 * patience, RARELY)
@@ -256,7 +274,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if part == 1.0 and size < math.inf:
             done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
             done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
-            done = done or (since > 0 and max(size, before) <= NOISE)
+            done = done or (since > 0 and max(size, before) <= noise)
             if since > 0 and loads_change:
                 done = done or (contraction < 1.0 and size * contraction <= LOOSE * first * (1.0 - contraction))
             if since > 0 and size <= memory[SHARE]:
@@ -269,7 +287,9 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         before, before_mean = size, mean
         if value <= lowest + rounding:
             failing = 0
-            lowest, rounding = measure(functions, t, base, y, residual, moved, scales, plan, floats, ints)
+            lowest, rounding = measure(
+                functions, t, a, base, y, residual, moved, jacobian, store, scales, plan, natural, floats, ints
+            )
             rounding = max(rounding, floor)
             for k in range(n):
                 best[k] = y[k]
@@ -279,7 +299,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 for k in range(n):
                     y[k] = best[k]
                 foresee(y, y, floats)
-                leave(rate, t, a, base, y, residual, plan, floats, ints)
+                remain(functions, t, a, base, y, residual, plan, floats, ints)
                 positive = searching = stale = True
                 failing = since = slow = 0
                 continue

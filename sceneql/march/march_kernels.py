@@ -266,11 +266,11 @@ def march(
         if counts[PENDING] >= 0:
             due = counts[PENDING]
             apply_impact(rate, impact, settle, t0, y0, rate0, floats, ints, leaving, counts)
-            if floats[channels.CHANGED] == channels.NO_WAY_ON:
+            if floats[channels.CHANGED] <= channels.NO_WAY_ON:
                 copy(y0, y1)
                 copy(rate0, rate1)
                 counts[INDEX] = due
-                return STUCK
+                return STUCK if floats[channels.CHANGED] == channels.NO_WAY_ON else COSTLY
         if counts[ADAPTIVE] > 0:
             h = min(clock[STEP], clock[LARGEST])
             grid = end if t0 + 1.01 * h >= end else t0 + h

@@ -29,9 +29,12 @@ STAGES = 7
 """Stages of dopri5, in whose steps costs are measured."""
 LONG = 100
 """Steps of radau for a decay and what comes after it, at a tolerance of 1e-4; they grow as its power -1/4."""
-SWITCHING = 1500
-"""Explicit steps that a change of the method costs a small island, which is laid out for it: what is left must be more,
-and a stiff method that has become slow is kept until it has lost as many."""
+SWITCHING = 500
+"""Explicit steps that a change of the method costs a small island, which is laid out for it: what is left must be
+more."""
+KEPT = 2400
+"""Explicit steps that a stiff method which has become slow may cost it too many: a change and one back, and smaller
+errors, which are far below its tolerance where the explicit method's are not."""
 LARGE = 100
 """Unknowns from which on it costs less, as a step takes longer."""
 TRIAL = 100
@@ -74,6 +77,11 @@ class Switch:
     def switching(self) -> float:
         """Explicit steps that a change of the method costs."""
         return SWITCHING / (1.0 + self.size / LARGE)
+
+    @property
+    def _kept(self) -> float:
+        """Explicit steps that the stiff method may cost too many before it is left."""
+        return KEPT / (1.0 + self.size / LARGE)
 
     @property
     def least_run(self) -> float:
@@ -133,7 +141,7 @@ class Switch:
         if gain >= PATIENCE * self.cost:
             self._in_vain, self._proven = 0, True
             return False
-        if self._proven and self._lost < self.switching:
+        if self._proven and self._lost < self._kept:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
         # A trial in vain must not cost more than the steps before the next one; it may soon be stiff again.

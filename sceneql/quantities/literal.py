@@ -34,7 +34,8 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
     start = _skip(text, at)
     word = _WORD.match(text, start)
     if word is not None and word.group() in OPERATIONS and text[_skip(text, word.end()) :][:1] == "(":
-        message, help = "two values stand side by side", f"write `*{word.group()}(...)` for a product"
+        message = "two values stand side by side"
+        help = f"a vector of formulas is `[a, b, c]`, with brackets; for a product write `*{word.group()}(...)`"
         raise ScriptError([Diagnostic("syntax", message, span.part(*word.span()), help)])
     if not starts_unit(text, start) and not (below and text.startswith("/", start)):
         return None, at

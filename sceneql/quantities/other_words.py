@@ -48,7 +48,7 @@ _LISTS = (
     ("color", "colour rgb fill tint albedo diffuse base_color basecolor"),
     ("material", "shader surface finish appearance"),
     ("size", "dimensions dims dimension extent extents resolution res width height length sides"),
-    ("radius", "r rad"),
+    ("radius", "r rad size diameter"),
     ("height", "y level elevation altitude length h"),
     ("normal", "up direction"),
     ("stiffness", "k spring_constant constant elasticity springiness"),

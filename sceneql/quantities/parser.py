@@ -235,6 +235,8 @@ class _Parser:
                     unit = "" if last[-1:].isdigit() else f" {last}"
                     vector = f"[{', '.join(f'{one}{unit}' for one in (numbers if unit else (*numbers, last)))}]"
                 help = f"write `{vector}`"
+        elif self.kind == "number" and self.before[-1:].isdigit():
+            help = "in a formula a vector has brackets, and each of its numbers the unit: `p + [1 m, 0 m, 0 m]`"
         elif (meant := self._unit_behind(expr)) is not None:
             help = f"a unit stands directly after a number: write `{meant}`"
         elif self.before in FUNCTIONS and self.kind != "sign":

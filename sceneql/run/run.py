@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from sceneql.doing import doing
-from sceneql.failure import GivesWay, LimitRefused
+from sceneql.failure import GivesWay, LimitRefused, RunFailure
 from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Interaction, Model, Object, Solver, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
@@ -272,11 +272,28 @@ class IslandRun:
     def advance(self, time: float) -> None:
         """March to an instant [s]. Raises RunFailure."""
         try:
-            y, rate = self.march.advance(time)
-        except GivesWay as why:
-            self._go_on(why)
-            y, rate = self.march.advance(time)
+            try:
+                y, rate = self.march.advance(time)
+            except GivesWay as why:
+                self._go_on(why)
+                y, rate = self.march.advance(time)
+        except RunFailure as failure:
+            raise self._explained(failure) from failure
         self._now = (time, y, rate)
+
+    def _explained(self, failure: RunFailure) -> RunFailure:
+        """A failure that has no help gets what ails a model in the last good state."""
+        from sceneql.system import ModelState
+
+        if type(failure) is not RunFailure or failure.help or not hasattr(self.march, "stopped"):
+            return failure
+        at = self.march.stopped()
+        for name, bodies in self.bodies.items():
+            state = ModelState(at.time, at.y, at.rate, at.floats, bodies, self.assembly.remembered(name))
+            text, help = cast(Model, self.graph.tasks[name].kind).trouble(state)
+            if help:
+                return failure.helped(f"'{name}': {text}; {help}")
+        return failure
 
     @property
     def y(self) -> Floats:

@@ -56,7 +56,7 @@ class Sheet:
         return float(_areas(points, self.triangles).sum())
 
     def potential(self, points: Floats) -> float:
-        """The energy of its tension and law [J], 0 at the start."""
+        """The energy of its tension and law [J], 0 at the start, and of its bending."""
         found = self.law.tension * (self.area(points) - float(self.rest[:, 3].sum()))
         if self.law.stretch > 0.0:
             more = self.sides_of(points) - self.lengths
@@ -71,6 +71,10 @@ class Sheet:
             i, k = trace - 2.0, square - 1.0
             dense += 0.25 * self.law.shear * (i**2 + 2.0 * i - 2.0 * k + self.law.area * k**2)
             found += float((areas[:, 0] * dense).sum())
+        if self.law.bend > 0.0:
+            from sceneql.skins.bending import of_sheet
+
+            found += self.law.bend * of_sheet(points, self.triangles)
         return found
 
     def moments(self, points: Floats) -> tuple[Floats, Floats]:
@@ -179,6 +183,10 @@ def add_sheet(
     if law.shear > 0.0:
         numbers = assembly.floats([law.shear, law.area]), assembly.floats(made.rest)
         assembly.term("internal", f"{KERNELS}:skalak", (*head, *numbers, 0, 0, *faces))
+    if law.bend > 0.0:
+        from sceneql.skins.bending import add_to_sheet
+
+        add_to_sheet(skin, law.bend, assembly)
     if kept:
         volume, room = assembly.floats([made.volume(points)]), assembly.floats(np.zeros(3 * count))
         ints = (*head, volume, room, at + 3 * count, 0, *faces)

@@ -23,10 +23,12 @@ class Elasticity:
     """That of Skalak's law [N/m]."""
     area: float = 0.0
     """How much it resists a change of area, in parts of that."""
+    bend: float = 0.0
+    """Stiffness against bending [J]."""
 
 
-def stiffness_in(flow: Flow, largest: float) -> tuple[float, float, float]:
-    """The pressure by which contacts push a skin off [Pa], the density around it, and the side of a cell [m];
+def stiffness_in(flow: Flow, largest: float) -> tuple[float, float]:
+    """The pressure by which contacts push a skin off [Pa], and the side of a cell [m];
     ``largest``: of Membrane.largest_tension [N/m]."""
     cell = min(flow.spacing[: len(flow.areas)])
-    return largest / cell, flow.density, cell
+    return largest / cell, cell

@@ -52,11 +52,16 @@ class Line:
         return self.depth * float(self.sides_of(points).sum())
 
     def potential(self, points: Floats) -> float:
-        """The energy of its tension [J], 0 at the start."""
+        """The energy of its tension [J], 0 at the start, and of its bending."""
         law, s = self.law, self.sides_of(points) / self.lengths
         dense = law.tension * (s - 1.0) + 0.5 * law.stretch * (s - 1.0) ** 2
         dense += 0.5 * law.modulus * (s**2 + 1.0 / s**2 - 2.0) + 0.25 * law.shear * (1.0 + law.area) * (s**2 - 1.0) ** 2
-        return self.depth * float((dense * self.lengths).sum())
+        found = float((dense * self.lengths).sum())
+        if law.bend > 0.0:
+            from sceneql.skins.bending import of_line
+
+            found += law.bend * of_line(points[:, :2])
+        return self.depth * found
 
     def moments(self, points: Floats) -> tuple[Floats, Floats]:
         """The center (3,) [m] of what it holds, and the mean products (2, 2) of places from there [m^2]."""
@@ -115,6 +120,10 @@ def add_line(
     tension, stretch = (assembly.floats([one * depth]) for one in (law.tension, law.stretch))
     ints = (*head, tension, stretch, assembly.floats(lengths), assembly.floats(sheets))
     assembly.term("internal", f"{KERNELS}:tension", ints)
+    if law.bend > 0.0:
+        from sceneql.skins.bending import add_to_line
+
+        add_to_line(skin, law.bend * depth, assembly)
     if kept:
         volume, room = assembly.floats([signed_area(points) * depth]), assembly.floats(np.zeros(3 * count))
         ints = (*head, volume, room, at + 3 * count, assembly.floats([depth]))

@@ -22,3 +22,8 @@ REST_AT, SIDES, CORNERS = 4, 5, 7
 resists a change of area) [N/m]; at REST_AT of each side its own length [m], or of each triangle the inverse of its
 sides in its own plane (p, q; 0, r) [1/m] and its area [m^2], at the start. From SIDES on the two vertices of each side,
 from CORNERS on the three of each triangle, of what keeps its volume too."""
+
+BEND_AT, SUMS_AT, FACES, FOLDS = 3, 4, 5, 6
+"""Of bending: its stiffness [N m], of a line times the depth [N m^2]; of a sheet then room for two floats a vertex, the
+number of its sides, and from FOLDS on of each its two vertices and those across from it; then the three of each
+triangle."""

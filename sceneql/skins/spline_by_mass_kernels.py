@@ -7,7 +7,7 @@ the light one would be thrown about; and a skin moves as the heavy one does, and
 light one that slips past makes waves. A factor linear in the place keeps the mean place of what counts at the point, so
 that linear velocities are read as they are, and a force has its torque (moving least squares: Vanella & Balaras 2009,
 J. Comput. Phys. 228, 6617-6628). The power of forces is that of the skin. Where densities are equal these are the
-splines alone.
+splines alone. Solids leave less of cells than their faces count by: what these are pushed by is not less.
 """
 
 import math
@@ -98,8 +98,9 @@ def place(y, at, box, floats):
 @lean(TERM, inner=True)
 def carry(t, y, rate, floats, ints):
     """The velocity of each vertex is the mean of the flow's there; its force begins at 0."""
-    one, box, masses = ints[FLOW:], ints[BOX_AT], ints[DENSITY_AT]
+    one, box = ints[FLOW:], ints[BOX_AT]
     axes, faces = one[flow.AXES], one[flow.FACES]
+    masses = ints[DENSITY_AT] + faces
     momenta = floats[one[flow.WORK] : one[flow.WORK] + faces]
     for face in range(faces):
         momenta[face] = floats[masses + face] * y[one[flow.AT] + face]
@@ -124,8 +125,9 @@ def carry(t, y, rate, floats, ints):
 @lean(TERM, inner=True)
 def push(t, y, rate, floats, ints):
     """The acceleration of the faces around each vertex by its force."""
-    one, box, masses = ints[FLOW:], ints[BOX_AT], ints[DENSITY_AT]
+    one, box = ints[FLOW:], ints[BOX_AT]
     faces = one[flow.FACES]
+    masses = ints[DENSITY_AT] + faces
     moved = floats[one[flow.WORK] : one[flow.WORK] + faces]
     for face in range(faces):
         moved[face] = 0.0
@@ -139,4 +141,5 @@ def push(t, y, rate, floats, ints):
                     through(moved[start:], component, x, y_, z, by, newtons, True, ints[PESKIN] == 1, one)
     own_rate = rate[one[flow.AT] : one[flow.AT] + faces]
     for face in range(faces):
-        own_rate[face] += moved[face] if floats[one[flow.INVERSES] + face] > 0.0 else 0.0
+        if floats[one[flow.INVERSES] + face] > 0.0:
+            own_rate[face] += moved[face] * (floats[masses + face] / floats[ints[DENSITY_AT] + face])

@@ -9,8 +9,10 @@ ANCHORS = objects_layout.LAGGED
 """For each point and object the place (3) in the object's axes at which friction holds the point; NaN where none
 does."""
 
-GRIP = objects_layout.SLIP
-"""Of NUMBERS: how much friction grows by area with the distance from there, until it slides [Pa/m]."""
+STEEP = objects_layout.SLIP
+"""Of NUMBERS: the part of the gap from which on pressure grows faster (touch_push_kernels.py)."""
+STEEPER = 0.3
+"""That part where nothing starts nearer: else half of the least part at the start, so that nothing is thrown off."""
 
 BODIES = objects_layout.INVERSE
 """Where in these integers those of the masses and rigid bodies begin that the objects are of; for each BODY of them:

@@ -10,10 +10,19 @@ import math
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout as surfaces
 from sceneql.contacts.barrier import objects_layout as layout
-from sceneql.contacts.barrier.objects_kernels import distance, load
+from sceneql.contacts.barrier.objects_kernels import distance
 from sceneql.contacts.shape_kernels import inward, turn
-from sceneql.skins.touch_layout import ANCHORS, FORCE, GRIP
+from sceneql.skins.touch_layout import ANCHORS, FORCE, STEEP
+from sceneql.skins.touch_push_kernels import push
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM
+
+
+@lean_inlined
+def load(floats, ints, p, d):
+    """The normal force [N] on a point at a distance."""
+    numbers = ints[layout.NUMBERS]
+    area = floats[ints[layout.AREAS] + p]
+    return area * floats[numbers + layout.STIFFNESS] * push(d / floats[numbers + layout.GAP], floats[numbers + STEEP])
 
 
 @lean_inlined
@@ -28,10 +37,16 @@ def pulled(y, floats, ints, p, j, a, b, c):
 
 
 @lean_inlined
-def slides(floats, ints, p, d, u, v, w):
-    """The part of a pull that Coulomb's law leaves: 1 where the point sticks; and the pull over its length [N/m]."""
-    grip = floats[ints[layout.NUMBERS] + GRIP] * floats[ints[layout.AREAS] + p]
-    pull, most = grip * math.sqrt(u * u + v * v + w * w), floats[ints[layout.FRICTION]] * load(floats, ints, p, d)
+def slides(floats, ints, p, pressed, u, v, w):
+    """The part of a pull that Coulomb's law leaves: 1 where the point sticks; and the pull over its length [N/m].
+
+    It holds the tighter the more is pressed, so that it slides from no more than a gap on.
+    """
+    numbers = ints[layout.NUMBERS]
+    grip = (floats[ints[layout.AREAS] + p] * floats[numbers + layout.STIFFNESS] + pressed) / floats[
+        numbers + layout.GAP
+    ]
+    pull, most = grip * math.sqrt(u * u + v * v + w * w), floats[ints[layout.FRICTION]] * pressed
     return 1.0 if pull <= most else most / pull, grip
 
 
@@ -43,7 +58,7 @@ def met(y, floats, ints, p, j, found):
     x, y_, z = pressed * a, pressed * b, pressed * c
     if not math.isnan(floats[ints[ANCHORS] + 3 * (ints[layout.OBJECTS] * p + j)]):
         u, v, w = pulled(y, floats, ints, p, j, a, b, c)
-        part, grip = slides(floats, ints, p, d, u, v, w)
+        part, grip = slides(floats, ints, p, pressed, u, v, w)
         x, y_, z = x - part * grip * u, y_ - part * grip * v, z - part * grip * w
     return x, y_, z
 
@@ -82,7 +97,7 @@ def hold_one(y, floats, ints, p, j):
     u = v = w = 0.0
     if not math.isnan(floats[anchor]):
         u, v, w = pulled(y, floats, ints, p, j, a, b, c)
-        part = slides(floats, ints, p, d, u, v, w)[0]
+        part = slides(floats, ints, p, load(floats, ints, p, d), u, v, w)[0]
         if part == 1.0:
             return
         u, v, w = part * u, part * v, part * w

@@ -80,7 +80,7 @@ def assemble(
             numbered = list(_ints(assembly, skin, len(solids), (*heads, *data, *places), touch))
             numbered[own.BODIES] = at + len(data)
             _add(assembly, name, skin, [one.ref for one in solids], numbered, touch, BODIES, f"{BODIES}:limit")
-    add_pairs(assembly, skins, touch.friction_at, gap)
+    add_pairs(assembly, skins, touch.friction_at, rubs, gap)
     return (told,)
 
 
@@ -90,7 +90,7 @@ def _ints(assembly: Assembly, skin: Membrane, count: int, objects: Sequence[int]
     head = [0] * layout.HEAD
     head[layout.POSITION], head[own.FORCE], head[layout.NODES] = skin.position_at, skin.force_at, skin.count
     head[layout.LIST], head[layout.OBJECTS], head[layout.ARMS] = layout.HEAD + len(objects), count, -1
-    head[layout.NUMBERS] = assembly.floats([skin.stiffness, touch.gap, skin.stiffness / touch.gap])
+    head[layout.NUMBERS] = assembly.floats([skin.stiffness, touch.gap, own.STEEPER])
     head[layout.FRICTION], head[layout.AREAS] = touch.friction_at, assembly.floats(skin.areas)
     head[own.ANCHORS] = assembly.floats(np.full(3 * pairs, np.nan))
     head[layout.KNOWN] = assembly.floats(np.full(layout.KNOW * pairs, -1.0))
@@ -109,7 +109,10 @@ def _add(
 ) -> None:
     """Add the terms of a skin and what it touches. Raises ScriptError where it starts there."""
     places = assembly.start()[skin.position_at :][: 3 * skin.count].reshape(-1, 3)
-    must_be_apart(name, refs, places, ints, touch.gap, assembly)
+    d = must_be_apart(name, refs, places, ints, touch.gap, assembly)
+    if not assembly.went_on:
+        steep = min(own.STEEPER, 0.5 * d / touch.gap)
+        assembly.write(ints[layout.NUMBERS] + own.STEEP, np.array([steep]))
     assembly.term("force", f"{kernels}:force", ints)
     assembly.limit(limit, ints)
     if touch.rubs:

@@ -9,6 +9,7 @@ import numpy as np
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.skins import touch_pairs_layout as layout
+from sceneql.skins.touch_layout import STEEPER
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -23,7 +24,9 @@ NEAR = 0.01
 """Part of the gap below which skins touch at the start."""
 
 
-def add_pairs(assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], friction_at: int, gap: float) -> None:
+def add_pairs(
+    assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], friction_at: int, rubs: bool, gap: float
+) -> None:
     """Add what keeps skins apart, and each from itself. Raises ScriptError where they cross or touch at the start."""
     skins = [one.membrane for _, one in made]
     counts = [skin.count for skin in skins]
@@ -37,30 +40,38 @@ def add_pairs(assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], fric
     start = assembly.start()
     rest = [start[skin.position_at :][: 3 * skin.count] for skin in skins]
     weights = [np.column_stack([skin.areas, np.full(skin.count, skin.stiffness)]) for skin in skins]
-    impedance = min((skin.stiffness * skin.density) ** 0.5 for skin in skins)
     order = np.argsort(faces.ravel(), kind="stable")
     begins = np.searchsorted(faces.ravel()[order], np.arange(count + 1))
     head = [0] * layout.HEAD
     head[layout.VERTICES], head[layout.FACES] = count, len(faces)
     head[layout.CORNERS], head[layout.SKINS] = corners, len(skins)
-    head[layout.NUMBERS] = assembly.floats([gap, impedance, 0.0])
+    head[layout.NUMBERS] = assembly.floats([gap, 0.0, STEEPER])
     head[layout.FRICTION] = friction_at
     head[layout.WEIGHTS] = assembly.floats(np.concatenate(weights))
     head[layout.REST] = assembly.floats(np.concatenate(rest))
     room = layout.STARTS + (layout.CELLS + 1) * count + 1
     head[layout.ROOM] = assembly.floats(np.zeros(room))
     head[layout.BEST] = assembly.floats(np.zeros(layout.FOUND * len(skins)))
+    rows = np.tile([-1.0, 0.0, 0.0, 0.0], count * len(skins) if rubs else 0)
+    head[layout.HOLDS] = assembly.floats(rows)
     lists = (np.concatenate(table), faces, begins, order // corners)
     ints = (*head, *(int(one) for part in lists for one in np.ravel(part)))
-    _must_be_apart(assembly, made, rest, np.array(ints, dtype=np.int64), gap)
+    d = _must_be_apart(assembly, made, rest, np.array(ints, dtype=np.int64), gap)
+    if not assembly.went_on:
+        assembly.write(head[layout.NUMBERS] + layout.STEEP, np.array([min(STEEPER, 0.5 * d / gap)]))
     assembly.term("force", f"{KERNELS}:force", ints)
     assembly.limit(f"{KERNELS}:limit", ints)
+    if rubs:
+        assembly.after_step(f"{KERNELS}:hold", ints)
 
 
 def _must_be_apart(
     assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], places: Sequence[Floats], ints: Any, gap: float
-) -> None:
-    """Raise ScriptError where a skin crosses or touches another; one may stand inside another."""
+) -> float:
+    """The least distance between skins at the start [m], endless beyond the gap.
+
+    Raises ScriptError where one crosses or touches another; one may stand inside another.
+    """
     from sceneql.skins.touch_start_kernels import least
 
     all_points = [place.reshape(-1, 3) for place in places]
@@ -82,3 +93,4 @@ def _must_be_apart(
         what = f"'{made[skin][0]}'" if own != skin else "itself"
         text = f"'{made[own][0]}' touches {what} at the start, at ({x:.4g}, {y:.4g}, {z:.4g}) m"
         raise ScriptError([Diagnostic("starts-inside", text, assembly.line(), help)])
+    return float(d)

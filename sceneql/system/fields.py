@@ -97,8 +97,6 @@ class Membrane:
     """(count,) of each vertex's share of it at the start [m^2]."""
     stiffness: float
     """The pressure by which contacts push it off [Pa]: by none larger do they shorten steps that its waves allow."""
-    density: float
-    """Of the flow around it [kg/m^3]."""
     cell: float
     """Side of a cell of the flow [m]."""
 

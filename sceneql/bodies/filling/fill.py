@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.doing import doing
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 CHUNK = 1 << 18
-HALVINGS = 40
-"""Bisections of a segment to find where it leaves the object."""
 EMPTIEST = 2000
 """An object that holds fewer than one in so many random points of its box counts as empty."""
 
@@ -72,23 +71,9 @@ class Inside:
             self.low, self.high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
             if not (np.isfinite(self.low).all() and np.isfinite(self.high).all()):
                 raise TypeError("it has no end")
-            self.holds, self._exits, self.field = _test(kind, start)
+            self.holds, self.crossing, self.field = _test(kind, start)
         except (TypeError, ValueError) as error:
             raise self.refusal(str(error)) from None
-
-    def crossing(self, inner: Floats, outer: Floats) -> Floats:
-        """(n,) fractions (0..1) at which segments from inside to outside, ends (n, 3), leave the object."""
-        import numpy as np
-
-        if self._exits is not None:
-            return self._exits(inner, outer)
-        low, high = np.zeros(len(inner)), np.ones(len(inner))
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            held = self.holds(inner + middle[:, None] * (outer - inner))
-            low, high = np.where(held, middle, low), np.where(held, high, middle)
-        found: Floats = 0.5 * (low + high)
-        return found
 
     def refusal(self, why: str) -> ScriptError:
         """The error that says why the object cannot be filled."""
@@ -127,18 +112,16 @@ def chance_key(name: str, seed: int) -> int:
     return zlib.crc32(f"{seed}:{name}".encode())
 
 
-def _test(
-    kind: Object, start: Any
-) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats] | None, Tape | None]:
-    """places (n, 3) -> (n,) bool, whether they lie in the object; for meshes their exits (Winding.exits), else the
-    field that is below 0 there.
+def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats], Tape | None]:
+    """places (n, 3) -> (n,) bool, whether they lie in the object; inner and outer ends (n, 3) of segments -> (n,)
+    fractions at which these leave it; and the field that is below 0 there, which meshes have not.
 
     Raises TypeError where it has no inside.
     """
     import numpy as np
 
     from sceneql.field.tape.builder import TapeBuilder
-    from sceneql.field.tape.tape_solid import field_values
+    from sceneql.field.tape.tape_solid import exits, field_values
 
     triangles = getattr(kind, "triangles_at", None)
     if triangles is not None:
@@ -148,7 +131,7 @@ def _test(
         return mesh.holds, mesh.exits, None
     build = TapeBuilder()
     tape = build.finish(kind.implicit(build, build.x, build.y, build.z, start))
-    return lambda places: np.asarray(field_values(tape, places) < 0), None, tape
+    return lambda places: np.asarray(field_values(tape, places) < 0), partial(exits, tape), tape
 
 
 def filled(fill: Fill, name: str, assembly: Assembly) -> Floats:

@@ -1,16 +1,18 @@
-"""Warnings of what models themselves find doubtful in their fields."""
+"""Warnings of what models and objects themselves find doubtful in their fields."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 from sceneql.graph import Task
-from sceneql.kinds import Model
+from sceneql.kinds import Clock, Model, Object
 from sceneql.quantities.diagnostic import Diagnostics
 
 
-def warn_of_doubts(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Warn of each doubt of a model."""
+def warn_of_doubts(tasks: Mapping[str, Task], clock: Clock, found: Diagnostics) -> None:
+    """Warn of each doubt of a model or an object."""
     for task in tasks.values():
-        for doubt in task.kind.doubts() if isinstance(task.kind, Model) else ():
+        kind = task.kind
+        doubts = kind.doubts() if isinstance(kind, Model) else kind.doubts(clock) if isinstance(kind, Object) else ()
+        for doubt in doubts:
             found.warning(doubt.code, f"'{task.name}': {doubt.text}", doubt.place or task.span, help=doubt.help)

@@ -126,13 +126,13 @@ def areas_of(corners: Floats) -> Floats:
     return found
 
 
-def must_be_apart(model: str, refs: Sequence[Ref], places: Floats, ints: Any, gap: float, assembly: Assembly) -> None:
-    """Raise ScriptError where a node of the skin starts on or in an object."""
+def must_be_apart(model: str, refs: Sequence[Ref], places: Floats, ints: Any, gap: float, assembly: Assembly) -> float:
+    """The least distance from an object at the start [m]; raises ScriptError where a node starts on or in one."""
     from sceneql.contacts.barrier.nearest_node_kernels import nearest
 
     d, node, other = nearest(assembly.start(), assembly.numbers(), np.array(ints, dtype=np.int64))
     if d > 0.0:
-        return
+        return float(d)
     x, y, z = places[node]
     where = f"{-d:.3g} m deep" if d < -1e-9 * float(np.abs(places).max()) else "on its surface"
     ref = refs[other]

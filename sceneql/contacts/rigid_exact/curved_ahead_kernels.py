@@ -1,6 +1,8 @@
 # mypy: ignore-errors
 """Contacts of a curved body on the border of two features, by that to which it moves; and which are not found."""
 
+import math
+
 from numba import types
 
 from sceneql.bodies.rigid.tie_rows_kernels import AT_X, put
@@ -13,6 +15,7 @@ from sceneql.contacts.distance.core_kernels import (
     KIND,
     POINTS,
     RADIUS,
+    REACH,
     VERTICES,
     edges_at,
 )
@@ -26,7 +29,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
-from sceneql.contacts.rigid_exact.curved import COLUMN, FORM, RING
+from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, FORM, RING, SIZES
 from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_FACE, follow, speed_at
 from sceneql.contacts.rigid_exact.curved_find_kernels import (
     COLUMN_B,
@@ -38,15 +41,19 @@ from sceneql.contacts.rigid_exact.curved_find_kernels import (
     SHAPE_OF_A,
     SHAPE_OF_B,
     in_axes_of_a,
+    is_plain,
     slope_along,
 )
 from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
+from sceneql.contacts.rigid_exact.curved_surface_kernels import into
 from sceneql.contacts.rigid_exact.exact_rows_kernels import mover_at
-from sceneql.contacts.rigid_exact.features_kernels import AHEAD, LIMIT, extent, is_plain, smaller, way_ahead
+from sceneql.contacts.rigid_exact.features_kernels import AHEAD, LIMIT, extent, smaller, way_ahead
 from sceneql.system.signatures_kernels import A, F, I, N
 
 APART = 1e-4
 """Distance of two contacts, in parts of the smaller body, up to which they are one, on the border of two features."""
+FLUSH = 1e-9
+"""Distance, in parts of a column's size, up to which an edge lies in its flat end."""
 CUT, CUTS = 1e-5, 64
 """Depth, in parts of the smaller body, from which an edge is in a ring or column; places on the edge that are asked."""
 
@@ -100,9 +107,17 @@ def roll_ahead(floats, ints, who, margin, next, count, most, k):
     return more
 
 
+@lean_inlined
+def beside(floats, f, x, y, z):
+    """How far a place of a column's axes is outside its round side, and above its flat ends."""
+    x, y, z = into(floats, f, x - floats[f + CENTER], y - floats[f + CENTER + 1], z - floats[f + CENTER + 2])
+    return math.sqrt(x * x + z * z) - floats[f + SIZES], abs(y) - floats[f + SIZES + 1]
+
+
 @lean(types.boolean(A, I, N))
 def is_cut(floats, ints, who):
-    """Whether an edge of b is in a ring or a column, as where these lie on it flat: which is not found as a contact."""
+    """Whether an edge of b is in a ring or a column, or lies across a flat end of it from beside it, as where these lie
+    on it flat: which is not found as a contact."""
     sb, ma, mb = ints[who + SHAPE_OF_B], ints[who + MOVER_A], ints[who + MOVER_B]
     fa, fb, ib = ints[ints[who + SHAPE_OF_A] + FLOATS], ints[sb + FLOATS], ints[sb + INTS]
     form = floats[fa + FORM]
@@ -114,9 +129,16 @@ def is_cut(floats, ints, who):
         x, y, z = in_axes_of_a(floats, ma, mb, *three(floats, fb + POINTS + 3 * ints[edge]))
         ux, uy, uz = in_axes_of_a(floats, ma, mb, *three(floats, fb + POINTS + 3 * ints[edge + 1]))
         ux, uy, uz = ux - x, uy - y, uz - z
+        within = beyond = False
         for piece in range(CUTS + 1):
-            if slope_along(floats, ints, fa, x, y, z, ux, uy, uz, piece / CUTS)[0] < deep:
+            part = piece / CUTS
+            if slope_along(floats, ints, fa, x, y, z, ux, uy, uz, part)[0] < deep:
                 return True
+            out, over = beside(floats, fa, x + part * ux, y + part * uy, z + part * uz)
+            within = within or (abs(over) <= FLUSH * floats[fa + REACH] and out < -CUT * floats[fa + REACH])
+            beyond = beyond or (abs(over) <= FLUSH * floats[fa + REACH] and out > CUT * floats[fa + REACH])
+        if within and beyond and form == COLUMN:
+            return True
     return False
 
 

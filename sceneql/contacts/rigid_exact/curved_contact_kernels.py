@@ -17,6 +17,7 @@ from numba import types
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
 from sceneql.bodies.rigid.tie_rows_kernels import AT_V, AT_W, AT_X, cross, put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.core_kernels import REACH
 from sceneql.contacts.rigid_exact.contact_kernels import (
     BIAS,
@@ -41,10 +42,13 @@ from sceneql.contacts.rigid_exact.curved_surface_kernels import away, bend, fart
 from sceneql.contacts.rigid_exact.stop_kernels import STOP, follow_stop
 from sceneql.system.signatures_kernels import A, F, I, N
 
-ON_FACE, ON_EDGE, ON_CORNER = 6, 7, 8
-"""Kinds of contacts, beside those of contact_kernels: of a curved body on a feature of b. LINE_A: where the numbers of
-the curved shape begin, and of an edge how far along its direction from OWN_B it touches; SIGN: the rim of a column;
-OWN_A: of a ring or column on a face which way, of its own axes, it was tilted when it was found (rim_kernels)."""
+ON_FACE, ON_EDGE, ON_CORNER, ON_RIM, ON_RIMS = 6, 7, 8, 10, 11
+"""Kinds of contacts, beside those of contact_kernels: of a curved body on a feature of b; of a rim of a column on an
+edge, and on a rim of another (rim_crossing_kernels). LINE_A: where the numbers of the curved shape begin, of an edge
+how far along its direction from OWN_B it touches, and of a rim that meets what is sharp the angle; OWN_B: of two rims
+where b's numbers begin, the angle, and which rim of b it is; SIGN: the rim of a column; OWN_A: of a ring or column on a
+face which way, of its own axes, it was tilted when it was found (rim_kernels)."""
+follow_crossing = lazy("sceneql.contacts.rigid_exact.rim_crossing_kernels:follow_crossing", types.void(A, N, N, N))
 FLAT = 1e-9
 """Sine of the angle between face and circle up to which it lies flat."""
 TURNS = 30
@@ -208,5 +212,7 @@ def follow(floats, ints, at, a, b):
         follow_on_corner(floats, ints, at, a, b)
     elif kind == STOP:
         follow_stop(floats, at, a)
+    elif kind == ON_RIM or kind == ON_RIMS:
+        follow_crossing(floats, at, a, b)
     else:
         follow_flat(floats, at, a, b)

@@ -13,6 +13,7 @@ from numba import types
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
 from sceneql.bodies.rigid.tie_rows_kernels import AT_W, AT_X, cross, put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import CORE, SHAPE
 from sceneql.contacts.distance.core_kernels import (
     EDGES,
@@ -47,13 +48,17 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
 from sceneql.contacts.rigid_exact.crowd_kernels import LIES
-from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, FORM, RING, SIZES
-from sceneql.contacts.rigid_exact.curved_contact_kernels import FLAT, ON_CORNER, ON_EDGE, ON_FACE, own
+from sceneql.contacts.rigid_exact.curved import CENTER, COLUMN, CURVED, ELLIPSOID, FORM, RING, SIZES
+from sceneql.contacts.rigid_exact.curved_contact_kernels import FLAT, ON_CORNER, ON_EDGE, ON_FACE, ON_RIM, own
 from sceneql.contacts.rigid_exact.curved_surface_kernels import away, farthest, into, slant
 from sceneql.contacts.rigid_exact.exact_rows_kernels import SHAPES_AT, WHO_AT, core_at, pull_at
 from sceneql.contacts.rigid_exact.rim_kernels import on_circle
 from sceneql.system.signatures_kernels import A, F, I, N
 
+rim_on_edge = lazy(
+    "sceneql.contacts.rigid_exact.rim_meet_kernels:rim_on_edge",
+    types.UniTuple(F, 4)(A, I, N, N, N, N, N, F, F, F, F, F, F, F, F),
+)
 LEVEL = 1e-13
 """Sine up to which none of its points is the lowest."""
 LEAST = 1e-7
@@ -73,6 +78,13 @@ that of a's axis; whether a circle of a may have rocked so often that it comes t
 def is_curved(ints, a):
     """Whether a shape is a curved one."""
     return ints[a + KIND] == CURVED
+
+
+@lean(types.boolean(A, I, N))
+def is_plain(floats, ints, m):
+    """Whether a shape has no circle that may lie flat: its contacts with a polyhedron change at events alone."""
+    shape = ints[SHAPES_AT] + SHAPE * m
+    return ints[shape + KIND] == CORE or floats[ints[shape + FLOATS] + FORM] == ELLIPSOID
 
 
 @lean(N(I, N, N, N, N, N))
@@ -257,6 +269,7 @@ def at_corners(floats, ints, who, margin, next, most):
             if dot(nx, ny, nz, px, py, pz) < -LEAST * math.sqrt(px * px + py * py + pz * pz):
                 nearest = False
         if not nearest:
+            least = min(least, gap) if gap < 0.0 else least  # they overlap, whatever else is found
             continue
         least = min(least, gap)
         if gap > margin or count == most:
@@ -322,6 +335,7 @@ def on_edges(floats, ints, who, margin, next, most):
             continue
         if length == 0.0 or middle - 0.5 * length - radius > max(margin, least):
             continue
+        tx, ty, tz = (lx - ox) / length, (ly - oy) / length, (lz - oz) / length
         low, before = 0.0, slope_along(floats, ints, fa, x, y, z, ux, uy, uz, 0.0)[1]
         for piece in range(1, PIECES + 1):
             high = piece / PIECES
@@ -330,14 +344,24 @@ def on_edges(floats, ints, who, margin, next, most):
                 s = nearest_between(floats, ints, fa, x, y, z, ux, uy, uz, low, high)
                 gap, nx, ny, nz = away(floats, ints, fa, x + s * ux, y + s * uy, z + s * uz)
                 gap -= radius
-                if (gap < least or gap <= margin) and goes_away(floats, ints, sb, edge, ma, mb, nx, ny, nz):
+                side, angle, far = 0.0, 0.0, s * length
+                if floats[fa + FORM] == COLUMN and radius == 0.0 and gap <= floats[fa + SIZES]:
+                    side, angle, on, deep = rim_on_edge(
+                        floats, ints, fa, sb, edge, ma, mb, gap, far, ox, oy, oz, tx, ty, tz
+                    )
+                    gap, far = (deep, on) if side != 0.0 else (gap, far)
+                known = side != 0.0 or goes_away(floats, ints, sb, edge, ma, mb, nx, ny, nz)
+                if (gap < least or gap <= margin) and not known and gap < 0.0:
+                    least = min(least, gap)  # they overlap, whatever else is found
+                elif (gap < least or gap <= margin) and known:
                     least = min(least, gap)
                     if gap <= margin and count < most:
                         rec = next + RECORD * count
-                        begin_record(floats, ints, rec, who, ON_EDGE, radius, fa)
+                        begin_record(floats, ints, rec, who, (ON_RIM if side != 0.0 else ON_EDGE), radius, fa)
                         put(floats, rec + OWN_B, ox, oy, oz)
-                        put(floats, rec + LINE_B, (lx - ox) / length, (ly - oy) / length, (lz - oz) / length)
-                        floats[rec + LINE_A + 1], floats[rec + OF] = s * length, e
+                        put(floats, rec + LINE_B, tx, ty, tz)
+                        floats[rec + LINE_A + 1], floats[rec + LINE_A + 2], floats[rec + OF] = far, angle, e
+                        floats[rec + SIGN] = side if side != 0.0 else 1.0
                         count += 1
             low, before = high, after
     return count, least

@@ -9,6 +9,7 @@ import math
 
 from sceneql.bodies.rigid.tie_rows_kernels import put
 from sceneql.compiled.kernels import lean
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import CORE
 from sceneql.contacts.distance.core_kernels import EDGES, FLOATS, INTS, KIND, POINTS, RADIUS, edges_at
 from sceneql.contacts.rigid_exact.contact_kernels import (
@@ -47,11 +48,9 @@ from sceneql.contacts.rigid_exact.curved_find_kernels import (
 )
 from sceneql.contacts.rigid_exact.curved_surface_kernels import SIDEWAYS, away, into, out_of
 from sceneql.contacts.rigid_exact.features_kernels import line_of
-from sceneql.contacts.rigid_exact.rim_kernels import on_circle
-from sceneql.system.signatures_kernels import A, F, I, N
+from sceneql.system.signatures_kernels import A, I, N
 
-POINTS_OF_RIM, NARROWINGS = 24, 40
-"""Points of a rim whose distance is asked for, and how often the place of the least is narrowed by a third."""
+meet_rims = lazy("sceneql.contacts.rigid_exact.rim_meet_kernels:meet_rims", FOUND)
 
 
 @lean(FOUND)
@@ -120,37 +119,6 @@ def swapped(floats, ints, who):
     return other
 
 
-@lean(F(A, I, N, F, F))
-def rim_gap(floats, ints, who, sign, angle):
-    """How far a point of a rim of the column b is from a."""
-    ma, mb = ints[who + MOVER_A], ints[who + MOVER_B]
-    p, q, r = on_circle(floats, ints[ints[who + COLUMN_B] + FLOATS], sign, math.cos(angle), math.sin(angle))
-    x, y, z = in_axes_of_a(floats, ma, mb, p, q, r)
-    return away(floats, ints, ints[ints[who + SHAPE_OF_A] + FLOATS], x, y, z)[0]
-
-
-@lean(F(A, I, N))
-def rims_gap(floats, ints, who):
-    """How far the rims of the column b are from a, at least."""
-    least = math.inf
-    step = 2.0 * math.pi / POINTS_OF_RIM
-    for side in range(2):
-        sign, best, at = (-1.0 if side == 1 else 1.0), math.inf, 0.0
-        for k in range(POINTS_OF_RIM):
-            gap = rim_gap(floats, ints, who, sign, step * k)
-            if gap < best:
-                best, at = gap, step * k
-        low, high = at - step, at + step
-        for _ in range(NARROWINGS):
-            third = (high - low) / 3.0
-            if rim_gap(floats, ints, who, sign, low + third) < rim_gap(floats, ints, who, sign, high - third):
-                high -= third
-            else:
-                low += third
-        least = min(least, best, rim_gap(floats, ints, who, sign, 0.5 * (low + high)))
-    return least
-
-
 @lean(N(A, I, N, N, N))
 def at_rims(floats, ints, who, next, count):
     """Drop the contacts of a with b's axis that are not at a rim of a: these are those of b with a's; how many stay."""
@@ -173,10 +141,8 @@ def at_rims(floats, ints, who, next, count):
 
 @lean(FOUND)
 def meet_column(floats, ints, who, margin, next, most):
-    """As `meet`, with a column b: along its round side, and along that of a column a at a rim of b.
-
-    Rims that touch rims, or what is flat, have a gap and no contact.
-    """
+    """As `meet`, with a column b: along its round side, along that of a column a at a rim of b, and of the rims of each
+    with the rims and flat ends of the other."""
     count, least = on_edges(floats, ints, who, margin, next, most)
     if floats[ints[ints[who + SHAPE_OF_A] + FLOATS] + FORM] == COLUMN:
         more, gap = along_edges(floats, ints, who, margin, next + RECORD * count, most - count)
@@ -184,8 +150,10 @@ def meet_column(floats, ints, who, margin, next, most):
         other = swapped(floats, ints, who)
         more, gap = on_edges(floats, ints, other, margin, next + RECORD * count, most - count)
         count, least = count + at_rims(floats, ints, other, next + RECORD * count, more), min(least, gap)
-        least = min(least, rims_gap(floats, ints, other))
-    return count, min(least, rims_gap(floats, ints, who))
+        more, gap = meet_rims(floats, ints, other, margin, next + RECORD * count, most - count)
+        count, least = count + more, min(least, gap)
+    more, gap = meet_rims(floats, ints, who, margin, next + RECORD * count, most - count)
+    return count + more, min(least, gap)
 
 
 @lean(FOUND)

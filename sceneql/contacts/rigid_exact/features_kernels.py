@@ -12,6 +12,7 @@ from sceneql.bodies.rigid.rigid_kernels import to_world
 from sceneql.bodies.rigid.tie_rows_kernels import AT_R as AT_TURN
 from sceneql.bodies.rigid.tie_rows_kernels import AT_V, AT_W, AT_X, put, turned
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import CORE, SHAPE
 from sceneql.contacts.distance.core_kernels import EDGES as EDGE_COUNT
 from sceneql.contacts.distance.core_kernels import (
@@ -54,12 +55,21 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as WHICH
-from sceneql.contacts.rigid_exact.curved import CURVED, ELLIPSOID, FORM
-from sceneql.contacts.rigid_exact.curved_contact_kernels import ON_CORNER, ON_EDGE, ON_FACE, follow, own, speed_at
+from sceneql.contacts.rigid_exact.curved import CURVED
+from sceneql.contacts.rigid_exact.curved_contact_kernels import (
+    ON_CORNER,
+    ON_EDGE,
+    ON_FACE,
+    ON_RIM,
+    follow,
+    own,
+    speed_at,
+)
 from sceneql.contacts.rigid_exact.exact_rows_kernels import PLACE, PLACES_AT, SHAPES_AT, core_at, mover_at
 from sceneql.contacts.rigid_exact.stop_kernels import SIZE, STOP
 from sceneql.system.signatures_kernels import A, F, I, N
 
+inside_round = lazy("sceneql.contacts.rigid_exact.rim_crossing_kernels:inside_round", F(A, I, N))
 FEATURE = 1e-7
 """Distance from a feature, in parts of the body's size, up to which a point is on it."""
 AHEAD = 1e-6
@@ -104,13 +114,6 @@ def size_at(floats, ints, rec):
     if floats[rec + WHICH] == STOP:
         return floats[int(floats[rec + OWN_A]) + SIZE]
     return smaller(floats, ints, int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B]))
-
-
-@lean(types.boolean(A, I, N))
-def is_plain(floats, ints, m):
-    """Whether a shape has no circle that may lie flat: its contacts with a polyhedron change at events alone."""
-    shape = ints[SHAPES_AT] + SHAPE * m
-    return ints[shape + KIND] == CORE or floats[ints[shape + FLOATS] + FORM] == ELLIPSOID
 
 
 @lean(N(I, N, N))
@@ -321,7 +324,9 @@ def extent(floats, ints, rec):
     kind, of = int(floats[rec + WHICH]), int(floats[rec + OF])
     if kind == EDGES:
         return min(inside_line(floats, ints, rec, 0), inside_line(floats, ints, rec, 1))
-    on_face = kind == CORNER_FACE or kind == FACE_CORNER or kind == ON_FACE
+    on_face, other = kind == CORNER_FACE or kind == FACE_CORNER or kind == ON_FACE, int(floats[rec + SHAPE_B])
+    if kind >= ON_RIM or (kind == ON_FACE and ints[ints[SHAPES_AT] + SHAPE * other + KIND] == CURVED):
+        return inside_round(floats, ints, rec)
     if not on_face and of < 0:
         return math.inf
     side = 0 if kind == FACE_CORNER or kind == EDGE_CORNER else 1

@@ -36,7 +36,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import KIND as KIND_OF
 from sceneql.contacts.rigid_exact.crowd_kernels import rocks_often
 from sceneql.contacts.rigid_exact.curved_ahead_kernels import meet_ahead
 from sceneql.contacts.rigid_exact.curved_contact_kernels import follow
-from sceneql.contacts.rigid_exact.curved_find_kernels import ROCKS, ask, is_curved
+from sceneql.contacts.rigid_exact.curved_find_kernels import ROCKS, ask, is_curved, is_plain
 from sceneql.contacts.rigid_exact.exact_hold_kernels import CREEP, STILL, still
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
@@ -70,7 +70,6 @@ from sceneql.contacts.rigid_exact.features_kernels import (
     LIMIT,
     extent,
     go_ahead,
-    is_plain,
     meet_ball,
     size_at,
     smaller,

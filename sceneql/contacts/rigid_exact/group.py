@@ -57,7 +57,7 @@ def assemble(
     from sceneql.contacts.rigid_exact import exact_rows_kernels as rows
     from sceneql.contacts.rigid_exact.curved import axis_of
     from sceneql.contacts.rigid_exact.drives import drives_of
-    from sceneql.contacts.rigid_exact.exact_shapes import comes_first, is_column, joined_fields
+    from sceneql.contacts.rigid_exact.exact_shapes import comes_first, joined_fields
     from sceneql.contacts.rigid_exact.stop_kernels import DRIVEN
 
     if assembly.ints_of(HOLD):
@@ -68,10 +68,6 @@ def assemble(
     if n > MOST:
         message = f"{n} rigid bodies are too many for contacts in mode `exact`: at most {MOST}"
         raise ScriptError([Diagnostic("invalid", message, assembly.line(), "`mode: local` takes more")])
-    if gives_way and n > 1 and any(is_column(shape) for shape in found.shapes):
-        # One that rocks on its rim takes thousands of short steps, and its rims meet no edges.
-        message = "a cylinder that other bodies strike is in `exact` by name alone"
-        raise ScriptError([Diagnostic("invalid", message, assembly.line(), "`mode: exact` takes it")])
     movers: list[tuple[int, ...]] = []
     works: list[int] = []
     for bodies, k in found.moving:

@@ -306,6 +306,6 @@ def impact(t, y, pair, floats, ints):
         floats[channels.CHANGED] = 1.0
     if wrong:
         floats[channels.CHANGED] = channels.UNSEEN
-    elif pair < 0 and floats[memory + BOUNDED] > 0.0 and floats[memory + WORK] > BEFOREHAND + A_SECOND * t:
+    elif floats[memory + BOUNDED] > 0.0 and floats[memory + WORK] > BEFOREHAND + A_SECOND * t:
         floats[channels.CHANGED] = channels.COSTLY
     start_step(t, y, floats, ints)

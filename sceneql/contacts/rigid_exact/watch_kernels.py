@@ -28,9 +28,10 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 )
 from sceneql.contacts.rigid_exact.contact_kernels import KIND as KIND_OF
 from sceneql.contacts.rigid_exact.curved import FIELD, FORM
-from sceneql.contacts.rigid_exact.curved_find_kernels import ask, beyond_face, is_curved
+from sceneql.contacts.rigid_exact.curved_find_kernels import ask, beyond_face, is_curved, is_plain
 from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
+    A_COLUMN,
     A_PAIR,
     BEGUN,
     BEGUN_AT,
@@ -58,7 +59,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     put_places,
     spots,
 )
-from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, is_plain, own, smaller
+from sceneql.contacts.rigid_exact.features_kernels import extent, face_of, own, smaller
 from sceneql.contacts.rigid_exact.find_kernels import TOUCHES
 from sceneql.contacts.rigid_exact.rim_kernels import lying
 from sceneql.contacts.rigid_exact.stop_kernels import FAR, GREATEST, LEAST, SIGNS, SLIPS, STOP, SURE, slip
@@ -126,7 +127,7 @@ def curved_touch(floats, ints, a, b, from_a, from_b, motions, speed, h, margin, 
                 floats[to + AT_X + c] = floats[moved + c]
                 column = to_world(floats, moved + 3, 1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2))
                 floats[to + AT_R + c], floats[to + AT_R + 3 + c], floats[to + AT_R + 6 + c] = column
-        floats[ints[MEMORY_AT] + WORK] += A_PAIR
+        floats[ints[MEMORY_AT] + WORK] += A_COLUMN if is_curved(ints, ints[SHAPES_AT] + SHAPE * b) else A_PAIR
         gap = meet(floats, ints, ask(ints, -1, a, b, ma, mb), -NEVER, 0, 0)[1]
         if gap <= margin and t > 0.0:
             return t
@@ -228,7 +229,7 @@ def gap(t, y, gaps, floats, ints):
         gaps[pair] = clear(floats, ints, a, b, h)
         if gaps[pair] > 0.0:
             continue
-        floats[memory + WORK] += A_PAIR
+        floats[memory + WORK] += A_COLUMN if is_curved(ints, ints[SHAPES_AT] + SHAPE * b) else A_PAIR
         now = true_gap(floats, ints, pair)
         if floats[ints[KEPT_AT] + pair] > 0.0:
             # What is kept has errors of its own; what else meets is deeper.

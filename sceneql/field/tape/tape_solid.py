@@ -33,6 +33,16 @@ def field_values(tape: Tape, points: Floats) -> Floats:
     return out
 
 
+def exits(tape: Tape, inner: Floats, outer: Floats) -> Floats:
+    """(n,) fractions (0..1) at which segments from inside to outside, ends (n, 3) [m], leave the solid."""
+    from sceneql.field.tape.exits_kernels import leave
+
+    inner, outer = (np.ascontiguousarray(ends, dtype=np.float64) for ends in (inner, outer))
+    out = np.empty(len(inner))
+    leave(tape.code, tape.constants, tape.parts, scratch(tape), inner, outer, out)
+    return out
+
+
 def field_gradients(tape: Tape, points: Floats) -> Floats:
     """Gradient of f at points (n, 3) [m]: (n, 3) [1/m]."""
     from sceneql.field.tape.gradient_kernels import gradient

@@ -53,6 +53,22 @@ def blend(n, density, viscosity, floats, ints):
 
 
 @lean_inlined
+def close(sink, floats, one):
+    """Mark the cells that solids leave nothing of: no pressure is solved for there."""
+    nx, ny = one[flow.CELLS], one[flow.CELLS + 1]
+    for c in range(sink.size):
+        open_ = sink[c]
+        for axis in range(one[flow.AXES]):
+            stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
+            last = one[flow.CELLS + axis] - 1
+            at_end = c // stride % (last + 1) == last
+            ties = one[flow.CONDUCTANCES + axis]
+            open_ += floats[ties + c] + (floats[ties + c - last * stride] if at_end else floats[ties + c + stride])
+        if open_ == 0.0:
+            sink[c] = -1.0
+
+
+@lean_inlined
 def pressure(floats, ints):
     """The gradient's scales, and the equation of the pressure, by the masses of own cells."""
     one = ints[ints[own.FLOW] :]
@@ -83,9 +99,11 @@ def pressure(floats, ints):
                         floats[one[flow.CONDUCTANCES + axis] + c] = 0.0
                     else:
                         floats[one[flow.CONDUCTANCES + axis] + c] = tie
+    if ints[own.LEFT] >= 0:
+        close(sink, floats, one)
     if ints[own.HELD] >= 0:
         for c in range(sink.size):
-            floats[ints[own.HELD] + c] = sink[c]
+            floats[ints[own.HELD] + c] = 1.0 if sink[c] < 0.0 else sink[c]
 
 
 @lean_inlined
@@ -94,7 +112,7 @@ def finish(floats, ints):
     one = ints[ints[own.FLOW] :]
     nx, ny, nz = one[flow.CELLS], one[flow.CELLS + 1], one[flow.CELLS + 2]
     box = ints[own.OWN] + 2
-    axes = one[flow.AXES]
+    axes, faces = one[flow.AXES], one[flow.FACES]
     volume = 0.25 * floats[box + 3] * floats[box + 4] * floats[box + 5] * (0.5 if axes == 3 else 1.0)
     density, thick, fluid = floats[ints[own.DENSITY] :], floats[ints[own.MEAN] :], floats[ints[own.FLUIDITY] :]
     for axis in range(axes):
@@ -103,7 +121,12 @@ def finish(floats, ints):
         for k in range(mz):
             for j in range(my):
                 for i in range(mx):
-                    floats[f] = volume * total(density, i, j, k, axis, -1, -1, one)
+                    floats[f] = floats[f + faces] = volume * total(density, i, j, k, axis, -1, -1, one)
+                    if ints[own.LEFT] >= 0:
+                        n = f - ints[own.MASSES]
+                        floats[f] *= floats[ints[own.LEFT] + n]
+                        drag = max(floats[one[flow.FRICTION] + n], 0.0)
+                        floats[ints[own.DRAGS] + n] = drag / mean(fluid, i, j, k, axis, -1, -1, one)
                     f += 1
     c = ints[own.NORMAL]
     for k in range(nz):

@@ -18,7 +18,7 @@ DENSITY, MEAN, FLUIDITY = 4, 5, 6
 PART, COVER = 7, 8
 """By half: what the fluid that is measured fills of it; of its row beyond it."""
 MASSES = 9
-"""By face: mass in its own cell [kg]."""
+"""By face: mass in its own cell [kg]; then what it would be without solids."""
 NORMAL, SHEAR, SHEARS = 10, 11, 12
 """Viscosity by cell; by edge within, those in the planes x y, x z, y z one after another; where these begin (3)."""
 WALLS = 15
@@ -37,7 +37,11 @@ FASTEST = 22
 """The largest angular velocity of waves of skins (1 float) [1/s]."""
 CLIPPED = 23
 """Room for the polygons that a deep skin is cut into."""
-HEAD = 24
+LEFT = 24
+"""By face: what solids leave of its own cell's inertia, then of its viscous ties along x, y and z; -1: none stands."""
+DRAGS = 25
+"""By face: newtons by velocity that walls of solids take [kg/s]."""
+HEAD = 26
 
 COUNT, POSITION_AT, TRIANGLES, CORNERS_AT, ITS_DENSITY, ITS_VISCOSITY, ROW = range(7)
 """Of a fluid's row: vertices of its skin, the first one's place in y, triangles (0: a closed line), offset of the three

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.flows.flow_fields import Model
+    from sceneql.flows.obstacles.obstructed import Passage
     from sceneql.flows.staggered import Faces
     from sceneql.system import Assembly, Flow, Membrane
 
@@ -38,11 +39,6 @@ class Fluids:
         """``densities``: of the fluids that skins hold [kg/m^3]."""
         self.model, self.count, self.faces, self.assembly = model, len(densities), faces, assembly
         self.unequal = any(density != model.density for density in densities)
-        if model.around or model.domain is not None:
-            what = "skins in it hold other fluids" if self.count else "its viscosity varies"
-            text = f"the flow has solids in it or around it, and {what}"
-            help = "let the flow be without `around` and `domain`, or let it have one density and viscosity"
-            raise ScriptError([Diagnostic("invalid", text, assembly.line(), help)])
 
     @property
     def text(self) -> str:
@@ -58,8 +54,19 @@ class Fluids:
             raise ScriptError([Diagnostic("invalid", text, self.assembly.line(), "take `pressure: auto`")])
         return "multigrid" if named == "auto" else named
 
-    def add(self, flow: NDArray[int64], held: int, edges: int) -> tuple[int, ...]:
-        """The integers of all kernels, and the terms; ``held``: fluid_layout.HELD; ``edges``: at walls."""
+    def must_stand(self, moving: bool) -> None:
+        """Raise ScriptError where solids in the flow move, or their walls."""
+        if moving:
+            what = "skins in it hold other fluids" if self.count else "its viscosity varies"
+            text = f"walls of solids in the flow move, and {what}"
+            help = "let the solids stand, or let the flow have one density and viscosity"
+            raise ScriptError([Diagnostic("invalid", text, self.assembly.line(), help)])
+
+    def add(self, flow: NDArray[int64], held: int, edges: int, open_: Passage, left: Passage) -> tuple[int, ...]:
+        """The integers of all kernels, and the terms; ``held``: fluid_layout.HELD; ``edges``: at walls.
+
+        ``open_``: the faces without solids; ``left``: as these leave them, the same where there are none.
+        """
         assembly, faces = self.assembly, self.faces
         cells, flat = faces.cells, faces.axes == 2
         n = int(np.prod(cells.shape))
@@ -82,8 +89,13 @@ class Fluids:
         ints[own.TABLE] = assembly.floats([0.0, float(zeros(own.ROW * self.count))])
         for place in (own.DENSITY, own.MEAN, own.FLUIDITY, own.PART, own.COVER):
             ints[place] = zeros(halves)
-        for place in (own.MASSES, own.MOMENTUM, own.MASS):
+        ints[own.MASSES], ints[own.LEFT] = zeros(2 * faces.count), -1
+        for place in (own.MOMENTUM, own.MASS):
             ints[place] = zeros(faces.count)
+        if left is not open_:
+            ties = [one / np.where(all_ > 0.0, all_, 1.0) for one, all_ in zip(left.ties, open_.ties, strict=True)]
+            ints[own.LEFT] = assembly.floats(np.concatenate([left.volumes / open_.volumes, *ties]))
+            ints[own.DRAGS] = zeros(faces.count)
         ints[own.NORMAL], ints[own.SHEAR], ints[own.WALLS] = zeros(n), zeros(sum(sizes)), zeros(edges)
         ints[own.SHEARS : own.SHEARS + len(starts)] = starts
         ints[own.WEIGHT], ints[own.MODE], ints[own.FASTEST] = zeros(3), zeros(1), zeros(1)

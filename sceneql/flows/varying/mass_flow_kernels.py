@@ -125,4 +125,5 @@ def drive(t, y, rate, floats, ints):
             if inverse > 0.0:
                 mass = floats[ints[own.MASSES] + f]
                 whole = density / inverse
-                rate[at + f] += floats[one[flow.PUSHES] + f] * (whole / mass) + weight * (1.0 - whole / mass)
+                moved = floats[one[flow.FILLS] + f] * weight
+                rate[at + f] += floats[one[flow.PUSHES] + f] * (whole / mass) + moved * (1.0 - whole / mass)

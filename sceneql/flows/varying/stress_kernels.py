@@ -2,7 +2,8 @@
 """Viscous stress of a viscosity that varies, mu (grad u + grad u^T): the newtons on each face's own cell.
 
 At centers along an axis, at edges across two (Harlow & Welch 1965); at walls by the distance to them. Of a velocity
-free of divergence and one viscosity that is mu lap u, exactly.
+free of divergence and one viscosity that is mu lap u, exactly, but in cells that solids cut: there ties to the wall
+alone that draw are left (flows/obstacles/no_slip.py has those that make order 2 of one viscosity), order 1.
 """
 
 from numba import types
@@ -41,6 +42,15 @@ def before(place, axis, step, one):
     return (one[flow.CELLS + axis] - 1) * step if place == 0 else -step
 
 
+@lean_inlined
+def left(axis, face, floats, ints):
+    """What solids leave of a face's viscous tie along an axis to the one before."""
+    if ints[own.LEFT] < 0:
+        return 1.0
+    faces = ints[ints[own.FLOW] + flow.FACES]
+    return floats[ints[own.LEFT] + (1 + axis) * faces + face]
+
+
 @lean(types.void(A, A, N, A, I))
 def stress(u, out, what, floats, ints):
     """By face, from velocities u (WITH_WALLS: and those of walls, else as if they were 0); or DRAWS: how many newtons
@@ -61,7 +71,7 @@ def stress(u, out, what, floats, ints):
                     place = i if axis == 0 else (j if axis == 1 else k)
                     low = one[flow.STARTS + axis] + i + mx * (j + my * k)
                     high = low - last * step if around and place == last else low + step
-                    pull = factor * floats[ints[own.NORMAL] + i + nx * (j + ny * k)]
+                    pull = factor * floats[ints[own.NORMAL] + i + nx * (j + ny * k)] * left(axis, high, floats, ints)
                     if what == DRAWS:
                         out[low] += pull
                         out[high] += pull
@@ -88,19 +98,26 @@ def stress(u, out, what, floats, ints):
                     f0, g0 = f + before(place_b, b, along_b, one), g + before(place_a, a, along_a, one)
                     e = ints[own.SHEAR] + ints[own.SHEARS + pair] + i + ex * (j + ey * k)
                     thick = whole * floats[e]
+                    own_f, own_g = left(b, f, floats, ints), left(a, g, floats, ints)
+                    both = min(own_f, own_g)  # so that what is dissipated stays above 0
                     if what == DRAWS:
-                        out[f] += thick / (hb * hb)
-                        out[f0] += thick / (hb * hb)
-                        out[g] += thick / (ha * ha)
-                        out[g0] += thick / (ha * ha)
+                        out[f] += thick * own_f / (hb * hb)
+                        out[f0] += thick * own_f / (hb * hb)
+                        out[g] += thick * own_g / (ha * ha)
+                        out[g0] += thick * own_g / (ha * ha)
                     else:
-                        pull = thick * ((u[f] - u[f0]) / hb + (u[g] - u[g0]) / ha)
+                        by_b, by_a = (u[f] - u[f0]) / hb, (u[g] - u[g0]) / ha
+                        pull, push = thick * (own_f * by_b + both * by_a), thick * (both * by_b + own_g * by_a)
                         out[f] -= pull / hb
                         out[f0] += pull / hb
-                        out[g] -= pull / ha
-                        out[g0] += pull / ha
+                        out[g] -= push / ha
+                        out[g0] += push / ha
     for e in range(one[flow.EDGES]):
         f = one[flow.EDGE_FACES + e]
         tie = floats[ints[own.WALLS] + e] * floats[one[flow.EDGE_WEIGHTS] + e]
         given = floats[one[flow.EDGE_VALUES] + e] if what == WITH_WALLS else 0.0
         out[f] += tie if what == DRAWS else tie * (given - u[f])
+    if ints[own.LEFT] >= 0:
+        for f in range(out.size):
+            drag = floats[ints[own.DRAGS] + f]
+            out[f] += drag if what == DRAWS else -drag * u[f]

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 SIDES = ("left", "right", "bottom", "top", "back", "front")
 """The sides of a box: low and high along x, y and z."""
 MOST_CELLS = 50_000_000
+FARTHEST = 1e9
+"""Most cells between a box and the origin: their sides are then right to a part in a million of a cell."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,6 +87,12 @@ def centers_of(shape: tuple[int, int, int], low: Sequence[float] | Floats, spaci
 
 MOST_COUNTED = 1e18
 """Cells along a side from which on all are as many: far too many."""
+
+
+def too_far(corner: Sequence[float], cell: float) -> str:
+    """What is wrong with cells [m] of a box with a low corner [m]; empty where doubles tell their sides apart."""
+    far = max(map(abs, corner))
+    return "" if far <= FARTHEST * cell else f"{far:g} m from the origin rounding moves cells of {cell:g} m"
 
 
 def counts(sides: tuple[float, ...], cell: float) -> tuple[int, ...]:

@@ -23,6 +23,8 @@ MOST_TRANSFORMS = 1_000
 """Most steps of one transform."""
 CHORD = 5e-5
 """Largest distance of a chord from its curve, relative to the picture's size."""
+RESOLVED = 1e-9
+"""Least size by the distance from the origin of a picture whose shape rounding leaves."""
 DEEPEST = 100
 """Deepest nesting of groups."""
 SHOWN = 40
@@ -73,6 +75,9 @@ def _rings(file: str, version: tuple[int, int, int]) -> dict[str, Corners]:
                max(p.imag for p in points) - min(p.imag for p in points))  # fmt: skip
     if size > 0.0 and not 1.0 / LARGEST < size < LARGEST:
         raise ValueError(f"{path.name} is {size:g} wide or high, which is not between {1 / LARGEST:g} and {LARGEST:g}")
+    far = max(max(abs(p.real), abs(p.imag)) for p in points)
+    if 0.0 < size < RESOLVED * far:
+        raise ValueError(f"{path.name} is {size:g} wide or high, and {far:g} from its origin: rounding takes its shape")
     found = [(name, polygon) for name, row in drawn if len(polygon := _polygon(row, CHORD * size)) > 2]
     if not found:
         raise ValueError(f"{path.name} has no path with an inside")

@@ -73,16 +73,17 @@ class Collision(Contact):
     for ties with their stops, motors and friction. Spheres, boxes, planes and convex meshes touch one another, and are
     touched by ellipsoids (a sphere alone in a group with a scale), cylinders and tori, and balls by implicit and blobby
     surfaces: what rolls over these is exact. Of two curved ones one has to be a cylinder, which others meet by its
-    round side, cylinders by their rims, too. A cylinder or torus that lies flat stands and tips as if its whole circle
-    were there, and has the friction of the points of it that are told; over an edge it stops the run, or `local` goes
-    on, but for a column that lies along it. One that falls past the flat runs round its circle; what rocks hundreds of
-    times a second, lower than 1/30,000 of its size, comes to lie. All contacts that approach are reflected together
-    until none approaches (Smith et al. 2012), and what rests, rolls or slides has the forces of Coulomb's law, and the
-    moments of `rolling`, at every stage of the solver, whose order it keeps. Bounces that are lower than a billionth of
-    the body's size end at once, and those of a pair whose impacts crowd sooner: from a thousandth of it, or with no
-    restitution left, so that what tips from corner to corner comes to rest. Impacts without end stop the run of a
-    contact whose mode is named `exact` at its line. Many faces on one another, as in a pile or an arch that falls, take
-    long.
+    round side; cylinders meet each other by round sides, rims and a rim on a flat end, and sharp edges by their rims.
+    Two flat ends on each other have no exact contact. A cylinder or torus that lies flat stands and tips as if its
+    whole circle were there, and has the friction of the points of it that are told; over an edge it stops the run, or
+    `local` goes on, but for a column that lies along it. One that falls past the flat runs round its circle; what rocks
+    hundreds of times a second, lower than 1/30,000 of its size, comes to lie. All contacts that approach are reflected
+    together until none approaches (Smith et al. 2012), and what rests, rolls or slides has the forces of Coulomb's law,
+    and the moments of `rolling`, at every stage of the solver, whose order it keeps. Bounces that are lower than a
+    billionth of the body's size end at once, and those of a pair whose impacts crowd sooner: from a thousandth of it,
+    or with no restitution left, so that what tips from corner to corner comes to rest. Impacts without end stop the run
+    of a contact whose mode is named `exact` at its line. Many faces on one another, as in a pile or an arch that falls,
+    take long.
 
     Elastic solids collide in mode `barrier`: their skins are pushed off within the `gap`, ever more the nearer, so that
     no node, and no middle of an edge between nodes, passes a surface in any step of any solver (Li et al. 2020). There

@@ -49,7 +49,7 @@ class Immersion(Force):
         decay = flow.thickest() / flow.density * axes / cell**2
         for name, skin in skins.items():
             inside = (skin.fluid() or (flow.density, 0.0))[0]
-            turn = (skin.largest_tension() / (0.5 * (flow.density + inside) * cell**3)) ** 0.5
+            turn = (skin.largest_tension(cell) / (0.5 * (flow.density + inside) * cell**3)) ** 0.5
             yield Oscillation(0.0, decay, f"the skin '{name}' in cells of {cell:g} m", ("on",), turn)
 
     def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -119,6 +119,11 @@ class MassSpring(SpringModel):
     def shown_in_place_of(self) -> Iterable[Ref]:
         """The object of a solid."""
         return self.insides()
+
+    def shown_at(self, outputs: Collection[str]) -> bool:
+        """What stands at one mass shows no spring."""
+        own = {output.partition(".")[0] for output in outputs}
+        return not self.springs or self.masses is None or len(own) != 1 or not own <= set(self.masses)
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:

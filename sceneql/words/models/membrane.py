@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, ModelState
 
 
-ACROSS, ALONG = 0.55, 0.2
-"""Of the largest tension of waves (Membrane.largest_tension): of tension, of stretch."""
+ACROSS, ALONG, BENT = 0.55, 0.2, 4.3
+"""Of the largest tension of waves (Membrane.largest_tension): of tension, stretch, bending over a cell's square."""
 
 
 class Springs(Record):
@@ -93,6 +93,9 @@ class Membrane(Model):
     of: kinds.ObjectRef = field("The object whose outline, or surface, it is.")
     law: Law = field("How it pulls.")
     prestress: kinds.FixedStiffness = field("A tension that it has besides, always.", "0 N/m", at_least=0)
+    bend: Annotated[float, Quantity(dim.ENERGY)] = field(
+        "Its stiffness against bending: energy bend/2 (2 H)^2 a square meter, H its mean curvature.", "0 J", at_least=0
+    )
     filling: Filling | None = field("What it holds; by default the fluid of its flow.", None)
     spacing: kinds.FixedLength | None = field(
         "How far its vertices are apart at the start; by default a quarter of a flat flow's cell, half a deep one's.",
@@ -123,7 +126,11 @@ class Membrane(Model):
             computed=True,
         ),
         "stretch": Gives(Type(), "The largest length of a side over that at the start.", computed=True),
-        "potential": Gives(quantity_type(dim.ENERGY), "Energy of its tension, 0 at the start.", computed=True),
+        "potential": Gives(
+            quantity_type(dim.ENERGY),
+            "Energy of its tension, 0 at the start, and of its bending, 0 where it is flat.",
+            computed=True,
+        ),
         "volume_correction": Gives(
             quantity_type(dim.VOLUME), "The volume that was put back so far, in sum without signs.", tally=True
         ),
@@ -164,12 +171,14 @@ class Membrane(Model):
             0.0 if self.law.springs is None else self.law.springs.stretch,
             0.0 if self.law.neo_hookean is None else self.law.neo_hookean.modulus,
             *((0.0, 0.0) if self.law.skalak is None else (self.law.skalak.modulus, self.law.skalak.area)),
+            bend=self.bend,
         )
         made: Line | Sheet
+        largest = self.largest_tension(min(flow.spacing[: len(flow.areas)]))
         if len(flow.areas) == 2:
             from sceneql.skins.flat import add_line
 
-            made = add_line(self.of, spacing, law, self.largest_tension(), self.volume == "kept", flow, assembly)
+            made = add_line(self.of, spacing, law, largest, self.volume == "kept", flow, assembly)
         else:
             from sceneql.skins.deep import add_sheet
 
@@ -178,7 +187,7 @@ class Membrane(Model):
                 text = f"`{what}` is of a flat skin, which is a line; a deep one is drawn as its surface"
                 raise ScriptError([Diagnostic("invalid", text, assembly.line(), f"leave `{what}` out")])
 
-            made = add_sheet(self.of, spacing, law, self.largest_tension(), self.volume == "kept", flow, assembly)
+            made = add_sheet(self.of, spacing, law, largest, self.volume == "kept", flow, assembly)
         must_fit(made, self.of, assembly)
         assembly.membrane(made.membrane)
         self._made = made
@@ -194,7 +203,14 @@ class Membrane(Model):
             from sceneql.flows.varying.fluids import fill
 
             made = self._made
-            fill(flow, made.membrane, made.triangles, fluid, self.largest_tension(), assembly)
+            fill(
+                flow,
+                made.membrane,
+                made.triangles,
+                fluid,
+                self.largest_tension(min(flow.spacing[: len(flow.areas)])),
+                assembly,
+            )
 
     @property
     def made(self) -> Line | Sheet:
@@ -214,7 +230,8 @@ class Membrane(Model):
 
         apart = widest(self.made, state)
         text = f"the vertices of its skin are {apart:.2g} cells apart at the end: fluid passes between them"
-        return (text, "take a smaller `spacing`") if apart > 1.0 else ("", "")
+        help = "take a smaller `spacing`, or a law that stretches less"
+        return (text, help) if apart > 1.0 else ("", "")
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
         """Of its vertices."""
@@ -226,18 +243,19 @@ class Membrane(Model):
             return np.array(skin.position_at + 3 * skin.count)
         return rows if output == "positions" else None
 
-    def largest_tension(self) -> float:
-        """Times k^3/density, k one over the side of a flow's cell, the square of its fastest wave's angular velocity.
+    def largest_tension(self, cell: float) -> float:
+        """Times k^3/density, k one over the side of a flow's ``cell``, how fast its waves turn, squared [N/m].
 
-        That of waves across it follows from its tension, of those along it from its stretch, both as the splines leave
-        them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py).
+        That of waves across it follows from its tension and its bending, of those along it from its stretch, all as the
+        splines leave them (the eigenvalues of ellipses and bars in flows, tests/test_membranes.py).
         """
         stretch = 0.0 if self.law.springs is None else self.law.springs.stretch
         if self.law.neo_hookean is not None:
             stretch = 4.0 * self.law.neo_hookean.modulus
         if self.law.skalak is not None:  # along a side that does not stretch across
             stretch = 2.0 * self.law.skalak.modulus * (1.0 + self.law.skalak.area)
-        return max(ACROSS * (self.law.tension or self.prestress), ALONG * stretch)
+        across = ACROSS * (self.law.tension or self.prestress) + BENT * self.bend / cell**2
+        return max(across, ALONG * stretch)
 
     def remark(self, state: ModelState) -> str:
         """Its vertices."""

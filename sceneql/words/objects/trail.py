@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from sceneql.failure import RunFailure
-from sceneql.kinds import FixedTime, Length, Moment, Object, Quantity, Value, field
+from sceneql.kinds import Clock, Doubt, FixedTime, Length, Moment, Object, Quantity, Value, field
 from sceneql.quantities import dimension as dim
 from sceneql.shapes.checked_values import positive
 from sceneql.shapes.placement import apply, uniform_scale
@@ -33,6 +33,16 @@ class Trail(Object):
     every: FixedTime | None = field("Time between its corners; by default a sixtieth of `keep`.", None, above=0)
     radius: Length = field("Its radius.", "10 mm", above=0)
     fade: bool = field("It thins out towards its old end, its cross-section evenly.", True)
+
+    def doubts(self, clock: Clock) -> Iterable[Doubt]:
+        """A trail that ends before the film's next frame: the physics' time is not the film's."""
+        frame = clock.speed / clock.fps
+        if self.keep < frame:
+            text = f"a trail that stays {self.keep:g} s is not seen, since from frame to frame {frame:.6g} s pass"
+            help = (
+                f"a second of the film is {clock.speed:g} s: `keep: {clock.speed:g} s`, and a `radius` by what is seen"
+            )
+            yield Doubt("short-trail", text, None, help)
 
     def remembers(self) -> Iterable[tuple[Value, float, float]]:
         """The points."""

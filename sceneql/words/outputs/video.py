@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -29,6 +29,9 @@ class Video(Picture):
     """
 
     imports: ClassVar[tuple[str, ...]] = ("av", "imageio")
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("duration", "length", "end", "seconds", "time"), "a film lasts as long as the clock: `clock: {end: 4 s}`"
+    )
 
     fps: kinds.FixedScalar | None = field(
         "Frames a second; by default the clock's.", None, at_least=0.001, at_most=1000

@@ -1,0 +1,191 @@
+# mypy: ignore-errors
+"""Where the vertices of skins in flows are near one another's faces, and their own: by a grid of cells."""
+
+import math
+
+from numba import types
+
+from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.contacts.barrier.distance_kernels import point_triangle
+from sceneql.skins import touch_pairs_layout as layout
+from sceneql.system.signatures_kernels import A, F, I, N
+
+
+@lean_inlined
+def vertex(ints, p):
+    """Where the integers of a vertex begin."""
+    return layout.HEAD + layout.VERTEX * p
+
+
+@lean_inlined
+def corner(ints, f, k):
+    """A corner of a face."""
+    return ints[layout.HEAD + layout.VERTEX * ints[layout.VERTICES] + ints[layout.CORNERS] * f + k]
+
+
+@lean_inlined
+def cell_of(y, floats, ints, at, axis):
+    """The cell along an axis of the place y[at : at + 3], whole and inside the grid."""
+    room = ints[layout.ROOM]
+    place = (y[at + axis] - floats[room + layout.LOW + axis]) * floats[room + layout.SCALE]
+    return min(max(int(place), 0), int(floats[room + layout.ACROSS + axis]) - 1)
+
+
+@lean(types.void(A, A, I, F), inner=True)
+def lay(y, floats, ints, reach):
+    """Put all vertices into the cells of a grid, whose sides are at least ``reach`` and the longest side of a face.
+
+    Places that are not finite give no cells: every side is then 0.
+    """
+    room, count, corners = ints[layout.ROOM], ints[layout.VERTICES], ints[layout.CORNERS]
+    longest, finite = 0.0, True
+    for f in range(ints[layout.FACES]):
+        for k in range(corners):
+            a = ints[vertex(ints, corner(ints, f, k)) + layout.POSITION]
+            b = ints[vertex(ints, corner(ints, f, (k + 1) % corners)) + layout.POSITION]
+            u, v, w = y[b] - y[a], y[b + 1] - y[a + 1], y[b + 2] - y[a + 2]
+            longest = max(longest, u * u + v * v + w * w)
+            finite &= math.isfinite(u + v + w)
+    longest = math.sqrt(longest)
+    floats[ints[layout.NUMBERS] + layout.SIDE] = longest
+    side, cells = max(reach + longest, 1e-300), 1.0
+    for axis in range(3):
+        low, high = math.inf, -math.inf
+        for p in range(count):
+            place = y[ints[vertex(ints, p) + layout.POSITION] + axis]
+            low, high = min(low, place), max(high, place)
+        floats[room + layout.LOW + axis], floats[room + layout.ACROSS + axis] = low, high - low
+        finite &= math.isfinite(high - low)
+    for axis in range(3):
+        cells *= floats[room + layout.ACROSS + axis] / side + 1.0 if finite else 0.0
+    if cells > layout.CELLS * count:
+        side *= (cells / (layout.CELLS * count)) ** 0.5 + 1.0
+    floats[room + layout.SCALE] = 1.0 / side
+    whole = 1
+    for axis in range(3):
+        across = int(floats[room + layout.ACROSS + axis] / side) + 1 if finite else 0
+        floats[room + layout.ACROSS + axis] = across
+        whole *= across
+    starts = room + layout.STARTS
+    listed = starts + layout.CELLS * count + 1
+    for cell in range(whole + 1):
+        floats[starts + cell] = 0.0
+    if whole == 0:
+        return
+    nx, ny = int(floats[room + layout.ACROSS]), int(floats[room + layout.ACROSS + 1])
+    for turn in range(2):
+        for p in range(count):
+            at = ints[vertex(ints, p) + layout.POSITION]
+            i, j, k = (
+                cell_of(y, floats, ints, at, 0),
+                cell_of(y, floats, ints, at, 1),
+                cell_of(y, floats, ints, at, 2),
+            )
+            cell = i + nx * (j + ny * k)
+            if turn == 0:
+                floats[starts + cell] += 1.0
+            else:
+                floats[starts + cell] -= 1.0
+                floats[listed + int(floats[starts + cell])] = p
+        if turn == 0:
+            for cell in range(1, whole + 1):
+                floats[starts + cell] += floats[starts + cell - 1]
+
+
+@lean_inlined
+def between(y, ints, p, f):
+    """Distance of a vertex from a face, the normal towards the vertex (3), weights of its corners (3)."""
+    at = ints[vertex(ints, p) + layout.POSITION]
+    a = ints[vertex(ints, corner(ints, f, 0)) + layout.POSITION]
+    b = ints[vertex(ints, corner(ints, f, 1)) + layout.POSITION]
+    if ints[layout.CORNERS] == 3:
+        return point_triangle(y, at, a, b, ints[vertex(ints, corner(ints, f, 2)) + layout.POSITION])
+    u, v = y[b] - y[a], y[b + 1] - y[a + 1]
+    x, z = y[at] - y[a], y[at + 1] - y[a + 1]
+    square = u * u + v * v
+    part = min(1.0, max(0.0, (u * x + v * z) / square)) if square > 0.0 else 0.0
+    x, z = x - part * u, z - part * v
+    d = math.sqrt(x * x + z * z)
+    scale = 1.0 / d if d > 0.0 else 0.0
+    return d, scale * x, scale * z, 0.0, 1.0 - part, part, 0.0
+
+
+@lean_inlined
+def near_at_start(floats, ints, p, q):
+    """Whether two vertices of one skin were near each other."""
+    rest, apart = ints[layout.REST], layout.APART * floats[ints[layout.NUMBERS] + layout.GAP]
+    square = 0.0
+    for k in range(3):
+        way = floats[rest + 3 * p + k] - floats[rest + 3 * q + k]
+        square += way * way
+    return square < apart * apart
+
+
+@lean_inlined
+def parted(y, changed, ints, p, f):
+    """How far at most a vertex and a place of a face go relative to each other in a change [m]."""
+    at, most = ints[vertex(ints, p) + layout.POSITION], 0.0
+    for k in range(ints[layout.CORNERS]):
+        to, square = ints[vertex(ints, corner(ints, f, k)) + layout.POSITION], 0.0
+        for axis in range(3):
+            way = changed[at + axis] - y[at + axis] - changed[to + axis] + y[to + axis]
+            square += way * way
+        most = max(most, square)
+    return math.sqrt(most)
+
+
+@lean(types.void(A, A, A, I, N, F), inner=True)
+def look(y, changed, floats, ints, p, reach):
+    """Write down the BEST of each skin that is nearer to a vertex than ``reach``; of others its distance is infinite.
+
+    Where ``changed`` is not empty, in place of the least distance the least part of that change in which it is gone.
+    """
+    room, best, own = ints[layout.ROOM], ints[layout.BEST], vertex(ints, p)
+    count, corners, at = ints[layout.VERTICES], ints[layout.CORNERS], ints[own + layout.POSITION]
+    for s in range(ints[layout.SKINS]):
+        floats[best + layout.FOUND * s] = math.inf
+    nx, ny, nz = (
+        int(floats[room + layout.ACROSS]),
+        int(floats[room + layout.ACROSS + 1]),
+        int(floats[room + layout.ACROSS + 2]),
+    )
+    if nx == 0:
+        return
+    starts = room + layout.STARTS
+    listed = starts + layout.CELLS * count + 1
+    at_faces = layout.HEAD + layout.VERTEX * count + corners * ints[layout.FACES]
+    far = reach + floats[ints[layout.NUMBERS] + layout.SIDE]
+    i, j, k = (cell_of(y, floats, ints, at, 0), cell_of(y, floats, ints, at, 1), cell_of(y, floats, ints, at, 2))
+    for c in range(max(k - 1, 0), min(k + 2, nz)):
+        for b in range(max(j - 1, 0), min(j + 2, ny)):
+            row = nx * (b + ny * c)
+            first, last = row + max(i - 1, 0), row + min(i + 2, nx)
+            for place in range(int(floats[starts + first]), int(floats[starts + last])):
+                q = int(floats[listed + place])
+                other = vertex(ints, q)
+                there, s = ints[other + layout.POSITION], ints[other + layout.SKIN]
+                mine = s == ints[own + layout.SKIN]
+                if mine and near_at_start(floats, ints, p, q):
+                    continue
+                u, v, w = y[there] - y[at], y[there + 1] - y[at + 1], y[there + 2] - y[at + 2]
+                if u * u + v * v + w * w > far * far:
+                    continue
+                found = best + layout.FOUND * s
+                for n in range(ints[at_faces + q], ints[at_faces + q + 1]):
+                    f = ints[at_faces + count + 1 + n]
+                    beside = False
+                    for m in range(corners if mine else 0):
+                        beside |= near_at_start(floats, ints, p, corner(ints, f, m))
+                    if beside:
+                        continue
+                    d, x, y_, z, w0, w1, w2 = between(y, ints, p, f)
+                    if not d < reach:
+                        continue
+                    if changed.size > 0:
+                        way = parted(y, changed, ints, p, f)
+                        d = d / way if way > 0.0 else math.inf
+                    if d < floats[found]:
+                        floats[found], floats[found + layout.FACE] = d, f
+                        n0, s0 = found + layout.NORMAL, found + layout.SHARES
+                        floats[n0], floats[n0 + 1], floats[n0 + 2] = x, y_, z
+                        floats[s0], floats[s0 + 1], floats[s0 + 2] = w0, w1, w2
