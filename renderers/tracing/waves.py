@@ -52,8 +52,8 @@ ROOM = TILES * TILE * TILE
 RAYS = 4 * ROOM
 """Rays listed at a time."""
 FEW = 16
-"""Ways of light below which each is followed by itself: a wave would cost more than it saves, unless packets know all
-that ways meet. Then a single ray costs as much as a wave."""
+"""Ways of light below which each is followed by itself: a wave would cost more than it saves, unless packets alone know
+all that ways meet. Then a single ray costs as much as a wave."""
 
 
 class Waves:
