@@ -70,6 +70,9 @@ TRUE_AFTER, TRUE_AFTER_APART = 3, 1
 RARELY = 8
 ENOUGH = 1e-4
 """Part of the fall that the slope predicts which a step must bring (Armijo)."""
+EASY = 2
+"""Updates up to which a search where surfaces are kept apart was none: the next stage begins plainly, and may keep its
+factors through free flight."""
 SHORTEST = 1e-10
 """Part of an update below which no shorter one is tried."""
 ROUNDING = 1e-13
@@ -182,7 +185,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     patience, slowed = (TRUE_AFTER_APART, SLOWED_APART) if has_limit else (TRUE_AFTER, SLOWED)
     before = before_mean = first = 0.0
     loads_change = floats[channels.STALE] > LOADED
-    for _ in range(MOST_APART if has_limit else MOST):
+    for update in range(MOST_APART if has_limit else MOST):
         while stale:
             floats[channels.NEWTON] = a * a
             floats[channels.POSITIVE] = 1.0 if positive else 0.0
@@ -282,6 +285,8 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             if done:
                 memory[FACTORED] = a
                 memory[POSITIVE] = memory[CAREFUL] = 1.0 if positive else 0.0
+                if has_limit and update < EASY:
+                    memory[CAREFUL] = 0.0
                 return True
             since += 1
         before, before_mean = size, mean
