@@ -109,6 +109,16 @@ def test_a_method_that_is_taken_again_is_not_laid_out_again(tmp_path, monkeypatc
     assert np.array_equal(y, anew)
 
 
+@pytest.mark.parametrize("seconds", [0.0, 1e9])
+def test_how_many_steps_a_compiled_call_takes_changes_no_byte(tmp_path, monkeypatch, seconds):
+    """A call takes a third of a second: twenty would pass before a flow's run could be interrupted or limited."""
+    expected, one = marched(tmp_path, VAN_DER_POL, "auto: {tolerance: 1e-11}", 2)
+    monkeypatch.setattr("sceneql.march.march.A_CALL", seconds)
+    found, other = marched(tmp_path, VAN_DER_POL, "auto: {tolerance: 1e-11}", 2)
+    assert found.tobytes() == expected.tobytes()
+    assert (other.statistics.steps, other.choices()) == (one.statistics.steps, one.choices())
+
+
 def test_auto_does_not_change_its_method_for_the_few_steps_that_are_left(tmp_path):
     """Laying the island out for radau takes longer than some hundred short steps."""
     script = equations("{a: 1, b: 1}", "{a: -b*(a - cos(t)), b: 'where(t > 5, 0, 3)*b'}")

@@ -36,6 +36,8 @@ TOUCHING = 1e-13
 ENTRIES_A_CALL = 20_000_000
 """Entries of y to step over in one compiled call, so that a long run can be interrupted."""
 
+AT_ONCE, A_CALL = 16, 0.3
+"""Steps of a first call, and seconds that later ones are to take: steps of flows may be as long as all those."""
 LARGEST = 1e100
 """Largest number at the start in SI units, so that the square of its growth does not overflow."""
 
@@ -106,6 +108,7 @@ class March:
         if stiff is not None:
             self._switch = Switch(stepper, stiff, self.rate, system.partner, end)
         self._last_look = 0
+        self._at_once = AT_ONCE
         self._from = 0.0 if before is None else self._go_on_from(before, kept)
         """When it begins [s]."""
         self._look_for_breakpoint(self._from)
@@ -304,12 +307,15 @@ class March:
             # Frames have evaluated terms elsewhere: write again what contacts read of them at the step's end.
             self.rate(float(clock[kernels.T1]), self._y1)
         self._floats_time = math.nan
+        left = 0
         while True:
-            left = max(100, ENTRIES_A_CALL // (len(self._y1) + 10))
-            left = min(left, pace.until_look or left)
-            if self._switch is not None:
-                left = min(left, self._last_look + self._switch.until_look - int(counts[kernels.STEPS]))
-            counts[kernels.LEFT] = left
+            if not left:
+                left = max(100, ENTRIES_A_CALL // (len(self._y1) + 10))
+                left = min(left, pace.until_look or left)
+                if self._switch is not None:
+                    left = min(left, self._last_look + self._switch.until_look - int(counts[kernels.STEPS]))
+            part = counts[kernels.LEFT] = min(left, self._at_once)
+            began = time.perf_counter() - compiled.seconds
             status = kernels.march(
                 self._engaged.functions, min(target, self._step_end), self._step_end,
                 self._y0, self._rate0, self._y1, self._rate1, self._sample,
@@ -319,7 +325,12 @@ class March:
             if counts[kernels.SWAPPED]:
                 self._y0, self._rate0, self._y1, self._rate1 = self._y1, self._rate1, self._y0, self._rate0
                 counts[kernels.SWAPPED] = 0
+            left = left - part if status == kernels.PAUSED else 0
             if status == kernels.PAUSED:
+                took = time.perf_counter() - compiled.seconds - began
+                self._at_once = max(1, int(part * min(2.0, A_CALL / max(took, 1e-9))))
+                if left:
+                    continue
                 self._look()
                 if pace.hopeless(self.time, int(counts[kernels.STEPS])):
                     break
