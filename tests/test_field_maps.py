@@ -262,7 +262,7 @@ def test_what_cannot_be_drawn_is_told_with_its_place(tmp_path):
     for fields, told in (
         ("range: 0 1 kg", "the field as a plain number"),
         ("height: 1 s", "a height is a length for a unit of the field"),
-        ("cut: [{normal: 0 0 0}]", "a plane needs a direction"),
+        ("cut: [{normal: 0 0 0}]", "normal gives a direction, which 0 0 0 does not have"),
     ):
         assert told.removeprefix("the field as ") in complaint(tmp_path, PLATE.format(fields=fields)), fields
     path = tmp_path / "scene.yaml"

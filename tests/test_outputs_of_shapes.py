@@ -89,7 +89,7 @@ def test_it_keeps_what_it_draws_and_nothing_else(load):
 
 def test_it_needs_no_camera_and_no_light_and_draws_all_that_is_not_hidden(load):
     graph = load("outputs: {files: ply}", pruned=False)
-    assert graph.drawn["files"] == ("ball", "idle")
+    assert graph.drawn["files"] == ("ball", "swing", "idle")
     assert not {task.family for task in graph.tasks.values()} & {"cameras", "lights"}
     assert graph.cameras == {}
 

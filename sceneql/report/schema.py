@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.check import NONE, OPTIONAL
 from sceneql.compiler.read import FALSE, TRUE
 from sceneql.kinds import Formula, Interpolated, Kind, Refers, SceneFile, Settings, written_name
 from sceneql.report.manual import type_text
@@ -61,9 +62,10 @@ def schema(catalogue: Catalogue) -> dict[str, Any]:
             ]
         }
         entry = {"$ref": f"#/$defs/{family}"}
-        properties[family] = {
-            "anyOf": [{"type": ["object", "null"], "additionalProperties": entry}, {"type": "array", "items": entry}]
-        }
+        named = {"type": ["object", "null"], "additionalProperties": entry}
+        if refused := {name: {"anyOf": [{"enum": [NONE]}, entry]} for name, word in OPTIONAL.items() if word in words}:
+            named["properties"] = refused
+        properties[family] = {"anyOf": [named, {"type": "array", "items": entry}]}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "sceneql scene script",

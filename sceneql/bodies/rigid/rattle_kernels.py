@@ -8,6 +8,7 @@ With the velocities closed behind the step (tie_kernels.settle) this is RATTLE (
 from sceneql.bodies.rigid.tie_kernels import (
     CLOSED,
     KEPT_AT,
+    MOVED_AT,
     MOVERS_AT,
     RIGHT_AT,
     ROWS,
@@ -19,10 +20,11 @@ from sceneql.bodies.rigid.tie_kernels import (
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_C,
     AT_J,
+    AT_MASS,
     AT_SIZE,
-    AT_T,
     FIRST,
     MOMENTUM,
+    MOVED,
     MOVER,
     POSITION,
     ROTATION,
@@ -37,8 +39,8 @@ from sceneql.system.signatures_kernels import TIED_DRIFT_OF
 
 MOST_ROUNDS = 50
 """Rounds, each of which leaves a part of the gaps that is in proportion to the step's length."""
-KEPT = 24
-"""Floats of a row that are kept of where the drift began: J and T."""
+KEPT = 12
+"""Floats of a row that are kept of where the drift began: J."""
 
 
 @lean(TIED_DRIFT_OF, inner=True)
@@ -66,11 +68,12 @@ def end_tied(functions, h, y0, kicked, y1, floats, all_ints, ints):
             for side in range(2):
                 at = ints[MOVERS_AT] + MOVER * ints[row + FIRST + side]
                 if ints[at + POSITION] >= 0:
+                    inverse = floats[ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_MASS]
                     for c in range(3):
-                        kicked[ints[at + VELOCITY] + c] += impulse * floats[own + AT_T + 6 * side + c]
+                        kicked[ints[at + VELOCITY] + c] += impulse * (inverse * floats[own + 6 * side + c])
                     if ints[at + ROTATION] >= 0:
                         for c in range(3):
-                            kicked[ints[at + MOMENTUM] + c] += impulse * floats[own + AT_J + 6 * side + 3 + c]
+                            kicked[ints[at + MOMENTUM] + c] += impulse * floats[own + 6 * side + 3 + c]
         for k in range(y1.size):
             y1[k] = kicked[k]
         drift(free_motion_at(functions[AT_FREE_MOTION]), h, y1, floats, all_ints)

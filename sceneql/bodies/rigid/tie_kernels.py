@@ -16,13 +16,12 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_BIAS,
     AT_C,
     AT_FORCE,
-    AT_INVERSE,
+    AT_IMPULSE,
     AT_J,
     AT_MASS,
     AT_OPEN,
     AT_SIZE,
     AT_SPEED,
-    AT_T,
     AT_TWIST,
     AT_V,
     AT_W,
@@ -40,8 +39,8 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     press,
     put,
     see,
-    turned,
     turning,
+    weighed,
     write_row,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
@@ -54,8 +53,8 @@ MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_
 """Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where each
 begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes of
 what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels). A mover that ties
-share: their number n; of each its first row, how many it has, their floats at its side; then n x n places in a row of
-the first where the rows of the second begin, counted from that row's first value."""
+share: their number n and its own; of each tie its first row, how many it has, their floats at its side; then n x n
+places in a row of the first where the rows of the second begin, counted from that row's first value."""
 
 EASE, LITTLE = 1e-9, 1e-13
 """Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: the less where no row follows from others at the
@@ -85,13 +84,6 @@ def survey(t, y, floats, ints):
         row = ints[ROWS_AT] + ROW_INTS * k
         a, b = ints[MOVED_AT] + MOVED * ints[row + FIRST], ints[MOVED_AT] + MOVED * ints[row + SECOND]
         write_row(floats, ints, row, a, b)
-        to = ints[row + SCRATCH]
-        for side in range(2):
-            mover = a if side == 0 else b
-            j, weighed, inverse = to + AT_J + 6 * side, to + AT_T + 6 * side, floats[mover + AT_MASS]
-            put(floats, weighed, inverse * floats[j], inverse * floats[j + 1], inverse * floats[j + 2])
-            turn = turned(floats, mover + AT_INVERSE, floats[j + 3], floats[j + 4], floats[j + 5])
-            put(floats, weighed + 3, *turn)
 
 
 @lean(types.boolean(A, I))
@@ -102,22 +94,21 @@ def factor(floats, ints):
         values[k] = 0.0
     at, starts = ints[SHARED_AT], ints[STARTS_AT]
     for _ in range(ints[SHARED]):
-        count = ints[at]
-        table = at + 1 + 3 * count
-        for one in range(count):
-            for other in range(one, count):
-                first, rows, jacobian = ints[at + 1 + 3 * one], ints[at + 2 + 3 * one], ints[at + 3 + 3 * one] + AT_J
-                last, columns, weighed = (
-                    ints[at + 1 + 3 * other],
-                    ints[at + 2 + 3 * other],
-                    ints[at + 3 + 3 * other] + AT_T,
-                )
-                across, along = ints[table + count * one + other], ints[table + count * other + one]
-                for i in range(rows):
-                    for j in range(i if one == other else 0, columns):
-                        total = 0.0
-                        for c in range(6):
-                            total += floats[jacobian + ROW * i + c] * floats[weighed + ROW * j + c]
+        count, mover = ints[at], ints[MOVED_AT] + MOVED * ints[at + 1]
+        table = at + 2 + 3 * count
+        for other in range(count):
+            last, columns, own = ints[at + 2 + 3 * other], ints[at + 3 + 3 * other], ints[at + 4 + 3 * other] + AT_J
+            for j in range(columns):
+                # T is not kept: the rows of a long chain do not fit into the caches, and memory is what bounds it.
+                x, y, z, u, v, w = weighed(floats, mover, own + ROW * j)
+                for one in range(other + 1):
+                    first, rows, to = ints[at + 2 + 3 * one], ints[at + 3 + 3 * one], ints[at + 4 + 3 * one] + AT_J
+                    across, along = ints[table + count * one + other], ints[table + count * other + one]
+                    for i in range(j + 1 if one == other else rows):
+                        k = to + ROW * i
+                        total = floats[k] * x + floats[k + 1] * y + floats[k + 2] * z + floats[k + 3] * u
+                        total += floats[k + 4] * v
+                        total += floats[k + 5] * w
                         values[ints[starts + first + i] + across + j] += total
                         if one != other or j > i:
                             values[ints[starts + last + j] + along + i] += total
@@ -147,12 +138,8 @@ def balance(floats, ints, target, size_at):
     floats[size_at] is the size of the numbers that the target is a sum of, if it is to be 0 but for their rounding.
     """
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
-    for k in range(ints[ROWS]):
-        floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
-    if not factor(floats, ints):
-        return
-    last = math.inf
-    for corrections in range(MOST_CORRECTIONS):
+    last, found = math.inf, False
+    for corrections in range(MOST_CORRECTIONS if factor(floats, ints) else 0):
         worst = 0.0
         for k in range(ints[ROWS]):
             row = ints[ROWS_AT] + ROW_INTS * k
@@ -171,14 +158,26 @@ def balance(floats, ints, target, size_at):
             break
         last = worst
         solve(floats, ints)
+        for m in range(ints[MOVERS]):
+            put(floats, ints[MOVED_AT] + MOVED * m + AT_IMPULSE, 0.0, 0.0, 0.0)
+            put(floats, ints[MOVED_AT] + MOVED * m + AT_IMPULSE + 3, 0.0, 0.0, 0.0)
         for k in range(ints[ROWS]):
             row = ints[ROWS_AT] + ROW_INTS * k
             to = ints[row + SCRATCH]
-            floats[to + AT_FORCE] += right[k]
+            floats[to + AT_FORCE] = floats[to + AT_FORCE] + right[k] if found else right[k]
             for side in range(2):
-                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_A
+                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side]
                 for c in range(6):
-                    floats[mover + c] += floats[to + AT_T + 6 * side + c] * right[k]
+                    floats[mover + AT_IMPULSE + c] += floats[to + AT_J + 6 * side + c] * right[k]
+        for m in range(ints[MOVERS]):
+            mover = ints[MOVED_AT] + MOVED * m
+            push = weighed(floats, mover, mover + AT_IMPULSE)
+            for c in range(6):
+                floats[mover + AT_A + c] += push[c]
+        found = True
+    if not found:
+        for k in range(ints[ROWS]):
+            floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
 
 
 @lean(types.void(A, A, I))
@@ -280,16 +279,17 @@ def shift(y, floats, ints):
 @lean(AFTER_STEP, inner=True)
 def settle(t0, t1, y0, rate0, y1, floats, ints):
     """Closes the ties: places and rotations first, then velocities, each by the least change (in energy)."""
-    changed = False
+    changed, gap = False, 0.0
     for _ in range(MOST_CLOSINGS):
         survey(t1, y1, floats, ints)
-        if open_by(floats, ints, AT_C) <= CLOSED:
+        gap = open_by(floats, ints, AT_C)
+        if gap <= CLOSED:
             break
         clear(floats, ints)
         balance(floats, ints, AT_C, AT_SIZE)
         shift(y1, floats, ints)
         changed = True
-    if t1 > t0 and open_by(floats, ints, AT_C) > OPENED:
+    if t1 > t0 and gap > OPENED:
         for k in range(ints[ROWS]):
             to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]
             if abs(floats[to + AT_C]) > OPENED * floats[to + AT_SIZE]:

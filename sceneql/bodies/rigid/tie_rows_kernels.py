@@ -28,16 +28,15 @@ PLACE, TURN, SPEED, SPIN, PUSH, TWIST, MOVER = range(6, 13)
 and angular momentum in y, of the inverse inertia (-1: a mass). One that is led: offsets in the floats of its position,
 quaternion, velocity, angular velocity, acceleration and angular acceleration. The world: -1 throughout."""
 
-AT_X, AT_V, AT_R, AT_W, AT_INVERSE, AT_MASS, AT_A, AT_TWIST, MOVED = 0, 3, 6, 15, 18, 27, 28, 31, 34
+AT_X, AT_V, AT_R, AT_W, AT_INVERSE, AT_MASS, AT_A, AT_TWIST, AT_IMPULSE, MOVED = 0, 3, 6, 15, 18, 27, 28, 31, 34, 40
 """Floats of a mover: position, velocity, rotation (3, 3), angular velocity, inverse inertia in the world's axes (3, 3),
-inverse mass; acceleration and angular acceleration, by all forces but the ties' and then with these."""
+inverse mass; acceleration and angular acceleration, by all forces but the ties' and then with these; of ties, what the
+last correction adds to force and torque."""
 
-AT_J, AT_T, AT_BIAS, AT_C, AT_SPEED, AT_FORCE, AT_SIZE, AT_PUSH, AT_OPEN, ROW = (
-    0, 12, 24, 25, 26, 27, 28, 29, 30, 31
-)  # fmt: skip
-"""Floats of a row: J, by velocity and angular velocity of a, then of b; the inverse masses times J; the bias, C, dC/dt,
-the force of the row; the size of the numbers that C is the difference of; the force by which it answers contacts and
-drives, that are found by the step (tied_step_kernels); the largest gap that was not closed at the end of a step."""
+AT_J, AT_BIAS, AT_C, AT_SPEED, AT_FORCE, AT_SIZE, AT_PUSH, AT_OPEN, ROW = 0, 12, 13, 14, 15, 16, 17, 18, 19
+"""Floats of a row: J, by velocity and angular velocity of a, then of b; the bias, C, dC/dt, the force of the row; the
+size of the numbers that C is the difference of; the force by which it answers contacts and drives, that are found by
+the step (tied_step_kernels); the largest gap that was not closed at the end of a step."""
 
 KIND, FIRST, SECOND, NUMBERS, SCRATCH, HOLDS, ROW_INTS = range(7)
 """Integers of a row: kind, both movers, offsets of its numbers, its floats, and of whether it holds (0: broken)."""
@@ -57,6 +56,14 @@ def turned(floats, at, x, y, z):
         floats[at + 3] * x + floats[at + 4] * y + floats[at + 5] * z,
         floats[at + 6] * x + floats[at + 7] * y + floats[at + 8] * z,
     )
+
+
+@lean_inlined
+def weighed(floats, mover, j):
+    """The accelerations of a mover by the force floats[j:] and the torque behind it, (6,)."""
+    inverse = floats[mover + AT_MASS]
+    x, y, z = turned(floats, mover + AT_INVERSE, floats[j + 3], floats[j + 4], floats[j + 5])
+    return inverse * floats[j], inverse * floats[j + 1], inverse * floats[j + 2], x, y, z
 
 
 @lean_inlined

@@ -27,7 +27,6 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_INVERSE,
     AT_J,
     AT_MASS,
-    AT_T,
     AT_TWIST,
     AT_W,
     DISTANCE,
@@ -48,6 +47,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     see,
     turned,
     turning,
+    weighed,
     write_row,
 )
 from sceneql.compiled.kernels import kernel, lean_inlined
@@ -123,15 +123,16 @@ def add_constant(entries, floats, ints, k, first, second):
     to, own = ints[row + SCRATCH], ENTRIES * k
     weight = 0.0
     for side in range(2):
-        at = ints[MOVERS_AT] + MOVER * ints[row + FIRST + side]
-        if not moves(floats, ints, at, first if side == 0 else second):
+        at, mover = ints[MOVERS_AT] + MOVER * ints[row + FIRST + side], first if side == 0 else second
+        if not moves(floats, ints, at, mover):
             continue
+        push = weighed(floats, mover, to + AT_J + 6 * side)
         for c in range(6):
             if c < 3 or ints[at + ROTATION] >= 0:
-                j, weighed = floats[to + AT_J + 6 * side + c], floats[to + AT_T + 6 * side + c]
+                j = floats[to + AT_J + 6 * side + c]
                 entries[own + FORCES + 6 * side + c] += j
-                entries[own + GIVEN + 6 * side + c] += j if c < 3 else weighed
-                weight += j * weighed
+                entries[own + GIVEN + 6 * side + c] += j if c < 3 else push[c]
+                weight += j * push[c]
     # A little, as where forces are found, so that rows that others imply have a force.
     entries[own + DIAGONAL] -= floats[ints[EASE_AT]] * weight if weight > 0.0 else 1.0
 

@@ -55,45 +55,46 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         for side, mover in enumerate(pair):
             if solved[mover]:
                 of_mover.setdefault(mover, []).append((first, count, scratch + 6 * side))
-    parts = [
-        (one[0] + i, other[0] + j)
+    # Ties of as many rows each make a matrix of blocks, which a plan has in a small part of the integers.
+    counts = {len(tie.rows) for tie in ties}
+    unit = counts.pop() if len(counts) == 1 else 1
+    parts = {
+        ((one[0] + i) // unit, (other[0] + j) // unit)
         for some in of_mover.values()
         for one, other in product(some, some)
-        for i, j in product(range(one[1]), range(other[1]))
-    ]
-    own = np.arange(len(rows))
-    pattern = csr_array(
-        (
-            np.ones(len(parts) + len(rows)),
-            (
-                np.concatenate([[row for row, _ in parts], own]),
-                np.concatenate([[column for _, column in parts], own]),
-            ),
-        ),
-        shape=(len(rows), len(rows)),
-    )
-    pattern.sum_duplicates()
+        for i, j in product(range(0, one[1], unit), range(0, other[1], unit))
+    }
+    blocks = len(rows) // unit
+    parts.update((k, k) for k in range(blocks))
+    across = np.array(sorted(parts))
+    pattern = csr_array((np.ones(len(across)), tuple(across.T)), shape=(blocks, blocks))
     pattern.sort_indices()
-    starts, columns = pattern.indptr, pattern.indices
+    columns = pattern.indices
+    starts = [unit * (unit * int(pattern.indptr[k // unit]) + k % unit) for k in range(len(rows))]
 
-    def place(row: int, column: int) -> int:
-        return int(starts[row] + np.searchsorted(columns[starts[row] : starts[row + 1]], column))
+    def along(row: int, column: int) -> int:
+        """Where values of a column begin, counted from the first one of the row."""
+        first, end = pattern.indptr[row // unit : row // unit + 2]
+        return unit * unit * int(np.searchsorted(columns[first:end], column // unit)) + column % unit
 
     shared = [
-        [len(some), *chain(*some), *(place(one[0], other[0]) - int(starts[one[0]]) for one in some for other in some)]
-        for some in of_mover.values()
+        [
+            *(len(some), mover, *chain(*some)),
+            *(along(one[0], other[0]) for one in some for other in some),
+        ]
+        for mover, some in of_mover.items()
     ]
-    planned = plan(pattern)
+    planned = plan(pattern, unit=unit)
     lists: list[Sequence[int]] = [
         [number for which in movers for number in which],
         [number for row in rows for number in row],
         [number for some in shared for number in some],
-        starts[:-1].tolist(),
-        [place(k, k) for k in range(len(rows))],
+        starts,
+        [starts[k] + along(k, k) for k in range(len(rows))],
         planned.numbers.tolist(),
     ]
     begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
-    sizes = (MOVED * len(movers), len(columns), planned.factors, planned.work + len(rows), len(rows))
+    sizes = (MOVED * len(movers), unit * unit * len(columns), planned.factors, planned.work + len(rows), len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
     head = [len(movers), len(rows), begins[0], begins[1], len(shared), *begins[2:6], len(lists[5])]
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
