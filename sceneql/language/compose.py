@@ -124,13 +124,18 @@ class _Composer:
         try:
             self.document(start)
         except yaml.YAMLError as error:
-            flow = self.flow_start()
-            near = broken_near(self.source, self.text, place(self.source, error), flow)
-            if not near and flow is None and (line := left_out(self.source, self.text, error)) is not None:
-                near = [line]
-            if not near:
-                self.found.add(explain(self.source, error, flow))
-            self.cut_short(place(self.source, error))
+            flow, at = self.flow_start(), place(self.source, error)
+            if "nesting depth" in str(getattr(error, "problem", "")):
+                # The parser reads ahead, and has a bound of its own, so it may stop before these levels are counted.
+                span = Span(self.source, at - 1, at)
+                self.found.error("too-deep", f"more than {MOST_DEPTH} levels of lists and mappings", span, help=_DEEP)
+            else:
+                near = broken_near(self.source, self.text, at, flow)
+                if not near and flow is None and (line := left_out(self.source, self.text, error)) is not None:
+                    near = [line]
+                if not near:
+                    self.found.add(explain(self.source, error, flow))
+            self.cut_short(at)
         except _StopError:
             self.cut_short(len(self.text))
         lacking(self.root, [*self.faults.values()])
