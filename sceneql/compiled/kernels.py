@@ -270,9 +270,20 @@ lean_inlined = njit(_nrt=False, **HELPER)
 """A helper of lean kernels."""
 
 
-def address(function: Any, kind: Any) -> Any:
-    """Address of a compiled kernel of FunctionType ``kind``, for ``function_at``."""
-    return function if config.DISABLE_JIT else address_of(function, kind.signature.args)
+_uncompiled: list[Any] = [None]
+"""Where numba is switched off, the functions whose numbers stand for addresses."""
+
+
+def address(function: Any, kind: Any) -> int:
+    """Address of a compiled kernel of FunctionType ``kind``, for ``function_at``; never 0."""
+    return _number_of(function) if config.DISABLE_JIT else address_of(function, kind.signature.args)
+
+
+@cache
+def _number_of(function: Any) -> int:
+    """What stands for an address where numba is switched off."""
+    _uncompiled.append(function)
+    return len(_uncompiled) - 1
 
 
 @cache
@@ -289,7 +300,7 @@ def function_at(kind: Any) -> Any:
     a function that is always the same by its name instead.
     """
     if config.DISABLE_JIT:
-        return lambda function: function
+        return lambda number: _uncompiled[number]
 
     @intrinsic
     def at(typing: Any, address: Any) -> Any:

@@ -7,7 +7,6 @@ march. Here the addresses are looked up once and passed as integers.
 
 from typing import Any
 
-import numba
 import numpy as np
 
 from sceneql.compiled.kernels import address, function_at
@@ -36,8 +35,6 @@ AT_SETTLE, AT_FREE_MOTION, AT_TIED_DRIFT, AT_JACOBIAN, AT_EVENT, AT_ENERGY, AT_L
 
 def addresses(*functions: Any) -> Any:
     """(14,) int64 addresses of KINDS; 0 for None, which must not be called."""
-    if numba.config.DISABLE_JIT:
-        return tuple(f or 0 for f in functions)
     found = [0 if f is None else address(f, kind) for f, kind in zip(functions, KINDS, strict=True)]
     return np.array(found, dtype=np.int64)
 

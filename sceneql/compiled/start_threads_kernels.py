@@ -11,14 +11,14 @@ from numba.extending import intrinsic
 
 from sceneql.compiled.arithmetic_kernels import bits, from_bits
 from sceneql.compiled.kernels import PIPELINE, function_at, kept, kernel
-from sceneql.compiled.threads_kernels import OVER_THREADS, TILE_FUNCTION, uncompiled
+from sceneql.compiled.threads_kernels import OVER_THREADS, TILE_FUNCTION
 from sceneql.system.signatures_kernels import N
 
 WORD = ir.IntType(64)
 FUNCTION, FIRST, STRIDE, TILES, TIME, ARRAYS, WORDS = 0, 1, 2, 3, 4, 5, 13
 """Layout of a thread's 64-bit words; from ARRAYS on address and length of y, rate, floats, ints."""
 
-tile_at = uncompiled.__getitem__ if numba.config.DISABLE_JIT else function_at(TILE_FUNCTION)
+tile_at = function_at(TILE_FUNCTION)
 
 
 @intrinsic

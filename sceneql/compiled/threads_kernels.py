@@ -20,18 +20,12 @@ TILE = types.void(N, F, A, A, A, I)
 TILE_FUNCTION = types.FunctionType(TILE)
 OVER_THREADS = types.void(N, N, N, N, F, A, A, A, I)
 
-uncompiled: dict[int, Any] = {}
-"""Functions by their addresses where numba is switched off."""
-
 over_threads = lazy("sceneql.compiled.start_threads_kernels:over_threads", OVER_THREADS)
 """over_threads(several, count, function, tiles, t, y, rate, floats, ints); small islands never call it."""
 
 
 def tile_address(function: Any) -> int:
     """The address by which `over_threads` calls the kernel; keep the kernel alive."""
-    if numba.config.DISABLE_JIT:
-        uncompiled[id(function)] = function
-        return id(function)
     return address(function, TILE_FUNCTION)
 
 

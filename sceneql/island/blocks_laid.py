@@ -58,18 +58,23 @@ def lay_out(
     frees: list[tuple[int, int]],
     tied: bool,
     blocks: list[Block],
-    first_blocks: list[int],
+    stages: list[list[int]],
     pairs: list[int],
 ) -> NDArray[int64]:
-    """The island's array of integers: see layout.py."""
-    triples_at = layout.GROUPS_AT + len(first_blocks)
+    """The island's array of integers: see layout.py. ``stages``: the number of blocks of each group of each stage."""
+    first_blocks = list(accumulate((count for stage in stages for count in stage), initial=1))
+    first_groups = list(accumulate((len(stage) for stage in stages), initial=0))
+    calls_at = layout.GROUPS_AT + len(first_blocks)
+    triples_at = calls_at + layout.CALLS * first_groups[-1]
     frees_at = triples_at + layout.TRIPLE * len(triples)
     table_at = frees_at + 2 * len(frees)
     ranges_at = table_at + len(blocks) + 1
     table = list(accumulate((len(block.ints) for block in blocks), initial=ranges_at + len(pairs) + 1))
     parts = [
         [triples_at, len(triples), frees_at, len(frees), int(tied), table_at, ranges_at, table[-1]],
+        [*first_groups, calls_at],
         [table_at + block for block in first_blocks],
+        [0] * (triples_at - calls_at),
         [number for triple in triples for number in triple],
         [number for free in frees for number in free],
         table,

@@ -312,9 +312,9 @@ class IslandAssembly(Reserved):
         local = grouped(self._local, blocks)
         between = (self._after, self._settling, self._free, self._tied, self._limits)
         after, settling, free, tied, limits = (grouped(some, blocks) for some in between)
-        counts = (count for _, count in (*groups, *exact, *local, *after, *settling, *free, *tied, *limits))
-        first_blocks = list(accumulate(counts, initial=1))
-        ints = lay_out(self._pairs, self._frees, bool(tied), blocks, first_blocks, pairs)
+        stages = (groups, exact, local, after, settling, free, tied, limits)
+        counts = [[count for _, count in stage] for stage in stages]
+        ints = lay_out(self._pairs, self._frees, bool(tied), blocks, counts, pairs)
         found, derived, border = full(len(y)) if jacobian else None, None, 0
         if slopes is not None:
             masses = [(at, -1 if at in self._matrices else inverse_at, n) for at, inverse_at, n in self._masses]
@@ -333,7 +333,6 @@ class IslandAssembly(Reserved):
             limits=names[5],
             varying=bool(self._varying),
             slopes=derived,
-            bordered=border > 0,
             energies=self._energies(groups, blocks[1:first_exact]) if slopes is not None else None,
         )
         partner = np.full(len(y), -1, dtype=np.int64)

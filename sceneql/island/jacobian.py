@@ -66,8 +66,8 @@ def section(
     if border:
         found = replace(found, room=found.room + size, tallies=found.tallies[found.tallies < size])
     count, blocks, singles = found.count, len(found.blocks), len(lists[2]) // 3 - 1
-    groups_at = at + layout.HEAD
-    terms_at = groups_at + len(by_kernel) + 1
+    kernels_at = at + layout.HEAD + len(by_kernel) + 1
+    terms_at = kernels_at + layout.CALLS * len(by_kernel)
     starts = list(accumulate((len(part) for part in lists), initial=terms_at + 4 * len(ordered)))
     masses_at = starts.pop()
     ints_at = list(accumulate((len(ints) for _, ints in ordered), initial=masses_at + 3 * len(masses)))
@@ -75,8 +75,9 @@ def section(
     parts = [
         [count, entries_at[-1] - count, blocks, 9 * blocks // TILE + 1, masses_at, len(masses), *starts[:2]],
         [singles, singles // TILE + 1, *starts[2:]],
-        [*threads(), tile_address(block_tile), tile_address(single_tile)],
+        [*threads(), tile_address(block_tile), tile_address(single_tile), len(by_kernel), kernels_at, int(border > 0)],
         list(accumulate((4 * len(group) for group in by_kernel.values()), initial=terms_at)),
+        [0] * (terms_at - kernels_at),
         np.column_stack([ints_at[:-1], ints_at[1:], entries_at[:-1], entries_at[1:]]).ravel(),
         *lists,
         np.ravel(masses),

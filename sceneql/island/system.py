@@ -43,8 +43,6 @@ class Structure:
     slopes: tuple[str, ...] | None = None
     """The kernels of the Jacobian, of positive slopes too where those are others ("kernel|positive"); None: there is
     none, or it is found by differences."""
-    bordered: bool = False
-    """Whether slopes need the rate at their state (Slopes.border)."""
     energies: tuple[str, ...] | None = None
     """For each of ``terms`` the kernel of its energy, empty where it moves nothing; None: the island has no potential,
     or no slopes."""

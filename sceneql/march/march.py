@@ -83,7 +83,7 @@ class March:
         self._otherwise, self._with_jacobian = otherwise, with_jacobian
         self.statistics = Statistics()
         self.floats = system.floats.copy()
-        self.driver = driver(system.structure)
+        self.driver = driver(system)
         n = len(system.y)
         self._y0, self._rate0, self._rate1, self._sample = (np.zeros(n) for _ in range(4))
         self._y1: Floats = system.y.copy() if before is None else before.stopped().y[:n].copy()
@@ -128,6 +128,7 @@ class March:
         """Continue with a method."""
         if stepper.needs.jacobian and self._with_jacobian is not None:
             self.system = self._with_jacobian()
+            self.driver = driver(self.system)
             self.floats = np.concatenate([self.floats, self.system.floats[len(self.floats) :]])
             self._with_jacobian = None
         if self.system.structure.local or self.system.structure.limits:
@@ -151,7 +152,7 @@ class March:
         system, before = self.system.grown(self.floats), self._engaged
         if system is None:
             return False
-        self.floats, self.system = system.after(self.floats), system
+        self.floats, self.system, self.driver = system.after(self.floats), system, driver(system)
         self._engage(before.stepper)
         self._engaged.go_on(before)
         self.statistics.orderings += 1

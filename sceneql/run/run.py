@@ -217,7 +217,7 @@ class IslandRun:
         acting(*solving)
         compile_beside(lazy_first(system.structure))
         if needs.march is None:  # while the process beside compiles what solves
-            driver(system.structure)
+            driver(system)
             if needs.jacobian:
                 jacobian(system)
         acting()

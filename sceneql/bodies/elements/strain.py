@@ -128,8 +128,8 @@ def add_strain(
     """
     from sceneql.bodies.elements import strain_kernels, strain_slopes_kernels
     from sceneql.bodies.elements.laws import law_kernels
-    from sceneql.compiled.kernels import address, compiles
-    from sceneql.compiled.threads_kernels import threads, tile_address, uncompiled
+    from sceneql.compiled.kernels import address
+    from sceneql.compiled.threads_kernels import threads, tile_address
     from sceneql.system import Slopes
 
     gradients, volumes = replace(mesh, points=places).tables()
@@ -143,11 +143,7 @@ def add_strain(
     module = import_module(law.kernels)
     kinds = (law_kernels.STRESS_FUNCTION, law_kernels.STIFFNESS_FUNCTION, law_kernels.ENERGY_FUNCTION)
     kernels = (module.stress, module.stiffness, module.energy)
-    if compiles():
-        addresses = [address(one, kind) for one, kind in zip(kernels, kinds, strict=True)]
-    else:
-        uncompiled.update((id(one), one) for one in kernels)
-        addresses = [id(one) for one in kernels]
+    addresses = [address(one, kind) for one, kind in zip(kernels, kinds, strict=True)]
     tiles = elements * points // POINTS_A_TILE + 1
     node_tiles = bodies.count // (4 * POINTS_A_TILE) + 1
     several, count = threads()

@@ -10,21 +10,25 @@ import ctypes
 import threading
 import traceback
 from _thread import interrupt_main
+from functools import cache
 from importlib import import_module
 from os import _exit
 
 from llvmlite import binding, ir
-from numba import config
+from numba import config, types
 from numba.core import cgutils
 from numba.core.imputils import lower_builtin
 from numba.core.typing.templates import ConcreteTemplate, infer_global
+from numba.extending import intrinsic
+
+from sceneql.compiled.kernels import address
 
 places: dict[int, tuple[str, ctypes.c_void_p]] = {}
 """By the address of a place: the kernel's name, and the place, which holds the address of its code."""
 expected = {}
 """By the same address: the signature that callers were compiled for."""
-failures: dict[str, BaseException] = {}
-"""By a kernel's name: the error of its import."""
+failures: list[BaseException] = []
+"""The error of the latest import that failed."""
 _one_by_one = threading.RLock()
 _ASK = f"{__name__}.ask"
 
@@ -32,8 +36,8 @@ _ASK = f"{__name__}.ask"
 class NotBrought(Exception):
     """Raised by compiled code whose kernel could not be loaded: making one raises the import's error instead."""
 
-    def __init__(self, name):
-        raise failures[name]
+    def __init__(self):
+        raise failures[-1]
 
 
 def lazy(name, signature):
@@ -49,10 +53,7 @@ def lazy(name, signature):
     if config.DISABLE_JIT:
         return stub
     symbol = f"{__name__}.{name}"
-    place = ctypes.c_void_p()
-    places[ctypes.addressof(place)] = name, place
-    expected[ctypes.addressof(place)] = signature
-    binding.add_symbol(symbol, ctypes.addressof(place))
+    binding.add_symbol(symbol, _new_place(name, signature))
     template = type(f"Lazy_{function}", (ConcreteTemplate,), {"key": symbol, "cases": [signature]})
     infer_global(stub, typing_key=symbol)(template)
 
@@ -61,22 +62,61 @@ def lazy(name, signature):
         words = builder.module
         if symbol not in words.globals:
             ir.GlobalVariable(words, cgutils.voidptr_t, symbol)
-        if _ASK not in words.globals:
-            ir.Function(words, ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t.as_pointer()]), _ASK)
-        at = words.globals[symbol]
-        empty = cgutils.is_null(builder, builder.load(at))
-        with cgutils.if_unlikely(builder, empty):
-            builder.call(words.globals[_ASK], [at])
-            with cgutils.if_unlikely(builder, cgutils.is_null(builder, builder.load(at))):
-                context.call_conv.return_user_exc(builder, NotBrought, (name,))
         kind = context.call_conv.get_function_type(chosen.return_type, chosen.args).as_pointer()
-        code = builder.bitcast(builder.load(at), kind)
+        code = builder.bitcast(_bring(context, builder, words.globals[symbol]), kind)
         status, result = context.call_conv.call_function(builder, code, chosen.return_type, chosen.args, arguments)
         with cgutils.if_unlikely(builder, status.is_error):
             context.call_conv.return_status_propagate(builder, status)
         return result
 
     return stub
+
+
+@cache
+def place_of(name, signature):
+    """The integer by which kernels find the place of a kernel ``"package.module:function"``; never 0."""
+    if config.DISABLE_JIT:
+        return address(lazy(name, signature), types.FunctionType(signature))
+    return _new_place(name, signature)
+
+
+def _new_place(name, signature):
+    """The address of a new, empty place."""
+    place = ctypes.c_void_p()
+    at = ctypes.addressof(place)
+    places[at], expected[at] = (name, place), signature
+    return at
+
+
+def _bring(context, builder, at):
+    """The code that loads the address of a kernel from its place, and asks for it where that is empty."""
+    words = builder.module
+    if _ASK not in words.globals:
+        ir.Function(words, ir.FunctionType(ir.VoidType(), [cgutils.voidptr_t.as_pointer()]), _ASK)
+    with cgutils.if_unlikely(builder, cgutils.is_null(builder, builder.load(at))):
+        builder.call(words.globals[_ASK], [at])
+        with cgutils.if_unlikely(builder, cgutils.is_null(builder, builder.load(at))):
+            context.call_conv.return_user_exc(builder, NotBrought, ())
+    return builder.load(at)
+
+
+if config.DISABLE_JIT:
+
+    def brought(place):
+        """The address of the kernel of a ``place_of``, imported at the first time."""
+        return place
+
+else:
+
+    @intrinsic
+    def brought(typing, place):
+        """The address of the kernel of a ``place_of``, imported at the first time."""
+
+        def code(context, builder, signature, arguments):
+            at = builder.inttoptr(arguments[0], cgutils.voidptr_t.as_pointer())
+            return builder.ptrtoint(_bring(context, builder, at), ir.IntType(64))
+
+        return types.int64(types.int64), code
 
 
 def modules() -> list[str]:
@@ -112,7 +152,7 @@ def _ask(at):
             if isinstance(threading.current_thread(), threading._DummyThread):
                 traceback.print_exception(error)
                 _exit(1)
-            failures[places[at][0]] = error
+            failures[:] = [error]
             break
     if interrupted:
         threading.Timer(0.05, interrupt_main).start()

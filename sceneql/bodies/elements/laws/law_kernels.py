@@ -9,11 +9,9 @@ by row; the first of the numbers is the bulk number, by which pressure = bulk d 
 numbers.
 """
 
-import numba
 from numba import types
 
 from sceneql.compiled.kernels import function_at
-from sceneql.compiled.threads_kernels import uncompiled
 from sceneql.system.signatures_kernels import A, F, N
 
 STRESS = types.float64(A, A, A, A, A)
@@ -25,9 +23,4 @@ BULK, MODULUS, SECOND = range(3)
 """Numbers of a law: the bulk number, its modulus, a second one (laws/law.py)."""
 
 
-def at(kind):
-    """What calls a kernel of this kind by its address."""
-    return uncompiled.__getitem__ if numba.config.DISABLE_JIT else function_at(kind)
-
-
-stress_at, energy_at, stiffness_at = at(STRESS_FUNCTION), at(ENERGY_FUNCTION), at(STIFFNESS_FUNCTION)
+stress_at, energy_at, stiffness_at = map(function_at, (STRESS_FUNCTION, ENERGY_FUNCTION, STIFFNESS_FUNCTION))
