@@ -41,6 +41,8 @@ _LISTS = (
     ("tau", "two_pi twopi"),
     ("time", "t seconds elapsed elapsed_time now frame frames itime"),
     # fields
+    ("place", "position corner align anchor where"),
+    ("at", "position anchor pivot location"),
     ("position", "pos location loc center centre translate translation origin xyz offset move place"),
     ("rotation", "rotate rot orientation orient euler angles quaternion"),
     ("look_at", "target lookat look aim focus point_at center centre to"),
@@ -48,14 +50,17 @@ _LISTS = (
     ("color", "colour rgb fill tint albedo diffuse base_color basecolor"),
     ("material", "shader surface finish appearance"),
     ("size", "dimensions dims dimension extent extents resolution res width height length sides"),
-    ("radius", "r rad size diameter"),
+    ("radius", "r rad size diameter major major_radius"),
+    ("tube", "minor minor_radius thickness"),
     ("height", "y level elevation altitude length h"),
     ("normal", "up direction"),
     ("stiffness", "k spring_constant constant elasticity springiness"),
     ("damping", "c drag friction viscosity"),
     ("rest", "length rest_length natural_length l0"),
-    ("between", "from to ends nodes bodies connect connects pair a b"),
+    ("between", "from to ends nodes body bodies connect connects pair a b with against"),
     ("mass", "m weight"),
+    ("modulus", "young youngs_modulus young_modulus stiffness"),
+    ("law", "stiffness material_law elasticity"),
     ("masses", "nodes points particles bodies"),
     ("velocity", "vel v speed initial_velocity"),
     ("strength", "g value magnitude gravity acceleration amount"),
@@ -75,8 +80,10 @@ _LISTS = (
     ("coefficient", "diffusivity d alpha conductivity"),
     ("cell", "resolution grid grid_size dx spacing"),
     ("initial", "start initial_value u0"),
+    ("start", "initial state initial_state y0"),
+    ("rate", "rates derivative derivatives rhs dx/dt dy/dt dz/dt"),
     ("children", "of parts objects members items"),
-    ("of", "body object objects target source model particles"),
+    ("of", "body object objects target source model particles solid shape mesh"),
     # words
     ("sphere", "ball orb circle"),
     ("box", "cube cuboid block brick rectangle rect square"),
@@ -198,7 +205,7 @@ _SENTENCES = (
     ("sign", "&", _AND),
     ("sign", "|", _OR),
     ("sign", "?", _IF),
-    ("sign", "=", "write `==` to compare"),
+    ("sign", "=", "write `==` to compare; the surface where f = c is that of the formula `f - c`"),
     ("sign", "!", "write `where(a == b, 0, 1)` for a difference, `1 - (a > b)` for 'not'"),
     ("sign", "%", "write `mod(a, b)`"),
     ("sign", "//", "a comment begins with `#`, behind a space; a whole quotient is `floor(a/b)`"),
@@ -221,6 +228,7 @@ _SENTENCES = (
         "x y z",
         "an axis is `1 0 0`, `0 1 0` or `0 0 1`; the coordinates of a place stand in formulas of fields alone",
     ),
+    ("name", "to until", "from when to when is two conditions: `(time > 1 s)*(time < 2 s)`"),
     ("name", "true yes", "in a formula write `1`"),
     ("name", "false no", "in a formula write `0`"),
     (
@@ -237,6 +245,8 @@ _SENTENCES = (
         "a material says it, `material: {metal: {roughness: 0.2}}`: `sceneql words glossy`",
     ),
     ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
+    ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
+    ("field", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
     ("field", "diameter", "write half of it as `radius`"),
     (
         "field",
@@ -275,13 +285,24 @@ _SENTENCES = (
     ("section", "scene world root project", "the sections stand by themselves, with no key around them"),
     ("section", "floor", "write `objects: {floor: plane}`"),
     ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
+    (
+        "objects",
+        "ellipsoid egg spheroid",
+        "write its formula: `{implicit: {field: (x/2)^2 + y^2 + z^2 - 1, bounds: {box: [-2 -1 -1, 2 1 1]}}}`",
+    ),
+    ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: ...}}}`"),
+    (
+        "models",
+        "pendulum double_pendulum",
+        "its equation is a model, `sceneql words equations`; or a body hangs on a tie, `sceneql words hinge`",
+    ),
     ("entry", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
 )
 """What a word is taken for, the words, and the sentence."""
 
 INSTEAD = {(what, word): text for kinds, words, text in _SENTENCES for what in kinds.split() for word in words.split()}
 """The sentence of what to write in place of a called `function`, a `sign` or `name` of a formula, the `field` of a
-part, a `section` of the script, the key of an `entry`, or a `unit`."""
+part, a `section` of the script, the key of an `entry`, a `unit`, or a word of a family, by the family's name."""
 
 _TON = re.compile(r"\d\s*[^\s()\[\],]*[*/]t(?!\w)")
 
