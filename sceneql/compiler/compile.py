@@ -8,6 +8,7 @@ from dataclasses import replace
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS, check
 from sceneql.compiler.names import Parsed
+from sceneql.compiler.over_time import check_latest
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.contact_words import report_contacts
@@ -25,6 +26,7 @@ from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.compiler.passes.unmoved import report_moving
+from sceneql.compiler.passes.unshown import warn_of_unshown
 from sceneql.compiler.studies import check_studies
 from sceneql.compiler.values_below import values_of
 from sceneql.doing import duration
@@ -66,6 +68,7 @@ def compile_script(
     known = not unsure(script.root.entries.get("variants", script.root))
     check_layouts(tasks, script.variants if known else None, found)
     if checked.timed:
+        check_latest(script, tasks, checked.settings.clock.end, found)
         _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
     found.raise_errors()
     check_fillings(tasks, found)
@@ -78,6 +81,7 @@ def compile_script(
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}
+    warn_of_unshown(tasks, order, expected, found)
     if not pruned:
         order = {**order, **{name: task for name, task in tasks.items() if name not in order}}
     return SimulationGraph(
