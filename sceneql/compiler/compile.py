@@ -14,6 +14,7 @@ from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.contact_words import report_contacts
 from sceneql.compiler.passes.doubts import warn_of_doubts
 from sceneql.compiler.passes.expand import expand
+from sceneql.compiler.passes.far_joints import warn_of_far_joints
 from sceneql.compiler.passes.fillings import check_fillings
 from sceneql.compiler.passes.insides import report_hollow
 from sceneql.compiler.passes.islands import islands
@@ -75,6 +76,7 @@ def compile_script(
     report_probes(script, tasks, found)
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
+    warn_of_far_joints(tasks, found)
     warn_of_doubts(tasks, checked.settings.clock, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
