@@ -138,8 +138,8 @@ class Watch:
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings: contacts that gave way or are lacking, energy gained, springs overstretched, fields ringing or overshooting,
-        breakpoints, halved steps."""
+        """Warnings: contacts that gave way or are lacking, energy gained, springs overstretched, fields ringing or
+        overshooting, breakpoints, halved steps."""
         found = [*self._ringing, *(note for island in self._islands for note in island.notes)]
         for span in self._turning:
             message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"

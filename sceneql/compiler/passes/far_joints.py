@@ -1,4 +1,4 @@
-"""Ties that hold a body by a place far outside of it: a warning, for places are most often told in wrong coordinates."""
+"""Ties that hold a body by a place far outside of it: a warning, as places are often told in wrong coordinates."""
 
 from __future__ import annotations
 
