@@ -9,6 +9,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS, check
 from sceneql.compiler.names import Parsed
 from sceneql.compiler.over_time import check_latest
+from sceneql.compiler.passes.boundary_names import report_boundary_names
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.contact_words import report_contacts
@@ -20,6 +21,7 @@ from sceneql.compiler.passes.insides import report_hollow
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.open_meshes import warn_of_open_meshes
+from sceneql.compiler.passes.overlaps import report_overlaps
 from sceneql.compiler.passes.probes import report_probes
 from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.readable import report_unreadable
@@ -74,6 +76,8 @@ def compile_script(
     found.raise_errors()
     check_fillings(tasks, found)
     report_probes(script, tasks, found)
+    report_boundary_names(script, tasks, found)
+    report_overlaps(tasks, groups, found)
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
     warn_of_far_joints(tasks, found)
