@@ -20,6 +20,7 @@ from sceneql.compiler.passes.far_joints import warn_of_far_joints
 from sceneql.compiler.passes.fillings import check_fillings
 from sceneql.compiler.passes.insides import report_hollow
 from sceneql.compiler.passes.islands import islands
+from sceneql.compiler.passes.keys_beyond import warn_of_keys
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.open_meshes import warn_of_open_meshes
 from sceneql.compiler.passes.outside_flows import report_outside_flows
@@ -86,6 +87,7 @@ def compile_script(
     warn_of_bounds(tasks, found)
     warn_of_far_joints(tasks, found)
     warn_of_doubts(tasks, checked.settings.clock, found)
+    warn_of_keys(tasks, checked.settings.clock, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
     found.raise_errors()

@@ -126,7 +126,7 @@ class Model(Kind):
         """
         return ()
 
-    def held(self) -> Iterable[HeldPart]:
+    def held_parts(self) -> Iterable[HeldPart]:
         """Parts of it that it holds by their places."""
         return ()
 

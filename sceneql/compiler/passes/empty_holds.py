@@ -19,7 +19,7 @@ def report_empty_holds(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     """Report each part that is sure to hold no place."""
     start: Any = Beginning(tasks)
     for task in tasks.values():
-        for part in task.kind.held() if isinstance(task.kind, Model) else ():
+        for part in task.kind.held_parts() if isinstance(task.kind, Model) else ():
             try:
                 low, high = _box(part.inside, start) if isinstance(part.inside, Ref) else part.inside
             except UNKNOWN:

@@ -74,10 +74,13 @@ class Elastic(Model):
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS, **solid_modes.OUTPUTS}
-    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("modulus", "young", "youngs_modulus", "stiffness", "poisson", "poisson_ratio"),
-        "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
-    )
+    said_by: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("modulus", "young", "youngs_modulus", "stiffness", "poisson", "poisson_ratio"),
+            "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
+        ),
+        **dict.fromkeys(("mass", "weight"), "write its density, `density: 1000 kg/m^3`"),
+    }
     has_skin: ClassVar[bool] = True
 
     of: kinds.ObjectRef | None = field(
@@ -197,7 +200,7 @@ class Elastic(Model):
             for name, place in self.probes.items():
                 yield Probed(("probes", name), place, self.of, self.spacing)
 
-    def held(self) -> Iterable[HeldPart]:
+    def held_parts(self) -> Iterable[HeldPart]:
         """Its holds, of an object or a block."""
         place = self.block.box() if self.block is not None else self.of
         return (
