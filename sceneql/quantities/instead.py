@@ -196,7 +196,7 @@ _SENTENCES = (
     ("section", "scene world root project", "the sections stand by themselves, with no key around them"),
     ("section", "floor", "write `objects: {floor: plane}`"),
     ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
-    ("zero", "mass", "what never moves is an object without a model, or a body with `fixed: yes`"),
+    ("zero", "mass", "what never moves is an object without a model, or a body or mass with `fixed: yes`"),
     ("body", "wall ground static base ceiling earth fixed none null", "what stands still is `world`"),
     ("body", "floor", "a body is of a model; what stands still is `world`"),
     (
