@@ -39,6 +39,8 @@ _SENTENCES = (
     ),
     ("field.models", "feed kill", "what is fed and dies stands in the rates: `rate: -u*v^2 + 0.03*(1 - u)`"),
     ("section", "args arguments inputs", "what an instance may be given stands under `fields: {radius: 1 m}`"),
+    ("field.ties", "length distance", "a rod is as long as its ends are apart at the start: `from` and `to`"),
+    ("field.objects", "static fixed kinematic dynamic", "an object that no model moves stands still"),
     ("section", "seed", "write `clock: {seed: 5}`"),
     ("behind", "px pixel pixels pt", "letters are as high as a part of the picture: `size: 0.05`"),
     ("function", "if switch select", _IF),

@@ -92,5 +92,6 @@ def _field(shape: Object, place: Floats, start: Any) -> float:
     from sceneql.field.tape.builder import TapeBuilder
 
     build = TapeBuilder()
-    value = build.number(shape.implicit(build, *(build.constant(float(x)) for x in place), start))
+    x, y, z = (build.constant(float(c)) for c in place)
+    value = build.number(shape.implicit(build, x, y, z, start))
     return 1.0 if value is None else value
