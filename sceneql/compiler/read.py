@@ -345,8 +345,8 @@ class Reader:
         if not isinstance(node, MappingNode):
             first = node.items[0].span.text if isinstance(node, Sequence) and node.items else "name"
             first = first if first.isidentifier() else "name"
-            help = f"write `{{{first}: ...}}`, each entry under a name of its own"
-            raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, help)
+            better = f"write `{{{first}: ...}}`, each entry under a name of its own"
+            raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, better)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():
             if (help := numbered(name)) is not None:
