@@ -10,7 +10,7 @@ from numba import types
 
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.lanes_kernels import load, spread, store
+from sceneql.compiled.lanes_kernels import load, spread, store, turn_over
 from sceneql.flows.layout import (
     FACTORS,
     FREE_FREE,
@@ -20,6 +20,7 @@ from sceneql.flows.layout import (
     LENGTH,
     NODES,
     NODES_FREE,
+    PAD,
     PLAN,
     QUARTER_COSINES,
     QUARTER_SINES,
@@ -139,37 +140,41 @@ def extended(j, kind, count, n, forward):
 def bring(x, raw, count, stride, step, lanes):
     """Numbers of rows ``step`` apart, the j-th of row l at 2 LANES j + l; 0 in rows from ``lanes`` on.
 
-    By blocks, so that rows whose numbers are neighbors are read a line of memory at a time.
+    By squares where rows' numbers are neighbors, so that a line of memory is read at a time.
     """
-    for first in range(0, count, LANES):
-        last = min(first + LANES, count)
-        if step == 1:
-            for j in range(first, last):
-                for lane in range(lanes):
-                    raw[2 * LANES * j + lane] = x[j * stride + lane]
-        else:
-            for lane in range(lanes):
-                for j in range(first, last):
-                    raw[2 * LANES * j + lane] = x[j * stride + lane * step]
-        if lanes < 2 * LANES:
-            for j in range(first, last):
-                for lane in range(lanes, 2 * LANES):
-                    raw[2 * LANES * j + lane] = 0.0
+    if lanes == 2 * LANES and step == 1:
+        for j in range(count):
+            store(raw, 2 * LANES * j, load(x, j * stride))
+            store(raw, 2 * LANES * j + LANES, load(x, j * stride + LANES))
+        return
+    first = 0
+    if lanes == 2 * LANES and stride == 1:
+        first = count - count % LANES
+        for j in range(0, first, LANES):
+            turn_over(x, j, step, raw, 2 * LANES * j, 2 * LANES)
+            turn_over(x, j + LANES * step, step, raw, 2 * LANES * j + LANES, 2 * LANES)
+    for lane in range(2 * LANES):
+        for j in range(first, count):
+            raw[2 * LANES * j + lane] = x[j * stride + lane * step] if lane < lanes else 0.0
 
 
 @lean_inlined
 def take_back(raw, x, count, stride, step, lanes):
     """The way back of `bring`."""
-    for first in range(0, count, LANES):
-        last = min(first + LANES, count)
-        if step == 1:
-            for j in range(first, last):
-                for lane in range(lanes):
-                    x[j * stride + lane] = raw[2 * LANES * j + lane]
-        else:
-            for lane in range(lanes):
-                for j in range(first, last):
-                    x[j * stride + lane * step] = raw[2 * LANES * j + lane]
+    if lanes == 2 * LANES and step == 1:
+        for j in range(count):
+            store(x, j * stride, load(raw, 2 * LANES * j))
+            store(x, j * stride + LANES, load(raw, 2 * LANES * j + LANES))
+        return
+    first = 0
+    if lanes == 2 * LANES and stride == 1:
+        first = count - count % LANES
+        for j in range(0, first, LANES):
+            turn_over(raw, 2 * LANES * j, 2 * LANES, x, j, step)
+            turn_over(raw, 2 * LANES * j + LANES, 2 * LANES, x, j + LANES * step, step)
+    for lane in range(lanes):
+        for j in range(first, count):
+            x[j * stride + lane * step] = raw[2 * LANES * j + lane]
 
 
 @lean_inlined
@@ -242,22 +247,23 @@ def along(x, count, stride, rows, step, groups, outer, forward, tables, scratch,
     """Transform x in place along an axis of ``count`` numbers ``stride`` apart, forward or back.
 
     Of each of ``groups`` groups, ``outer`` apart, there are ``rows`` rows, ``step`` apart. ``scratch``: 2 LANES count +
-    4 LANES (length of the complex transform).
+    4 LANES (length of the complex transform) + 3 PAD; without these the four arrays of a length of a power of two would
+    share their lines of the cache.
     """
     widest()
     kind, n = plan[KIND], plan[LENGTH]
     wave = tables[plan[TWIDDLES] : plan[TWIDDLES] + 2 * n]
     cosines = tables[plan[TWISTS] : plan[TWISTS] + n]
     sines = tables[plan[TWISTS] + n : plan[TWISTS] + 2 * n]
-    size, at = n * LANES, 2 * LANES * count
+    size, at, apart = n * LANES, 2 * LANES * count, n * LANES + PAD
     raw = scratch[:at]
     for number in range(groups * ((rows + 2 * LANES - 1) // (2 * LANES))):
         batches = (rows + 2 * LANES - 1) // (2 * LANES)
         begin = 2 * LANES * (number % batches)
         here = x[(number // batches) * outer + begin * step :]
         lanes = min(2 * LANES, rows - begin)
-        re, im = scratch[at : at + size], scratch[at + size : at + 2 * size]
-        more_re, more_im = scratch[at + 2 * size : at + 3 * size], scratch[at + 3 * size : at + 4 * size]
+        re, im = scratch[at : at + size], scratch[at + apart : at + apart + size]
+        more_re, more_im = scratch[at + 2 * apart :][:size], scratch[at + 3 * apart :][:size]
         bring(here, raw, count, stride, step, lanes)
         back = kind < WAVES and not forward
         if back:

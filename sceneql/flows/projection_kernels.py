@@ -241,6 +241,23 @@ def less_gradient(x, q, factor, floats, ints):
                     lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, nx)
 
 
+@lean(types.boolean(A, N, A, I), inner=True)
+def rid(x, what, floats, ints):
+    """`project`, where floats[ints[PRESSURE]:] are the inflows of cells."""
+    n = ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2]
+    q = floats[ints[PRESSURE] : ints[PRESSURE] + n]
+    solved = True
+    small = SMALL * through_faces(x, what, floats, ints) if ints[ITERATES] > 0 else 0.0
+    if ints[ITERATES] == 1:
+        solved = by_iterations(q, small, floats, ints)
+    elif ints[ITERATES] == 2:
+        solved = by_name(q, small, floats, ints)
+    else:
+        by_transform(q, floats, ints)
+    less_gradient(x, q, 1.0, floats, ints)
+    return solved
+
+
 @lean(types.boolean(A, N, A, I))
 def project(x, what, floats, ints):
     """Make x free of divergence; floats[ints[PRESSURE]:] is then what its gradient takes away. Whether it is.
@@ -252,16 +269,7 @@ def project(x, what, floats, ints):
     outflow(x, q, what, floats, ints)
     for c in range(n):
         q[c] = -q[c]
-    solved = True
-    small = SMALL * through_faces(x, what, floats, ints) if ints[ITERATES] > 0 else 0.0
-    if ints[ITERATES] == 1:
-        solved = by_iterations(q, small, floats, ints)
-    elif ints[ITERATES] == 2:
-        solved = by_name(q, small, floats, ints)
-    else:
-        by_transform(q, floats, ints)
-    less_gradient(x, q, 1.0, floats, ints)
-    return solved
+    return rid(x, what, floats, ints)
 
 
 @lean(TERM, inner=True)
