@@ -301,8 +301,8 @@ load = _load_in_python if UNCOMPILED else _load
 store = _store_in_python if UNCOMPILED else _store
 """store(array, at, lanes): float64 may be rounded to float32."""
 turn_over = _turn_over_in_python if UNCOMPILED else _turn_over
-"""turn_over(source, at, step, target, to, to_step): the rows of a square of numbers, at at, at + step, .., as columns of
-one in target, whose rows stand at to, to + to_step, .."""
+"""turn_over(source, at, step, target, to, to_step): the rows of a square of numbers, from at on, as columns
+of one in target, at to"""
 spread = (lambda number: np.full(BYTES // np.asarray(number).itemsize, number)) if UNCOMPILED else _spread
 """A number in all lanes."""
 fma = _fma_in_python if UNCOMPILED else _fma

@@ -6,6 +6,8 @@ Frameworks for the Fast Fourier Transform (1992), 1.7); cosines come from it by 
 27-34. There and back a number comes out times the length of the complex transform.
 """
 
+from math import cos, pi, sin
+
 from numba import types
 
 from sceneql.compiled.arithmetic_kernels import widest
@@ -30,6 +32,9 @@ from sceneql.flows.layout import (
     WAVES,
 )
 from sceneql.system.signatures_kernels import A, I, N
+
+SINE_3 = sin(2 * pi / 3)
+COSINE_5, COSINE_52, SINE_5, SINE_52 = cos(2 * pi / 5), cos(4 * pi / 5), sin(2 * pi / 5), sin(4 * pi / 5)
 
 
 @lean_inlined
@@ -71,6 +76,51 @@ def by_four(re, im, to_re, to_im, at, far, into, width, wave, n, turn):
 
 
 @lean_inlined
+def turned(to_re, to_im, o, xr, xi, wave, n, turn):
+    """Store a number times exp(-2 pi i turn/n)."""
+    c, s = wave[turn], -wave[n + turn]
+    store(to_re, o, xr * c - xi * s)
+    store(to_im, o, xr * s + xi * c)
+
+
+@lean_inlined
+def by_three(re, im, to_re, to_im, at, far, into, width, wave, n, turn):
+    """One butterfly of three for all lanes."""
+    for q in range(0, width, LANES):
+        k, o = at + q, into + q
+        ar, ai, br, bi = load(re, k), load(im, k), load(re, k + far), load(im, k + far)
+        cr, ci = load(re, k + 2 * far), load(im, k + 2 * far)
+        er, ei, fr, fi = br + cr, bi + ci, SINE_3 * (br - cr), SINE_3 * (bi - ci)
+        gr, gi = ar - 0.5 * er, ai - 0.5 * ei
+        store(to_re, o, ar + er)
+        store(to_im, o, ai + ei)
+        turned(to_re, to_im, o + width, gr + fi, gi - fr, wave, n, turn)
+        turned(to_re, to_im, o + 2 * width, gr - fi, gi + fr, wave, n, 2 * turn)
+
+
+@lean_inlined
+def by_five(re, im, to_re, to_im, at, far, into, width, wave, n, turn):
+    """One butterfly of five for all lanes."""
+    for q in range(0, width, LANES):
+        k, o = at + q, into + q
+        ar, ai, br, bi = load(re, k), load(im, k), load(re, k + far), load(im, k + far)
+        cr, ci = load(re, k + 2 * far), load(im, k + 2 * far)
+        dr, di = load(re, k + 3 * far), load(im, k + 3 * far)
+        er, ei = load(re, k + 4 * far), load(im, k + 4 * far)
+        pr, pm, qr, qi, ur, ui, vr, vi = br + er, bi + ei, br - er, bi - ei, cr + dr, ci + di, cr - dr, ci - di
+        store(to_re, o, ar + (pr + ur))
+        store(to_im, o, ai + (pm + ui))
+        xr, xi = ar + (COSINE_5 * pr + COSINE_52 * ur), ai + (COSINE_5 * pm + COSINE_52 * ui)
+        yr, yi = SINE_5 * qr + SINE_52 * vr, SINE_5 * qi + SINE_52 * vi
+        turned(to_re, to_im, o + width, xr + yi, xi - yr, wave, n, turn)
+        turned(to_re, to_im, o + 4 * width, xr - yi, xi + yr, wave, n, 4 * turn)
+        xr, xi = ar + (COSINE_52 * pr + COSINE_5 * ur), ai + (COSINE_52 * pm + COSINE_5 * ui)
+        yr, yi = SINE_52 * qr - SINE_5 * vr, SINE_52 * qi - SINE_5 * vi
+        turned(to_re, to_im, o + 2 * width, xr + yi, xi - yr, wave, n, 2 * turn)
+        turned(to_re, to_im, o + 3 * width, xr - yi, xi + yr, wave, n, 3 * turn)
+
+
+@lean_inlined
 def by_many(re, im, to_re, to_im, p, m, r, width, wave, n, fold):
     """One butterfly of r for all lanes."""
     for k in range(r):
@@ -103,6 +153,10 @@ def fourier(re, im, other_re, other_im, n, wave, factors):
                 by_two(re, im, other_re, other_im, p * width, m * width, 2 * p * width, width, wave, n, p * fold)
             elif r == 4:
                 by_four(re, im, other_re, other_im, p * width, m * width, 4 * p * width, width, wave, n, p * fold)
+            elif r == 3:
+                by_three(re, im, other_re, other_im, p * width, m * width, 3 * p * width, width, wave, n, p * fold)
+            elif r == 5:
+                by_five(re, im, other_re, other_im, p * width, m * width, 5 * p * width, width, wave, n, p * fold)
             else:
                 by_many(re, im, other_re, other_im, p, m, r, width, wave, n, fold)
         re, other_re, im, other_im = other_re, re, other_im, im
