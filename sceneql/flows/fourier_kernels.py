@@ -333,6 +333,24 @@ def along(x, count, stride, rows, step, groups, outer, forward, tables, scratch,
         take_back(raw, here, count, stride, step, lanes)
 
 
+@lean(types.void(A, N, N, N, N, N, N, N, types.boolean, A, A, I), inner=True)
+def transform_of_rows(x, nx, ny, nz, first, last, back, front, forward, tables, scratch, plans):
+    """`transform`, forward where all is 0 but rows from ``first`` to before ``last`` along y, ``back`` to before
+    ``front`` along z; back where no others are wanted."""
+    plane, deep = nx * ny, front - back
+    for turn in range(3):
+        axis = turn if forward else 2 - turn
+        if axis == 0 and last - first == ny:
+            along(x[back * plane :], nx, 1, ny * deep, nx, 1, 0, forward, tables, scratch, plans[:PLAN])
+        elif axis == 0:
+            here = x[back * plane + first * nx :]
+            along(here, nx, 1, last - first, nx, deep, plane, forward, tables, scratch, plans[:PLAN])
+        elif axis == 1:
+            along(x[back * plane :], ny, nx, nx, 1, deep, plane, forward, tables, scratch, plans[PLAN : 2 * PLAN])
+        elif nz > 1:
+            along(x, nz, plane, plane, 1, 1, 0, forward, tables, scratch, plans[2 * PLAN : 3 * PLAN])
+
+
 @lean(types.void(A, N, N, N, types.boolean, A, A, I), inner=True)
 def transform(x, nx, ny, nz, forward, tables, scratch, plans):
     """Transform x in place along all its axes."""

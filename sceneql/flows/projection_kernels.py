@@ -40,6 +40,7 @@ from sceneql.flows.layout import (
     VELOCITY,
     WORK,
 )
+from sceneql.flows.near_solids_kernels import by_few, near_solids
 from sceneql.grids.multigrid.layout import SOLVER
 from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
@@ -106,13 +107,21 @@ def by_iterations(b, small, floats, ints):
     """Solve the pressure's equation in place, by conjugate gradients from 0, to a residual; whether it was reached.
 
     The transform alone as preconditioner would take the more iterations the less is left of a cell: so a step of
-    Jacobi's method in cut cells goes before it and comes after it.
+    Jacobi's method in cut cells goes before it and comes after it. Where few cells are near solids these alone are
+    iterated on.
     """
     nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
     n = nx * ny * nz
     room = floats[ints[WORK] - 5 * n : ints[WORK]]
+    most, sink = n // 3, floats[ints[SINK] : ints[SINK] + n]
+    few = near_solids(room[4 * n :], room, room[most:], most, floats, ints)
+    if few >= 0:
+        centered(b, sink, ints)
+        solved = by_few(b, small, few, room, floats, ints)
+        centered(b, sink, ints)
+        return solved
     r, z, p, q, volume = room[:n], room[n : 2 * n], room[2 * n : 3 * n], room[3 * n : 4 * n], room[4 * n :]
-    sink, cut = floats[ints[SINK] : ints[SINK] + n], floats[ints[CUT] : ints[CUT] + n]
+    cut = floats[ints[CUT] : ints[CUT] + n]
     gx = floats[ints[CONDUCTANCES] : ints[CONDUCTANCES] + n]
     gy = floats[ints[CONDUCTANCES + 1] : ints[CONDUCTANCES + 1] + n]
     gz = floats[ints[CONDUCTANCES + 2] : ints[CONDUCTANCES + 2] + (n if nz > 1 else 0)]
