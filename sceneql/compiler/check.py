@@ -327,6 +327,8 @@ class _Checker:
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
         together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
         help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
+        if isinstance(node, SequenceNode) and len(node.items) == 1:
+            help = f"write `{node.items[0].span.text}`"
         if isinstance(node, MappingNode):
             help = word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)
@@ -370,6 +372,10 @@ class _Checker:
         words = self.catalogue.words(mark.family)
         section, _, inside = name.partition(".")
         hint = instead("part", name) or suggestion(name, [*choices, *words])
+        if several := self.script.groups.get(name):
+            hint = (
+                f"'{name}' is {len(several)} parts: name one, `{several[0]}`, or repeat this part, with `{name}.{{i}}`"
+            )
         if mark.bodies and name[:1] in "-[0123456789":
             hint = "a place is no body: write `world`, and the place in another field of the tie, `to: 0 2 0 m`"
         if section in self.script.sections and inside in self.entries:

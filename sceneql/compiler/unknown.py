@@ -10,7 +10,10 @@ from sceneql.kinds import written_name
 from sceneql.language.scope import Entry
 from sceneql.language.tree import Mapping
 from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
-from sceneql.quantities.other_words import instead
+from sceneql.quantities.other_words import OURS, instead
+
+MANY = 6
+"""Words up to which all that have a field are told."""
 
 
 def report_unknown(
@@ -24,6 +27,8 @@ def report_unknown(
     for name in unknown:
         help = (said_by or {}).get(name) or suggestion(name, known)
         help = help or instead("field", name) or "it has " + ", ".join(known)
+        if len(known) == 1 and nearest(name, known) is None and not (said_by or {}).get(name):
+            help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
         if (meant := meant_field(name, known)) is not None and name.startswith(f"{meant} "):
             help = f"write `{meant}: {name.removeprefix(meant).strip()}`"
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
@@ -46,10 +51,11 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
         return f"it belongs under '{others[0]}:'"
     if catalogue.load(family, entry.name) is not None:
         return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
-    near = nearest(entry.word, words)
-    if fields is not None and near is None and (having := _having([entry.word], family, catalogue)):
-        text = f"`{{{having[0]}: {{{entry.word}: {fields.span.text}}}}}`"
-        return f"it is a field of {', '.join(sorted(having))}: write {text}"
+    having = [] if fields is None or entry.word in OURS else _having([entry.word], family, catalogue)
+    if fields is not None and having:
+        near = nearest(entry.name, having) or having[0]
+        of = f" of {', '.join(sorted(having))}" if len(having) <= MANY else ""
+        return f"it is a field{of}: write `{{{near}: {{{entry.word}: {fields.span.text}}}}}`"
     return instead(family, entry.word) or suggestion(entry.word, words)
 
 
