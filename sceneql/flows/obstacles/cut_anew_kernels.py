@@ -19,7 +19,7 @@ from sceneql.flows.advection_kernels import sides
 from sceneql.flows.obstacles import moving_layout as own
 from sceneql.flows.obstacles.cut_kernels import cut, nearest, place, reach, side, wall_velocity
 from sceneql.flows.obstacles.moving_skin_kernels import opened_wall, scales, tie
-from sceneql.flows.obstacles.no_slip_numbers import BESIDE, LEAST, SLIVER
+from sceneql.flows.obstacles.no_slip_numbers import BESIDE, LEAST, SLIVER, UNEVEN
 from sceneql.flows.projection_kernels import first_face, project
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
@@ -27,8 +27,6 @@ APART = 0.02
 """How far walls are thought to go on, in cells, for the rate of what they leave open."""
 NEAR, LONGEST = 3.0, 16
 """Cells that are near a wall, whose distance is not always that along a row; places that are passed over at most."""
-UNEVEN = 0.05
-"""What all walls together push into a closed box, in parts of what they push at all, from which on it has no place."""
 
 
 @lean(F(A, I, N, N, F, F, F, F, F, F), inner=True)
@@ -221,6 +219,7 @@ def push(floats, ints):
                 change, changes = change + rate[cell], changes + abs(rate[cell])
     if flow[layout.SINGULAR] == 0:
         return True
+    out[2 * n] = total / size if size > 0.0 else 0.0
     for cell in range(n):
         out[cell] -= abs(out[cell]) * total / size if size > 0.0 else 0.0
         rate[cell] -= abs(rate[cell]) * change / changes if changes > 0.0 else 0.0
