@@ -44,8 +44,8 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     write_row,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
-from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
+from sceneql.linear.multifrontal.solve_kernels import solve_symmetric
+from sceneql.linear.multifrontal.symmetric_kernels import factor_symmetric
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
 MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, STARTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(10)

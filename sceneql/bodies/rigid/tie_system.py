@@ -36,7 +36,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     from sceneql.bodies.rigid import tie_kernels as kernels
     from sceneql.bodies.rigid.rattle_kernels import KEPT
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, ROW
-    from sceneql.linear.multifrontal import plan
+    from sceneql.linear.multifrontal.planning import plan
 
     movers: dict[tuple[int, ...], int] = {}
     rows: list[tuple[int, ...]] = []

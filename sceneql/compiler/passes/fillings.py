@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import isfinite
 from typing import Any
 
 from sceneql.failure import RunFailure
@@ -51,12 +50,20 @@ def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
         for ref, bounds in task.kind.fillings() if isinstance(task.kind, Model) else ():
             try:
                 low, high = start.object(ref).extent(_place(), start)
-                if isfinite(sum(high - low)):
+                if _finite(low, high):
                     bounds(low, high)
             except Exceeds as error:
                 found.error("limit-refused", f"{task.name}: at least {error}", ref.span, help="use a larger spacing")
             except (TypeError, ValueError, RunFailure, ScriptError):
                 continue  # the run reports it
+
+
+def _finite(low: Any, high: Any) -> bool:
+    """Whether a box has sides."""
+    import numpy as np
+
+    with np.errstate(over="ignore", invalid="ignore"):
+        return bool(np.isfinite(high - low).all())
 
 
 def _place() -> Any:

@@ -13,7 +13,7 @@ from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.rigid_layout import BODIES, MASSES_AT, SHAPES_AT
 from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE
 from sceneql.contacts.shape_kernels import near_at
-from sceneql.linear.block_order_kernels import filled, longer
+from sceneql.linear.multifrontal.block_order_kernels import filled, longer
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MODELS, THICKNESS_AT, MEMORY_AT, TALLY_AT, SURFACES, SURFACES_AT, HEAD = range(7)

@@ -52,7 +52,7 @@ from sceneql.contacts.distance.rigid_layout import BODIES, MASSES_AT, RESTITUTIO
 from sceneql.contacts.distance.rigid_rows_kernels import BOUNCES, MOTION, PLACE, speed_along, with_room
 from sceneql.contacts.impact_kernels import MOST_CUTS, count_hit
 from sceneql.contacts.shape_kernels import surface
-from sceneql.linear.block_order_kernels import filled
+from sceneql.linear.multifrontal.block_order_kernels import filled
 from sceneql.system.signatures_kernels import A, F, I, N
 
 LONGEST, LONGER = 3, 4

@@ -76,8 +76,8 @@ from sceneql.contacts.distance.rigid_layout import (
 )
 from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, note_places, recall, with_room
 from sceneql.contacts.distance.swept_boxes_kernels import BOX
-from sceneql.linear.block_order_kernels import filled
-from sceneql.linear.cone_layout_kernels import ROW
+from sceneql.linear.cones.cone_layout_kernels import ROW
+from sceneql.linear.multifrontal.block_order_kernels import filled
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
 TOUCH, ROLLING = "sceneql.contacts.distance.first_touch_kernels", "sceneql.contacts.distance.rolling_kernels"
@@ -99,7 +99,7 @@ LAZY_FIRST = (
     "sceneql.contacts.distance.separation_kernels",
     "sceneql.contacts.distance.overlay_kernels",
     TOUCH,
-    "sceneql.linear.cone_kernels",
+    "sceneql.linear.cones.cone_kernels",
 )
 """Lazily compiled modules with which a background process begins (driver.lazy_first)."""
 ROUNDS = 12

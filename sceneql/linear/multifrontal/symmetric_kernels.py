@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """The multifrontal factorization of symmetric matrices: U alone, in its place, on several threads.
 
-For the plan see multifrontal_kernels; helpers are for arrays of either precision. A front's eliminated rows (width x
+For the plan see systems_kernels; helpers are for arrays of either precision. A front's eliminated rows (width x
 rows) are computed in place, among the factors, with the reciprocals of the pivots D^-1 on the diagonal; A = U^T
 D^-1 U. Its update is the upper half of the square of its other rows. L = U^T D^-1 is never stored: its entries are
 products. Large subtrees of fronts are pieces that threads share; results do not depend on the number of threads.
@@ -15,9 +15,9 @@ from numba import types
 from sceneql.compiled.arithmetic_kernels import fma, widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.threads_kernels import over_threads
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_entries_kernels import put
-from sceneql.linear.panel_update_kernels import MOST, ROWS, add_rows, coefficients
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.entries_kernels import put
+from sceneql.linear.multifrontal.panel_update_kernels import MOST, ROWS, add_rows, coefficients
 from sceneql.system.signatures_kernels import A, I, N
 
 FEW = 4
@@ -203,7 +203,7 @@ def factor_fronts(plan, values, factors, work, begin, end):
 
 @lean(FACTOR_SYMMETRIC, inner=True)
 def factor_symmetric(plan, values, factors, work):
-    """Factor as multifrontal_kernels.factor_system does; half of the values is read."""
+    """Factor as systems_kernels.factor_system does; half of the values is read."""
     if plan[layout.PIECES] > 0:
         entry, threads, pieces = plan[layout.ENTRY], plan[layout.THREADS], plan[layout.PIECES]
         over_threads(entry, threads, plan[layout.PIECE_AT], pieces, 0.0, values, factors, work, plan)

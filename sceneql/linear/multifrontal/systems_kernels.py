@@ -4,7 +4,7 @@
 The integers of a plan: [unknowns, fronts, where these start: order, rows, maps, entries, pivots; floats of the
 updates; where the pieces start, how many; the numbers of threads_kernels.threads, the address of the kernel that
 factors a piece; unknowns of a unit, whose blocks make up the matrix; the addresses of the kernels that solve in a
-piece; numbers and addresses of the same of multifrontal_single_kernels (-1: not worth it), whether the factors are in
+piece; numbers and addresses of the same of single_precision_kernels (-1: not worth it), whether the factors are in
 single precision, how many next ones are not to be, whether solutions are to be refined, the bits of what the matrix was
 multiplied by; where the starts of the rows of blocks and their columns start], then a table with FIELDS a front: first
 unknown, number eliminated, rows of the front, then where its rows, its map into the parent, its factors and its entries
@@ -20,17 +20,17 @@ import numpy as np
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL, factor_single_at, solve_single_at
-from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
-from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL, factor_single_at, solve_single_at
+from sceneql.linear.multifrontal.solve_kernels import solve_symmetric
+from sceneql.linear.multifrontal.symmetric_kernels import factor_symmetric
 from sceneql.linear.solver_kernels import FACTOR_SYSTEM, NEGATIVES, SOLVE_SYSTEM
 
 RESTS = 7
 """Factorizations in double precision after one in single precision was too inaccurate."""
 
-factor_general = lazy("sceneql.linear.multifrontal_general_kernels:factor_general", FACTOR_GENERAL)
-solve_general = lazy("sceneql.linear.multifrontal_general_kernels:solve_general", SOLVE_GENERAL)
+factor_general = lazy("sceneql.linear.multifrontal.general_kernels:factor_general", FACTOR_GENERAL)
+solve_general = lazy("sceneql.linear.multifrontal.general_kernels:solve_general", SOLVE_GENERAL)
 
 
 @lean(FACTOR_SYSTEM)

@@ -18,7 +18,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean
-from sceneql.linear.cone_finish_kernels import (
+from sceneql.linear.cones.cone_finish_kernels import (
     BALANCED,
     GOOD,
     LESS,
@@ -29,7 +29,7 @@ from sceneql.linear.cone_finish_kernels import (
     finish,
     roughness,
 )
-from sceneql.linear.cone_layout_kernels import (
+from sceneql.linear.cones.cone_layout_kernels import (
     AT_B,
     AT_D,
     AT_DS,
@@ -70,8 +70,8 @@ from sceneql.linear.cone_layout_kernels import (
     spring_rows,
     turn_rows,
 )
-from sceneql.linear.cone_points_kernels import aim, inner, scale, scaled, scaled_step, tail
-from sceneql.linear.cone_rows_kernels import (
+from sceneql.linear.cones.cone_points_kernels import aim, inner, scale, scaled, scaled_step, tail
+from sceneql.linear.cones.cone_rows_kernels import (
     factor,
     fetch,
     keep,

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.island.rising import rising
-from sceneql.linear.ordering import postorder
+from sceneql.linear.multifrontal.ordering import postorder
 
 if TYPE_CHECKING:
     from numpy import int64

@@ -10,7 +10,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.cone_layout_kernels import (
+from sceneql.linear.cones.cone_layout_kernels import (
     AT_ARM_A,
     AT_B,
     AT_DS,
@@ -39,7 +39,7 @@ from sceneql.linear.cone_layout_kernels import (
     ROWS,
     prepare_rows,
 )
-from sceneql.linear.cone_rows_kernels import cross, pair_of, put, turned
+from sceneql.linear.cones.cone_rows_kernels import cross, pair_of, put, turned
 from sceneql.system.signatures_kernels import A, I, N
 
 

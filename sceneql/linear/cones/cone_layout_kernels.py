@@ -5,8 +5,8 @@ from numba import types
 
 from sceneql.compiled.kernels import kernel
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.linear.block_order_kernels import filled
-from sceneql.linear.block_plan_kernels import BLOCK, plan_blocks
+from sceneql.linear.multifrontal.block_order_kernels import filled
+from sceneql.linear.multifrontal.block_plan_kernels import BLOCK, plan_blocks
 from sceneql.system.signatures_kernels import A, F, I, N
 
 BODIES, CONTACTS, PAIRS_AT, CONTACT_INTS_AT, DIAGONAL_AT, PLAN_AT, PLAN, BODIES_AT, CONTACTS_AT, VALUES_AT = range(10)
@@ -58,7 +58,8 @@ USUAL_TRIES = 4
 OTHERS = 1e-2
 """Part of the largest velocity below which one counts as 0 when sizes are compared."""
 
-_BOUNDED = "sceneql.linear.bounded_rows_kernels"
+_BOUNDED = "sceneql.linear.cones.bounded_rows_kernels"
+_POINTS = "sceneql.linear.cones.bounded_points_kernels"
 # Compiled for programs that have bounded rows: called for these alone.
 to_rows = lazy(f"{_BOUNDED}:to_rows", types.void(A, I, N, N))
 from_rows = lazy(f"{_BOUNDED}:from_rows", types.void(A, I, N, N))
@@ -75,13 +76,13 @@ move_rows = lazy(f"{_BOUNDED}:move_rows", types.void(A, I))
 open_rows = lazy(f"{_BOUNDED}:open_rows", types.float64(A, I))
 spring_rows = lazy(f"{_BOUNDED}:spring_rows", types.void(A, I))
 fastest_row = lazy(f"{_BOUNDED}:fastest_row", types.float64(A, I))
-begin_rows = lazy(f"{_BOUNDED}:begin_rows", types.void(A, I, F))
-left_rows = lazy(f"{_BOUNDED}:left_rows", types.float64(A, I))
-scale_rows = lazy(f"{_BOUNDED}:scale_rows", types.UniTuple(F, 2)(A, I))
-aim_rows = lazy(f"{_BOUNDED}:aim_rows", types.void(A, I))
-turn_rows = lazy(f"{_BOUNDED}:turn_rows", types.float64(A, I))
-center_rows = lazy(f"{_BOUNDED}:center_rows", types.void(A, I, F))
-advance_rows = lazy(f"{_BOUNDED}:advance_rows", types.void(A, I, F))
+begin_rows = lazy(f"{_POINTS}:begin_rows", types.void(A, I, F))
+left_rows = lazy(f"{_POINTS}:left_rows", types.float64(A, I))
+scale_rows = lazy(f"{_POINTS}:scale_rows", types.UniTuple(F, 2)(A, I))
+aim_rows = lazy(f"{_POINTS}:aim_rows", types.void(A, I))
+turn_rows = lazy(f"{_POINTS}:turn_rows", types.float64(A, I))
+center_rows = lazy(f"{_POINTS}:center_rows", types.void(A, I, F))
+advance_rows = lazy(f"{_POINTS}:advance_rows", types.void(A, I, F))
 
 
 @kernel(types.Tuple((I, N))(N, N, N, I, N, N, N, N))

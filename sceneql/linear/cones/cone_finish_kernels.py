@@ -12,7 +12,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.linear.cone_layout_kernels import (
+from sceneql.linear.cones.cone_layout_kernels import (
     AT_ARM_A,
     AT_ARM_B,
     AT_B,
@@ -55,8 +55,8 @@ from sceneql.linear.cone_layout_kernels import (
     project_rows,
     see_rows,
 )
-from sceneql.linear.cone_points_kernels import determinant, prepare, tail
-from sceneql.linear.cone_rows_kernels import (
+from sceneql.linear.cones.cone_points_kernels import determinant, prepare, tail
+from sceneql.linear.cones.cone_rows_kernels import (
     factor,
     fetch,
     in_world,
@@ -91,7 +91,7 @@ GOOD = 1e-9
 """What may be left with contacts' power in place of their law (`see`) in a solution: contacts whose
 slip or force is next to nothing are at the edge of sticking, sliding or leaving, where the law itself is ill-posed."""
 OTHERWISE = types.int64(A, I)
-otherwise = lazy("sceneql.linear.cone_kernels:otherwise", OTHERWISE)
+otherwise = lazy("sceneql.linear.cones.cone_kernels:otherwise", OTHERWISE)
 
 
 @lean_inlined

@@ -43,8 +43,8 @@ def cone_program(bodies: int, pairs: Sequence[tuple[int, int]], most: int, bound
     """
     import numpy as np
 
-    from sceneql.linear import cone_layout_kernels as rows
-    from sceneql.linear.cone_layout_kernels import ROW
+    from sceneql.linear.cones import cone_layout_kernels as rows
+    from sceneql.linear.cones.cone_layout_kernels import ROW
 
     contacts_at = rows.BODY * bodies
     rows_at = contacts_at + rows.CONTACT * most

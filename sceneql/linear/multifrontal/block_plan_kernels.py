@@ -1,15 +1,15 @@
 # mypy: ignore-errors
-"""Plans for multifrontal_kernels made in compiled code: of matrices of 6x6 blocks whose pattern changes as they run.
+"""Plans for systems_kernels made in compiled code: of matrices of 6x6 blocks whose pattern changes as they run.
 
-As multifrontal.plan makes them for good, but on one thread and without single precision. Value k is a block of 36: the
+As planning.plan makes them for good, but on one thread and without single precision. Value k is a block of 36: the
 diagonal's first, then of every edge (a, b) the block in row a and column b, and the one in row b and column a.
 """
 
 from numba import types
 
 from sceneql.compiled.kernels import kernel, lean_inlined
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.block_order_kernels import elimination, filled
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.block_order_kernels import elimination, filled
 from sceneql.system.signatures_kernels import I, N
 
 UNIT = 6

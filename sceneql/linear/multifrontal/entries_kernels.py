@@ -5,7 +5,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean_inlined
 from sceneql.compiled.numbered_kernels import kernel_at
-from sceneql.linear import multifrontal_layout as layout
+from sceneql.linear.multifrontal import layout
 from sceneql.system.signatures_kernels import A, I, N
 
 FACTOR_GENERAL = types.boolean(I, A, A, A)

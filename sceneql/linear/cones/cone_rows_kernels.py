@@ -9,7 +9,7 @@ cone and its dual are both x_0 >= |x_T|, and s . x = u . r.
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.cone_layout_kernels import (
+from sceneql.linear.cones.cone_layout_kernels import (
     AT_ARM_A,
     AT_ARM_B,
     AT_D,
@@ -65,7 +65,7 @@ from sceneql.linear.cone_layout_kernels import (
     sizes_of_rows,
     to_rows,
 )
-from sceneql.linear.multifrontal_general_kernels import factor_general, solve_general
+from sceneql.linear.multifrontal.general_kernels import factor_general, solve_general
 from sceneql.system.signatures_kernels import A, F, I, N
 
 PRODUCT = types.void(A, I, N, N)

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Solutions with the factors of symmetric matrices, front by front, on several threads.
 
-For the plan see multifrontal_kernels; A = U^T D^-1 U, with the reciprocals of D on U's diagonal. The updates
+For the plan see systems_kernels; A = U^T D^-1 U, with the reciprocals of D on U's diagonal. The updates
 of a front to the unknowns above it pass from child to parent, as in the factorization, so that subtrees are
 independent and results do not depend on the threads. Four rows of U at a time are read once, as fast as
 memory gives them.
@@ -11,9 +11,9 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.threads_kernels import over_threads
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_backward_kernels import backward
-from sceneql.linear.multifrontal_forward_kernels import forward
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.backward_kernels import backward
+from sceneql.linear.multifrontal.forward_kernels import forward
 from sceneql.system.signatures_kernels import A, I
 
 WORTH_THREADS = 500_000
@@ -24,7 +24,7 @@ SOLVE = types.void(I, A, A, A)
 
 @lean(SOLVE, inner=True)
 def solve_symmetric(plan, factors, b, work):
-    """Solve as multifrontal_kernels.solve_system does."""
+    """Solve as systems_kernels.solve_system does."""
     n, fronts, order, pieces = plan[0], plan[1], plan[2], plan[layout.PIECES]
     x, carried = work[:n], work[n:]
     entry = plan[layout.ENTRY] if plan[layout.HEAD + layout.FIELDS * fronts + 5] >= WORTH_THREADS else 0

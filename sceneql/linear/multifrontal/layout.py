@@ -1,4 +1,4 @@
-"""The layout of a plan's integers (described in multifrontal_kernels): indices by name."""
+"""The layout of a plan's integers (described in systems_kernels): indices by name."""
 
 PIECES_AT, PIECES, ENTRY, THREADS, PIECE_AT, UNIT, FORWARD, BACKWARD = range(8, 16)
 SINGLE_FACTOR, SINGLE_SOLVE, SINGLE_PIECE, SINGLE_FORWARD, SINGLE_BACKWARD = range(16, 21)

@@ -1,6 +1,6 @@
 """Symbolic analysis of sparse systems for the multifrontal method: the fronts, and the entries assembled into each.
 
-Done once for a pattern; multifrontal_kernels.py factors any values on it. Sources: Duff & Reid (1983), ACM TOMS 9,
+Done once for a pattern; systems_kernels.py factors any values on it. Sources: Duff & Reid (1983), ACM TOMS 9,
 302-325; Liu (1992), SIAM Review 34, 82-109.
 """
 
@@ -11,9 +11,9 @@ from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from sceneql.island.rising import rising
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.dissection import dissected
-from sceneql.linear.ordering import Groups, elimination_order, grouped
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.dissection import dissected
+from sceneql.linear.multifrontal.ordering import Groups, elimination_order, grouped
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -46,7 +46,7 @@ class _Front:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """The plan of a factorization on a pattern: integers for the kernels (layout: multifrontal_kernels)."""
+    """The plan of a factorization on a pattern: integers for the kernels (layout: systems_kernels)."""
 
     numbers: Rows
     factors: int
@@ -230,7 +230,7 @@ def _laid_out(
 def _of_pieces() -> list[int]:
     """The kernels that factor a piece, and solve in it."""
     from sceneql.compiled.threads_kernels import tile_address
-    from sceneql.linear.multifrontal_pieces_kernels import backward_piece, forward_piece, piece
+    from sceneql.linear.multifrontal.pieces_kernels import backward_piece, forward_piece, piece
 
     return [tile_address(one) for one in (piece, forward_piece, backward_piece)]
 
@@ -241,8 +241,8 @@ def _single(operations: float) -> list[int]:
         return [-1] * 5
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.compiled.threads_kernels import tile_address
-    from sceneql.linear import multifrontal_single_kernels as single
-    from sceneql.linear.multifrontal_entries_kernels import FACTOR_SINGLE, SOLVE_SINGLE
+    from sceneql.linear.multifrontal import single_precision_kernels as single
+    from sceneql.linear.multifrontal.entries_kernels import FACTOR_SINGLE, SOLVE_SINGLE
 
     pieces = (single.single_piece, single.single_forward_piece, single.single_backward_piece)
     numbers = [number_of(single.factor_single, FACTOR_SINGLE), number_of(single.solve_single, SOLVE_SINGLE)]

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Multifrontal LU factors of unsymmetric matrices, compiled at the first such matrix (multifrontal_kernels)."""
+"""Multifrontal LU factors of unsymmetric matrices, compiled at the first such matrix (systems_kernels)."""
 
 import math
 
@@ -7,8 +7,8 @@ from numba import types
 
 from sceneql.compiled.arithmetic_kernels import fma, widest
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL, put
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL, put
 from sceneql.system.signatures_kernels import A, N
 
 TILE = 256
@@ -121,7 +121,7 @@ def take_in(front, height, child, rest, runs):
 
 @lean(FACTOR_GENERAL, inner=True)
 def factor_general(plan, values, factors, work):
-    """Factor as multifrontal_kernels.factor_system does."""
+    """Factor as systems_kernels.factor_system does."""
     maps, entries, pivots = plan[4], plan[5], plan[6]
     front = work[plan[7] :]
     for s in range(plan[1]):
@@ -175,7 +175,7 @@ def product(a, x, count):
 
 @lean(SOLVE_GENERAL, inner=True)
 def solve_general(plan, factors, b, work):
-    """Solve as multifrontal_kernels.solve_system does."""
+    """Solve as systems_kernels.solve_system does."""
     n, fronts, order, rows, pivots = plan[0], plan[1], plan[2], plan[3], plan[6]
     x = work[:n]
     reached = work[n:]

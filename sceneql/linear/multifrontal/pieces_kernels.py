@@ -1,12 +1,12 @@
 # mypy: ignore-errors
-"""Pieces of a plan (multifrontal_kernels): the subtrees of fronts that threads share where operations are many."""
+"""Pieces of a plan (systems_kernels): the subtrees of fronts that threads share where operations are many."""
 
 from sceneql.compiled.kernels import kernel
 from sceneql.compiled.threads_kernels import TILE
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_backward_kernels import backward
-from sceneql.linear.multifrontal_forward_kernels import forward
-from sceneql.linear.multifrontal_symmetric_kernels import factor_fronts
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.backward_kernels import backward
+from sceneql.linear.multifrontal.forward_kernels import forward
+from sceneql.linear.multifrontal.symmetric_kernels import factor_fronts
 
 
 @kernel(TILE)

@@ -4,7 +4,7 @@
 Solutions are refined by their residuals in double precision until they converge (Wilkinson 1963; Higham, Accuracy and
 Stability of Numerical Algorithms, 2002, ch. 12). For a caller whose iteration corrects small errors, only the first
 solution with new factors is refined, once, to measure their quality. Solutions with weak factors are all refined once;
-poor factors are replaced by ones in double precision (multifrontal_kernels, which also has the layout of plans).
+poor factors are replaced by ones in double precision (systems_kernels, which also has the layout of plans).
 ``work``: x and a residual (n,), then scratch in single precision.
 """
 
@@ -16,11 +16,11 @@ from numba import types
 from sceneql.compiled.arithmetic_kernels import bits, from_bits
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.compiled.threads_kernels import TILE, over_threads
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_backward_kernels import backward_of
-from sceneql.linear.multifrontal_entries_kernels import FACTOR_SINGLE, PASS, SOLVE_SINGLE
-from sceneql.linear.multifrontal_forward_kernels import forward_of
-from sceneql.linear.multifrontal_symmetric_kernels import FACTOR_FRONTS, fronts_of
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.backward_kernels import backward_of
+from sceneql.linear.multifrontal.entries_kernels import FACTOR_SINGLE, PASS, SOLVE_SINGLE
+from sceneql.linear.multifrontal.forward_kernels import forward_of
+from sceneql.linear.multifrontal.symmetric_kernels import FACTOR_FRONTS, fronts_of
 from sceneql.system.signatures_kernels import A, I
 
 USABLE, GOOD = 0.1, 2e-3
@@ -131,7 +131,7 @@ def largest(x, count):
 
 @lean(FACTOR_SINGLE, inner=True)
 def factor_single(plan, values, factors, work):
-    """Factor as multifrontal_kernels.factor_system does."""
+    """Factor as systems_kernels.factor_system does."""
     most = largest(values, plan[layout.UNIT] ** 2 * plan[plan[layout.STARTS_AT] + plan[0] // plan[layout.UNIT]])
     if not 0.0 < most < math.inf:
         return False

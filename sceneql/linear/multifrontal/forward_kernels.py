@@ -1,14 +1,14 @@
 # mypy: ignore-errors
 """The first pass of a solution, up the tree of fronts: U^T D^-1 y = b.
 
-See multifrontal_solve_kernels; of a module of its own, so that two processes compile the passes at the same time.
+See solve_kernels; of a module of its own, so that two processes compile the passes at the same time.
 """
 
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.lanes_kernels import BYTES, fma, load, store
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_entries_kernels import PASS, at_front
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.entries_kernels import PASS, at_front
 
 
 @lean_inlined
