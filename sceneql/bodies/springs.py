@@ -54,6 +54,8 @@ def pin_problems(pins: Iterable[str] | Mapping[str, Pin], known: Sequence[str], 
 class SpringModel(Model):
     """Point masses tied by springs."""
 
+    immersible = True
+
     gives: ClassVar[Mapping[str, Gives]] = {
         **point_masses.BODY_OUTPUTS,
         "stretch": Gives(Type(), "Largest |L - L0| / L0 of a spring that holds.", computed=True),
@@ -149,6 +151,10 @@ class SpringModel(Model):
         assert self._made is not None
         return self._made[1]
 
+    def loads(self, density: float) -> bool:
+        """Unless it is known to weigh what it displaces."""
+        return True
+
     def mass_radius(self) -> float:
         """Radius of the masses [m]."""
         if self.radius is not None:
@@ -169,9 +175,13 @@ class SpringModel(Model):
         velocities[fixed] = 0.0
         for pin, how in self.pins.items() if isinstance(self.pins, dict) else ():
             velocities[pinned(pin, net, how)] = start_velocity(how, assembly)
-        bodies = point_masses.reserve(
-            name, assembly, net.points, velocities, weights, np.full(n, self.mass_radius()), fixed
-        )
+        radii, flow = np.full(n, self.mass_radius()), assembly.carrier(name)
+        if flow is None:
+            bodies = point_masses.reserve(name, assembly, net.points, velocities, weights, radii, fixed)
+        else:
+            from sceneql.bodies import immersed
+
+            bodies = immersed.reserve(name, assembly, net, velocities, weights, radii, fixed, flow)
         blocks_at = assembly.floats(blocks.ravel())
         stiffness_at, damping_at = self.shared(assembly)
         ends = net.pairs.ravel().tolist()
@@ -198,7 +208,8 @@ class SpringModel(Model):
             guide(self.pins, net, assembly, bodies)
         assembly.remember(blocks_at, stiffness_at, torn_at)
         stiffnesses = blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]
-        return replace(bodies, period=_shortest_period(net.pairs, stiffnesses, weights), tied=net.pairs)
+        period = _shortest_period(net.pairs, stiffnesses, weights)
+        return replace(bodies, period=period, tied=net.pairs, stiffness=stiffnesses)
 
     def holding(self, state: ModelState) -> Any:
         """(m,) bool: the springs that have not torn."""

@@ -83,6 +83,7 @@ class IslandAssembly(Reserved):
     _grids: list[Grid] = field(default_factory=list)
     _flows: dict[str, Flow] = field(default_factory=dict)
     _membranes: dict[str, Membrane] = field(default_factory=dict)
+    _following: list[tuple[int, int]] = field(default_factory=list)
     _apart: bool = True
     _unsloped: str = ""
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
@@ -183,6 +184,19 @@ class IslandAssembly(Reserved):
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
         """Those that skins in it hold (system.Assembly)."""
         return self.setting.fluids(flow)
+
+    def carrier(self, model: str) -> Flow | None:
+        """The flow that carries a model (system.Assembly)."""
+        name = self.setting.carrier(model)
+        return None if name is None else self._flows.get(name)
+
+    def laden(self, flow: str) -> bool:
+        """Whether masses add to its inertia (system.Assembly)."""
+        return self.setting.laden(flow)
+
+    def follows(self, at: int, count: int) -> None:
+        """Say that entries are functions of others (system.Assembly)."""
+        self._following.append((at, count))
 
     def membrane(self, membrane: Membrane) -> None:
         """Say that entries are those of a skin (system.Assembly)."""
@@ -368,6 +382,7 @@ class IslandAssembly(Reserved):
             inertia=tuple(self._matrices.items()),
             border=border,
             alike=tuple(self._alike),
+            following=tuple(self._following),
             rests=tuple(self._rests),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
             events=tuple((block.pairs, Origin(block.part, block.span), block.help) for block in events),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.system.fields import Membrane
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +65,18 @@ class Bodies:
     """How they turn; None for point masses."""
     skin: Skin | None = None
     """The surface that they span; None for masses alone."""
+    stiffness: Any = None
+    """(m,) of these springs at the start [N/m]; None without springs."""
+    immersed: Membrane | None = None
+    """What a flow carries of them, whose velocities then are the flow's there; None where none does."""
+    excess_at: int = -1
+    """floats[excess_at + k]: of masses that a flow carries, mass less that of the fluid whose place they take [kg],
+    which they weigh."""
+
+    @property
+    def weighed_at(self) -> int:
+        """floats[weighed_at + k]: what gravity acts on [kg]."""
+        return self.mass_at if self.immersed is None else self.excess_at
 
 
 @dataclass(frozen=True, slots=True)

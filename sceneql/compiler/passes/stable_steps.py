@@ -89,7 +89,8 @@ def _modes(island: Island, tasks: Mapping[str, Task], end: float) -> Iterator[tu
         kind, on = cast(Interaction, tasks[force].kind), [model for other, model in island.forces if other == force]
         flow = kind.carrier()
         if flow is not None:
-            yield force, _known(partial(kind.fastest_carried, {name: models[name] for name in on}, models[flow.name]))
+            carried = {name: models[name] for name in on}
+            yield force, _known(partial(kind.fastest_carried, carried, models[flow.name], scene))
             continue
         yield force, _known(partial(kind.fastest, force, {model: known[model] for model in on}))
 

@@ -27,9 +27,10 @@ def report_carried(
         places = {ref.name: ref.span for ref in getattr(kind, "on", None) or ()}
         for target in dict.fromkeys(targets):
             other = tasks[target].kind
-            if isinstance(other, Model) and not other.carried:
-                text = f"'{target}' is no skin that a flow can carry: a `membrane` is one"
-                found.error("no-skin", text, places.get(target) or tasks[name].span)
+            if isinstance(other, Model) and not other.immersible:
+                text = f"'{target}' is nothing that a flow can carry: a `membrane`, `mass_spring` or `cloth` is"
+                help = "let the flow go `around` an object, which may move by keys or a formula" if other.turns else None
+                found.error("no-skin", text, places.get(target) or tasks[name].span, help=help)
             carriers.setdefault(target, []).append(tasks[name])
     for task in models:
         if not (isinstance(task.kind, Model) and task.kind.carried):

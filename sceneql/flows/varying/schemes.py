@@ -37,7 +37,8 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         message = f"this solver marches a flow of several fluids, and '{part}' has one density and viscosity"
         raise ScriptError([Diagnostic("no-flow", message, spans[0], "let auto march it")])
     tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}
-    blocks = [(first, last - first - (last - 1 in tallies)) for first, last, *_ in system.ranges]
+    follow = {at for at, _ in system.following}
+    blocks = [(at, end - at - (end - 1 in tallies)) for at, end, *_ in system.ranges if at not in follow]
     head = (*stepper.method.numbers, len(blocks), HEAD + 2 * len(blocks))
     settings = np.zeros(SIZES + len(blocks))
     settings[:SIZES] = -np.inf, -np.inf, 0.0, stepper.control.tolerance

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from sceneql.grids.domain.cells import counts
 from sceneql.kinds import Force, ModelRef, Problem, Ref, field
-from sceneql.kinds.stable_step import Oscillation
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 
 if TYPE_CHECKING:
-    from sceneql.system import Assembly
+    from sceneql.system import Assembly, Bodies
 
 
 class Immersion(Force):
@@ -40,17 +40,27 @@ class Immersion(Force):
         """The flow."""
         return self.in_
 
-    def fastest_carried(self, skins: Mapping[str, Any], flow: Any) -> Iterator[Oscillation]:
+    def fastest_carried(self, models: Mapping[str, Any], flow: Any, scene: StaticScene) -> Iterator[Oscillation]:
         """The fastest waves of each skin that the flow's cells know; viscosity takes a quarter of its largest rate."""
         size, axes = flow.size, 2 if flow.flat else 3
         cell = flow.cell
         if size is not None:
             cell, axes = min(side / n for side, n in zip(size, counts(size, cell), strict=False)), len(size)
         decay = flow.thickest() / flow.density * axes / cell**2
-        for name, skin in skins.items():
+        for name, skin in models.items():
+            if not skin.carried:
+                continue
             inside = (skin.fluid() or (flow.density, 0.0))[0]
             turn = (skin.largest_tension(cell) / (0.5 * (flow.density + inside) * cell**3)) ** 0.5
             yield Oscillation(0.0, decay, f"the skin '{name}' in cells of {cell:g} m", ("on",), turn)
+
+    def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
+        """Have the flow carry masses; where it could not be made nothing is to do."""
+        from sceneql.skins.immersed_masses import immerse_masses
+
+        flow = assembly.flow_of(self.in_.name)
+        if flow is not None and bodies.immersed is not None:
+            immerse_masses(flow, bodies, self.kernel == "peskin", assembly)
 
     def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:
         """Have the flow carry a skin; where one of them could not be made nothing is to do."""

@@ -108,6 +108,10 @@ class MassSpring(SpringModel):
         shape = self.lattice or self.cloth or self.rope
         return len(self.masses) if self.masses is not None else shape.mass_count() if shape else None
 
+    def loads(self, density: float) -> bool:
+        """All but a solid of that density."""
+        return self.solid is None or self.solid.density != density
+
     def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
         """The object of a solid."""
         return () if self.solid is None else ((self.solid.object, self.solid.bounded),)

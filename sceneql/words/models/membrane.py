@@ -89,6 +89,7 @@ class Membrane(Model):
 
     has_bodies = False
     carried = True
+    immersible = True
 
     of: kinds.ObjectRef = field("The object whose outline, or surface, it is.")
     law: Law = field("How it pulls.")
