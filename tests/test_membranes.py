@@ -226,7 +226,7 @@ def test_the_bound_of_steps_that_is_told_is_that_of_the_spectrum(tmp_path, law):
         air.run.march.driver.rate(0.0, y, out, floats, system.ints)
     fastest = np.abs(np.linalg.eigvals((rates[:n] - rates[n : 2 * n]).T / 2e-6)).max()
     immersion, skin, flow = (air.tasks[name].kind for name in ("immersion", "balloon", "air"))
-    (told,) = immersion.fastest_carried({"balloon": skin}, flow)
+    (told,) = immersion.fastest_carried({"balloon": skin}, flow, None)
     assert told.turn == pytest.approx(fastest, rel=0.06)
 
 
@@ -268,7 +268,10 @@ def test_an_outline_is_a_skin_with_even_sides():
         ({"forces": "forces: [{gravity: {}}]\n"}, "no flow carries 'balloon'"),
         ({"forces": "forces: [{immersion: {in: air}}]\n"}, "names the skins"),
         ({"forces": "forces: [{immersion: {on: [balloon], in: balloon}}]\n"}, "is no flow"),
-        ({"forces": "forces: [{immersion: {on: [balloon, air], in: air}}]\n"}, "'air' is no skin"),
+        (
+            {"forces": "forces: [{immersion: {on: [balloon, air], in: air}}]\n"},
+            "'air' is nothing that a flow can carry",
+        ),
         (
             {"forces": "forces: [{immersion: {on: [balloon], in: air}}, {immersion: {on: [balloon], in: air}}]\n"},
             "'balloon' is carried by two forces",

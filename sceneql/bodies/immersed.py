@@ -19,12 +19,21 @@ WITHIN = 1e-9
 
 
 def reserve(
-    name: str, assembly: Assembly, net: Net, velocities: Floats, masses: Floats, radii: Floats, fixed: Any, flow: Flow
+    name: str,
+    assembly: Assembly,
+    net: Net,
+    velocities: Floats,
+    masses: Floats,
+    radii: Floats,
+    fixed: Any,
+    pull: float,
+    flow: Flow,
 ) -> Bodies:
     """Put n masses into the state that a flow carries; forces on them are handed to it where they are immersed.
 
-    ``velocities`` (n, 3) [m/s], of those that are held; ``masses`` (n,) [kg]; ``radii`` (n,) [m]; ``fixed`` (n,) bool.
-    Raises ScriptError where they do not fit the flow.
+    ``velocities`` (n, 3) [m/s], of those that are held; ``masses`` (n,) [kg]; ``radii`` (n,) [m]; ``fixed`` (n,) bool;
+    ``pull``: sum of stiffness times length squared of its springs [J]. Raises ScriptError where they do not fit the
+    flow.
     """
     import numpy as np
 
@@ -37,12 +46,19 @@ def reserve(
         help = "take a `membrane` with a `filling` of that density"
         raise ScriptError([Diagnostic("invalid", text, assembly.line(), help)])
     _must_fit(name, net, flow, cell, assembly)
+    if velocities[~np.asarray(fixed)].any():
+        text = f"'{name}' is carried by a flow, and so moves as that does at the start: it has no velocity of its own"
+        help = "leave `velocity` and `spin` out; the flow's `initial` has one"
+        raise ScriptError([Diagnostic("invalid", text, assembly.line(), help)])
     position_at = assembly.state(net.points)
     velocity_at = assembly.state(velocities)
     assembly.follows(velocity_at, 3 * n)
     work_at = assembly.state([0.0])
     pairs = net.pairs if net.triangles is None else net.triangles
-    shares = np.full(n, cell ** (len(flow.areas) - 1) * (flow.spacing[2] if len(flow.areas) == 2 else 1.0))
+    across = net.apart or cell
+    shares = np.full(n, across * flow.spacing[2] if len(flow.areas) == 2 else across * across)
+    # As much as the springs' own modulus, in a layer of a cell where they fill nothing; or as they weigh.
+    pressure = 0.5 * pull / (fills.sum() or shares.sum() * cell) or 9.81 * masses.sum() / shares.sum()
     return Bodies(
         model=name,
         count=n,
@@ -52,9 +68,19 @@ def reserve(
         mass_at=assembly.floats(masses),
         inverse_at=assembly.floats(np.divide(1.0, masses, out=np.zeros(n), where=~np.asarray(fixed))),
         radius_at=assembly.floats(radii),
-        immersed=Membrane(n, position_at, assembly.floats(np.zeros(3 * n)), pairs, shares, 0.0, cell),
+        immersed=Membrane(n, position_at, assembly.floats(np.zeros(3 * n)), pairs, shares, pressure, cell),
         excess_at=assembly.floats(masses - displaced),
     )
+
+
+def must_hold(pins: Any, assembly: Assembly) -> None:
+    """Raises ScriptError for pins (of a model's field) that let go."""
+    for pin, how in pins.items() if isinstance(pins, dict) else ():
+        if how.until is not None:
+            text = (
+                f"the pin '{pin}' lets go of masses that a flow carries: XX
+            )
+            raise ScriptError([Diagnostic("invalid", text, assembly.line(), "leave its `until` out")])
 
 
 def _fills(name: str, net: Net, flow: Flow, assembly: Assembly) -> Floats:
@@ -83,10 +109,10 @@ def _must_fit(name: str, net: Net, flow: Flow, cell: float, assembly: Assembly) 
         first, last = flow.low[axis], flow.low[axis] + flow.cells.shape[axis] * flow.spacing[axis]
         low, high = net.points[:, axis].min(), net.points[:, axis].max()
         if not flow.cells.periodic[axis] and (low < first or high > last):
-            text = f"'{name}' stands outside its flow, which ends at {'xyz'[axis]} = {first if low < first else last:g} m"
-            raise ScriptError(
-                [Diagnostic("invalid", text, assembly.line(), "move it inside, or take a larger `size`")]
+            text = (
+                f"'{name}' stands outside its flow, which ends at {'xyz'[axis]} = {first if low < first else last:g} m"
             )
+            raise ScriptError([Diagnostic("invalid", text, assembly.line(), "move it inside, or take a larger `size`")])
     if flow.fractions is None:
         return
     shape, axes = flow.cells.shape, len(flow.areas)

@@ -155,6 +155,10 @@ class SpringModel(Model):
         """Unless it is known to weigh what it displaces."""
         return True
 
+    def static_net(self) -> tuple[float, int] | None:
+        """How far its masses are apart [m], and along how many axes they are, as its fields alone tell it."""
+        return None
+
     def mass_radius(self) -> float:
         """Radius of the masses [m]."""
         if self.radius is not None:
@@ -175,15 +179,17 @@ class SpringModel(Model):
         velocities[fixed] = 0.0
         for pin, how in self.pins.items() if isinstance(self.pins, dict) else ():
             velocities[pinned(pin, net, how)] = start_velocity(how, assembly)
+        stiffness_at, damping_at = self.shared(assembly)
         radii, flow = np.full(n, self.mass_radius()), assembly.carrier(name)
         if flow is None:
             bodies = point_masses.reserve(name, assembly, net.points, velocities, weights, radii, fixed)
         else:
             from sceneql.bodies import immersed
 
-            bodies = immersed.reserve(name, assembly, net, velocities, weights, radii, fixed, flow)
+            immersed.must_hold(self.pins, assembly)
+            pull = float(((blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]) * blocks[:, 0] ** 2).sum())
+            bodies = immersed.reserve(name, assembly, net, velocities, weights, radii, fixed, pull, flow)
         blocks_at = assembly.floats(blocks.ravel())
-        stiffness_at, damping_at = self.shared(assembly)
         ends = net.pairs.ravel().tolist()
         places = (bodies.position_at, bodies.velocity_at, bodies.work_at)
         ints = (*places, blocks_at, stiffness_at, damping_at, m, *ends, bodies.inverse_at)
@@ -209,7 +215,8 @@ class SpringModel(Model):
         assembly.remember(blocks_at, stiffness_at, torn_at)
         stiffnesses = blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]
         period = _shortest_period(net.pairs, stiffnesses, weights)
-        return replace(bodies, period=period, tied=net.pairs, stiffness=stiffnesses)
+        dampings = blocks[:, 3] + blocks[:, 4] * assembly.numbers()[damping_at]
+        return replace(bodies, period=period, tied=net.pairs, stiffness=np.stack([stiffnesses, dampings]))
 
     def holding(self, state: ModelState) -> Any:
         """(m,) bool: the springs that have not torn."""

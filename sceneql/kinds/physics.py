@@ -357,9 +357,15 @@ class Contact(Kind):
         raise NotImplementedError
 
     def assemble_carried(
-        self, name: str, assembly: Assembly, skins: Sequence[str], everyone: Sequence[Bodies], others: tuple[Ref, ...]
+        self,
+        name: str,
+        assembly: Assembly,
+        skins: Sequence[str],
+        carried: Sequence[Bodies],
+        everyone: Sequence[Bodies],
+        others: tuple[Ref, ...],
     ) -> None:
-        """Add its terms for all models at once that a flow carries (Model.carried); ``everyone``: its masses."""
+        """Add its terms for all skins and masses at once that a flow carries; ``everyone``: its other masses."""
         raise NotImplementedError
 
     def assemble_skins(

@@ -165,7 +165,8 @@ class Assembled:
         task = self.graph.tasks[contact]
         kind = cast(Contact, task.kind)
         rows = [(self.bodies.get(model), others) for name, model, others in self.island.contacts if name == contact]
-        masses = [(bodies, tuple(Ref(other) for other in others)) for bodies, others in rows if bodies is not None]
+        found = [(bodies, tuple(Ref(other) for other in others)) for bodies, others in rows if bodies is not None]
+        masses = [(bodies, refs) for bodies, refs in found if bodies.immersed is None]
         with self.word(contact):
             if kind.mutual and masses:
                 kind.assemble_together(contact, self.assembly, [bodies for bodies, _ in masses], masses[0][1])
@@ -181,13 +182,15 @@ class Assembled:
         self._add_carried(contact, kind, [bodies for bodies, _ in masses])
 
     def _add_carried(self, contact: str, kind: Contact, everyone: Sequence[Bodies]) -> None:
-        """Add a contact of skins that a flow carries, with its objects and masses."""
+        """Add a contact of skins and masses that a flow carries, with its objects and other masses."""
         rows = [(model, others) for name, model, others in self.island.contacts if name == contact]
-        rows = [row for row in rows if cast(Model, self.graph.tasks[row[0]].kind).carried]
+        rows = [row for row in rows if self.assembly.carrier(row[0]) is not None]
+        carried = [bodies for model, _ in rows if (bodies := self.bodies.get(model)) is not None]
         with self.word(contact):
             if rows:
                 touched = tuple(Ref(other) for other in rows[0][1])
-                kind.assemble_carried(contact, self.assembly, [model for model, _ in rows], everyone, touched)
+                skins = [model for model, _ in rows if model not in {bodies.model for bodies in carried}]
+                kind.assemble_carried(contact, self.assembly, skins, carried, everyone, touched)
 
 
 def models_of(graph: SimulationGraph, island: Island) -> Assembled:

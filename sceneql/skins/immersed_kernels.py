@@ -24,6 +24,9 @@ from sceneql.skins.immersed_layout import (
 from sceneql.skins.spline_kernels import beside, through
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM
 
+ASIDE = 1e-4
+"""Cells by which the flow is read before and after a mass on its way."""
+
 
 @lean_inlined
 def place(y, at, box, floats):
@@ -63,6 +66,34 @@ def carry(t, y, rate, floats, ints):
         free = floats[ints[INVERSE_AT] + k // 3] > 0.0
         rate[ints[POSITION_AT] + k] = y[ints[VELOCITY_AT] + k] if free else 0.0
         floats[ints[FORCE_AT] + k] = 0.0
+
+
+@lean(TERM, inner=True)
+def accelerate(t, y, rate, floats, ints):
+    """The accelerations of masses that are free, where the rate is the whole one: those of the flow along their ways."""
+    one = ints[ints[FLOW_AT] :]
+    axes, faces = one[flow.AXES], one[flow.FACES]
+    if floats[one[flow.SKIP]] != 0.0:
+        return
+    u, du = y[one[flow.AT] : one[flow.AT] + faces], rate[one[flow.AT] : one[flow.AT] + faces]
+    for k in range(ints[COUNT]):
+        if floats[ints[INVERSE_AT] + k] == 0.0:
+            continue
+        v, box = ints[VELOCITY_AT] + 3 * k, ints[BOX_AT]
+        x, y_, z = place(y, ints[POSITION_AT] + 3 * k, box, floats)
+        p, q, r = y[v] / floats[box + 3], y[v + 1] / floats[box + 4], y[v + 2] / floats[box + 5]
+        speed = math.sqrt(p * p + q * q + r * r)
+        if not math.isfinite(x + y_ + z + speed):
+            continue
+        h = ASIDE / speed if speed > 0.0 else 0.0
+        for component in range(axes):
+            start, four = one[flow.STARTS + component], ints[PESKIN] == 1
+            found = through(du[start:], component, x, y_, z, 0.0, False, four, one)
+            if speed > 0.0:
+                after = through(u[start:], component, x + h * p, y_ + h * q, z + h * r, 0.0, False, four, one)
+                before = through(u[start:], component, x - h * p, y_ - h * q, z - h * r, 0.0, False, four, one)
+                found += (after - before) / (2.0 * h)
+            rate[v + component] = found
 
 
 @lean(AFTER_STEP, inner=True)

@@ -66,7 +66,7 @@ class Bodies:
     skin: Skin | None = None
     """The surface that they span; None for masses alone."""
     stiffness: Any = None
-    """(m,) of these springs at the start [N/m]; None without springs."""
+    """(2, m) of these springs at the start the stiffness [N/m], and the damping [N s/m]; None without springs."""
     immersed: Membrane | None = None
     """What a flow carries of them, whose velocities then are the flow's there; None where none does."""
     excess_at: int = -1

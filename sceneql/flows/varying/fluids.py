@@ -35,9 +35,7 @@ FIXED = ("fast_transform", "direct")
 class Fluids:
     """What a flow of several fluids reserves; skins that hold them say so as they are made (`fill`)."""
 
-    def __init__(
-        self, model: Model, densities: Sequence[float], laden: bool, faces: Faces, assembly: Assembly
-    ) -> None:
+    def __init__(self, model: Model, densities: Sequence[float], laden: bool, faces: Faces, assembly: Assembly) -> None:
         """``densities``: of the fluids that skins hold [kg/m^3]; ``laden``: whether masses add to its inertia."""
         self.model, self.count, self.faces, self.assembly = model, len(densities), faces, assembly
         self.laden = laden

@@ -288,18 +288,36 @@ class Collision(Contact):
         return True
 
     def assemble_carried(
-        self, name: str, assembly: Assembly, skins: Sequence[str], everyone: Sequence[Bodies], others: tuple[Ref, ...]
+        self,
+        name: str,
+        assembly: Assembly,
+        skins: Sequence[str],
+        carried: Sequence[Bodies],
+        everyone: Sequence[Bodies],
+        others: tuple[Ref, ...],
     ) -> None:
-        """Add the contacts of skins that a flow carries, with one another and with objects."""
+        """Add the contacts of what a flow carries: of skins with one another, of these and masses with objects."""
         from sceneql.skins.touching import assemble
 
+        if carried and self.mode in ("exact", "local", "barrier"):
+            from sceneql.quantities.diagnostic import ScriptError
+
+            text = f"masses of '{carried[0].model}' move as their flow does, and have no impacts in mode `{self.mode}`"
+            raise ScriptError([Diagnostic("no-collider", text, assembly.line(), "leave the mode out")])
+        for what in ("restitution", "rolling") if carried and not everyone else ():
+            if getattr(self, what).span is not None:
+                from sceneql.quantities.diagnostic import ScriptError
+
+                text = f"masses of '{carried[0].model}' move as their flow does, and have no {what}"
+                raise ScriptError([Diagnostic("no-restitution", text, getattr(self, what).span, "leave it out")])
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
         # Of a skin that could not be made that is told.
         models: list[tuple[str, Any]] = [(skin, assembly.object(Ref(skin))) for skin in skins]
         made = [(skin, model.made) for skin, model in models if assembly.membrane_of(skin) is not None]
-        if made:
-            assembly.remember(tallies.CARRIED, *assemble(assembly, made, everyone, touched, self.friction, self.gap))
+        if made or carried:
+            told = assemble(assembly, made, carried, everyone, touched, self.friction, self.gap)
+            assembly.remember(tallies.CARRIED, *told)
 
     def assemble_rigid(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]

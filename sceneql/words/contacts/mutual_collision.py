@@ -59,6 +59,21 @@ class MutualCollision(Contact):
         """The models and objects of `between`."""
         return self.between or ()
 
+    def assemble_carried(
+        self,
+        name: str,
+        assembly: Assembly,
+        skins: Sequence[str],
+        carried: Sequence[Bodies],
+        everyone: Sequence[Bodies],
+        others: tuple[Ref, ...],
+    ) -> None:
+        """Raises ScriptError: a flow keeps apart what it carries."""
+        from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+        text = f"masses of '{carried[0].model}' move as their flow does, which keeps them apart: they have no impacts"
+        raise ScriptError([Diagnostic("no-collider", text, assembly.line(), "name under `between` others alone")])
+
     def assemble_together(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
