@@ -77,9 +77,7 @@ def must_hold(pins: Any, assembly: Assembly) -> None:
     """Raises ScriptError for pins (of a model's field) that let go."""
     for pin, how in pins.items() if isinstance(pins, dict) else ():
         if how.until is not None:
-            text = (
-                f"the pin '{pin}' lets go of masses that a flow carries: XX
-            )
+            text = f"the pin '{pin}' lets go of masses that a flow carries, which would move at once as it does"
             raise ScriptError([Diagnostic("invalid", text, assembly.line(), "leave its `until` out")])
 
 
@@ -109,9 +107,8 @@ def _must_fit(name: str, net: Net, flow: Flow, cell: float, assembly: Assembly) 
         first, last = flow.low[axis], flow.low[axis] + flow.cells.shape[axis] * flow.spacing[axis]
         low, high = net.points[:, axis].min(), net.points[:, axis].max()
         if not flow.cells.periodic[axis] and (low < first or high > last):
-            text = (
-                f"'{name}' stands outside its flow, which ends at {'xyz'[axis]} = {first if low < first else last:g} m"
-            )
+            text = f"'{name}' stands outside its flow, which ends at {'xyz'[axis]} = "
+            text += f"{first if low < first else last:g} m"
             raise ScriptError([Diagnostic("invalid", text, assembly.line(), "move it inside, or take a larger `size`")])
     if flow.fractions is None:
         return

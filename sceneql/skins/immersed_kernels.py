@@ -70,7 +70,7 @@ def carry(t, y, rate, floats, ints):
 
 @lean(TERM, inner=True)
 def accelerate(t, y, rate, floats, ints):
-    """The accelerations of masses that are free, where the rate is the whole one: those of the flow along their ways."""
+    """The accelerations of free masses, where the rate is the whole one: those of the flow along their ways."""
     one = ints[ints[FLOW_AT] :]
     axes, faces = one[flow.AXES], one[flow.FACES]
     if floats[one[flow.SKIP]] != 0.0:

@@ -25,7 +25,7 @@ def past_along(place, count, periodic):
     first = math.floor(place) if periodic else min(max(math.floor(place), 0), count - 1)
     f = place - first
     g = 1.0 - f
-    a, b, c, d = odd(
+    a, b, _, d = odd(
         first, count, periodic,
         -0.5 * g * g, 0.5 * (3.0 * f - 4.0) * f, -0.5 * (3.0 * g - 4.0) * g, 0.5 * f * f,
     )  # fmt: skip
@@ -37,7 +37,7 @@ def past_across(place, count, periodic):
     """The same of those of `across`."""
     first = math.floor(place) if periodic else min(max(math.floor(place), 0), count - 1)
     f = place - first - 0.5
-    a, b, c, d = even(first, count, periodic, f - 0.5, -2.0 * f, 0.5 + f)
+    a, _, c, _ = even(first, count, periodic, f - 0.5, -2.0 * f, 0.5 + f)
     return -a, c, 0.0
 
 

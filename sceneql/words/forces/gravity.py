@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 class Gravity(Force):
     """Uniform gravity: F = m g, with the potential energy -m g . x (zero at the origin).
 
-    By default 9.81 m/s^2 downwards, along -y exactly. Of what a flow carries m is less what it displaces. Source: Newton, Principia (1687), book I, law II.
+    By default 9.81 m/s^2 downwards, along -y exactly. Of masses that a flow carries m is less what they displace.
+    Source: Newton, Principia (1687), book I, law II.
     """
 
     weighs: ClassVar[bool] = True
