@@ -266,7 +266,7 @@ def test_an_outline_is_a_skin_with_even_sides():
             "has one of `springs`, `neo_hookean`, `skalak` and `tension`",
         ),
         ({"forces": "forces: [{gravity: {}}]\n"}, "no flow carries 'balloon'"),
-        ({"forces": "forces: [{immersion: {in: air}}]\n"}, "names the skins"),
+        ({"forces": "forces: [{immersion: {in: air}}]\n"}, "names the skins and masses"),
         ({"forces": "forces: [{immersion: {on: [balloon], in: balloon}}]\n"}, "is no flow"),
         (
             {"forces": "forces: [{immersion: {on: [balloon, air], in: air}}]\n"},

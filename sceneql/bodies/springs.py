@@ -151,7 +151,7 @@ class SpringModel(Model):
         assert self._made is not None
         return self._made[1]
 
-    def loads(self, density: float) -> bool:
+    def burdens(self, density: float) -> bool:
         """Unless it is known to weigh what it displaces."""
         return True
 
@@ -170,6 +170,8 @@ class SpringModel(Model):
         """Reserve the masses and add the forces of the springs."""
         import numpy as np
 
+        from sceneql.system import Springs
+
         net, weights, blocks = self.make(assembly)
         self._made = (net, blocks[:, 0].copy())
         fixed = self.held(net)
@@ -184,11 +186,11 @@ class SpringModel(Model):
         if flow is None:
             bodies = point_masses.reserve(name, assembly, net.points, velocities, weights, radii, fixed)
         else:
-            from sceneql.bodies import immersed
+            from sceneql.bodies.filling import displacing
 
-            immersed.must_hold(self.pins, assembly)
+            displacing.must_hold(self.pins, assembly)
             pull = float(((blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]) * blocks[:, 0] ** 2).sum())
-            bodies = immersed.reserve(name, assembly, net, velocities, weights, radii, fixed, pull, flow)
+            bodies = displacing.reserve(name, assembly, net, velocities, weights, radii, fixed, pull, flow)
         blocks_at = assembly.floats(blocks.ravel())
         ends = net.pairs.ravel().tolist()
         places = (bodies.position_at, bodies.velocity_at, bodies.work_at)
@@ -216,7 +218,7 @@ class SpringModel(Model):
         stiffnesses = blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]
         period = _shortest_period(net.pairs, stiffnesses, weights)
         dampings = blocks[:, 3] + blocks[:, 4] * assembly.numbers()[damping_at]
-        return replace(bodies, period=period, tied=net.pairs, stiffness=np.stack([stiffnesses, dampings]))
+        return replace(bodies, springs=Springs(net.pairs, np.stack([stiffnesses, dampings]), period))
 
     def holding(self, state: ModelState) -> Any:
         """(m,) bool: the springs that have not torn."""

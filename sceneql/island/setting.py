@@ -28,7 +28,7 @@ class Setting(Protocol):
         """The name of the flow that carries a model by a force; None where none does."""
 
     def laden(self, flow: str) -> bool:
-        """Whether masses that a flow carries add to its inertia, or take some away (Model.loads)."""
+        """Whether masses that a flow carries add to its inertia, or take some away (Model.burdens)."""
 
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""

@@ -117,7 +117,7 @@ class Model(Kind):
         """How many items an output has, where its fields tell."""
         return None
 
-    def loads(self, density: float) -> bool:
+    def burdens(self, density: float) -> bool:
         """Whether its masses, where a flow carries them, weigh other than what they displace of a density [kg/m^3]."""
         return False
 

@@ -55,7 +55,7 @@ class Setting:
         """Whether masses that a flow carries add to its inertia, or take some away."""
         density = getattr(self.tasks[flow].kind, "density", 0.0)
         carried = [cast(Model, self.tasks[name].kind) for name, by in self._carriers.items() if by == flow]
-        return any(model.loads(density) for model in carried)
+        return any(model.burdens(density) for model in carried)
 
     @cached_property
     def _carriers(self) -> dict[str, str]:

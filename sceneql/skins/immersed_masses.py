@@ -31,8 +31,8 @@ def immerse_masses(flow: Flow, bodies: Bodies, peskin: bool, assembly: Assembly)
     own = flow.varying or flow.ints
     own_flow = layout.HEAD + (fluid_layout.HEAD if flow.varying else 0)
     ints = (
-        *(bodies.position_at, bodies.velocity_at, bodies.count, bodies.inverse_at, bodies.immersed.force_at),
-        *(bodies.excess_at, assembly.floats([*flow.low, *flow.spacing]), assembly.floats([flow.density])),
+        *(bodies.position_at, bodies.velocity_at, bodies.count, bodies.inverse_at, bodies.immersed.points.force_at),
+        *(bodies.immersed.excess_at, assembly.floats([*flow.low, *flow.spacing]), assembly.floats([flow.density])),
         *(int(peskin), own_flow, *own),
     )
     if flow.varying:
@@ -55,17 +55,17 @@ def fastest(flow: Flow, bodies: Bodies, ints: Sequence[int], assembly: Assembly)
     """
     from sceneql.skins.swing_kernels import give_way
 
-    if bodies.tied is None or not len(bodies.tied):
+    if bodies.springs is None or not len(bodies.springs.ends):
         return 0.0
     y, floats, head = assembly.start(), assembly.numbers(), np.array(ints, dtype=np.int64)
     points = y[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)
-    a, b = bodies.tied.T
+    a, b = bodies.springs.ends.T
     ways = points[b] - points[a]
     lengths = np.linalg.norm(ways, axis=1)
     ways /= np.where(lengths > 0.0, lengths, 1.0)[:, None]
     room = [np.zeros(flow.ints[faces.FACES]) for _ in range(2)]
     out, rates = np.zeros(3 * bodies.count), [0.0, 0.0]
-    for k, strength in enumerate(bodies.stiffness):
+    for k, strength in enumerate(bodies.springs.strength):
         x = np.random.default_rng(0).standard_normal((bodies.count, 3))
         for _ in range(UPDATES if strength.any() else 0):
             pulls = (strength * ((x[b] - x[a]) * ways).sum(axis=1))[:, None] * ways
@@ -78,4 +78,4 @@ def fastest(flow: Flow, bodies: Bodies, ints: Sequence[int], assembly: Assembly)
                 break
             rates[k] = float(length / np.linalg.norm(x))
             x = -out.reshape(-1, 3) / length
-    return max(rates[0] ** 0.5, rates[1])
+    return float(max(rates[0] ** 0.5, rates[1]))

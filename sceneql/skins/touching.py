@@ -62,7 +62,7 @@ def assemble(
     ScriptError for what cannot be collided with, and for what starts too near.
     """
     them = [(name, made.membrane) for name, made in skins]
-    them += [(bodies.model, bodies.immersed) for bodies in carried if bodies.immersed is not None]
+    them += [(bodies.model, bodies.immersed.points) for bodies in carried if bodies.immersed is not None]
     gap = max(skin.cell for _, skin in them) if gap is None else gap
     rubs = not friction.constant or assembly.initial(friction) > 0.0
     told, touch = assembly.floats([gap]), Touch(assembly.value(friction), rubs, gap)

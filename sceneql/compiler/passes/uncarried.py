@@ -30,8 +30,8 @@ def report_carried(
             other = tasks[target].kind
             if isinstance(other, Model) and not other.immersible:
                 text = f"'{target}' is nothing that a flow can carry: a `membrane`, `mass_spring` or `cloth` is"
-                help = "let the flow go `around` an object, which may move by keys or a formula"
-                help = help if other.turns or other.has_skin else None
+                around = "let the flow go `around` an object, which may move by keys or a formula"
+                help = around if other.turns or other.has_skin else None
                 found.error("no-skin", text, places.get(target) or tasks[name].span, help=help)
             carriers.setdefault(target, []).append(tasks[name])
     for name, targets in forces.items():

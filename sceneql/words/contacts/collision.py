@@ -186,7 +186,8 @@ class Collision(Contact):
                 one for one in lazy_kernels.modules() if one.startswith(f"{SHAPES}.")
             )  # every gap asks for them
         nan = float("nan")
-        square = (2.0 * math.pi / bodies.period) ** 2 if bodies.period > 0.0 else math.inf
+        period = math.inf if bodies.springs is None else bodies.springs.period
+        square = (2.0 * math.pi / period) ** 2 if period > 0.0 else math.inf
         cuts = (0.0, 0.0, 0.0) if assembly.body_count() <= MOST_CUT else (float("inf"), 0.0, MOST_CUTS)
         tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])
         pairs = bodies.count * len(others)

@@ -1,4 +1,4 @@
-"""immersion: skins in a flow, which carries them and feels them."""
+"""immersion: skins and masses in a flow, which carries them and feels them."""
 
 from __future__ import annotations
 
@@ -39,13 +39,21 @@ def swing(name: str, net: Any, density: float, cell: float, axes: int, depth: fl
 
 
 class Immersion(Force):
-    """A skin (`membrane`) in a `flow`, both ways: each vertex moves as the fluid there, which gets its force.
+    """What is in a `flow`, both ways: a skin (`membrane`), or masses (`mass_spring`, `cloth`), move as the fluid there.
 
     Velocities are read from faces and forces spread to them by the same composite B-splines, of order 4 along a
     component and 3 across, so that what is read is free of divergence, and no fluid passes the skin. Beside walls faces
     are continued by reflection. Where a skin holds a fluid of its own (`filling`), faces count by their mass besides,
     so that the skin goes with the heavy one. Sources: Peskin (2002), Acta Numerica 11, 479-517; Gruninger & Griffith
     (2025).
+
+    The inertia of masses is part of the fluid's around: what they weigh is spread by the same splines, and takes its
+    momentum along. A `solid`, and a `lattice` of layers, or of one layer in a flat flow, displace fluid: of their mass
+    counts what it is more or less than that of the fluid, and `gravity` has that sink or rise. Cloth, ropes and single
+    masses displace none. What is held by `pins` stays, and fluid goes past. Forces reach some cells far: a body is about
+    half a cell to one wider for the fluid than its masses are, so that what sinks in syrup is slower by as much. Source:
+    Zhu & Peskin (2002), J. Comput. Phys. 179, 452-468. Rigid bodies and finite elements are not immersed: a flow goes
+    `around` objects.
 
     `forces: [{immersion: {on: [balloon], in: air}}]`
     """
@@ -57,9 +65,9 @@ class Immersion(Force):
     )
 
     def problems(self) -> Iterator[Problem]:
-        """No skin."""
+        """Nothing."""
         if not self.on:
-            yield Problem("an immersion names the skins in the flow: `on: [balloon]`")
+            yield Problem("an immersion names the skins and masses in the flow: `on: [balloon]`")
 
     def carrier(self) -> Ref:
         """The flow."""

@@ -108,7 +108,7 @@ class MassSpring(SpringModel):
         shape = self.lattice or self.cloth or self.rope
         return len(self.masses) if self.masses is not None else shape.mass_count() if shape else None
 
-    def loads(self, density: float) -> bool:
+    def burdens(self, density: float) -> bool:
         """All but a solid of that density."""
         return self.solid is None or self.solid.density != density
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.system import Bodies, Membrane
+from sceneql.system import Bodies, Immersed, Membrane
 
 if TYPE_CHECKING:
     from sceneql.bodies.nets import Net
@@ -51,10 +51,9 @@ def reserve(
         help = "leave `velocity` and `spin` out; the flow's `initial` has one"
         raise ScriptError([Diagnostic("invalid", text, assembly.line(), help)])
     position_at = assembly.state(net.points)
-    velocity_at = assembly.state(velocities)
-    assembly.follows(velocity_at, 3 * n)
-    work_at = assembly.state([0.0])
-    pairs = net.pairs if net.triangles is None else net.triangles
+    velocity_at = assembly.state(np.append(velocities, 0.0))
+    assembly.follows(velocity_at, 3 * n + 1)
+    faces = np.asarray(net.pairs if net.triangles is None else net.triangles, dtype=np.int64)
     across = net.apart or cell
     shares = np.full(n, across * flow.spacing[2] if len(flow.areas) == 2 else across * across)
     # As much as the springs' own modulus, in a layer of a cell where they fill nothing; or as they weigh.
@@ -64,12 +63,14 @@ def reserve(
         count=n,
         position_at=position_at,
         velocity_at=velocity_at,
-        work_at=work_at,
+        work_at=velocity_at + 3 * n,
         mass_at=assembly.floats(masses),
         inverse_at=assembly.floats(np.divide(1.0, masses, out=np.zeros(n), where=~np.asarray(fixed))),
         radius_at=assembly.floats(radii),
-        immersed=Membrane(n, position_at, assembly.floats(np.zeros(3 * n)), pairs, shares, pressure, cell),
-        excess_at=assembly.floats(masses - displaced),
+        immersed=Immersed(
+            Membrane(n, position_at, assembly.floats(np.zeros(3 * n)), faces, shares, pressure, cell),
+            assembly.floats(masses - displaced),
+        ),
     )
 
 
