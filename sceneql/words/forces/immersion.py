@@ -50,10 +50,10 @@ class Immersion(Force):
     The inertia of masses is part of the fluid's around: what they weigh is spread by the same splines, and takes its
     momentum along. A `solid`, and a `lattice` of layers, or of one layer in a flat flow, displace fluid: of their mass
     counts what it is more or less than that of the fluid, and `gravity` has that sink or rise. Cloth, ropes and single
-    masses displace none. What is held by `pins` stays, and fluid goes past. Forces reach some cells far: a body is about
-    half a cell to one wider for the fluid than its masses are, so that what sinks in syrup is slower by as much. Source:
-    Zhu & Peskin (2002), J. Comput. Phys. 179, 452-468. Rigid bodies and finite elements are not immersed: a flow goes
-    `around` objects.
+    masses displace none. What is held by `pins` stays, and fluid goes past. Forces reach some cells far, so a body is
+    half a cell to one wider for the fluid than its masses are: what sinks in syrup is slower by as much. Rigid bodies
+    and finite elements are not immersed: a flow goes `around` objects. Source: Zhu & Peskin (2002), J. Comput. Phys.
+    179, 452-468.
 
     `forces: [{immersion: {on: [balloon], in: air}}]`
     """
