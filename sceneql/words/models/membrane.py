@@ -231,9 +231,7 @@ class Membrane(Model):
 
         inside_out = turned(self.made, state)
         if inside_out:
-            help = (
-                "take a smaller `spacing` and `cell`, a `bend`, or a `collision` of the skin, which keeps it off itself"
-            )
+            help = "take a smaller `spacing` and `cell`, a `bend`, or a `collision`, which keeps it off itself"
             return inside_out, help
         apart = widest(self.made, state)
         text = f"the vertices of its skin are {apart:.2g} cells apart at the end: fluid passes between them"
