@@ -36,6 +36,7 @@ FEWER = {
     "benard": ["define.cells=48", "solvers.main.sbdf2.step=0.8 ms"],
     "capsules": ["define.h=12 mm/30", "solvers.main.sbdf2.step=1 ms"],
     "cushion": ["define.h=2.4 m/40"],
+    "flag": ["define.h=1 m/20"],
     "jelly": ["models.cube.mass_spring.lattice.count=4 4 4"],
     "notes_fluid": ["models.water.flow.pressure=auto"],
     "pile": ["models.bun.elastic.spacing=9 cm"],

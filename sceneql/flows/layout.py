@@ -42,7 +42,7 @@ SOLVER_AT, STORE, STORE_SIZE = 42, 43, 44
 one number a cell; floats of the store."""
 LED = 45
 """By cell where solids move: what they leave of it (0: none moves); the rate of what their walls push [m^3/s^2] is then
-by cell after SEEPING."""
+by cell after SEEPING, and then what all push into a closed box, in parts of what they push at all."""
 UNCUT = 46
 """Along x, y, z: the conductance of a face of the box in the pressure's equation."""
 PLANS, PLAN = 47, 24

@@ -5,7 +5,7 @@
     python tests/bench/bench_flow.py peer               the same scheme by NumPy and SciPy: time, difference
     python tests/bench/bench_flow.py cylinder 20        2D-1, so many cells across: drag, lift, pressure
     python tests/bench/bench_flow.py vortices 20        2D-2: Strouhal number, largest drag and lift
-    python tests/bench/bench_flow.py drawn 10           a cylinder drawn through resting fluid, and in a stream: drag
+    python tests/bench/bench_flow.py drawn 10 auto      a cylinder drawn through resting fluid, and in a stream: drag
     python tests/bench/bench_flow.py cavity 128 100     cells a side, Reynolds number: extrema of the lid-driven cavity
     python tests/bench/bench_flow.py heated 1e5 64      Nusselt numbers of the heated cavity by Ra and cells a side
     python tests/bench/bench_flow.py rolls 1740 24      growth of a roll between plates by Ra and cells of height [1/s]
@@ -222,8 +222,11 @@ def vortices(across: str) -> None:
     print(f"  lift {lift.max():.4f} (0.99 to 1.01), peak to peak {np.ptp(lift):.4f} (2.0079)")
 
 
-def drawn(across: str) -> None:
-    """Drag at 1 m/s in a periodic channel of a fluid at rest, beside that in a stream whose walls move along."""
+def drawn(across: str, solver: str = "auto") -> None:
+    """Drag at 1 m/s in a periodic channel of a fluid at rest, beside that in a stream whose walls move along.
+
+    ``solver``: `auto`, or one of fixed steps, which are then of a tenth of a cell's crossing.
+    """
     cell = 0.2 / int(across)
     times = 0.4 + 0.0037 * np.arange(60)
     wall = '{wall: {velocity: "[-1, 0]"}}'
@@ -232,17 +235,21 @@ def drawn(across: str) -> None:
         place = "[0.6 m + 1 m/s*time, 0.413 m, 0 m]" if moves else "0.6 0.413 0 m"
         walls = "" if moves else f", bottom: {wall}, top: {wall}"
         more = {} if moves else {"initial": '{velocity: "[-1 + 0*x, 0*x]"}'}
+        by = "{auto: {}}" if solver == "auto" else f"{{{solver}: {{step: {0.1 * cell!r} s}}}}"
         air = Air(
-            f"{{heun: {{step: {0.1 * cell!r} s}}}}", 1.0,
-            f"objects: {{cyl: {{sphere: {{position: {place}, radius: 0.1 m}}}}}}\n", size="2.4 0.8 m",
+            by, 1.0, f"objects: {{cyl: {{sphere: {{position: {place}, radius: 0.1 m}}}}}}\n", size="2.4 0.8 m",
             cell=f"{cell!r} m", density="1 kg/m^3", viscosity="0.025 Pa*s", advection="central", around="[cyl]",
             boundary=f"{{left: {{periodic: yes}}{walls}}}", **more,
         )  # fmt: skip
-        found = []
+        found, started = [], time.process_time()
         for now in times:
             air.run.advance(float(now))
             found.append(air.read("cyl.force")[0])
         drags.append(np.array(found))
+        took = time.process_time() - started
+        done = air.run.march.statistics
+        count = f"{done.steps} steps, {done.rejected} rejected"
+        print(f"  {'moves' if moves else 'stands'}: {drags[-1].mean():.5f} N, {took:.1f} s, {count}")
     apart = 100 * (drags[1] / drags[0] - 1)
     print(f"drawn, {across} cells: drag {apart.mean():+.2f} % in the mean, {np.abs(apart).max():.2f} % at most")
 

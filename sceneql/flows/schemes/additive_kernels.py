@@ -17,7 +17,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.flows.layout import AT, CHANGE, FACES, LED, RATE, SKIP, VELOCITY, WORK
+from sceneql.flows.layout import AT, CHANGE, FACES, INVERSES, LED, RATE, SKIP, VELOCITY, WORK
 from sceneql.flows.projection_kernels import project
 from sceneql.flows.schemes.multistep_kernels import OPERATOR, same, solve, spread, tally
 from sceneql.system.signatures_kernels import STEP, A, F, I, N
@@ -130,11 +130,14 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
                 y1[k] = wanted[k]
             a, exact = h * d[i * s + i], max(EXACT, SHARE * tolerance)
             solved &= implicit(a, exact, wanted, y1, room, more, floats, tables, numbers)
-        if i == 0 and same(y0, end) and settings[latest] == t:
+        if i == 0 and one[LED] == 0 and same(y0, end) and settings[latest] == t:
             for k in range(n):
                 own[k] = end_rate[k]
         else:
             rate(t + nodes[i] * h, y1, own, floats, ints)
+        if i == 0 and one[LED] > 0:
+            for f in range(one[FACES]):
+                spreading[f] = floats[one[INVERSES] + f]
         for k in range(n):
             mine[k] = 0.0
         spread(y1, mine, velocities, numbers[OPERATORS], floats, numbers)
@@ -153,6 +156,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for number in range(numbers[OPERATORS]):
         tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     rate(t + h, y1, end_rate, floats, ints)
+    if one[LED] > 0:  # what solids leave in a step or come to has a velocity of theirs then, and no order
+        for f in range(one[FACES]):
+            if spreading[f] == 0.0 or floats[one[INVERSES] + f] == 0.0:
+                wanted[one[AT] + f] = 0.0
     floats[one[SKIP]] = 0.0
     for k in range(n):
         end[k], spreading[k] = y1[k], 0.0

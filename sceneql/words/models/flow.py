@@ -280,6 +280,15 @@ class Flow(Model):
 
             thicken(self.viscosity_by, self.viscosity, name, assembly)
 
+    def trouble(self, state: ModelState) -> tuple[str, str]:
+        """Solids that go through the sides of a closed box."""
+        from sceneql.flows.readings import crowded
+
+        if not crowded(state.ints[5:], state.floats):
+            return "", ""
+        text = "a solid moves through a side of a closed box, and the flow cannot be compressed"
+        return text, "give a part of the boundary `outflow: {}`, or keep the solid inside"
+
     def layout(self, state: ModelState, output: str) -> FieldLayout:
         """Where the values at centers lie, for pictures."""
         return layout_of(0, state.ints[:5], state.floats)
