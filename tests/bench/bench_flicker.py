@@ -129,10 +129,10 @@ def triples(scene: Path) -> Iterator[list[list[Drawn]]]:
     drawn: list[Drawn] = []
     draw = tracer.draw
 
-    def kept(frame: SeenFrame, *rest: Any) -> Traced:
+    def kept(frame: SeenFrame, *rest: Any, **more: Any) -> Traced:
         sampled = tuple(s for s in frame.shapes if not (isinstance(s, Mist) or (isinstance(s, Points) and s.soft)))
         frame = replace(frame, shapes=sampled)
-        picture = draw(frame, *rest)
+        picture = draw(frame, *rest, **more)
         drawn.append(Drawn(frame, picture))
         return picture
 
