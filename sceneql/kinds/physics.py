@@ -311,6 +311,10 @@ class Tie(Interaction):
         """The parts that it holds; objects are among them."""
         return tuple(dict.fromkeys(ref.name for ref in self.between if ref.name))
 
+    def places(self) -> Iterable[tuple[Value, tuple[Ref, ...]]]:
+        """Places at the start, each with the bodies that it is to be on."""
+        return ()
+
     def pivot(self) -> Ref | None:
         """The body that only turns about a point of the world, where it leaves it no other motion; else None."""
         return None

@@ -13,6 +13,7 @@ from sceneql.island.breakpoints import MOST
 from sceneql.kinds import Contact, Interaction, Model, Tie
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.run.extremes import watched
+from sceneql.run.falling import falling
 from sceneql.run.invariants import invariants_of
 from sceneql.run.paints import painted
 from sceneql.run.ringing import ringing
@@ -106,6 +107,7 @@ class Watch:
         self.invariants = [one for island in islands for one in invariants_of(island)]
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
+        self._falling = [one for island in run.islands for one in falling(island)]
         self._islands, self._painted = run.islands, painted(run.graph)
         self._turning = [
             span for island in run.islands if _adaptive(island) for span in island.assembly.breakpoints.beyond
@@ -127,18 +129,20 @@ class Watch:
                     balance.cost = time.perf_counter() - begun or balance.cost
             elif free or not balance.times:
                 _note(balance, moment)
-        for one in self.invariants if free else ():
-            one.look(moment)
+        for invariant in self.invariants if free else ():
+            invariant.look(moment)
         for island, fields in self._fields if free else ():
             for extremes in fields:
                 extremes.look(moment.time, island.y)
+        for one in self._falling if free else ():
+            one.look(moment)
         for color in self._painted:
             color.look(moment)
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings: contacts that gave way, energy gained, springs overstretched, fields ringing or overshooting,
-        breakpoints, halved steps."""
+        """Warnings: contacts that gave way or are lacking, energy gained, springs overstretched, fields ringing or
+        overshooting, breakpoints, halved steps."""
         found = [*self._ringing, *(note for island in self._islands for note in island.notes)]
         for span in self._turning:
             message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"
@@ -153,6 +157,7 @@ class Watch:
                 found += extremes.warnings(island)
         for one in self.invariants:
             found += one.warnings()
+        found += [falls.found for falls in self._falling if falls.found is not None]
         for color in self._painted:
             found += color.warnings()
         for balance in self.balances:

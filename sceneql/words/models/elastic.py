@@ -73,7 +73,7 @@ class Elastic(Model):
 
     gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS, **solid_modes.OUTPUTS}
     said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("modulus", "young", "youngs_modulus", "poisson", "poisson_ratio"),
+        ("modulus", "young", "youngs_modulus", "stiffness", "poisson", "poisson_ratio"),
         "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
     )
     has_skin: ClassVar[bool] = True
