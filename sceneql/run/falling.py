@@ -55,7 +55,8 @@ def _height(name: str, point: Any, moment: Instant) -> float:
 
     build = TapeBuilder()
     kind = cast(Object, moment.run.graph.tasks[name].kind)
-    value = build.number(kind.implicit(build, *(build.constant(float(x)) for x in point), moment))
+    x, y, z = (build.constant(float(p)) for p in point)
+    value = build.number(kind.implicit(build, x, y, z, moment))
     return 1.0 if value is None else value
 
 
