@@ -312,11 +312,6 @@ _SENTENCES = (
     ),
     ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
     ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
-    (
-        "field",
-        "friction restitution bounce bounciness elasticity",
-        "a contact says it, `contacts: {c: {collision: {restitution: 0.8, friction: 0.3}}}`: `sceneql words collision`",
-    ),
     ("field", "distance", "write where it stands, `position: 0 1 5 m`; without that it finds its place"),
     ("field", "min max low high corner corners", "write its `size`, and of its middle the `position`"),
     (
