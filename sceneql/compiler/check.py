@@ -327,7 +327,8 @@ class _Checker:
             return None
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
         if mark.bodies and isinstance(node, SequenceNode):
-            return self._no_place(node)
+            self._no_place(node)
+            return None
         together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
         help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
         if isinstance(node, SequenceNode) and len(node.items) == 1:
