@@ -38,6 +38,7 @@ FEWER = {
     "capsules": ["define.h=12 mm/30", "solvers.main.sbdf2.step=1 ms"],
     "cushion": ["define.h=2.4 m/40"],
     "dominoes": ["solvers.main.verlet.step=20 ms"],
+    "flag": ["define.h=1 m/20"],
     "jelly": ["models.cube.mass_spring.lattice.count=4 4 4"],
     "notes_fluid": ["models.water.flow.pressure=auto"],
     "pile": ["models.bun.elastic.spacing=9 cm"],

@@ -14,7 +14,7 @@ import pytest
 import stage
 from renderers.normals import Normals
 from renderers.trace import Trace
-from renderers.tracing.draw import _kept
+from renderers.tracing.buffers import _kept
 from renderers.tracing.filter.edges_kernels import BEYOND
 from renderers.tracing.pack import pack
 from renderers.tracing.scratch import scratch

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from sceneql.grids.drift import Drift
     from sceneql.grids.medium import Boundary
     from sceneql.grids.spreading_medium import SpreadingMedium
+    from sceneql.kinds import Value
     from sceneql.system import Assembly, Flow, Grid
 
 THROUGH = "sceneql.flows.carrying_kernels:through"
@@ -184,17 +185,24 @@ def _nodes(expr: Any) -> Any:
     return walk(expr)
 
 
-def add_buoyancy(buoyancy: Buoyancy, name: str, assembly: Assembly) -> None:
-    """Have a field lift the flow of a model. Raises ScriptError where that is none of the same box."""
-    link, flow = buoyancy.by.expr, assembly.flow_of(name)
+def field_in(by: Value, flow: Flow, name: str, assembly: Assembly) -> Grid:
+    """A field in the cells of a flow, that of model ``name``. Raises ScriptError where it is none of these."""
+    link = by.expr
     assert isinstance(link, Link)
-    if flow is None:
-        return  # its own assembly has failed
     grid = assembly.field_of(link)
     if grid is None:
         text = f"'{link.task}.{link.output}' is no field on a grid that is solved with the flow"
-        raise ScriptError([Diagnostic("no-field", text, buoyancy.by.span, "name one of a `diffusion`")])
+        raise ScriptError([Diagnostic("no-field", text, by.span, "name one of a `diffusion`")])
     box = assembly.numbers()[grid.cells.box_at : grid.cells.box_at + 6]
-    _must_agree(grid.cells.shape, box[:3], box[3:], grid.cells.periodic, flow, name, buoyancy.by.span)
+    _must_agree(grid.cells.shape, box[:3], box[3:], grid.cells.periodic, flow, name, by.span)
+    return grid
+
+
+def add_buoyancy(buoyancy: Buoyancy, name: str, assembly: Assembly) -> None:
+    """Have a field lift the flow of a model. Raises ScriptError where that is none of the same box."""
+    flow = assembly.flow_of(name)
+    if flow is None:
+        return  # its own assembly has failed
+    grid = field_in(buoyancy.by, flow, name, assembly)
     values = [assembly.value(one) for one in (buoyancy.expansion, buoyancy.reference, buoyancy.gravity)]
     assembly.term("force", LIFT, (grid.at, grid.cells.insides_at, *values, *flow.ints))

@@ -36,8 +36,8 @@ TOUCHING = 1e-13
 ENTRIES_A_CALL = 20_000_000
 """Entries of y to step over in one compiled call, so that a long run can be interrupted."""
 
-AT_ONCE, A_CALL = 16, 0.3
-"""Steps of a first call, and seconds that later ones are to take: steps of flows may be as long as all those."""
+AT_ONCE = 16
+"""Steps of a first call: steps of flows may be as long as all those of later ones."""
 LARGEST = 1e100
 """Largest number at the start in SI units, so that the square of its growth does not overflow."""
 
@@ -311,8 +311,7 @@ class March:
                 counts[kernels.SWAPPED] = 0
             left = left - part if status == kernels.PAUSED else 0
             if status == kernels.PAUSED:
-                took = time.perf_counter() - compiled.seconds - began
-                self._at_once = max(1, int(part * min(2.0, A_CALL / max(took, 1e-9))))
+                self._at_once = pace.at_once(self.time, part, time.perf_counter() - compiled.seconds - began)
                 if left:
                     continue
                 self._look()

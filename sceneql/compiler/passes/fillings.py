@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
 from sceneql.failure import RunFailure
@@ -31,6 +31,10 @@ class Beginning:
         kind = self._tasks[ref.name].kind
         assert isinstance(kind, Object)
         return kind
+
+    def kept(self, name: str, key: Hashable, make: Callable[[], Any]) -> Any:
+        """What is made for a part, for this start alone."""
+        return make()
 
     def _look_up(self, node: Symbol | Link) -> Any:
         if isinstance(node, Symbol):

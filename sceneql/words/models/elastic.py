@@ -73,7 +73,7 @@ class Elastic(Model):
 
     gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS, **solid_modes.OUTPUTS}
     said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("modulus", "young", "youngs_modulus", "poisson", "poisson_ratio"),
+        ("modulus", "young", "youngs_modulus", "stiffness", "poisson", "poisson_ratio"),
         "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
     )
     has_skin: ClassVar[bool] = True
@@ -232,7 +232,7 @@ class Elastic(Model):
         from sceneql.bodies.elements.strain_outputs import probe
         from sceneql.bodies.filling.tetrahedra import edges
         from sceneql.shapes.placement import rotation_matrix
-        from sceneql.system import Skin
+        from sceneql.system import Skin, Springs
 
         mesh, line = self.mesh(assembly), assembly.line()
         inertia, count = Inertia.of(mesh, density_of(self.density, WATER)), len(mesh.points)
@@ -286,7 +286,8 @@ class Elastic(Model):
         first, shear = (np.asarray(one) for one in self.law.law.moduli(mesh.points))
         stiffness = float(np.min(shear * (3.0 * first + 2.0 * shear) / (first + shear)))
         skin = Skin(skins.triangles(mesh), held, stiffness)
-        return replace(bodies, period=period, tied=edges(mesh.cells[:, :4])[0], skin=skin)
+        ends = edges(mesh.cells[:, :4])[0]
+        return replace(bodies, springs=Springs(ends, np.zeros((2, len(ends))), period), skin=skin)
 
     def remark(self, state: ModelState) -> str:
         """Its elements, their worst angle, the one that bounds steps, and what its law cannot do."""
