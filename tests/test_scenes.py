@@ -47,7 +47,7 @@ FEWER = {
     "rollers": ["models.jelly.elastic.spacing=50 mm", "solvers.main.tr_bdf2.step=1/120 s"],
     "treacle_balloon": ["define.h=2.8 m/56"],
 }
-"""By scene, what takes less time: parts that no expectation names are coarser or left out; fields have larger cells."""
+"""What takes less time, by scene: parts that nothing expects are coarser or left out; larger cells, longer steps."""
 COARSER = {
     "bell": [f"models.hum.elastic.{given}" for given in ROUGH],
     "bowl": ["models.parts.rigid.bodies={ring: {of: ring}, die: {of: die}, ball: {of: ball}}"],
