@@ -14,7 +14,8 @@ import numpy as np
 from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter.edges_kernels import TRIAL, add_samples, list_edges, list_samples, look_from_samples
-from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE
+from renderers.tracing.filter.hard_kernels import soften
+from renderers.tracing.filter.planes_kernels import LANES
 from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.light import look_lanes_kernels as looks
@@ -23,7 +24,7 @@ from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_pa
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.scratch import scratch_beside
 from renderers.tracing.solids.plain_lanes import lanes_for
-from renderers.tracing.tiles_kernels import fill_background, mark_busy
+from renderers.tracing.tiles_kernels import fill_background
 from renderers.tracing.waves_kernels import (
     advance_paths,
     ask_paths,
@@ -85,33 +86,38 @@ class Waves:
             np.zeros(count, np.int64),
         )
         self.ways_met, self.ways_skins = np.zeros((count, 5)), np.zeros((count, 6))
-        self.marks, self.same = np.zeros((TILE, width + LANES), np.float32), np.zeros(LANES, np.float32)
+        self.marks, self.same = (
+            np.zeros((TILE, -(-width // LANES) * LANES), np.float32),
+            np.zeros(LANES, np.float32),
+        )
         self.edges, self.sums = np.zeros(width * TILE, dtype=np.int64), np.zeros((ROOM, 4))
         self.own = np.zeros((layers, ROOM, COLUMNS), dtype=np.float32)
         self.found = np.zeros((layers, ROOM, columns), dtype=np.float32)
         self.spares = np.zeros((ROOM, COLUMNS), dtype=np.float32)
 
     def gather(
-        self, start: int, stop: int, reached: Array, busy: Array, records: Array, radiance: Array, visibility: Array
-    ) -> tuple[int, int]:
+        self, start: int, stop: int, reached: Array, busy: Array, records: Array, visibility: Array, final: bool,
+        radiance: Array,
+    ) -> tuple[int, int]:  # fmt: skip
         """Fill rows start..stop: records (L, h w, COLUMNS), radiance (h w, 3), visibility (L, h w, V) of L layers.
 
         Returns the number of pixels with an undecided root, and with a second record. Radiance is the part that needs
-        no visibility. Only in tiles that are ``reached`` rays are followed; those that show something become ``busy``.
+        no visibility, unless that is ``final``. Only in tiles that are ``reached`` rays are followed; those that show
+        something become ``busy``.
         """
         fill_background(self.scene, start, stop, reached, busy, records, radiance)
         tiles = np.flatnonzero(reached[start // TILE])
         undecided = seconds = 0
         for first in range(0, len(tiles), TILES):
             some = tiles[first : first + TILES]
-            doubted, more = self._gather(start, stop, some, records, radiance, visibility)
+            doubted, more = self._gather(start, stop, some, busy, records, visibility, final, radiance)
             undecided, seconds = undecided + doubted, seconds + more
-        mark_busy(start, stop, int(self.scene.reals[layout.WIDTH]), reached, busy, records, visibility)
         return undecided, seconds
 
     def _gather(
-        self, start: int, stop: int, tiles: Array, records: Array, radiance: Array, visibility: Array
-    ) -> tuple[int, int]:
+        self, start: int, stop: int, tiles: Array, busy: Array, records: Array, visibility: Array, final: bool,
+        radiance: Array,
+    ) -> tuple[int, int]:  # fmt: skip
         """As ``gather``, for some tiles."""
         scene, asked, at = self.scene, self.asked, self.at
         count = list_pixels(scene, start, stop, tiles, asked, self.cones, at)
@@ -125,7 +131,8 @@ class Waves:
             return int(kernel(scene, self.scratch, asked, self.ways, first, last, at, records, visibility))
 
         self._ask(0, count, look)
-        counts: tuple[int, int] = end_pixels(self.gathered[:count], at, records, radiance)
+        light = at, records, visibility, final, radiance
+        counts: tuple[int, int] = end_pixels(scene, self.gathered[:count], *light, busy)
         return counts
 
     def refine(self, start: int, stop: int, *more: Array) -> None:
@@ -133,13 +140,18 @@ class Waves:
         own = self.scene, self.scratch, self.asked, self.ways
         self._ask(start, stop, lambda i, end: refine(*own, i, end, self.waiting, *more))
 
+    def soften(self, cuts: Array, records: Array, visibility: Array, radiance: Array) -> None:
+        """Sample the edges of hard shadows that hard_kernels.list_cuts has found."""
+        own = self.scene, self.scratch, self.asked
+        self._ask(0, len(cuts), lambda i, end: soften(*own, i, end, cuts, records, visibility, radiance))
+
     def smooth(
         self, start: int, stop: int, points: Array, undecided: int, busy: Array, planes: Array, records: Array,
         radiance: Array, visibility: Array, picture: Array,
     ) -> None:  # fmt: skip
         """Fill rows start..stop of ``picture`` (n, 3): ``radiance``, but edges by rays through ``points`` (s, 2)."""
         scene = self.scene
-        width, size = int(scene.reals[layout.WIDTH]), KEYS + visibility.shape[2] * WIDE
+        width, size = int(scene.reals[layout.WIDTH]), planes.shape[1] * LANES // self.marks.shape[1]
         light, own = (records, radiance), (self.marks, self.same, self.edges)
         doubted = undecided + int(scene.ints[layout.HAS_THIN])
         count = list_edges(start, stop, width, size, doubted, busy, planes, *light, picture, *own)

@@ -5,7 +5,7 @@ Unused parts are checked too, since an error in an unused part is still an error
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
@@ -16,7 +16,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
 from sceneql.compiler.read import Reader, Unreadable
-from sceneql.compiler.unknown import report_unknown
+from sceneql.compiler.unknown import report_unknown, word_having, word_meant
 from sceneql.compiler.values import read_expr
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
@@ -201,15 +201,10 @@ class _Checker:
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
             words = self.catalogue.choices(family)
-            others = self.catalogue.families_of(entry.word)
             if entry.word in self.templates:
                 hint: str | None = "it is a template: what is made of it stands under 'parts:'"
-            elif others:
-                hint = f"it belongs under '{others[0]}:'"
-            elif self.catalogue.load(family, entry.name) is not None:
-                hint = f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
             else:
-                hint = self.field_of(entry, words) or suggestion(entry.word, words)
+                hint = word_meant(entry, family, self.catalogue)
             self.found.error(
                 "unknown-word",
                 f"'{entry.word}' is no word of {family}",
@@ -217,20 +212,6 @@ class _Checker:
                 help=hint or "the words are " + ", ".join(words),
             )
         return cls
-
-    def field_of(self, entry: Entry, words: Sequence[str]) -> str | None:
-        """The help where a field stands in place of the word that has it."""
-        if entry.fields is None:
-            return None
-        having: list[tuple[int, str]] = []
-        for word in words:
-            cls = self.catalogue.load(self.family_of[entry.name], word)
-            if cls is not None and entry.word in map(written_name, cls.model_fields):
-                having.append((len(cls.model_fields), word))
-        if not having or nearest(entry.word, words) is not None:
-            return None
-        text = f"`{{{min(having)[1]}: {{{entry.word}: {entry.fields.span.text}}}}}`"
-        return f"it is a field of {', '.join(word for _, word in having)}: write {text}"
 
     def family(self, name: str) -> str:
         """The family of an entry's word (of the section, where the word is unknown)."""
@@ -346,6 +327,10 @@ class _Checker:
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
         together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
         help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
+        if isinstance(node, SequenceNode) and len(node.items) == 1:
+            help = f"write `{node.items[0].span.text}`"
+        if isinstance(node, MappingNode):
+            help = word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)
         return None
 
@@ -387,6 +372,12 @@ class _Checker:
         words = self.catalogue.words(mark.family)
         section, _, inside = name.partition(".")
         hint = instead("part", name) or suggestion(name, [*choices, *words])
+        if several := self.script.groups.get(name):
+            hint = (
+                f"'{name}' is {len(several)} parts: name one, `{several[0]}`, or repeat this part, with `{name}.{{i}}`"
+            )
+        if mark.bodies and name[:1] in "-[0123456789":
+            hint = "a place is no body: write `world`, and the place in another field of the tie, `to: 0 2 0 m`"
         if section in self.script.sections and inside in self.entries:
             hint = f"a part is named without its section: write `{inside}`"
         elif "models" in (mark.family, mark.also) and (model := self.names.model_of(name)):

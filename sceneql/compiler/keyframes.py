@@ -9,6 +9,7 @@ from typing import Any
 from sceneql.kinds import Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, broken, unsure
+from sceneql.language.tree import Sequence as SequenceNode
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Symbol, Type
@@ -36,7 +37,10 @@ def read_keys(
     if unsure(table):
         return None
     if not isinstance(table, MappingNode) or not table.entries:
-        found.error("wrong-shape", "keys are written `{time: value, ...}`", table.span)
+        listed = [item.span.text for item in table.items] if isinstance(table, SequenceNode) else []
+        better = ", ".join(f"{second} s: {text}" for second, text in enumerate(listed))
+        help = f"write `{{{better}}}`, at the times that are meant" if listed else None
+        found.error("wrong-shape", "keys are written `{time: value, ...}`", table.span, help=help)
         return None
     fields = KEY_FIELDS if slope is not None else KEY_FIELDS[:1]
     keys: list[Key] = []

@@ -114,8 +114,9 @@ class Reader:
 
     def _meant(self, node: Node, cls: type[BaseModel]) -> str | None:
         """The help for a field without its colon, or for a quantity in place of all fields that suits one of them."""
+        required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
         if not isinstance(node, Scalar):
-            return None
+            return f"write `{{{required[0]}: {node.span.text}}}`" if len(required) == 1 else None
         name, _, rest = node.text.partition(" ")
         if name in map(kinds.written_name, cls.model_fields):
             rest = rest.strip().removeprefix("=").strip()
@@ -123,7 +124,15 @@ class Reader:
         if list(cls.model_fields) == [only := next(iter(cls.model_fields), "")]:
             return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
         found = list(self._fitting(node, cls.model_fields)) or list(self._formulas(node, cls))
-        return f"write `{{{kinds.written_name(found[0])}: {node.span.text}}}`" if len(found) == 1 else None
+        alone = required if len(required) == 1 else []
+        likely = alone or [kinds.written_name(name) for name in found] or self._paints(node, cls)
+        return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
+
+    def _paints(self, node: Node, cls: type[BaseModel]) -> list[str]:
+        """The color, where a value can be one."""
+        nothing = Diagnostics()
+        fits = paint.read_color(node, replace(self.names, found=nothing), nothing) is not None
+        return ["color"] if fits and "color" in cls.model_fields else []
 
     def _elsewhere(self, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
         """The help for several numbers where another count is wanted: the one other field that takes them."""
@@ -254,6 +263,8 @@ class Reader:
         fitting = fitting or [arm for arm in arms if arm is not type(None)]
         if len(fitting) > 1 and not whole(node):
             raise Unreadable  # which arm was meant is not known
+        if all(get_origin(arm) is Literal for arm in fitting):
+            return self._choice(node, tuple(choice for arm in fitting for choice in get_args(arm)), what)
         for arm in fitting[:-1]:
             attempt = replace(self, found=Diagnostics())
             attempt = replace(attempt, names=replace(self.names, found=attempt.found))

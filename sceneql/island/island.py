@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.island.inputs import Word
     from sceneql.island.setting import Setting
-    from sceneql.system import Bodies, Mode, Slopes, Stage, Tied
+    from sceneql.system import Bodies, Flow, Mode, Slopes, Stage, Tied
     from sceneql.system.assembly import Ints
 
 STAGES: tuple[Stage, ...] = ("velocity", "internal", "force", "tie", "close", "constrain")
@@ -155,6 +155,15 @@ class IslandAssembly(Offered):
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
         """Those that skins in it hold (system.Assembly)."""
         return self.setting.fluids(flow)
+
+    def carrier(self, model: str) -> Flow | None:
+        """The flow that carries a model (system.Assembly)."""
+        name = self.setting.carrier(model)
+        return None if name is None else self._flows.get(name)
+
+    def laden(self, flow: str) -> bool:
+        """Whether masses add to its inertia (system.Assembly)."""
+        return self.setting.laden(flow)
 
     @property
     def on_grids(self) -> Fields:
@@ -332,6 +341,7 @@ class IslandAssembly(Offered):
             inertia=tuple(self._matrices.items()),
             border=border,
             alike=tuple(self._alike),
+            following=tuple(self._following),
             rests=tuple(self._rests),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
             events=tuple((block.pairs, Origin(block.part, block.span), block.help) for block in events),

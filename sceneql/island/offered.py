@@ -22,6 +22,7 @@ class Offered(Reserved):
     _grids: list[Grid] = field(init=False, default_factory=list)
     _flows: dict[str, Flow] = field(init=False, default_factory=dict)
     _membranes: dict[str, Membrane] = field(init=False, default_factory=dict)
+    _following: list[tuple[int, int]] = field(init=False, default_factory=list)
 
     def grid(self, grid: Grid) -> None:
         """Say that part of the state is a field (system.Assembly)."""
@@ -53,3 +54,7 @@ class Offered(Reserved):
     def membrane_of(self, model: str) -> Membrane | None:
         """The skin of a model (system.Assembly)."""
         return self._membranes.get(model)
+
+    def follows(self, at: int, count: int) -> None:
+        """Say that entries are functions of others (system.Assembly)."""
+        self._following.append((at, count))

@@ -114,6 +114,8 @@ def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -
                 result.entries[own], result.keys[own] = item, written.word
     elif not (empty(node) or broken(node)):
         help = f"write `{name}: [{node.text}]`" if node.kind == "text" else _ENTRY
+        if name == "outputs" and "." in node.text:
+            help = "write `outputs: {film: video}`; `sceneql render SCENE -o FILE` names the file"
         found.error("section-shape", f"'{name}' holds parts by name, or a list of words", node.span, help=help)
     return result
 

@@ -185,8 +185,8 @@ def nearest(name: str, choices: Iterable[str]) -> str | None:
     library, _, inside = name.partition(".")
     name = inside if inside and library in LIBRARIES else name
     close = [choice for choice in choices if choice.lower() == name.lower()]
-    close = close or get_close_matches(name, choices, n=1, cutoff=0.8)
     close = close or [ours for ours in OURS.get(name.lower(), ()) if ours in choices]
+    close = close or get_close_matches(name, choices, n=1, cutoff=0.8)
     close = close or get_close_matches(name, choices, n=1, cutoff=0.6)
     if not close and len(name) > 1:
         close = [choice for choice in choices if name == "".join(part[:1] for part in choice.split("_"))]

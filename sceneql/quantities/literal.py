@@ -10,6 +10,7 @@ from fractions import Fraction
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Expr, Number, Type, Vector
 from sceneql.quantities.operations import OPERATIONS
+from sceneql.quantities.other_words import instead
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_names import sign_of
 from sceneql.quantities.units import Unit, scan_unit, starts_unit
@@ -46,6 +47,8 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
         if found.code != "unknown-unit" or word is None:
             raise
         if sign_of(word.group()) is not None:
+            raise
+        if instead("unit", word.group()) is not None:
             raise
         hint = f"for a product write `*{word.group()[:40]}`"
         raise ScriptError([replace(found, help=hint if found.help is None else f"{found.help}; {hint}")]) from None

@@ -27,13 +27,13 @@ objects:
 lights: {{key: {{sun: {{elevation: 42 deg, azimuth: -40 deg, angle: 0 deg, strength: 1}}}}}}
 cameras: {{eye: {{orthographic: {{look_along: -0.5 -0.4 -0.75, look_at: 0 0 0 m, height: {height} m}}}}}}
 outputs: {{film: {{images: {{size: 640 360, renderer: tracer}}}}}}
-renderers: {{tracer: {{trace: {{samples: {samples}}}}}}}
+renderers: {{tracer: {{trace: {{samples: {samples}, diffuse_bounces: {bounces}}}}}}}
 """
 CLAY = "material: matte"
 STAGES = {
     "lowering": ("sceneql.tools:frame_of", "sceneql.run.never_drawn:look"),
     "packing": ("renderers.tracing.draw:pack", "renderers.tracing.solids.bundles:Packets.__init__"),
-    "roots": ("renderers.tracing.solids.bundles:meet_asked",),
+    "roots": ("renderers.tracing.solids.bundles:meet_asked", "renderers.tracing.solids.plain_lanes_kernels:meet_plain"),
     "hits": tuple(
         f"renderers.tracing.{where}"
         for where in (
@@ -41,13 +41,18 @@ STAGES = {
             "waves:ask_paths", "waves:advance_paths", "waves:end_pixels", "waves:fill_background",
         )
     ),
-    "light": tuple(
-        f"renderers.tracing.waves:{name}"
-        for name in ("look_from", "step_all", "look_about", "dress_hits", "follow_all", "light_paths")
+    "light": (
+        *(
+            f"renderers.tracing.waves:{name}"
+            for name in ("look_from", "step_all", "look_about", "dress_hits", "follow_all", "light_paths")
+        ),
+        "renderers.tracing.light.look_lanes_kernels:list_looks",
+        "renderers.tracing.light.look_lanes_kernels:tell_looks",
     ),
     "filter": (
         *(f"renderers.tracing.draw:{name}" for name in ("lay_out", "widen", "deepen", "spread_sky", "choose")),
-        "renderers.tracing.waves:refine", "renderers.tracing.waves:mark_busy",
+        *(f"renderers.tracing.waves:{name}" for name in ("refine", "soften")),
+        "renderers.tracing.draw:list_cuts",
     ),
     "shading": ("renderers.tracing.draw:shade_rows",),
     "edges": tuple(
@@ -59,10 +64,12 @@ STAGES = {
 """The functions of each stage; what is in none of them is Python, and what else a frame takes."""
 
 
-def script(objects: str, height: float, names: str = "", samples: int = 1) -> str:
+def script(objects: str, height: float, names: str = "", samples: int = 1, bounces: int = 256) -> str:
     """A film of objects, in YAML, seen from a window so many meters high."""
     end = (FRAMES - 1) / 24
-    return SCENE.format(end=f"{end:.6f}", objects=objects, height=f"{height:g}", names=names, samples=samples)
+    return SCENE.format(
+        end=f"{end:.6f}", objects=objects, height=f"{height:g}", names=names, samples=samples, bounces=bounces
+    )
 
 
 def scripts(scenes: dict[str, Any]) -> Iterator[tuple[str, str]]:

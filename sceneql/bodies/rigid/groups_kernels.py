@@ -10,10 +10,10 @@ from numba import types
 import sceneql.bodies.rigid.point_list as points
 import sceneql.linear.cones.cone_layout_kernels as rows
 from sceneql.bodies.rigid.point_list import BODY_A, BODY_B, WHERE, WHO
+from sceneql.compiled.integers_kernels import filled
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.linear.cones.cone_finish_kernels import LOOSE, solve
 from sceneql.linear.cones.cone_layout_kernels import ROW, ROW_HIGH, ROW_LOW, lay_out
-from sceneql.linear.multifrontal.block_order_kernels import filled
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MASS = 10

@@ -31,29 +31,32 @@ FIXED = ("fast_transform", "direct")
 class Fluids:
     """What a flow of several fluids reserves; skins that hold them say so as they are made (`fill`)."""
 
-    def __init__(self, model: Model, densities: Sequence[float], faces: Faces, assembly: Assembly) -> None:
-        """``densities``: of the fluids that skins hold [kg/m^3]."""
+    def __init__(self, model: Model, densities: Sequence[float], laden: bool, faces: Faces, assembly: Assembly) -> None:
+        """``densities``: of the fluids that skins hold [kg/m^3]; ``laden``: whether masses add to its inertia."""
         self.model, self.count, self.faces, self.assembly = model, len(densities), faces, assembly
-        self.unequal = any(density != model.density for density in densities)
+        self.laden = laden
+        self.unequal = laden or any(density != model.density for density in densities)
 
     @property
     def text(self) -> str:
         """For `explain`."""
-        return f", of {1 + self.count} fluids" if self.count else ""
+        return (f", of {1 + self.count} fluids" if self.count else "") + (", laden with masses" if self.laden else "")
 
     def solver(self, named: str) -> str:
         """How the equation of the pressure is solved. Raises ScriptError for one that stays as it is."""
         if not self.unequal:
             return named
         if named in FIXED:
-            text = f"skins hold fluids of other densities: the equation of the pressure changes, and not by `{named}`"
+            what = "skins hold fluids of other densities" if self.count else "masses in it weigh other than its fluid"
+            text = f"{what}: the equation of the pressure changes, and not by `{named}`"
             raise ScriptError([Diagnostic("invalid", text, self.assembly.line(), "take `pressure: auto`")])
         return "multigrid" if named == "auto" else named
 
     def must_stand(self, moving: bool) -> None:
         """Raise ScriptError where solids in the flow move, or their walls."""
         if moving:
-            what = "skins in it hold other fluids" if self.count else "its viscosity varies"
+            what = "masses in it add to its inertia" if self.laden else "its viscosity varies"
+            what = "skins in it hold other fluids" if self.count else what
             text = f"walls of solids in the flow move, and {what}"
             help = "let the solids stand, or let the flow have one density and viscosity"
             raise ScriptError([Diagnostic("invalid", text, self.assembly.line(), help)])

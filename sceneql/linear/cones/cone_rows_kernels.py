@@ -9,6 +9,7 @@ cone and its dual are both x_0 >= |x_T|, and s . x = u . r.
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.linear.cones.cone_layout_kernels import (
     AT_ARM_A,
     AT_ARM_B,
@@ -39,6 +40,7 @@ from sceneql.linear.cones.cone_layout_kernels import (
     DIAGONAL_AT,
     FACTORS,
     FACTORS_AT,
+    FEW,
     OTHERS,
     PAIR,
     PAIR_A,
@@ -65,8 +67,14 @@ from sceneql.linear.cones.cone_layout_kernels import (
     sizes_of_rows,
     to_rows,
 )
-from sceneql.linear.multifrontal.general_kernels import factor_general, solve_general
+from sceneql.linear.multifrontal.entries_kernels import FACTOR_GENERAL, SOLVE_GENERAL
 from sceneql.system.signatures_kernels import A, F, I, N
+
+# Compiled at the first program of many bodies, or of few.
+factor_many = lazy("sceneql.linear.multifrontal.general_kernels:factor_general", FACTOR_GENERAL)
+solve_many = lazy("sceneql.linear.multifrontal.general_kernels:solve_general", SOLVE_GENERAL)
+factor_few = lazy("sceneql.linear.cones.cone_few_kernels:factor_few", types.boolean(A, I, A))
+solve_few = lazy("sceneql.linear.dense_kernels:solve", types.void(A, N, I, A))
 
 PRODUCT = types.void(A, I, N, N)
 
@@ -264,9 +272,10 @@ def factor(floats, ints):
     assemble(floats, ints)
     values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
+    if ints[BODIES] <= FEW:
+        return factor_few(values, ints, factors)
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
-    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
-    return factor_general(plan, values, factors, work)
+    return factor_many(ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]], values, factors, work)
 
 
 @lean(types.void(A, I, N))
@@ -284,9 +293,11 @@ def step(floats, ints, left):
         for c in range(6):
             right[6 * body + c] = floats[ints[BODIES_AT] + BODY * body + AT_D + c]
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
-    work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
     plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
-    solve_general(plan, factors, right, work)
+    if ints[BODIES] <= FEW:
+        solve_few(factors, right.size, plan, right)
+    else:
+        solve_many(plan, factors, right, floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]])
     for body in range(ints[BODIES]):
         for c in range(6):
             floats[ints[BODIES_AT] + BODY * body + AT_D + c] = right[6 * body + c]

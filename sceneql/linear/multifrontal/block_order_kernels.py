@@ -5,29 +5,11 @@ Minimum degree on the quotient graph (George & Liu 1989, SIAM Review 31, 1-19): 
 with the vertices that it ties; an element that meets the next one's pivot is absorbed in it, and is its child.
 """
 
-import numpy as np
 from numba import types
 
+from sceneql.compiled.integers_kernels import filled, longer
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.system.signatures_kernels import I, N
-
-
-@kernel(I(N, N), inner=True)
-def filled(count, value):
-    """An array of equal integers."""
-    made = np.empty(count, dtype=np.int64)
-    for k in range(count):
-        made[k] = value
-    return made
-
-
-@kernel(I(I, N, N), inner=True)
-def longer(source, count, size):
-    """An array of so many integers that begins with the first ones of another."""
-    made = np.empty(size, dtype=np.int64)
-    for k in range(count):
-        made[k] = source[k]
-    return made
 
 
 @lean(types.void(I, I, I), inner=True)

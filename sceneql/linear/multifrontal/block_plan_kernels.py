@@ -7,15 +7,15 @@ diagonal's first, then of every edge (a, b) the block in row a and column b, and
 
 from numba import types
 
+from sceneql.compiled.integers_kernels import filled
 from sceneql.compiled.kernels import kernel, lean_inlined
 from sceneql.linear.multifrontal import layout
-from sceneql.linear.multifrontal.block_order_kernels import elimination, filled
+from sceneql.linear.multifrontal.block_order_kernels import elimination
 from sceneql.system.signatures_kernels import I, N
 
-UNIT = 6
+UNIT, BLOCK = layout.BODY_UNKNOWNS, layout.BODY_BLOCK
 MERGED = 4
 """Vertices up to which a front is merged into its parent, though more zeros are computed."""
-BLOCK = UNIT * UNIT
 
 
 @lean_inlined

@@ -10,3 +10,5 @@ PAD = 16
 """Zeros behind the factors of each front: lanes reach that far beyond a row."""
 ROWS = 4
 """Rows of the factors that a solution reads at a time."""
+BODY_UNKNOWNS, BODY_BLOCK = 6, 36
+"""Unknowns of a rigid body, and numbers of a block of the matrix of some."""

@@ -32,6 +32,10 @@ class Motion(Model):
     over 0.2 ms.
     """
 
+    said_by: ClassVar[Mapping[str, str]] = {
+        "of": "the object says where it is, by the motion: `position: lift.position`",
+        "velocity": "write where it is, `position: [1 m/s*time, 0 m, 0 m]`",
+    }
     kinematic: ClassVar[bool] = True
     has_bodies: ClassVar[bool] = False
     gives: ClassVar[Mapping[str, Gives]] = {
