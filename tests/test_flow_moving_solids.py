@@ -41,6 +41,26 @@ def test_a_cylinder_drawn_through_a_fluid_at_rest_has_the_drag_of_one_in_a_strea
     assert np.isfinite(still).all()
 
 
+def test_a_ball_drawn_through_a_deep_box_has_the_drag_of_one_in_a_stream(tmp_path):
+    """Galileo again, between four walls; six cells across."""
+
+    def drag(moves):
+        wall = '{wall: {velocity: "[-1, 0, 0]"}}'
+        walls = "" if moves else "".join(f", {side}: {wall}" for side in ("bottom", "top", "back", "front"))
+        place = "[0.35 m + 1 m/s*time, 0.513 m, 0.487 m]" if moves else "0.35 0.513 0.487 m"
+        air = Air(
+            tmp_path, "{heun: {step: 5 ms}}", 0.2, size="1 1 1 m", around="[ball]", advection="central",
+            before=f"objects: {{ball: {{sphere: {{position: {place}, radius: 0.2 m}}}}}}\n",
+            initial=None if moves else '{velocity: "[-1 + 0*x, 0*x, 0*x]"}',
+            boundary=f"{{left: {{periodic: yes}}{walls}}}",
+        )  # fmt: skip
+        return np.array([air.at(float(now)).read("ball.force")[0] for now in 0.12 + 0.0173 * np.arange(4)])
+
+    apart = drag(True) / drag(False) - 1.0
+    assert abs(apart.mean()) < 0.01
+    assert np.abs(apart).max() < 0.02
+
+
 def test_steps_by_error_leave_out_what_solids_leave_and_come_to(tmp_path):
     """It has no order: of 106 steps 30 were refused for it, where 70 do."""
     air = drawn(tmp_path, True, step=None, solver="ark3").at(0.15)

@@ -14,7 +14,6 @@ RING = (
 THROUGH = '{left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}'
 PLACES = {
     "past a stone": {"before": STONE, "around": "[stone]", "boundary": THROUGH},
-    "past a stone in finer cells": {"before": STONE, "around": "[stone]", "boundary": THROUGH, "cell": "1/32 m"},
     "a closed box": {"initial": '{velocity: "[sin(3*x + y), cos(x*y)]"}'},
     "within and around a ring": {"before": RING, "around": "[ring]", "force": '"[sin(5*y), 0]"'},
     "deep": {
@@ -41,6 +40,15 @@ def test_every_solver_of_the_pressure_finds_the_same_flow(tmp_path, place):
             left = air.read("residuals")
             assert left[0] > left[-1]
             assert len(left) == 128 or left[-1] < 1e-10 * left[0]
+
+
+@pytest.mark.parametrize("place", ["past a stone", "within and around a ring"])
+def test_iterations_on_cells_near_solids_come_to_what_factors_do(tmp_path, place):
+    """There are few of these among 32 by 32; a third and more of all are iterated on as all are."""
+    fields = {**PLACES[place], "cell": "1/32 m"}
+    found = [Air(tmp_path, "{sbdf2: {step: 10 ms}}", 0.05, pressure=name, **fields) for name in ("auto", "direct")]
+    known = found[1].at(0.05).read("velocity")
+    assert found[0].at(0.05).read("velocity") == pytest.approx(known, abs=1e-9 * np.abs(known).max())
 
 
 def test_solvers_of_the_pressure_differ_in_their_iterations(tmp_path):

@@ -124,14 +124,15 @@ def by_five(re, im, to_re, to_im, at, far, into, width, wave, n, turn):
 def by_many(re, im, to_re, to_im, p, m, r, width, wave, n, fold):
     """One butterfly of r for all lanes."""
     for k in range(r):
-        o = (r * p + k) * width
+        o, begin, apart = (r * p + k) * width, p * k * fold % n, k * (n // r)
         for q in range(0, width, LANES):
-            sum_re, sum_im = spread(0.0), spread(0.0)
+            sum_re, sum_im, turn = spread(0.0), spread(0.0), begin
             for j in range(r):
-                turn = (j * k * (n // r) + p * k * fold) % n
                 c, s, at = wave[turn], -wave[n + turn], (p + j * m) * width + q
                 xr, xi = load(re, at), load(im, at)
                 sum_re, sum_im = sum_re + (xr * c - xi * s), sum_im + (xr * s + xi * c)
+                turn += apart
+                turn -= n if turn >= n else 0
             store(to_re, o + q, sum_re)
             store(to_im, o + q, sum_im)
 

@@ -72,10 +72,10 @@ def cells_of(model: Medium, assembly: Assembly) -> cells.Cells:
 def _of_flow(model: Medium, assembly: Assembly) -> cut.Frame | None:
     """The grid of the flow in the same domain that carries a model; None where there is none."""
     by = getattr(getattr(model, "drift", None), "by", None)
-    carrier = None if by is None else cast(Any, assembly.object(by))
-    if not getattr(carrier, "flows", False) or carrier.domain is None or model.domain is None:
+    if by is None or model.domain is None:
         return None
-    if carrier.domain.name != model.domain.name:
+    carrier: Any = assembly.object(by)
+    if not getattr(carrier, "flows", False) or carrier.domain is None or carrier.domain.name != model.domain.name:
         return None
     box = carrier.box(assembly)
     return cut.Frame(box.shape, box.low, box.spacing)
