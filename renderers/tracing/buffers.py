@@ -50,9 +50,9 @@ _kept: list[Buffers] = []
 """The last picture's buffers: fresh memory costs the system a tenth of a frame's time."""
 
 
-def take(*shape: int) -> Buffers:
-    """Buffers of a shape, as Buffers is made with: those ``put_back`` last, if they are."""
-    kept = _kept.pop() if _kept else None
+def take(width: int, height: int, columns: int, layers: int, hard: bool) -> Buffers:
+    """Buffers as made by these: those ``put_back`` last, if they are."""
+    kept, shape = _kept.pop() if _kept else None, (width, height, columns, layers, hard)
     return kept if kept is not None and kept.shape == shape else Buffers(*shape)
 
 
