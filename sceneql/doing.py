@@ -39,6 +39,12 @@ def now(longer: float | None = None) -> str:
     return next((deed.what for deed in reversed([*_deeds]) if deed.since <= begun), "")
 
 
+def chain(longer: float) -> str:
+    """All that is being done, outermost first, if that has lasted for so many seconds: ``running ahead: filling``."""
+    deeds = [*_deeds]
+    return ": ".join(deed.what for deed in deeds) if deeds and deeds[0].since <= time.monotonic() - longer else ""
+
+
 def duration(seconds: float) -> str:
     """A time in words: `40 s`, `12 min`, `2.5 h`."""
     if seconds < MINUTES:

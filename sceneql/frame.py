@@ -262,6 +262,10 @@ class Sky:
     ground: RGB
     visible: RGB | None = None
     """Seen by camera rays in place of the sky, where given (a plain background)."""
+    below: RGB | None = None
+    """What `visible` becomes below the horizon, as a floor that fades into it would; by default it stays as it is."""
+    fade: float | None = None
+    """Sine of the angle to an endless floor below which that fades into the background; by default near the horizon."""
     boxes: tuple[SoftBox, ...] = ()
     """Seen in reflections alone: matte surfaces have the blended light, which is that of a sky with boxes in it."""
 

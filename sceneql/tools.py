@@ -326,7 +326,7 @@ def frame_of(
             seen = linear(moment.at(graph.settings.background))
         skies = [light for light in lights if isinstance(light, Sky)] or [Sky((0, 0, 0), (0, 0, 0), (0, 0, 0))]
         lights = [light for light in lights if not isinstance(light, Sky)]
-        lights += [replace(sky, visible=seen) for sky in skies]
+        lights += [replace(sky, visible=seen, below=None, fade=None) for sky in skies]
     return SeenFrame(
         index=drawn.index,
         time=drawn.time,

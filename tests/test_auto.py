@@ -113,7 +113,7 @@ def test_a_method_that_is_taken_again_is_not_laid_out_again(tmp_path, monkeypatc
 def test_how_many_steps_a_compiled_call_takes_changes_no_byte(tmp_path, monkeypatch, seconds):
     """A call takes a third of a second: twenty would pass before a flow's run could be interrupted or limited."""
     expected, one = marched(tmp_path, VAN_DER_POL, "auto: {tolerance: 1e-11}", 2)
-    monkeypatch.setattr("sceneql.march.march.A_CALL", seconds)
+    monkeypatch.setattr("sceneql.march.pace.A_CALL", seconds)
     found, other = marched(tmp_path, VAN_DER_POL, "auto: {tolerance: 1e-11}", 2)
     assert found.tobytes() == expected.tobytes()
     assert (other.statistics.steps, other.choices()) == (one.statistics.steps, one.choices())

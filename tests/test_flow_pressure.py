@@ -14,6 +14,7 @@ RING = (
 THROUGH = '{left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}'
 PLACES = {
     "past a stone": {"before": STONE, "around": "[stone]", "boundary": THROUGH},
+    "past a stone in finer cells": {"before": STONE, "around": "[stone]", "boundary": THROUGH, "cell": "1/32 m"},
     "a closed box": {"initial": '{velocity: "[sin(3*x + y), cos(x*y)]"}'},
     "within and around a ring": {"before": RING, "around": "[ring]", "force": '"[sin(5*y), 0]"'},
     "deep": {

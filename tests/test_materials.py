@@ -110,7 +110,7 @@ def test_sky_of_one_color_is_the_same_all_around():
     assert plain.zenith != plain.horizon
 
 
-def test_studio_has_its_key_light_upper_left_in_front_and_a_gray_background():
+def test_studio_has_its_key_light_upper_left_in_front_and_a_gray_cove():
     key, rim, sky = lights("studio")
     assert isinstance(key, Sun)
     assert isinstance(rim, Sun)
@@ -123,7 +123,9 @@ def test_studio_has_its_key_light_upper_left_in_front_and_a_gray_background():
     # Irradiance on the open floor: a sky that is linear in the sine of the elevation counts 1/3 and 2/3.
     dome = (np.array(sky.horizon) + 2 * np.array(sky.zenith)) / 3
     suns = sum(np.array(sun.irradiance) * sun.direction[1] / math.pi for sun in (key, rim))
-    np.testing.assert_allclose(np.array(floor.surface.color) * (suns + dome), sky.visible, rtol=0.02)
+    np.testing.assert_allclose(np.array(floor.surface.color) * (suns + dome), sky.below, rtol=0.02)
+    np.testing.assert_allclose(np.divide(sky.below, sky.visible), 1.9, atol=0.2)  # darker behind what stands on it
+    assert sky.fade > 0.1
     turned = (np.array(sky.zenith) + np.array(sky.ground)) / 6 + 2 * np.array(sky.horizon) / 3
     lit = np.array(key.irradiance) / math.pi + turned  # a wall that faces the key light
     np.testing.assert_allclose(lit / turned, 5, rtol=0.15)  # four parts of key to one of fill

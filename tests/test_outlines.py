@@ -14,6 +14,8 @@ from sceneql.shapes.outlines import COUNT, DIRECTIONS, outermost, outline
 SHAPES = {
     "sphere: {radius: 0.5 m, position: 1 2 0 m}": 0.5,
     "box: {size: 1 0.5 2 m, rotation: {about: x, angle: 30 deg}}": 1.0,
+    "cylinder: {radius: 0.2 m, height: 2 m, rotation: {about: x, angle: 50 deg}}": 1.0,
+    "tube: {through: [0 0 0 m, 0 2 0 m], radius: 10 cm}": 1.0,
     "torus: {radius: 0.6 m, tube: 0.2 m, rotation: {about: z, angle: 40 deg}}": 0.8,
     "implicit: {field: x^2 + 2*y^2 + 3*z^2 - 0.3, bounds: {box: [-3 -3 -3, 3 3 3]}}": 0.55,
     "blobby: {skeleton: [{point: 0 0 0 m, radius: 0.5 m}, {point: 0.7 0.2 0 m, radius: 0.4 m}]}": 0.9,

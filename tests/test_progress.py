@@ -71,10 +71,11 @@ def test_what_takes_minutes_is_told_in_a_line_where_there_is_no_terminal(monkeyp
     monkeypatch.setattr("sceneql.report.progress.LINES", 0.01)
     monkeypatch.setattr("sceneql.report.progress.LONG", 0.0)
     told = ""
-    with bar("film"), doing("filling bone"):
-        while not told:
+    with bar("film") as step, doing("running to 1 s, 25 % of the clock"), doing("filling bone"):
+        step(3, 12)
+        while "12" not in told:
             told = capsys.readouterr().err
-    assert told.splitlines()[0] == "film: filling bone"
+    assert "film: 3 of 12 (25 %), running to 1 s, 25 % of the clock: filling bone" in told.splitlines()
 
 
 def test_frames_and_what_they_will_take_are_told_where_there_is_no_terminal(monkeypatch, capsys):
@@ -84,12 +85,14 @@ def test_frames_and_what_they_will_take_are_told_where_there_is_no_terminal(monk
         step(3, 36_000)
         while told.count("\n") < 2:
             told += capsys.readouterr().err
-    assert re.fullmatch(r"film: 3 of 36,000, about [\d.]+ (s|min|h) left", told.splitlines()[0])
+    assert re.fullmatch(r"film: 3 of 36,000 \(0 %\), about [\d.]+ (s|min|h) left", told.splitlines()[0])
 
 
 def test_a_march_tells_its_steps_and_when_it_will_be_at_the_next_instant():
     deed = Deed("solving")
     march = Pace(deed, 1.0, 0.0, 0)
+    assert march.at_once(1e-10, 100, 1.0) == 30
+    assert deed.what == "solving, at 1e-10 s"
     assert not march.hopeless(1e-9, 1_000_000)
     assert "at 1e-09 s: steps of 1e-15 s, to the next instant" in deed.what
 

@@ -9,10 +9,13 @@ import pytest
 from imageio.v3 import imread
 
 import stage
+from moment import IDENTITY, FakeMoment
 from renderers.trace import Trace
 from sceneql.frame import Sky, SoftBox, Surface
 from sceneql.pipeline import load, render
 from sceneql.report.unsaid import unsaid
+from sceneql.words.lights.studio import BACKGROUND, BELOW, Studio
+from sceneql.words.objects.plane import Plane
 from stage import frame, view
 
 GRAY = (0.2, 0.2, 0.2)
@@ -58,6 +61,18 @@ def test_matte_surfaces_and_the_ground_are_as_without_boxes(tmp_path):
     off = np.abs(pictures[1] - pictures[0]).max(axis=-1)
     assert off[:, :48].max() > 60
     assert off[:, 60:].max() <= 1
+
+
+def test_the_background_is_that_of_a_floor_that_bends_up():
+    """Whether there is a floor or not: as bright as the floor below, and gray ahead, without a step between them."""
+    eye = view(eye=(0, 1, 0), target=(0, 0.7, -1), size=(8, 90), half_height=0.4, orthographic=False)
+    lights = list(Studio().lower(FakeMoment()))
+    (floor,) = Plane().lower("floor", IDENTITY, FakeMoment())
+    bare, floored = (Trace().draw(frame(*shapes, lights=lights, seen=eye)).linear[:, 4] for shapes in ((), (floor,)))
+    np.testing.assert_allclose(bare, floored, atol=0.015)
+    np.testing.assert_allclose(bare[0], BACKGROUND, rtol=1e-5)
+    assert bare[-1].min() > 0.9 * BELOW[0]
+    assert np.abs(np.diff(bare, axis=0)).max() < 0.02
 
 
 def test_they_are_told_as_words_to_paste(tmp_path):

@@ -238,7 +238,7 @@ def test_a_picture_shows_nothing_of_the_one_before(junk):
         lambda: draw(thin, lights=(sun((0, 1, 1), (3.0, 3.0, 3.0)), black)),
     ]
     for again in draws:
-        first = again().copy()
+        first = again().copy()  # its memory is that of the next picture
         for kept in _kept:
             for array in vars(kept).values():
                 if isinstance(array, np.ndarray):

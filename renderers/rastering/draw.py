@@ -161,7 +161,7 @@ def _places(view: View, depth: Floats, far: float) -> Floats:
 def _backdrop(view: View, lights: Iterable[LightSource], width: int, height: int) -> Floats:
     """(height, width, 3) radiance of the backdrop, seen where no shape is."""
     skies = [light for light in lights if isinstance(light, Sky)]
-    seen = [sky.visible for sky in skies if sky.visible is not None]
+    seen = [sky.below or sky.visible for sky in skies if sky.visible is not None]
     if seen or not skies:
         return np.broadcast_to(np.array(seen[-1] if seen else (0.0, 0.0, 0.0)), (height, width, 3))
     right, up, back = view.axes

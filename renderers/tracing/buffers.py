@@ -51,8 +51,9 @@ _kept: list[Buffers] = []
 
 
 def take(width: int, height: int, columns: int, layers: int, hard: bool) -> Buffers:
-    """Buffers as made by these: those ``put_back`` last, if they are."""
-    kept, shape = _kept.pop() if _kept else None, (width, height, columns, layers, hard)
+    """Buffers of a shape, as Buffers is made with: those ``put_back`` last, if they are."""
+    shape = width, height, columns, layers, hard
+    kept = _kept.pop() if _kept else None
     return kept if kept is not None and kept.shape == shape else Buffers(*shape)
 
 

@@ -27,7 +27,6 @@ from renderers.tracing.waves_kernels import layers_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy import int64
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, SeenFrame
@@ -114,7 +113,7 @@ def draw(
 def _soften(with_waves: Callable[..., None], buffers: Buffers, layers: Sequence[int]) -> None:
     """Sample the edges of hard shadows in ``layers`` of records."""
     width, height, columns = buffers.shape[:3]
-    found: dict[tuple[int, int], NDArray[int64]] = {}
+    found: dict[tuple[int, int], NDArray[np.int64]] = {}
 
     def look(start: int, stop: int) -> None:
         for layer in layers:

@@ -64,7 +64,11 @@ CAMERA = 16
 """Origin (of an orthographic camera as ``window`` moves it), right, up, back, half height, orthographic, width, height:
 16."""
 WIDTH, HEIGHT = CAMERA + 14, CAMERA + 15
-LIGHTS = 32
+FADE = 32
+"""Sine of the angle to an endless floor below which it fades into the backdrop: a horizon without an edge."""
+BELOW = 33
+"""What `visible` becomes below the horizon, by the same angle: 3."""
+LIGHTS = 36
 """Offset of the first light."""
 LIGHT = 9
 """Reals of a light: kind, direction to it or position, irradiance or intensity, angular diameter or radius; radius of

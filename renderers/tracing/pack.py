@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
 NO_BALL = (0.0, 0.0, 0.0, np.inf)
+FADE = 0.04
+"""`layout.FADE` where no sky says another: close above the horizon."""
 SAME = 1e-3
 """Half pixels below which two ends of thin capsules are one place."""
 
@@ -57,6 +59,7 @@ def pack(
     head[layout.SKY : layout.SKY + 14] = _sky(frame, bounces)
     head[[layout.TOLERANCE, layout.SAMPLES]] = tolerance, samples
     head[layout.CAMERA : layout.CAMERA + 16] = _camera(frame.view)
+    head[layout.FADE : layout.FADE + 4] = _cove(frame)
     if frame.view.orthographic:
         from renderers.tracing.window import window
 
@@ -342,6 +345,15 @@ def _sky(frame: SeenFrame, bounces: int) -> Floats:
             if sky.visible is not None:
                 row[9:12] = sky.visible
                 row[13] = 1.0
+    return row
+
+
+def _cove(frame: SeenFrame) -> Floats:
+    """How endless floors and the background fade: of the last sky that has something to see."""
+    row = np.array([FADE, 0.0, 0.0, 0.0])
+    for sky in frame.lights:
+        if isinstance(sky, seen.Sky) and sky.visible is not None:
+            row[:] = FADE if sky.fade is None else sky.fade, *(sky.below or sky.visible)
     return row
 
 

@@ -12,9 +12,6 @@ from renderers.tracing.scene_kernels import part
 from renderers.tracing.solids.intersect_kernels import walk
 from renderers.tracing.solids.surface_kernels import color_at, normal_at
 
-FADE = 0.04
-"""Sine of the angle to an endless floor below which it fades into the backdrop: a horizon without an edge."""
-
 
 @part
 def describe(scene, scratch, item, t, ox, oy, oz, dx, dy, dz, radius, record):
@@ -47,7 +44,7 @@ def faded(scene, item, record):
     """Share of an endless item that is seen, against the backdrop into which it fades."""
     if item >= scene.ints[layout.ENDLESS_COUNT]:
         return 1.0
-    ratio = FADE / facing_ratio(record)
+    ratio = scene.reals[layout.FADE] / facing_ratio(record)
     return np.exp(-ratio * ratio)
 
 

@@ -138,8 +138,10 @@ def fill_background(scene, start, stop, reached, busy, records, radiance):
     row = start // TILE
     even = True
     for c in range(3):
-        even = even and u[layout.SKY + c] == u[layout.SKY + 3 + c] and u[layout.SKY + 6 + c] == u[layout.SKY + 3 + c]
-    even = even or u[layout.HAS_VISIBLE] != 0.0
+        if u[layout.HAS_VISIBLE] != 0.0:
+            even = even and u[layout.BELOW + c] == u[layout.SKY + 9 + c]
+        else:
+            even = even and u[layout.SKY + c] == u[layout.SKY + 3 + c] == u[layout.SKY + 6 + c]
     for tile in range(reached.shape[1]):
         if reached[row, tile] != 0:
             busy[row, tile] = 0

@@ -5,7 +5,7 @@ Unused parts are checked too, since an error in an unused part is still an error
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
@@ -16,7 +16,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
 from sceneql.compiler.read import Reader, Unreadable
-from sceneql.compiler.unknown import report_unknown
+from sceneql.compiler.unknown import mover_of, report_unknown, word_having, word_meant
 from sceneql.compiler.values import read_expr
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
@@ -106,6 +106,7 @@ class _Checker:
             found=found,
             given=script.gives,
             broken=script.broken,
+            mover=lambda name: mover_of(name, self.entries, self.family_of),
             unsure=cache(self.unsure),  # which reads all of a part, and a part of many bodies is named by many
             parsed=parsed,
         )
@@ -201,15 +202,10 @@ class _Checker:
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
             words = self.catalogue.choices(family)
-            others = self.catalogue.families_of(entry.word)
             if entry.word in self.templates:
                 hint: str | None = "it is a template: what is made of it stands under 'parts:'"
-            elif others:
-                hint = f"it belongs under '{others[0]}:'"
-            elif self.catalogue.load(family, entry.name) is not None:
-                hint = f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
             else:
-                hint = self.field_of(entry, words) or suggestion(entry.word, words)
+                hint = word_meant(entry, family, self.catalogue)
             self.found.error(
                 "unknown-word",
                 f"'{entry.word}' is no word of {family}",
@@ -217,20 +213,6 @@ class _Checker:
                 help=hint or "the words are " + ", ".join(words),
             )
         return cls
-
-    def field_of(self, entry: Entry, words: Sequence[str]) -> str | None:
-        """The help where a field stands in place of the word that has it."""
-        if entry.fields is None:
-            return None
-        having: list[tuple[int, str]] = []
-        for word in words:
-            cls = self.catalogue.load(self.family_of[entry.name], word)
-            if cls is not None and entry.word in map(written_name, cls.model_fields):
-                having.append((len(cls.model_fields), word))
-        if not having or nearest(entry.word, words) is not None:
-            return None
-        text = f"`{{{min(having)[1]}: {{{entry.word}: {entry.fields.span.text}}}}}`"
-        return f"it is a field of {', '.join(word for _, word in having)}: write {text}"
 
     def family(self, name: str) -> str:
         """The family of an entry's word (of the section, where the word is unknown)."""
@@ -344,10 +326,22 @@ class _Checker:
         if unsure(node):
             return None
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
+        if mark.bodies and isinstance(node, SequenceNode):
+            return self._no_place(node)
         together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
         help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
+        if isinstance(node, SequenceNode) and len(node.items) == 1:
+            help = f"write `{node.items[0].span.text}`"
+        if isinstance(node, MappingNode):
+            help = word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)
         return None
+
+    def _no_place(self, node: Node) -> None:
+        """Report a place where a body stands."""
+        place = " ".join(node.span.text.strip("[]").replace(",", " ").split())
+        help = f"write `world`, and the place in another field of the tie, `to: {place} m` of a rod, `at` of others"
+        self.found.error("entry-shape", "a place is no body", node.span, help=help)
 
     def _body(self, node: Scalar, model: str, body: str) -> Ref | None:
         """One body of a model, or the only one, where there is such a one."""
@@ -387,10 +381,20 @@ class _Checker:
         words = self.catalogue.words(mark.family)
         section, _, inside = name.partition(".")
         hint = instead("part", name) or suggestion(name, [*choices, *words])
+        if mark.bodies:
+            hint = suggestion(name, choices) or instead("body", name) or "name a body, or what stands still, `world`"
+        if several := self.script.groups.get(name):
+            hint = (
+                f"'{name}' is {len(several)} parts: name one, `{several[0]}`, or repeat this part, with `{name}.{{i}}`"
+            )
+        if mark.bodies and name[:1] in "-[0123456789":
+            hint = "a place is no body: write `world`, and the place in another field of the tie, `to: 0 2 0 m`"
         if section in self.script.sections and inside in self.entries:
             hint = f"a part is named without its section: write `{inside}`"
         elif "models" in (mark.family, mark.also) and (model := self.names.model_of(name)):
-            hint = f"'{name}' is one of the bodies or masses of '{model}': write `{model}`, which means all of them"
+            whose = f"'{name}' is one of the bodies or masses of '{model}'"
+            all_of_it = f"{whose}: write `{model}`, which means all of them"
+            hint = f"{whose}: write `{model}.{name}`" if mark.bodies else all_of_it
         elif hint is None and words:
             hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
         self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)

@@ -9,9 +9,11 @@ from typing import Any
 from sceneql.kinds import Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, broken, unsure
+from sceneql.language.tree import Sequence as SequenceNode
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Symbol, Type
+from sceneql.quantities.other_words import instead
 
 CURVES = ("step", "linear", "smooth", "cubic")
 KEY_FIELDS = ("value", "slope", "slope_in", "slope_out")
@@ -29,14 +31,17 @@ def read_keys(
     ok = True
     for key in node.entries:
         if key not in ("keys", "curve", "cycle", "delay"):
-            hint = suggestion(key, ("keys", "curve", "cycle", "delay"))
+            hint = instead("keys", key) or suggestion(key, ("keys", "curve", "cycle", "delay"))
             found.error("unknown-field", f"keyframes have no field '{key}'", node.keys[key].span, help=hint)
             ok = False
     table = node.entries["keys"]
     if unsure(table):
         return None
     if not isinstance(table, MappingNode) or not table.entries:
-        found.error("wrong-shape", "keys are written `{time: value, ...}`", table.span)
+        listed = [item.span.text for item in table.items] if isinstance(table, SequenceNode) else []
+        better = ", ".join(f"{second} s: {text}" for second, text in enumerate(listed))
+        help = f"write `{{{better}}}`, at the times that are meant" if listed else None
+        found.error("wrong-shape", "keys are written `{time: value, ...}`", table.span, help=help)
         return None
     fields = KEY_FIELDS if slope is not None else KEY_FIELDS[:1]
     keys: list[Key] = []

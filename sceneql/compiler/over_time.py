@@ -1,8 +1,14 @@
-"""Operations over a whole run (`final`, `at`, `relative_drift`, ...): only `expect` has the run before it."""
+"""Instants beyond the run, and operations over all of it (`final`, `at`, ...): only `expect` has the run before it."""
 
 from __future__ import annotations
 
-from sceneql.kinds import Expect
+from collections.abc import Mapping
+
+from sceneql.graph import Task
+from sceneql.kinds import Expect, Output
+from sceneql.language.patch import SET
+from sceneql.language.script import Script
+from sceneql.language.tree import Mapping as MappingNode
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Link, Symbol, each_once
@@ -37,3 +43,19 @@ def _check_instant(instant: Expr, end: float, span: Span | None, found: Diagnost
         found.error("out-of-range", f"the instant of 'at' must be at least 0 s, not {at:g} s", span)
     elif at > end:  # no error: runs are cut short by --set clock.end
         found.warning("beyond-end", f"this is not measured: the run ends at {end:g} s", span)
+
+
+def check_latest(script: Script, tasks: Mapping[str, Task], end: float, found: Diagnostics) -> None:
+    """Report outputs of an instant after ``end`` [s], but for runs that are cut short by --set clock.end."""
+    clock = script.settings.get("clock")
+    ends = clock.entries.get("end") if isinstance(clock, MappingNode) else None
+    if ends is not None and ends.span.source.name == SET:
+        return
+    entries = script.sections.get(Output.family, {})
+    for task in tasks.values():
+        asked = task.kind.latest() if isinstance(task.kind, Output) else None
+        if asked is not None and asked[1] > end * (1 + 1e-12):
+            field, instant = asked
+            place = entries[task.name].place((field,)) if task.name in entries else task.span
+            help = f"raise its end, `clock: {{end: {instant:g} s}}`, or take an instant before"
+            found.error("beyond-end", f"the clock ends at {end:g} s, before this", place, help=help)

@@ -1,33 +1,109 @@
-"""Fields that a word does not have: what was meant, or what is written in their place."""
+"""Words that a family, and fields that a word does not have: what was meant, or what is written in their place."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from collections.abc import Mapping as Naming
 
-from sceneql.language.tree import Mapping
-from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
-from sceneql.quantities.other_words import instead
+from sceneql.compiler.catalogue import Catalogue
+from sceneql.kinds import written_name
+from sceneql.language.scope import Entry
+from sceneql.language.tree import Mapping, Scalar
+from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
+from sceneql.quantities.other_words import OURS, instead
+
+MANY = 6
+"""Words up to which all that have a field are told."""
+
+_UNPARTED = re.compile(r"(\w+)(?:(:)| )(.*)")
 
 
 def report_unknown(
-    node: Mapping, known: Collection[str], title: str, found: Diagnostics, said_by: Naming[str, str] | None = None
+    node: Mapping,
+    known: Collection[str],
+    title: str,
+    found: Diagnostics,
+    said_by: Naming[str, str] | None = None,
+    family: str = "",
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; True if there are none.
 
-    ``said_by``: what says it instead, for names that are likely to be tried.
+    ``said_by``: what says it instead, for names that are likely to be tried; ``family``: that of the word, if any.
     """
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        help = (said_by or {}).get(name) or suggestion(name, known)
-        help = help or instead("field", name) or "it has " + ", ".join(known)
-        if (meant := meant_field(name, known)) is not None and name.startswith(f"{meant} "):
-            help = f"write `{meant}: {name.removeprefix(meant).strip()}`"
+        help = (said_by or {}).get(name) or (suggestion(name, known) if same_as(name, known) else None)
+        help = help or instead(f"field.{family}", name) or instead("field", name) or suggestion(name, known)
+        if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
+            space = ", with a space behind the colon" if written[2] else ""
+            help = f"write `{written[1]}: {written[3].strip()}`{space}"
+        if help is None and len(known) == 1:
+            help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
+        help = help or "it has " + ", ".join(known)
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
     return not unknown
 
 
 def meant_field(name: str, known: Collection[str]) -> str | None:
-    """The field meant by an unknown name: its first word, if a colon is missing behind that, or the nearest field."""
-    first = name.partition(" ")[0]
-    return first if first in known else nearest(name, known)
+    """The field meant by an unknown name: its first word, if colon or space is missing there, or the nearest one."""
+    written = _UNPARTED.fullmatch(name)
+    return written[1] if written is not None and written[1] in known else nearest(name, known)
+
+
+def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
+    """The help for an entry whose word its family does not have."""
+    words, fields = catalogue.choices(family), entry.fields
+    inner = next(iter(fields.entries)) if isinstance(fields, Mapping) and len(fields.entries) == 1 else ""
+    if fields is not None and entry.name == entry.word and catalogue.load(family, inner) is not None:
+        return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.span.text}}}`"
+    if (same := same_as(entry.word, words)) is not None:
+        return f"did you mean '{same}'?"
+    if others := catalogue.families_of(entry.word):
+        return f"it belongs under '{others[0]}:'"
+    if catalogue.load(family, entry.name) is not None:
+        return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
+    having = [] if fields is None or entry.word in OURS else _having([entry.word], family, catalogue)
+    if fields is not None and having:
+        near = nearest(entry.name, having) or having[0]
+        of = f" of {', '.join(sorted(having))}" if len(having) <= MANY else ""
+        return f"it is a field{of}: write `{{{near}: {{{entry.word}: {fields.span.text}}}}}`"
+    return instead(family, entry.word) or suggestion(entry.word, words)
+
+
+def mover_of(name: str, entries: Naming[str, Entry], family_of: Naming[str, str]) -> str:
+    """The model that moves an object, or the body of it that does, ``stones.first``; empty where none does."""
+    for part, entry in entries.items():
+        if family_of[part] != "models" or not isinstance(entry.fields, Mapping):
+            continue
+        for key, node in entry.fields.entries.items():
+            if key == "of" and isinstance(node, Scalar) and node.text == name:
+                return part
+            for body, inner in node.entries.items() if isinstance(node, Mapping) else ():
+                of = inner.entries.get("of") if isinstance(inner, Mapping) else None
+                if isinstance(of, Scalar) and of.text == name:
+                    return f"{part}.{body}"
+    return ""
+
+
+def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
+    """The help for fields without the word around them."""
+    having, text = _having(list(node.entries), family, catalogue), node.span.text
+    for name, value in () if having else node.entries.items():
+        having = _having([name], family, catalogue)
+        text = f"{{{name}: {value.span.text}}}"
+        if having:
+            break
+    return (
+        f"the word stands around its fields, {', '.join(having)}: write `{{{having[0]}: {text}}}`" if having else None
+    )
+
+
+def _having(fields: Collection[str], family: str, catalogue: Catalogue) -> list[str]:
+    """The words of a family that have these fields, that with the fewest first."""
+    found: list[tuple[int, str]] = []
+    for word in catalogue.choices(family):
+        cls = catalogue.load(family, word)
+        if cls is not None and set(fields) <= set(map(written_name, cls.model_fields)):
+            found.append((len(cls.model_fields), word))
+    return [word for _, word in sorted(found)]

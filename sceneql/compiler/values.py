@@ -128,12 +128,11 @@ def _by_component(
 ) -> Expr | None:
     for key in node.entries:
         if key not in COMPONENTS:
-            found.error(
-                "unknown-field",
-                f"{what} has the components x, y, z, not '{key}'",
-                node.keys[key].span,
-                help=_timed(node) or suggestion(key, (*COMPONENTS, "keys")),
-            )
+            help = _timed(node) or suggestion(key, (*COMPONENTS, "keys"))
+            if key == what and len(node.entries) == 1:
+                help = f"write the value alone, `{node.entries[key].span.text}`"
+            message = f"{what} has the components x, y, z, not '{key}'"
+            found.error("unknown-field", message, node.keys[key].span, help=help)
             return None
     quantity = Quantity(dimension or PLAIN)
     items: list[Expr] = []

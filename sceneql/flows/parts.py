@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
+from math import prod
 from typing import Annotated, Literal
 
 from sceneql import kinds
@@ -22,10 +23,12 @@ from sceneql.quantities.units import describe, in_words
 MOVING = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.VELOCITY)]
 VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True)]
 STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_start=True)]
-VISCOSITY = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.PRESSURE * dim.TIME)]
+VISCOSITY = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"), dim.PRESSURE * dim.TIME)]
 FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME)]
 
 
+ROUNDED = 1e-9
+"""Part of what comes in and goes out below which the difference is rounding."""
 MOST_FACTORED = {2: 40_000, 3: 4_000}
 """Cells of a flat or deep flow whose equation of the pressure is factored: the numbers stand in each of its terms."""
 
@@ -97,6 +100,26 @@ class Side(Record):
         return next((one.span for one in (self.velocity, self.where) if one is not None), None)
 
 
+def comes_in(boundary: Mapping[str, Side], size: Sequence[float]) -> float:
+    """What comes into a box of so many sides [m] more than goes out of it [m^3/s], where constants tell it.
+
+    0 where the boundary has a way out, or a formula or a part of a side tells what comes in.
+    """
+    through = [0.0]
+    for name, side in boundary.items():
+        given = None if side.inflow is None else side.inflow.velocity.expr
+        if side.outflow is not None:
+            return 0.0
+        if given is None:
+            continue
+        if name not in SIDES or side.chosen or any(isinstance(node, Symbol | Link) for node in walk(given)):
+            return 0.0
+        axis, high = divmod(SIDES.index(name), 2)
+        area = prod(length for k, length in enumerate(size) if k != axis)
+        through.append((-1.0 if high else 1.0) * area * float(evaluate(components(given)[axis], {})))
+    return sum(through) if abs(sum(through)) > ROUNDED * sum(map(abs, through)) else 0.0
+
+
 class Start(Record):
     """The flow at the start."""
 
@@ -134,6 +157,11 @@ class Buoyancy(Record):
                     yield Problem(text, (name,), code="dimension-mismatch")
 
 
+def of_field(viscosity: Formula) -> bool:
+    """Whether a viscosity varies with a field, which is `c` in it."""
+    return Symbol("c") in walk(viscosity.expr)
+
+
 MOMENTS = 200
 """Pieces of a run in which the mean velocities of solids are sampled before it."""
 SAMPLES = 12
@@ -165,10 +193,13 @@ def fastest_turn(
 
 
 def thickest(viscosity: Formula, corner: Sequence[float], size: Sequence[float]) -> float:
-    """The viscosity [Pa s] of a flow's own fluid, of a formula the largest at the start by samples of its box."""
+    """The viscosity [Pa s] of a flow's own fluid, of a formula the largest at the start by samples of its box; 0 where
+    it varies with a field, of which nothing is known before the run."""
     alone = number_in(viscosity)
     if alone is not None:
         return alone
+    if of_field(viscosity):
+        return 0.0
     rows = [[low + side * k / SAMPLES for k in range(SAMPLES + 1)] for low, side in zip(corner, size, strict=True)]
     found = 0.0
     for place in product(*rows):

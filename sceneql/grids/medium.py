@@ -272,7 +272,7 @@ class Medium(Model):
     def problems(self) -> Iterable[Problem]:
         """Two places or none, sides that do not fit, too many cells, boundaries of no side."""
         if (self.size is None) == (self.domain is None):
-            yield Problem("it spreads in one of `domain` and `size`")
+            yield Problem("it spreads in one of the two: a box, `size: 1 1 m`, or an object, `domain: plate`")
         vectors = [
             path
             for name in type(self).model_fields

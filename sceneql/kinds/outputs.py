@@ -82,6 +82,10 @@ class Output(Kind):
         """
         raise NotImplementedError
 
+    def latest(self) -> tuple[str, float] | None:
+        """A field that asks for an instant, and that instant [s]: refused where the clock ends before it."""
+        return None
+
     def open(self, tools: Tools) -> Sink:
         """Start it."""
         raise NotImplementedError

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from sceneql.kinds.probed import Probed
+from sceneql.kinds.probed import HeldPart, Probed
 from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Quantity, Ref, Value
@@ -53,7 +53,9 @@ class Model(Kind):
     """Whether its masses span a surface: all of a contact with such a model are solved together."""
 
     carried: ClassVar[bool] = False
-    """Whether it is a skin without inertia that a flow carries (system.Membrane), assembled after the flow."""
+    """Whether it is a skin without inertia that a flow carries (system.Membrane)."""
+    immersible: ClassVar[bool] = False
+    """Whether a flow may carry it (Interaction.carrier): it is then assembled after the flow."""
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies | None:
         """Reserve state, give initial values, add the terms of its own rate; the point masses forces may act on."""
@@ -115,6 +117,10 @@ class Model(Kind):
         """How many items an output has, where its fields tell."""
         return None
 
+    def burdens(self, density: float) -> bool:
+        """Whether its masses, where a flow carries them, weigh other than what they displace of a density [kg/m^3]."""
+        return False
+
     def fluid(self) -> tuple[float, float] | None:
         """Density [kg/m^3] and viscosity [Pa s] of what it holds, where these are not those of its flow."""
         return None
@@ -124,6 +130,10 @@ class Model(Kind):
 
         The function raises Exceeds where that is sure to be too much.
         """
+        return ()
+
+    def held_parts(self) -> Iterable[HeldPart]:
+        """Parts of it that it holds by their places."""
         return ()
 
     def insides(self) -> Iterable[Ref]:
@@ -222,11 +232,11 @@ class Interaction(Kind):
         return None
 
     def carrier(self) -> Ref | None:
-        """The flow by which it has skins carried (Model.carried), in place of acting on masses; else None."""
+        """The flow by which it has models carried (Model.immersible), in place of acting on masses; else None."""
         return None
 
-    def fastest_carried(self, skins: Mapping[str, Model], flow: Model) -> Iterable[Oscillation]:
-        """As `fastest`, of skins that its `carrier` carries."""
+    def fastest_carried(self, models: Mapping[str, Model], flow: Model, scene: StaticScene) -> Iterable[Oscillation]:
+        """As `fastest`, of models that its `carrier` carries."""
         return ()
 
     def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:
@@ -305,6 +315,10 @@ class Tie(Interaction):
         """The parts that it holds; objects are among them."""
         return tuple(dict.fromkeys(ref.name for ref in self.between if ref.name))
 
+    def places(self) -> Iterable[tuple[Value, tuple[Ref, ...]]]:
+        """Places at the start, each with the bodies that it is to be on."""
+        return ()
+
     def pivot(self) -> Ref | None:
         """The body that only turns about a point of the world, where it leaves it no other motion; else None."""
         return None
@@ -351,9 +365,15 @@ class Contact(Kind):
         raise NotImplementedError
 
     def assemble_carried(
-        self, name: str, assembly: Assembly, skins: Sequence[str], everyone: Sequence[Bodies], others: tuple[Ref, ...]
+        self,
+        name: str,
+        assembly: Assembly,
+        skins: Sequence[str],
+        carried: Sequence[Bodies],
+        everyone: Sequence[Bodies],
+        others: tuple[Ref, ...],
     ) -> None:
-        """Add its terms for all models at once that a flow carries (Model.carried); ``everyone``: its masses."""
+        """Add its terms for all skins and masses at once that a flow carries; ``everyone``: its other masses."""
         raise NotImplementedError
 
     def assemble_skins(

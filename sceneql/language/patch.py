@@ -17,6 +17,8 @@ from sceneql.quantities.span import Source, Span
 Patch = tuple[str, Node, Span]
 """A dotted path, the node to put there, and where the path is written."""
 
+SET: Final = "--set"
+"""What stands for the file of what is given by `--set`."""
 VARIANT_OPTIONS: Final = ("may_fail",)
 """Keys of a variant that are no paths."""
 
@@ -83,7 +85,7 @@ def parse_set(text: str) -> Patch:
     Lists, mappings and quoted texts are read as YAML; anything else is one plain value, so that
     ``objects.ball.color=#ff8800`` needs no quotes.
     """
-    source = Source("--set", text)
+    source = Source(SET, text)
     path, equals, value = text.partition("=")
     at = len(path) + 1 + len(value) - len(value.lstrip())
     span = Span(source, len(path) - len(path.lstrip()), len(path.rstrip()))

@@ -56,7 +56,8 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
         help = (
             f"fields stand below the word: {{word: {{{words[0]}: ..., {words[1]}: ...}}}}: `sceneql words` lists them"
         )
-        if (other := instead("entry", words[0])) is not None:
+        beside = (instead("beside", word) for word in words)
+        if (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:
             help = other
         elif empty(node.entries[words[0]]):
             help = f"the fields of a word are indented below it: {{{words[0]}: {{{words[1]}: ..., ...}}}}"
@@ -114,6 +115,8 @@ def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -
                 result.entries[own], result.keys[own] = item, written.word
     elif not (empty(node) or broken(node)):
         help = f"write `{name}: [{node.text}]`" if node.kind == "text" else _ENTRY
+        if name == "outputs" and "." in node.text:
+            help = "write `outputs: {film: video}`; `sceneql render SCENE -o FILE` names the file"
         found.error("section-shape", f"'{name}' holds parts by name, or a list of words", node.span, help=help)
     return result
 

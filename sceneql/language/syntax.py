@@ -38,6 +38,8 @@ _PROBLEMS: Final = (
 )
 _NO_KEY = re.compile(r"(?:^|[,{\n\r])[ \t]*\Z")
 _KEY: Final = "write `name: value`"
+_LONGEST: Final = 1024
+"""Letters of a key (YAML 1.2, 7.4: implicit keys)."""
 
 
 def unprintable(text: str) -> int | None:
@@ -67,6 +69,9 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
         at -= 1
     if source.text[at : at + 1] == ":" and _NO_KEY.search(source.text[max(0, at - 80) : at]) is not None:
         return Diagnostic("key-not-text", "a key is missing before this colon", Span(source, at, at + 1), _KEY)
+    if (long := _long_key(source.text, at, flow)) is not None:
+        help = "a name is short: say more in a comment behind it"
+        return _syntax(f"a key of {at - long:,} letters; it may have {_LONGEST:,}", source, long, help)
     if flow is not None:
         return _in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow)
     character = source.text[at : at + 1]
@@ -84,8 +89,22 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
     return _syntax("this is not YAML", source, at, f"the parser says: {problem or error}")
 
 
+def _long_key(text: str, at: int, flow: int | None) -> int | None:
+    """Where the key begins that a colon ends, where it is longer than the parser takes one for a key."""
+    if text[at : at + 1] != ":" or at - 1 <= _LONGEST or text[at - 1].isspace():
+        return None
+    if text[at - 1] in "'\"":
+        start = text.rfind(text[at - 1], 0, at - 1)
+    else:
+        start = 1 + max(text.rfind(one, 0, at) for one in ("\n" if flow is None else "\n,[{"))
+        start += len(text[start:at]) - len(text[start:at].lstrip())
+    return start if at - start > _LONGEST else None
+
+
 def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
     if at < len(source.text) and source.position(at)[0] == source.position(opening)[0]:
+        if (braces := _for_braces(source.text[opening:at])) is not None:
+            return _syntax("fields stand in braces, not in parentheses", source, at, braces)
         if source.text[at : at + 1] == ":":
             help = "a text that holds a colon goes in quotes; items are separated by commas"
             return _syntax("a second colon in this value, where no key can stand", source, at, help)
@@ -97,9 +116,17 @@ def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
     return _syntax(f"this `{bracket}` is never closed", source, opening, f"close it with `{closing}`", note)
 
 
+def _for_braces(before: str) -> str | None:
+    """The help for a colon behind the first of some fields that stand in parentheses."""
+    found = re.search(r"\(\s*(\w+)\s*$", before)
+    return None if found is None else f"write `{{{found[1]}: ...}}`"
+
+
 def _misplaced_colon(source: Source, at: int) -> Diagnostic:
     number, column = source.position(at)
     before = source.line(number)[: column - 1]
+    if (braces := _for_braces(before)) is not None:
+        return _syntax("fields stand in braces, not in parentheses", source, at, braces)
     if ": " in before:
         help = "put a text that holds a colon in quotes, or begin a new line after the first colon"
         return _syntax("a second colon on this line, where no key can stand", source, at, help)

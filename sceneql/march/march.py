@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +21,9 @@ from sceneql.march.engaged import Methods
 from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
 from sceneql.march.first_step import first_step
 from sceneql.march.pace import Pace
+from sceneql.march.statistics import Statistics
 from sceneql.march.switching import Switch
+from sceneql.march.within_contact import WithinContact
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,27 +37,10 @@ TOUCHING = 1e-13
 ENTRIES_A_CALL = 20_000_000
 """Entries of y to step over in one compiled call, so that a long run can be interrupted."""
 
-AT_ONCE, A_CALL = 16, 0.3
-"""Steps of a first call, and seconds that later ones are to take: steps of flows may be as long as all those."""
+AT_ONCE = 16
+"""Steps of a first call: steps of flows may be as long as all those of later ones."""
 LARGEST = 1e100
 """Largest number at the start in SI units, so that the square of its growth does not overflow."""
-
-
-@dataclass(slots=True)
-class Statistics:
-    """The cost of a march so far."""
-
-    steps: int = 0
-    rejected: int = 0
-    """Rejected steps."""
-    events: int = 0
-    """Impacts of exact contacts."""
-    evaluations: int = 0
-    """Evaluations of the rate."""
-    orderings: int = 0
-    """How many times linear systems were ordered anew, since pairs came near that had no place in the Jacobian."""
-    seconds: float = 0.0
-    """Run time of the compiled steps [s]."""
 
 
 class March:
@@ -102,7 +86,7 @@ class March:
         self.corrected: Floats | None = None
         """(n,) what was taken from the state at the start, as velocities that ties forbid; None: nothing settles it."""
         self._floats_time = math.nan
-        self._alone = np.zeros(n, dtype=bool)
+        self._alone, self._within = np.zeros(n, dtype=bool), WithinContact(system)
         self._methods = Methods(several=stiff is not None)
         self._switch = None
         if stiff is not None:
@@ -252,9 +236,7 @@ class March:
         if engaged.mixed or (settles and touched):
             changed = self._sample != self._y1
             if changed.any():
-                line = np.empty_like(y)
-                kernels.straightened((t - t0) / h, h, *steps, line)
-                y[changed] = line[changed]
+                self._within.read((t - t0) / h, h, steps, changed, y)
         return self._settled(t, y), False
 
     def _settled(self, t: float, y: Floats) -> Floats:
@@ -328,8 +310,7 @@ class March:
                 counts[kernels.SWAPPED] = 0
             left = left - part if status == kernels.PAUSED else 0
             if status == kernels.PAUSED:
-                took = time.perf_counter() - compiled.seconds - began
-                self._at_once = max(1, int(part * min(2.0, A_CALL / max(took, 1e-9))))
+                self._at_once = pace.at_once(self.time, part, time.perf_counter() - compiled.seconds - began)
                 if left:
                     continue
                 self._look()

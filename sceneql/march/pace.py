@@ -10,6 +10,8 @@ from sceneql.doing import duration
 if TYPE_CHECKING:
     from sceneql.doing import Deed
 
+A_CALL = 0.3
+"""Seconds that a call of so many steps is to take."""
 MOST_STEPS = 1e11
 """Most steps of a run, or of the rest of a way to the next instant: those of a single mass take half an hour."""
 LOOKS, FEWEST = 3, 10_000
@@ -33,6 +35,15 @@ class Pace:
     def until_look(self) -> int | None:
         """Steps to the next look, where it is soon to be known whether the march leads anywhere; else None."""
         return FEWEST if self._endless else None
+
+    def at_once(self, t: float, steps: int, took: float) -> int:
+        """How many steps the next call may take, after one that came to a time [s] in so many steps and seconds.
+
+        While the pace is not known, tell of that time.
+        """
+        if self._mean == 0.0:
+            self._deed.what = f"solving, at {t:.6g} s"
+        return max(1, int(steps * min(2.0, A_CALL / max(took, 1e-9))))
 
     def hopeless(self, t: float, steps: int) -> bool:
         """Tell of the pace at a time [s] after so many steps; whether it leads nowhere."""

@@ -1,7 +1,7 @@
 """A progress bar with what is being done, or without a terminal lines on long runs; it raises interrupts that got lost.
 
-Without a terminal there is a line a minute of what has been done for long, else, after 1, 2, 4, ... minutes, one of how
-many frames there are, and about how long they will take.
+Without a terminal there is a line a minute of what has been done for long and how far that is, else, after 1, 2, 4, ...
+minutes, one of how many frames there are, and about how long they will take.
 """
 
 from __future__ import annotations
@@ -78,11 +78,12 @@ def _lines(title: str) -> Iterator[Callable[[int, int], None]]:
         while not ended.wait(LINES):
             ticks += 1
             done, total = steps
-            if what := doing.now(LONG):
-                print(f"{title}: {what}", file=sys.stderr, flush=True)
-            elif 0 < done < total and ticks & (ticks - 1) == 0:
+            far = f"{done:,} of {total:,} ({100 * done // total} %), " if 0 < done < total else ""
+            if what := doing.chain(LONG):
+                print(f"{title}: {far}{what}", file=sys.stderr, flush=True)
+            elif far and ticks & (ticks - 1) == 0:
                 left = doing.duration((time.monotonic() - began) * (total - done) / done)
-                print(f"{title}: {done:,} of {total:,}, about {left} left", file=sys.stderr, flush=True)
+                print(f"{title}: {far}about {left} left", file=sys.stderr, flush=True)
 
     threading.Thread(target=say, daemon=True).start()
     try:

@@ -61,7 +61,8 @@ class Run:
 
     def at(self, time: float) -> Instant:
         """The next instant [s]; times do not decrease. Raises RunFailure."""
-        with doing(f"running to {time:.4g} s"):
+        end = self.graph.settings.clock.end
+        with doing(f"running to {time:.4g} s, {100 * time / end:.0f} % of the clock"):
             for before, keys in self.history.due(time):
                 self.history.see(self._moment(before), keys)
             return self._moment(time)

@@ -13,6 +13,7 @@ from sceneql.island.breakpoints import MOST
 from sceneql.kinds import Contact, Interaction, Model, Tie
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.run.extremes import watched
+from sceneql.run.falling import falling
 from sceneql.run.invariants import invariants_of
 from sceneql.run.paints import painted
 from sceneql.run.ringing import ringing
@@ -80,13 +81,16 @@ class Balance:
         tasks = self.island.graph.tasks
         forces = [cast(Interaction, tasks[force].kind) for force, _ in island.forces]
         within = all(force.internal() and {*(force.targets() or ())} <= {*island.models} for force in forces)
-        return free and within and not any(objects for _, _, objects in island.contacts)
+        carried = any(one is not None and one.immersed is not None for one in self.island.bodies.values())
+        return free and within and not carried and not any(objects for _, _, objects in island.contacts)
 
     @property
     def closed(self) -> bool:
-        """Whether energy is conserved: no value in time drives, no body is born or dies; forces count their work."""
+        """Whether energy is conserved: no value in time drives, no body is born or dies, no flow carries any; forces
+        count their work."""
         lasting = all(cast(Model, self.island.graph.tasks[name].kind).lasts() for name in self.models)
-        return lasting and not self.island.march.system.structure.varying
+        carried = any(one is not None and one.immersed is not None for one in self.island.bodies.values())
+        return lasting and not carried and not self.island.march.system.structure.varying
 
 
 class Watch:
@@ -103,6 +107,7 @@ class Watch:
         self.invariants = [one for island in islands for one in invariants_of(island)]
         self._ringing = [found for island in run.islands if (found := ringing(island)) is not None]
         self._fields = [(island, fields) for island in run.islands if (fields := watched(island))]
+        self._falling = [one for island in run.islands for one in falling(island)]
         self._islands, self._painted = run.islands, painted(run.graph)
         self._turning = [
             span for island in run.islands if _adaptive(island) for span in island.assembly.breakpoints.beyond
@@ -124,18 +129,20 @@ class Watch:
                     balance.cost = time.perf_counter() - begun or balance.cost
             elif free or not balance.times:
                 _note(balance, moment)
-        for one in self.invariants if free else ():
-            one.look(moment)
+        for invariant in self.invariants if free else ():
+            invariant.look(moment)
         for island, fields in self._fields if free else ():
             for extremes in fields:
                 extremes.look(moment.time, island.y)
+        for one in self._falling if free else ():
+            one.look(moment)
         for color in self._painted:
             color.look(moment)
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings: contacts that gave way, energy gained, springs overstretched, fields ringing or overshooting,
-        breakpoints, halved steps."""
+        """Warnings: contacts that gave way or are lacking, energy gained, springs overstretched, fields ringing or
+        overshooting, breakpoints, halved steps."""
         found = [*self._ringing, *(note for island in self._islands for note in island.notes)]
         for span in self._turning:
             message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"
@@ -150,6 +157,7 @@ class Watch:
                 found += extremes.warnings(island)
         for one in self.invariants:
             found += one.warnings()
+        found += [falls.found for falls in self._falling if falls.found is not None]
         for color in self._painted:
             found += color.warnings()
         for balance in self.balances:

@@ -46,11 +46,8 @@ def outline(shape: Shape) -> Floats:
             return _around(points, radii)
         case Segments(ends=ends, radii=radii):
             return _around(ends.reshape(-1, 3), np.repeat(radii, 2))
-        case Quadric(squares=squares, linear=linear) if min(squares) > 0.0 and not any(linear):
-            return _ellipsoid(shape)
-        case Quadric(low=low, high=high):
-            corners = np.array(list(product(*zip(low, high, strict=True))))
-            return apply(inverse(shape.to_local), corners) if np.isfinite(corners).all() else np.zeros((0, 3))
+        case Quadric(linear=linear) if not any(linear):
+            return _quadric(shape)
     found = inside_samples(shape)
     if found is not None:
         points, step = found
@@ -76,15 +73,21 @@ def _around(centers: Floats, radii: Floats) -> Floats:
     return found
 
 
-def _ellipsoid(shape: Quadric) -> Floats:
-    """Points on an ellipsoid, cut at its box: the farthest ones (A A^T d/|A^T d|, A of the unit ball)."""
+def _quadric(shape: Quadric) -> Floats:
+    """Points on an ellipsoid, a column or a block, cut at its box: the farthest ones (A A^T d/|A^T d|, A of the unit
+    ball, across the axes that it is round about; the end that d points to along the others). None of an endless one.
+    """
+    squares = np.array(shape.squares)
     if not shape.constant < 0.0:
         return np.zeros((0, 3))
-    half = np.sqrt(-shape.constant / np.array(shape.squares))
+    half = np.sqrt(-shape.constant / np.where(squares > 0.0, squares, np.inf))
     to_world = inverse(shape.to_local)
-    from_ball = DIRECTIONS @ (to_world[:, :3] * half)
-    from_ball /= np.linalg.norm(from_ball, axis=1)[:, None]
-    return apply(to_world, np.clip(half * from_ball, shape.low, shape.high))
+    along = DIRECTIONS @ to_world[:, :3]
+    from_ball = along * half
+    from_ball /= np.maximum(np.linalg.norm(from_ball, axis=1), np.finfo(float).tiny)[:, None]
+    ends = np.where(along > 0.0, shape.high, shape.low)
+    local = np.where(squares > 0.0, np.clip(half * from_ball, shape.low, shape.high), ends)
+    return apply(to_world, np.unique(local, axis=0)) if np.isfinite(local).all() else np.zeros((0, 3))
 
 
 def _farthest(points: Floats, reach: Floats | float) -> NDArray[intp]:

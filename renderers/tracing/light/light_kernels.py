@@ -18,9 +18,14 @@ def sky_radiance(sky, y):
 @part
 def backdrop(sky, y):
     """Radiance (3) that a camera sees in a direction of height y."""
-    if sky[layout.HAS_VISIBLE] != 0.0:
-        return sky[9], sky[10], sky[11]
-    return sky_radiance(sky, y)
+    if sky[layout.HAS_VISIBLE] == 0.0:
+        return sky_radiance(sky, y)
+    w = 0.0
+    if y < 0.0:
+        ratio = sky[layout.FADE] / y
+        w = np.exp(-ratio * ratio)
+    u = layout.BELOW
+    return sky[9] + w * (sky[u] - sky[9]), sky[10] + w * (sky[u + 1] - sky[10]), sky[11] + w * (sky[u + 2] - sky[11])
 
 
 @part

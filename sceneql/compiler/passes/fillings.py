@@ -1,14 +1,13 @@
-"""Models that fill an object with more than memory allows, found by the object's box at the start."""
+"""Models that fill an object with more than memory allows, or too coarsely, found by the object's box at the start."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import isfinite
+from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
 from sceneql.failure import RunFailure
 from sceneql.graph import Task
-from sceneql.kinds import Exceeds, Model, Object, Ref, Value
+from sceneql.kinds import Exceeds, Model, Object, Ref, TooCoarse, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol
@@ -33,6 +32,10 @@ class Beginning:
         assert isinstance(kind, Object)
         return kind
 
+    def kept(self, name: str, key: Hashable, make: Callable[[], Any]) -> Any:
+        """What is made for a part, for this start alone."""
+        return make()
+
     def _look_up(self, node: Symbol | Link) -> Any:
         if isinstance(node, Symbol):
             return self.time
@@ -45,18 +48,28 @@ class Beginning:
 
 
 def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report models that fill more than memory allows; boxes that only a run knows are refused by the run."""
+    """Report models that fill more than memory allows, or nothing; the run refuses boxes that only it knows."""
     start: Any = Beginning(tasks)
     for task in tasks.values():
         for ref, bounds in task.kind.fillings() if isinstance(task.kind, Model) else ():
             try:
                 low, high = start.object(ref).extent(_place(), start)
-                if isfinite(sum(high - low)):
+                if _finite(low, high):
                     bounds(low, high)
             except Exceeds as error:
                 found.error("limit-refused", f"{task.name}: at least {error}", ref.span, help="use a larger spacing")
+            except TooCoarse as error:
+                found.error("not-filled", f"'{ref.name}' cannot be filled: {error}", ref.span)
             except (TypeError, ValueError, RunFailure, ScriptError):
                 continue  # the run reports it
+
+
+def _finite(low: Any, high: Any) -> bool:
+    """Whether a box has sides."""
+    import numpy as np
+
+    with np.errstate(over="ignore", invalid="ignore"):
+        return bool(np.isfinite(high - low).all())
 
 
 def _place() -> Any:

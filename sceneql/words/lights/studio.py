@@ -24,12 +24,13 @@ BOXES = (
 )
 """What metal and glass mirror: soft boxes about the key light, as a strip on the right and as a bar behind and above;
 direction, width and height [deg], radiance. Their light on matte surfaces is a part of the dome's."""
-BACKGROUND = (0.655, 0.655, 0.655)
-"""As bright as the stage of a plane without material (words/objects/plane.py), so that its horizon does not show."""
+BACKGROUND, BELOW, SWEEP = (0.325, 0.345, 0.37), (0.655, 0.655, 0.655), 0.16
+"""A cove: what is seen straight ahead, and what below, as bright as the floor of a plane without material
+(words/objects/plane.py); sine of the angle below which the floor bends up, so that no horizon shows."""
 
 
 class Studio(Light):
-    """A picture of a product: a soft key light from the upper left front, a bright dome, a light gray background.
+    """A picture of a product: a soft key light from the upper left front, a bright dome, a light floor, gray behind.
 
     Metal, glass and gloss mirror soft boxes, that stand outside of the picture; they change nothing on matte surfaces.
     """
@@ -54,4 +55,4 @@ class Studio(Light):
             frame.SoftBox(toward, (math.radians(wide), math.radians(high)), (shine * radiance,) * 3)
             for toward, (wide, high), radiance in BOXES
         )
-        yield frame.Sky(zenith, horizon, ground, visible=BACKGROUND, boxes=boxes)
+        yield frame.Sky(zenith, horizon, ground, visible=BACKGROUND, below=BELOW, fade=SWEEP, boxes=boxes)

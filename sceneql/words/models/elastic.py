@@ -13,16 +13,16 @@ from sceneql import kinds
 from sceneql.bodies import bodies as masses
 from sceneql.bodies import solid_modes
 from sceneql.bodies.elements import strain_outputs
-from sceneql.bodies.elements.block import Block
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
 from sceneql.bodies.elements.load import Load
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
+from sceneql.bodies.filling.block import Block
 from sceneql.bodies.filling.finer import Finer
 from sceneql.bodies.solid_modes import Bent
-from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
-from sceneql.kinds.probed import Probed
+from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, TooCoarse, field
+from sceneql.kinds.probed import HeldPart, Probed
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import suggestion
 
@@ -42,6 +42,8 @@ LOCKS = 0.4
 """Poisson's ratio above which elements have one mean dilatation, where the script does not say."""
 STIFF = 0.45
 """Poisson's ratio above which others lock so much that `check` warns."""
+COARSEST = 2.0
+"""Spacing, in sizes of what is filled, above which no element lies in it."""
 WATER = 1000.0
 """Density where the script tells none [kg/m^3]."""
 
@@ -72,10 +74,13 @@ class Elastic(Model):
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS, **solid_modes.OUTPUTS}
-    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("modulus", "young", "youngs_modulus", "poisson", "poisson_ratio"),
-        "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
-    )
+    said_by: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("modulus", "young", "youngs_modulus", "stiffness", "poisson", "poisson_ratio"),
+            "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
+        ),
+        **dict.fromkeys(("mass", "weight"), "write its density, `density: 1000 kg/m^3`"),
+    }
     has_skin: ClassVar[bool] = True
 
     of: kinds.ObjectRef | None = field(
@@ -92,6 +97,12 @@ class Elastic(Model):
     )
     finer: dict[str, Finer] = field(
         "Places near which its elements are smaller, by name; elements of a file have straight edges then.", {}
+    )
+    turn: kinds.FixedAngle = field(
+        "Beside holes and in fillets of an object elements of ten nodes are so small that its surface turns no more "
+        "along an edge of them, down to a quarter of the spacing.",
+        "0.5 rad",
+        above=0,
     )
     element: str | None = field(
         "Its elements, p1, p2 or p2_mean: of 4 or 10 nodes; the last, of one dilatation each, do not lock. By default "
@@ -178,13 +189,29 @@ class Elastic(Model):
         """The object."""
         from sceneql.bodies.elements.filled import bounded_by
 
-        return () if self.of is None or self.spacing is None else ((self.of, bounded_by(self.spacing)),)
+        if self.of is None or self.spacing is None:
+            return
+        spacing, bounds = self.spacing, bounded_by(self.spacing)
+
+        def fits(low: Floats, high: Floats) -> None:
+            bounds(low, high)
+            if spacing > COARSEST * (size := float((high - low).max())):
+                raise TooCoarse(f"the spacing is {spacing:g} m, and it is {size:.3g} m large; make that smaller")
+
+        yield self.of, fits
 
     def probed(self) -> Iterable[Probed]:
         """Its probes, of an object."""
         if self.of is not None:
             for name, place in self.probes.items():
                 yield Probed(("probes", name), place, self.of, self.spacing)
+
+    def held_parts(self) -> Iterable[HeldPart]:
+        """Its holds, of an object or a block."""
+        place = self.block.box() if self.block is not None else self.of
+        return (
+            () if place is None else [HeldPart(name, one.place(), place, one.misses) for name, one in self.hold.items()]
+        )
 
     def insides(self) -> Iterable[Ref]:
         """The object, and those that tell parts."""
@@ -219,7 +246,7 @@ class Elastic(Model):
         if self.file is not None:
             return of_file(self.file, element, self.finer, assembly)
         assert self.of is not None
-        return filled(self.of, self.spacing, element, self.finer, assembly)
+        return filled(self.of, self.spacing, element, self.finer, assembly, self.turn if element.edges else None)
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the nodes as masses; add the forces of strain, of loads, of damping, and what holds it."""
@@ -232,7 +259,7 @@ class Elastic(Model):
         from sceneql.bodies.elements.strain_outputs import probe
         from sceneql.bodies.filling.tetrahedra import edges
         from sceneql.shapes.placement import rotation_matrix
-        from sceneql.system import Skin
+        from sceneql.system import Skin, Springs
 
         mesh, line = self.mesh(assembly), assembly.line()
         inertia, count = Inertia.of(mesh, density_of(self.density, WATER)), len(mesh.points)
@@ -286,7 +313,8 @@ class Elastic(Model):
         first, shear = (np.asarray(one) for one in self.law.law.moduli(mesh.points))
         stiffness = float(np.min(shear * (3.0 * first + 2.0 * shear) / (first + shear)))
         skin = Skin(skins.triangles(mesh), held, stiffness)
-        return replace(bodies, period=period, tied=edges(mesh.cells[:, :4])[0], skin=skin)
+        ends = edges(mesh.cells[:, :4])[0]
+        return replace(bodies, springs=Springs(ends, np.zeros((2, len(ends))), period), skin=skin)
 
     def remark(self, state: ModelState) -> str:
         """Its elements, their worst angle, the one that bounds steps, and what its law cannot do."""

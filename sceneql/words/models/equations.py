@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.formulas.formula_rows import TIMES, Rows, states
 from sceneql.island.static_rates import told_slope
@@ -50,6 +50,9 @@ class Equations(Model):
     """
 
     has_bodies = False
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("dx/dt", "dy/dt", "dz/dt"), "write `start: {x: 1, y: 1}` and `rate: {x: ..., y: ...}`"
+    )
 
     start: dict[str, Formula] = field("State at the start: `{a: 90 deg, a': 0}`.")
     rate: dict[str, Formula] = field("Rates: `y: ...` is dy/dt, `a'': ...` is d²a/dt² (then a and a' are states).")

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds import FieldBuilder, Length, Moment, Shaped, VolumeMoments, field
 from sceneql.shapes.checked_values import positive
@@ -21,6 +21,11 @@ class Cylinder(Solid):
     Its field is max(sqrt(x^2 + z^2) - radius, |y| - height / 2): exact inside and in front of its side and ends, less
     than the distance in front of its rims.
     """
+
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("from", "to", "start", "end", "ends"),
+        "from one place to another reaches a tube: `{tube: {through: [0 0 0 m, 0 1 0 m], radius: 10 cm}}`",
+    )
 
     radius: Length = field("Its radius.", "0.5 m", above=0)
     height: Length = field("Its length along its own y.", "1 m", above=0)

@@ -22,7 +22,7 @@ from sceneql.shapes.solid import Solid, block, length, less, traced, triple
 if TYPE_CHECKING:
     from sceneql import frame
 
-Corner = tuple[float, ...]
+Corner = tuple[float, float, float]
 PLACES = 200
 """Of the default bounds, at which a formula is looked at."""
 ROUNDING = 1e-9
@@ -44,7 +44,7 @@ class Within(Record):
             yield Problem(text, ("box",))
 
     @property
-    def corners(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def corners(self) -> tuple[Corner, Corner]:
         """Low and high corner of the box around it."""
         if self.box is not None:
             return self.box

@@ -20,6 +20,10 @@ class Image(Picture):
         """The instants [s] that it wants."""
         return [clock.end if self.time is None else min(self.time, clock.end)]
 
+    def latest(self) -> tuple[str, float] | None:
+        """Its instant."""
+        return None if self.time is None else ("time", self.time)
+
     def open(self, tools: Tools) -> Sink:
         """Start it."""
         return _Stills(self, tools, numbered=False, compression=self.compression)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.bodies.rigid.joint import FORCES, Joint, Side, point_of, together
-from sceneql.kinds import Gives, Position, Ref, field
+from sceneql.kinds import Gives, Position, Ref, Value, field
 
 if TYPE_CHECKING:
     from sceneql.system import Assembly, TieRow
@@ -25,6 +25,11 @@ class Ball(Joint):
         if first.name and second.name:
             return None
         return first if first.name else second
+
+    def places(self) -> Iterator[tuple[Value, tuple[Ref, ...]]]:
+        """Its point, on both."""
+        if self.at is not None:
+            yield self.at, self.between
 
     def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
         """The point, along three axes."""

@@ -17,6 +17,7 @@ from sceneql.kinds import (
     Problem,
     Quantity,
     Record,
+    Ref,
     Scalar,
     Value,
     field,
@@ -89,6 +90,10 @@ class Hinge(Driven):
     damping: Annotated[Value, Quantity(TORQUE * dim.TIME)] | None = field(
         "Torque for an angular speed [N m s/rad].", None, at_least=0
     )
+
+    def places(self) -> Iterator[tuple[Value, tuple[Ref, ...]]]:
+        """Its point, on both."""
+        yield self.at, self.between
 
     def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
         """The point, and the axis across two directions of the second body."""

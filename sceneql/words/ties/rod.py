@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.bodies.rigid.joint import FORCES, Joint, Side, point_of
-from sceneql.kinds import Gives, Position, field
+from sceneql.kinds import Gives, Position, Ref, Value, field
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.system import TieRow
 
@@ -21,6 +21,12 @@ class Rod(Joint):
 
     from_: Position | None = field("The point of the first body at the start; by default its center of mass.", None)
     to: Position | None = field("The point of the second body at the start; by default its center of mass.", None)
+
+    def places(self) -> Iterator[tuple[Value, tuple[Ref, ...]]]:
+        """An end on each."""
+        for end, ref in zip((self.from_, self.to), self.between, strict=True):
+            if end is not None:
+                yield end, (ref,)
 
     def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
         """The distance."""

@@ -1,0 +1,74 @@
+"""A watch over masses that fall into objects which nothing has them hit: a contact that was forgotten."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, cast
+
+from sceneql.compiler.passes.touchable import touchable
+from sceneql.kinds import Interaction, Object
+from sceneql.quantities.diagnostic import Diagnostic
+
+if TYPE_CHECKING:
+    from sceneql.run.instant import Instant
+    from sceneql.run.run import IslandRun
+
+MOST_MASSES, MOST_OBJECTS = 64, 16
+"""Masses of a model, evenly among all, and objects that are looked at."""
+HELP = "write `contacts: [collision]`, or in one list `forces: [gravity, collision]`"
+
+
+@dataclass
+class Falling:
+    """A model that weight acts on and no contact, and the objects that it may fall into."""
+
+    model: str
+    island: IslandRun
+    others: Sequence[str]
+    outside: dict[tuple[int, str], bool] = field(default_factory=dict)
+    """Whether a mass began outside of an object."""
+    found: Diagnostic | None = None
+
+    def look(self, moment: Instant) -> None:
+        """Note the first mass that is inside an object and was not at the start."""
+        from sceneql.bodies.bodies import positions
+
+        bodies = self.island.bodies[self.model]
+        if self.found is not None or bodies is None:
+            return
+        places = positions(bodies, moment.state(self.model))
+        for k in range(0, len(places), -(-len(places) // MOST_MASSES) or 1):
+            for name in self.others:
+                out = _height(name, places[k], moment) > 0.0
+                began_outside = self.outside.setdefault((k, name), out)
+                if began_outside and not out:
+                    text = f"'{self.model}' has fallen into '{name}' by {moment.now:.3g} s: no contact acts on it"
+                    span = self.island.graph.tasks[self.model].span
+                    self.found = Diagnostic("falls-through", text, span, HELP, severity="warning")
+                    return
+
+
+def _height(name: str, point: Any, moment: Instant) -> float:
+    """The field of an object at a point (3,): negative inside; where it has none there, as outside."""
+    from sceneql.field.tape.builder import TapeBuilder
+
+    build = TapeBuilder()
+    kind = cast(Object, moment.run.graph.tasks[name].kind)
+    x, y, z = (build.constant(float(p)) for p in point)
+    value = build.number(kind.implicit(build, x, y, z, moment))
+    return 1.0 if value is None else value
+
+
+def falling(island: IslandRun) -> list[Falling]:
+    """The models of an island that have weight and no contact, where there is something to fall into."""
+    tasks = island.graph.tasks
+    weighed = [model for force, model in island.island.forces if cast(Interaction, tasks[force].kind).weighs]
+    hit = {model for _, model, _ in island.island.contacts}
+    alone = [model for model in dict.fromkeys(weighed) if model not in hit and island.bodies.get(model) is not None]
+    others = [name for name in touchable(tasks) if _solid(tasks[name].kind)] if alone else []
+    return [Falling(model, island, others) for model in alone] if 0 < len(others) <= MOST_OBJECTS else []
+
+
+def _solid(kind: Any) -> bool:
+    return type(kind).implicit is not Object.implicit and not kind.hidden
