@@ -10,9 +10,10 @@ import pytest
 
 import stage
 from renderers.trace import Trace
+from renderers.tracing import draw as drawing
 from renderers.tracing.filter.hard_kernels import is_hard
 from renderers.tracing.pack import pack
-from sceneql.frame import PointLight, Sky, View
+from sceneql.frame import PointLight, Sky, Surface, View
 from stage import GLOW, WHITE, frame, sun, view
 
 ABOVE = view((0, 9, 0), size=(128, 128), half_height=3.0, up=(0, 0, -1))
@@ -109,3 +110,22 @@ def test_a_picture_that_somebody_has_is_not_drawn_over():
     before = kept.copy()
     draw(stage.floor(), lights=[sun((1, 1, 0))], seen=ABOVE)
     np.testing.assert_array_equal(kept, before)
+
+
+MIRROR = Surface(color=(0.9, 0.9, 0.9), roughness=0.0, metallic=1.0)
+
+
+@pytest.mark.parametrize("samples", [1, 8])
+def test_hard_shadows_are_those_of_the_filter_also_in_mirrors_and_with_any_number_of_threads(samples, monkeypatch):
+    shapes = stage.floor(), stage.sphere(MIRROR, (0.5, 1.2, 0.0)), stage.blob(WHITE, (-1.2, 0.6, 0.3))
+    lights = sun((1, 1, 0.4)), PointLight((-2.0, 4.0, 1.0), (3.0,) * 3, 0.0)
+    seen = view((1, 3, 8), (0, 0.7, 0), size=(100, 70), half_height=2.0)
+    pictures = []
+    for threads in ("1", "3"):
+        monkeypatch.setenv("SCENEQL_THREADS", threads)
+        pictures.append(draw(*shapes, lights=lights, seen=seen, samples=samples))
+    np.testing.assert_array_equal(*pictures)
+    assert (pictures[0] > 0).mean() > 0.5
+    monkeypatch.setattr(drawing, "is_hard", lambda scene: False)
+    filtered = draw(*shapes, lights=lights, seen=seen, samples=samples)
+    assert (abs(filtered - pictures[0]) > 1e-5).mean() < 2e-3

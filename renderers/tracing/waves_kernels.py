@@ -5,7 +5,7 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
-from renderers.tracing.camera_kernels import TILE, camera_ray, place_of
+from renderers.tracing.camera_kernels import TILE, camera_ray, next_place, place_of
 from renderers.tracing.gather_kernels import (
     DARK,
     DOUBTED,
@@ -251,8 +251,11 @@ def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy):
     """
     width = int(scene.reals[layout.WIDTH])
     doubted = seconds = 0
+    before, x, y = -2, 0, 0
     for i in range(gathered.shape[0]):
         k = at[i]
+        x, y = next_place(k, before, x, y, width)
+        before = k
         doubted += gathered[i, 3] > 0.0
         seconds += len(records) > 1 and records[len(records) - 1, k, OWNER] > 0.0
         records[0, k, UNSURE] = gathered[i, 3]
@@ -261,7 +264,7 @@ def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy):
         for layer in range(len(records) if final else 0):
             if records[layer, k, OWNER] != 0.0:
                 add_light(scene, records[layer, k], visibility[layer, k], radiance[k], 1.0)
-        mark_busy(records, visibility, k, k % width, k // width, busy)
+        mark_busy(records, visibility, k, x, y, busy)
     return doubted, seconds
 
 

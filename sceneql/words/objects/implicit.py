@@ -17,7 +17,7 @@ from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Number, Symbol
 from sceneql.shapes.placement import inverse
-from sceneql.shapes.solid import Solid, block, length, less, traced
+from sceneql.shapes.solid import Solid, block, length, less, traced, triple
 
 if TYPE_CHECKING:
     from sceneql import frame
@@ -79,7 +79,7 @@ def _why_nothing(less: _Less, low: Corner, high: Corner) -> str:
     """Why nothing is to be drawn of a formula within the bounds low..high; empty where something may be."""
     from sceneql.field.tape.emptiness import bottomless, nowhere_defined
 
-    if nowhere_defined(less.alone, low, high):
+    if nowhere_defined(less.alone, triple(low), triple(high)):
         return "the formula is defined nowhere in its bounds, so there is nothing to draw"
     if bottomless(less.alone, low, high):
         return "the formula is nowhere finite in its bounds, so there is no surface to draw"
