@@ -117,7 +117,7 @@ def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path 
 @SCENE
 @options
 def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None) -> None:
-    """Find all errors of a script, and of each of its variants and studies, without running it."""
+    """Find what is wrong in a script, its variants and its studies, as far as that is seen without running it."""
     from sceneql import pipeline
     from sceneql.compiler.variants import check_variants
     from sceneql.quantities.diagnostic import Diagnostics

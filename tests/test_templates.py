@@ -108,6 +108,10 @@ parts:
         ("{count: -1}", "repeat-count"),
         ("{count: 1.5}", "repeat-count"),
         ("{count: n}", "repeat-count"),
+        ("{count: n + 1}", "repeat-count"),
+        ("{count: 3/2}", "repeat-count"),
+        ("{count: 2 - 3}", "repeat-count"),
+        ("{count: (2 - }", "repeat-count"),
         ("{count: 99999999999999999999}", "limit-refused"),
         ("{}", "repeat-shape"),
         ("3", "repeat-shape"),
@@ -117,6 +121,11 @@ parts:
 )
 def test_repeat_faults_are_located(repeat: str, code: str) -> None:
     assert found(f"objects: {{a: {{repeat: {repeat}, sphere: {{}}}}}}\ndefine: {{n: n}}")[0][0] == code
+
+
+def test_a_count_may_be_a_formula_of_defines() -> None:
+    read = script("objects: {a: {repeat: {count: 2*m + 1}, sphere: {}}}\ndefine: {n: 3, m: n - 1}")
+    assert list(read.sections["objects"]) == [f"a.{k}" for k in range(5)]
 
 
 def test_copies_of_copies_are_refused_at_once() -> None:

@@ -16,7 +16,15 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
 from sceneql.compiler.read import Reader, Unreadable
-from sceneql.compiler.unknown import mover_of, report_unknown, word_having, word_meant
+from sceneql.compiler.unknown import (
+    beside_world,
+    mover_of,
+    part_meant,
+    report_unknown,
+    those_of,
+    word_having,
+    word_meant,
+)
 from sceneql.compiler.values import read_expr
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
@@ -28,7 +36,6 @@ from sceneql.language.tree import Node, Scalar, unsure, whole, written
 from sceneql.language.tree import Sequence as SequenceNode
 from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
 from sceneql.quantities.expression import Type
-from sceneql.quantities.other_words import instead
 
 SETTINGS = tuple(Settings.model_fields)
 KEYS = (*SETTINGS, "sceneql", "define", "variants")
@@ -340,9 +347,7 @@ class _Checker:
 
     def _no_place(self, node: Node) -> None:
         """Report a place where a body stands."""
-        place = " ".join(node.span.text.strip("[]").replace(",", " ").split())
-        help = f"write `world`, and the place in another field of the tie, `to: {place} m` of a rod, `at` of others"
-        self.found.error("entry-shape", "a place is no body", node.span, help=help)
+        self.found.error("entry-shape", "a place is no body", node.span, help=beside_world(node.span.text))
 
     def _body(self, node: Scalar, model: str, body: str) -> Ref | None:
         """One body of a model, or the only one, where there is such a one."""
@@ -374,28 +379,20 @@ class _Checker:
 
     def _unknown(self, node: Scalar, name: str, mark: Refers) -> None:
         if name in self.entries:
-            self.found.error("wrong-family", f"'{node.text}' is one of {self.family(name)}, not of {mark}", node.span)
+            help = those_of(mark.family, [n for n in self.entries if self.family(n) == mark.family])
+            text = f"'{node.text}' is one of {self.family(name)}, not of {mark}"
+            self.found.error("wrong-family", text, node.span, help=help)
             return
         if name in self.script.broken:
             return  # reported where it stands
         choices = [n for n in self.entries if self.family(n) in (mark.family, mark.also)]
-        words = self.catalogue.words(mark.family)
         section, _, inside = name.partition(".")
-        hint = instead("part", name) or suggestion(name, [*choices, *words])
-        if mark.bodies:
-            hint = suggestion(name, choices) or instead("body", name) or "name a body, or what stands still, `world`"
-        if several := self.script.groups.get(name):
+        if section in self.script.sections and inside in self.entries:
+            hint: str | None = f"a part is named without its section: write `{inside}`"
+        elif several := self.script.groups.get(name):
             hint = (
                 f"'{name}' is {len(several)} parts: name one, `{several[0]}`, or repeat this part, with `{name}.{{i}}`"
             )
-        if mark.bodies and name[:1] in "-[0123456789":
-            hint = "a place is no body: write `world`, and the place in another field of the tie, `to: 0 2 0 m`"
-        if section in self.script.sections and inside in self.entries:
-            hint = f"a part is named without its section: write `{inside}`"
-        elif "models" in (mark.family, mark.also) and (model := self.names.model_of(name)):
-            whose = f"'{name}' is one of the bodies or masses of '{model}'"
-            all_of_it = f"{whose}: write `{model}`, which means all of them"
-            hint = f"{whose}: write `{model}.{name}`" if mark.bodies else all_of_it
-        elif hint is None and words:
-            hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
+        else:
+            hint = part_meant(name, mark, choices, self.names, self.catalogue)
         self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)

@@ -13,7 +13,7 @@ from sceneql.language.tree import Sequence as SequenceNode
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Symbol, Type
-from sceneql.quantities.other_words import instead
+from sceneql.quantities.instead import instead
 
 CURVES = ("step", "linear", "smooth", "cubic")
 KEY_FIELDS = ("value", "slope", "slope_in", "slope_out")

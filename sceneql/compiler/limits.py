@@ -9,7 +9,7 @@ from typing import Any, get_args
 from sceneql.kinds import LIMITS, Quantity, Value
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.other_words import instead
+from sceneql.quantities.instead import instead
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import unit_of
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
+from sceneql.compiler.css_colors import NAMED
 from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Given, Scope
 from sceneql.language.tree import Node, Scalar, Sequence
@@ -13,9 +14,10 @@ from sceneql.quantities.bind import Lookup, bind, component
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, nearest, suggestion
 from sceneql.quantities.dimension import PLAIN, TIME
 from sceneql.quantities.expression import Expr, Link, Name, Symbol, Type, each_once, rebuilt
+from sceneql.quantities.instead import instead
 from sceneql.quantities.literal import WORD
 from sceneql.quantities.operations import CONSTANTS
-from sceneql.quantities.other_words import OURS, instead
+from sceneql.quantities.other_words import OURS
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_table import UNITS
@@ -240,6 +242,8 @@ class Names:
                 hint = f"it is one of the bodies or masses of '{model}': write `{model}.{wanted}`"
             if hint is None and len(parts) > 1:
                 hint = self._meant(parts, parts_known)
+            if hint is None and wanted in NAMED:
+                hint = f"a color by its name stands alone, `color: {wanted}`; in a formula it is `[1, 0.5, 0]`"
             if hint is None and wanted in UNITS:
                 hint = f"a unit stands behind a number: write `(1 {wanted})`"
             if hint is None and len(parts) == 1:
@@ -268,7 +272,8 @@ class Names:
 
     def _some_output(self, task: str) -> str:
         outputs = self.outputs_of(task) or {}
-        return f"{task}.{'position' if 'position' in outputs else next(iter(outputs), 'position')}"
+        fields = [name for name, gives in outputs.items() if gives.type.shape == (None,)]
+        return f"{task}.{'position' if 'position' in outputs else next(iter([*fields, *outputs]), 'position')}"
 
 
 def _words(node: Node) -> list[str]:

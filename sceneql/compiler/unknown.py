@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from collections.abc import Mapping as Naming
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.kinds import written_name
+from sceneql.compiler.css_colors import NAMED
+from sceneql.compiler.names import Names
+from sceneql.kinds import Refers, written_name
 from sceneql.language.scope import Entry
 from sceneql.language.tree import Mapping, Scalar
 from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
-from sceneql.quantities.other_words import OURS, instead
+from sceneql.quantities.instead import instead
+from sceneql.quantities.other_words import OURS
 
 MANY = 6
 """Words up to which all that have a field are told."""
@@ -97,6 +100,41 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
     return (
         f"the word stands around its fields, {', '.join(having)}: write `{{{having[0]}: {text}}}`" if having else None
     )
+
+
+def those_of(family: str, names: Sequence[str]) -> str:
+    """The help where a part of another family is named."""
+    return f"those of {family} are {', '.join(names[:8])}" if names else f"write one under `{family}:`"
+
+
+def beside_world(place: str) -> str:
+    """The help for a place where a tie names a body."""
+    plain = " ".join(place.strip("[]").replace(",", " ").split())
+    plain += "" if plain[-1:].isalpha() else " m"
+    return f"write `world`, and the place in another field of the tie, `to: {plain}` of a rod, `at` of others"
+
+
+def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, catalogue: Catalogue) -> str | None:
+    """The help for a name that no part of the families of ``mark`` has; ``choices``: the names of those there are."""
+    if mark.bodies and name[:1] in "-[0123456789":
+        return f"a place is no body: {beside_world(name)}"
+    if "models" in (mark.family, mark.also) and (model := names.model_of(name)):
+        whose = f"'{name}' is one of the bodies or masses of '{model}'"
+        all_of_it = f"{whose}: write `{model}`, which means all of them"
+        return f"{whose}: write `{model}.{name}`" if mark.bodies else all_of_it
+    if mark.bodies:
+        return suggestion(name, choices) or instead("body", name) or "name a body, or what stands still, `world`"
+    if (part := names.part_of(name)[0]) != name and part in choices:
+        return f"a part stands here, and none of its outputs: write `{part}`"
+    having = _having(["color"], mark.family, catalogue) if name in NAMED else []
+    if having:  # gold is metal
+        word = same_as(name, having) or having[0]
+        return f"write `{{{word}: {{color: {name}}}}}`, or `color: {name}` in its place"
+    words = catalogue.words(mark.family)
+    hint = instead("part", name) or suggestion(name, [*choices, *words])
+    if hint is None and words:
+        hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
+    return hint
 
 
 def _having(fields: Collection[str], family: str, catalogue: Catalogue) -> list[str]:

@@ -17,8 +17,8 @@ from sceneql.quantities.diagnostic import Diagnostics, Note, ScriptError, sugges
 from sceneql.quantities.dimension import ANGLE, FREQUENCY, LENGTH, PERCENTAGE, PLAIN, TIME, Dimension, common, suits
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Keys, Link, Number, Shape, Symbol, Type, Vector, walk
+from sceneql.quantities.instead import time_meant
 from sceneql.quantities.literal import vector_meant
-from sceneql.quantities.other_words import time_meant
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import describe, in_words, unit_of
 
@@ -79,7 +79,10 @@ def read_expr(
                 return _keys(node, shape, dimension, what, names, found)
             if shape == (3,):
                 return _by_component(node, dimension, what, names, found)
-            found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span)
+            texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
+            listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
+            help = f"write `[{', '.join(texts)}]`" if listed else None
+            found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None
 
 

@@ -10,8 +10,8 @@ from typing import Final
 
 from sceneql.language.tree import Scalar
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
+from sceneql.quantities.instead import instead
 from sceneql.quantities.operations import FUNCTIONS
-from sceneql.quantities.other_words import instead
 from sceneql.quantities.span import Source, Span
 
 _MOST_SCANNED: Final = 20_000

@@ -54,6 +54,14 @@ class _LostError(Exception):
     """A path leads through an unreadable value."""
 
 
+def report_unnamed(root: Mapping, found: Diagnostics) -> None:
+    """Report variants that have no names."""
+    node = root.entries.get("variants")
+    if node is not None and not (isinstance(node, Mapping) or unsure(node) or empty(node)):
+        text, help = "variants hold values by path, each under a name", "write `variants: {soft: {define.k: 200 N/m}}`"
+        found.error("section-shape", text, node.span, help=help)
+
+
 def variant_names(root: Mapping) -> tuple[str, ...]:
     """The names of the script's variants."""
     node = root.entries.get("variants")

@@ -10,7 +10,11 @@ from typing import Final
 
 from sceneql.language.scope import Broken, Scope
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, unsure
-from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.bind import bind
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
+from sceneql.quantities.expression import Expr, Number
+from sceneql.quantities.parser import parse_expression
+from sceneql.quantities.span import Span
 
 MOST_COPIES: Final = 10_000
 _MOST_HOPS: Final = 64
@@ -76,24 +80,16 @@ def read_repeat(
     return Repeat(count, "i", node) if index is None else Repeat(count, index.text, index)
 
 
+class _LostError(Exception):
+    """A name whose value was reported as unreadable."""
+
+
 def _whole(node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics) -> int | None:
-    """A count: a whole number, or the name of a field or define that holds one."""
-    value: Node | None = node
-    for _ in range(_MOST_HOPS):
-        if not isinstance(value, Scalar) or value.kind != "text":
-            break
-        name = value.text
-        while scope is not None and name not in scope.fields:
-            scope = scope.outer
-        if scope is None:
-            value = define.get(name)
-            if value is None and name in lost:
-                return None
-        else:
-            value, scope = scope.fields[name], scope.outer
-    if value is not None and unsure(value):
+    """A count: a whole number, the name of a field or define that holds one, or a formula of these."""
+    try:
+        number = _number(node, scope, define, lost, _MOST_HOPS)
+    except _LostError:
         return None
-    number = _count(value) if isinstance(value, Scalar) else None
     if number is None:
         help = "write a number, or the name of a define that is one"
         found.error("repeat-count", "a count is a whole number, 0 or more", node.span, help=help)
@@ -104,6 +100,42 @@ def _whole(node: Node, scope: Scope | None, define: Table[str, Node], lost: Brok
         found.error("limit-refused", message, node.span, help=help)
         return None
     return int(number)
+
+
+def _number(node: Node | None, scope: Scope | None, define: Table[str, Node], lost: Broken, hops: int) -> float | None:
+    """The whole number that a node stands for, None where it is none. Raises _LostError.
+
+    ``hops``: so many names may still lead to it.
+    """
+    if node is not None and unsure(node):
+        raise _LostError
+    if not isinstance(node, Scalar) or hops == 0:
+        return None
+    if node.kind != "text":
+        return _count(node)
+
+    def named(name: str) -> float | None:
+        inner = scope
+        while inner is not None and name not in inner.fields:
+            inner = inner.outer
+        if inner is None and name not in define and name in lost:
+            raise _LostError
+        value, outer = (define.get(name), None) if inner is None else (inner.fields[name], inner.outer)
+        return _number(value, outer, define, lost, hops - 1)
+
+    if node.text.isidentifier():
+        return named(node.text)
+
+    def lookup(parts: tuple[str, ...], span: Span) -> Expr | Diagnostic:
+        number = named(parts[0]) if len(parts) == 1 else None
+        return Diagnostic("repeat-count", "", span) if number is None else Number(number, span=span)
+
+    try:
+        formula = bind(parse_expression(node.text, node.content), lookup, Diagnostics())
+    except ScriptError:
+        return None
+    whole = isinstance(formula, Number) and formula.bare and formula.value >= 0 and formula.value.is_integer()
+    return formula.value if whole and isinstance(formula, Number) else None
 
 
 def _count(value: Scalar) -> float | None:

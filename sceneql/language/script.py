@@ -12,7 +12,15 @@ from sceneql.language.compose import compose
 from sceneql.language.copies import KEY
 from sceneql.language.include import OutsideError, Read, folder_reader, read_included, read_source
 from sceneql.language.nesting import unnested
-from sceneql.language.patch import VARIANT_OPTIONS, Patch, apply_patch, parse_set, variant, variant_names
+from sceneql.language.patch import (
+    VARIANT_OPTIONS,
+    Patch,
+    apply_patch,
+    parse_set,
+    report_unnamed,
+    variant,
+    variant_names,
+)
 from sceneql.language.reuse import reused
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
 from sceneql.language.sections import NAMED, join, with_known_keys
@@ -106,6 +114,7 @@ class Composed:
 
     def try_variants(self, chosen: str | None, found: Diagnostics) -> None:
         """Report what is wrong in the paths of all variants, chosen or not: an error in an unused part is an error."""
+        report_unnamed(self.root, found)
         wrong: dict[str, Diagnostics] = {}
         for name in self.variants:
             if name != chosen:

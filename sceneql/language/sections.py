@@ -9,7 +9,7 @@ from typing import Final
 from sceneql.language.scope import Broken
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken
 from sceneql.quantities.diagnostic import Diagnostics, Note, nearest, suggestion
-from sceneql.quantities.other_words import instead
+from sceneql.quantities.instead import instead
 
 NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect", "studies")
 """Sections beside the families that hold names."""

@@ -11,9 +11,9 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note
 from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Name, Number, Symbol, Type, Vector, each_once
+from sceneql.quantities.instead import time_meant
 from sceneql.quantities.literal import quantity
 from sceneql.quantities.operations import CONSTANTS, OPERATIONS
-from sceneql.quantities.other_words import time_meant
 from sceneql.quantities.rules import MismatchError, listed, shape_text
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import parse_unit, stands_below

@@ -9,8 +9,8 @@ from fractions import Fraction
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Expr, Number, Type, Vector
+from sceneql.quantities.instead import instead
 from sceneql.quantities.operations import OPERATIONS
-from sceneql.quantities.other_words import instead
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_names import sign_of
 from sceneql.quantities.units import Unit, scan_unit, starts_unit

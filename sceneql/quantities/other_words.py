@@ -1,12 +1,9 @@
-"""Words of other programs and of everyday speech, and what a script writes in their place: for messages alone.
+"""Words of other programs and of everyday speech that a name of the language means as well: for messages alone.
 
-``OURS`` has words that a name of the language means as well; ``INSTEAD`` has, by what was written, the sentence for
-those that no single name means.
+What no single name means has a sentence (`sceneql.quantities.instead`).
 """
 
 from __future__ import annotations
-
-import re
 
 LIBRARIES = ("math", "Math", "np", "numpy", "random", "glm", "torch", "scipy")
 """What stands before the dot of a function or constant elsewhere: ``Math.sin``."""
@@ -55,6 +52,15 @@ _LISTS = (
     ("radius", "r rad size diameter major major_radius"),
     ("tube", "minor minor_radius thickness"),
     ("height", "y level elevation altitude length h"),
+    ("y", "of data series values"),
+    ("seconds", "period"),
+    ("sweep", "vary over parameters values range grid"),
+    ("value", "equals equal is expected target eq"),
+    ("below", "less_than at_most"),
+    ("on", "of model models body bodies target"),
+    ("in", "fluid flow medium water"),
+    ("time", "at instant when moment"),
+    ("quality", "crf"),
     ("normal", "up direction"),
     ("components", "vector value force f direction"),
     ("linear", "k coefficient"),
@@ -98,12 +104,12 @@ _LISTS = (
     ("temperature", "concentration heat temp"),
     ("concentration", "temperature density c"),
     ("count", "n number num amount times copies"),
-    ("coefficient", "diffusivity d alpha conductivity"),
+    ("coefficient", "diffusivity d alpha conductivity diffusion"),
     ("initial", "start initial_value u0"),
     ("start", "initial state initial_state y0"),
     ("rate", "rates derivative derivatives rhs dx/dt dy/dt dz/dt"),
     ("children", "of parts objects members items"),
-    ("of", "body object objects target source model particles solid shape mesh columns"),
+    ("of", "body object objects target source model particles solid shape mesh columns values quantities"),
     # words
     ("sphere", "ball orb circle"),
     ("box", "cube cuboid block brick rectangle rect square"),
@@ -139,7 +145,7 @@ _LISTS = (
     ("point", "bulb lamp spot pointlight spotlight light omni"),
     ("sun", "directional directional_light"),
     ("sky", "ambient environment hdri skybox"),
-    ("perspective", "camera pinhole"),
+    ("perspective", "camera pinhole fixed static"),
     ("orthographic", "ortho flat"),
     ("turntable", "orbit"),
     ("video", "mp4 mov gif movie animation film webm avi"),
@@ -184,221 +190,3 @@ def _by_word() -> dict[str, tuple[str, ...]]:
 
 OURS = _by_word()
 """Other programs' words, with the names of the language that mean the same; that stands which is known at the place."""
-
-_COLOR = 'write three numbers from 0 to 1, `[1, 0.5, 0]`, a CSS name, `tomato`, or `"#ff8000"`'
-_AND = "for 'and' multiply: `(a > b)*(c > d)`"
-_OR = "for 'or' write `max(a > b, c > d)`"
-_IF = "write `where(condition, a, b)`"
-_WORD = "the word stands around its fields: `{sphere: {radius: 1 m}}`: `sceneql words sections`"
-_REPEAT = "write `repeat: {count: 5, as: i}` beside the word, `{repeat: {...}, sphere: {...}}`: `sceneql words repeat`"
-
-_SENTENCES = (
-    ("function", "if switch select", _IF),
-    (
-        "function",
-        "vec vec2 vec3 vec4 vector vector3 point float3 array tuple xyz",
-        "write `[x, y, z]`, or numbers with one unit behind them, `0 1.2 0 m`",
-    ),
-    ("function", "rgb rgba color colour", _COLOR),
-    ("function", "hsv hsl hsva hsv2rgb", f"write `hue(h)`, h from 0 to 1, for a full color; else {_COLOR}"),
-    (
-        "function",
-        "deg degrees rad radians deg2rad rad2deg",
-        "an angle has its unit: write `30 deg`, or `x*(1 deg)`",
-    ),
-    ("function", "gaussian gauss gaussian2d", "write `exp(-((x - 0.5)^2 + (y - 0.5)^2)/0.1^2)`"),
-    ("function", "pow power", "write `a^b`"),
-    ("function", "sqr square", "write `x^2`"),
-    ("function", "frac fract", "write `mod(x, 1)`"),
-    ("function", "cbrt", "write `x^(1/3)`"),
-    ("function", "log2", "write `log(x)/log(2)`"),
-    ("function", "log", "write `log(x)/log(b)` for another base"),
-    ("function", "atan", "write `atan2(y, x)`"),
-    ("function", "noise", "write `noise([x, y])`, `noise([x, y, z])`"),
-    (
-        "function",
-        "random",
-        "write `random(1)`, `random(2)`, ...: each is a number from 0 to 1, the same in every run",
-    ),
-    ("function name behind", "and", _AND),
-    ("function name behind", "or", _OR),
-    ("function name", "not", "write `1 - (a > b)`"),
-    ("sign", "&", _AND),
-    ("sign", "|", _OR),
-    ("sign", "?", _IF),
-    ("sign", "$", "a name stands by itself: write `n`, or `n*(1 cm)` where it is a plain number"),
-    ("sign", "=", "write `==` to compare; the surface where f = c is that of the formula `f - c`"),
-    ("sign", "!", "write `where(a == b, 0, 1)` for a difference, `1 - (a > b)` for 'not'"),
-    ("sign", "%", "write `mod(a, b)`"),
-    ("sign", "//", "a comment begins with `#`, behind a space; a whole quotient is `floor(a/b)`"),
-    ("sign", "× ·", "write `*`"),
-    ("sign", "−", "write `-`"),
-    ("sign", "²", "write `^2`"),
-    ("sign", "³", "write `^3`"),
-    ("sign", "°", "write `deg`"),
-    (
-        "sign",
-        "{ }",
-        'only the number of a copy by `repeat` stands in braces, in a name, `"ball.{i}.position"`: '
-        "`sceneql words repeat`",
-    ),
-    ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
-    ("unit", "fps frames frame", "a number of frames has no unit: `clock: {fps: 30}`"),
-    ("name", "t", "the time is written 'time'"),
-    ("name behind", "if then else elif when", f"{_IF}: `sceneql words functions`"),
-    (
-        "name",
-        "x y z",
-        "an axis is `1 0 0`, `0 1 0` or `0 0 1`; the coordinates of a place stand in formulas of fields alone",
-    ),
-    ("name behind", "to until", "from when to when is two conditions: `(time > 1 s)*(time < 2 s)`"),
-    ("name", "true yes", "in a formula write `1`"),
-    ("name", "false no", "in a formula write `0`"),
-    (
-        "name",
-        "i index id",
-        "copies have numbers, where `repeat: {count: 5, as: i}` makes them: `sceneql words repeat`",
-    ),
-    ("field entry", "repeat for foreach loop array times", _REPEAT),
-    (
-        "keys",
-        "repeat loop looping period periodic infinite",
-        "write `cycle: 2 s`, the time after which they begin anew",
-    ),
-    ("keys", "interpolation ease easing type mode", "write `curve: linear`, `smooth`, `step` or `cubic`"),
-    (
-        "beside",
-        "matte glossy metal glass mirror glow checker",
-        "a material is a field of the object: `{sphere: {radius: 1 m, material: {matte: {color: red}}}}`",
-    ),
-    ("beside", "name id", "the name stands before the word, in a section of names: `objects: {ball: {sphere: {...}}}`"),
-    (
-        "beside",
-        "particles rigid elastic cloth collision",
-        "a model is a part of its own, that names the object: `models: {fall: {particles: {of: ball, mass: 1 kg}}}`",
-    ),
-    ("field entry", "type kind shape", _WORD),
-    (
-        "field",
-        "scale",
-        "write its sizes as they shall be, or let a group scale it: `{group: {children: [ball], scale: 1 1.4 1}}`",
-    ),
-    (
-        "field",
-        "roughness metallic metalness shininess specular reflectivity",
-        "a material says it, `material: {metal: {roughness: 0.2}}`: `sceneql words glossy`",
-    ),
-    (
-        "field.materials",
-        "shininess gloss smoothness glossiness",
-        "write `roughness: 0.1`: 0 is a mirror, 1 is dull",
-    ),
-    ("field.materials", "emission emissive emit", "what shines is `{glow: {color: orange}}`"),
-    ("field.materials", "opacity alpha transparency", "what one sees through is `{glass: {color: white}}`"),
-    (
-        "field.materials",
-        "texture map image normal_map bump",
-        "there is `checker`, and a color may be a formula of x, y, z",
-    ),
-    (
-        "field.cameras",
-        "rotation orientation euler angles quaternion",
-        "a camera looks at a place: `look_at: 0 1 0 m`",
-    ),
-    (
-        "field",
-        "restitution bounce bounciness bouncy elasticity friction",
-        "a contact has it, `contacts: {touch: {collision: {restitution: 0.8, friction: 0.3}}}`",
-    ),
-    ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
-    ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
-    ("field", "distance", "write where it stands, `position: 0 1 5 m`; without that it finds its place"),
-    ("field", "min max low high corner corners", "write its `size`, and of its middle the `position`"),
-    (
-        "field",
-        "checker checkered texture pattern tiles",
-        "a material says it, `material: checker`: `sceneql words checker`",
-    ),
-    ("field", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
-    ("field", "diameter", "write half of it as `radius`"),
-    (
-        "field.objects",
-        "velocity speed mass acceleration weight density",
-        "an object moves by a model, `models: {fall: {particles: {of: NAME, mass: 1 kg, velocity: 1 0 0 m/s}}}`:"
-        " `sceneql words particles`",
-    ),
-    (
-        "field",
-        "animate animation keyframes keyframe key",
-        "a value that changes is given by keys, `position: {keys: {0 s: 0 0 0 m, 1 s: 0 1 0 m}}`: `sceneql words keys`",
-    ),
-    (
-        "field",
-        "young youngs_modulus young_modulus poisson poisson_ratio",
-        "a solid's law says it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`: `sceneql words elastic`",
-    ),
-    ("field", "opacity alpha transparency transparent", "write `material: glass`: `sceneql words glass`"),
-    ("field", "visible show enabled", "write `hidden: yes` for a part that is not drawn"),
-    ("field", "parent", "a part moves with others in a group, `{group: {children: [a, b]}}`: `sceneql words group`"),
-    (
-        "section",
-        "joints hinges constraints constraint",
-        "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
-    ),
-    (
-        "field",
-        "hole holes cutout",
-        "cut it out of the object, `{difference: {of: [plate, hole]}}`: `sceneql words difference`",
-    ),
-    ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
-    ("section", "collision contact", "write `forces: [gravity, collision]`"),
-    ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),
-    ("section", "fps framerate frame_rate", "write `clock: {fps: 30}`: `sceneql words clock`"),
-    ("section", "resolution size width height", "write `outputs: {film: {video: {size: 720p}}}`"),
-    ("section", "scene world root project", "the sections stand by themselves, with no key around them"),
-    ("section", "floor", "write `objects: {floor: plane}`"),
-    ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
-    ("zero", "mass", "what never moves is an object without a model, or a body with `fixed: yes`"),
-    ("body", "wall ground static base ceiling earth fixed none null", "what stands still is `world`"),
-    ("body", "floor", "a body is of a model; what stands still is `world`"),
-    (
-        "forces contacts",
-        "floor ground wall terrain",
-        "masses hit the floor, and all objects, by `collision`: `forces: [gravity, collision]`",
-    ),
-    (
-        "objects",
-        "ellipsoid egg spheroid",
-        "write its formula: `{implicit: {field: (x/2)^2 + y^2 + z^2 - 1, bounds: {box: [-2 -1 -1, 2 1 1]}}}`",
-    ),
-    ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: ...}}}`"),
-    (
-        "models",
-        "pendulum double_pendulum",
-        "its equation is a model, `sceneql words equations`; or a body hangs on a tie, `sceneql words hinge`",
-    ),
-    ("entry", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
-)
-"""What a word is taken for, the words, and the sentence."""
-
-INSTEAD = {(what, word): text for kinds, words, text in _SENTENCES for what in kinds.split() for word in words.split()}
-"""The sentence of what to write in place of a called `function`, a `sign` or `name` of a formula or `behind` a number
-of it, the `field` of a part, or `field.FAMILY`, a `section` of the script, the key of an `entry` or one `beside` its
-word, a field of `keys`, a `unit`, a `body` of a tie, a `zero`, or a word of a family, by the family's name."""
-
-_TON = re.compile(r"\d\s*[^\s()\[\],]*[*/]t(?!\w)")
-
-
-def time_meant(text: str) -> str | None:
-    """The help for a quantity in which ``t`` is read as a unit, though most likely the time was meant: ``2 m/s*t``."""
-    return "the time is `time`: `t` behind a unit is 1000 kg" if _TON.search(text) is not None else None
-
-
-def instead(what: str, word: str) -> str | None:
-    """The help for a word of another program that is taken for ``what`` (see `INSTEAD`), if it is known."""
-    return INSTEAD.get((what, word)) or INSTEAD.get((what, word.lower()))
-
-
-def anywhere(word: str) -> str | None:
-    """The help for a word of another program, whatever it was meant as."""
-    return next((help for (_, other), help in INSTEAD.items() if other == word.lower()), None)

@@ -10,9 +10,9 @@ import re
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 from sceneql.quantities.expression import Call, Expr, Name, Number, Vector, children, each_once
+from sceneql.quantities.instead import instead
 from sceneql.quantities.literal import NUMBER, WORD, comma_meant, quantity, read_unit, vector_meant, whole_value
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
-from sceneql.quantities.other_words import instead
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
@@ -244,6 +244,8 @@ class _Parser:
             help = "in a formula a vector has brackets, and each of its numbers the unit: `p + [1 m, 0 m, 0 m]`"
         elif (meant := self._unit_behind(expr)) is not None:
             help = f"a unit stands directly after a number: write `{meant}`"
+        elif isinstance(expr, Name) and self.kind == "name" and self.token in UNITS:
+            help = f"a unit stands directly after a number: write `{self.before}*(1 {self.token})`"
         elif self.before in FUNCTIONS and self.kind != "sign":
             help = f"write `{self.before}({self.token[:40]})`"
         elif (other := instead("name", self.token) or instead("name", self.before)) is not None:

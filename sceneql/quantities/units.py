@@ -13,7 +13,7 @@ from functools import cache, lru_cache
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 from sceneql.quantities.dimension import PLAIN, TEMPERATURE, Dimension
-from sceneql.quantities.other_words import instead
+from sceneql.quantities.instead import instead
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_names import sign_of
 from sceneql.quantities.unit_table import KNOWN_UNITS, OFFSET_UNITS, QUANTITIES, UNITS

@@ -13,8 +13,8 @@ from sceneql import kinds
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.failure import Unsuitable
 from sceneql.quantities.diagnostic import ScriptError, suggestion
+from sceneql.quantities.instead import anywhere
 from sceneql.quantities.operations import OPERATIONS
-from sceneql.quantities.other_words import anywhere
 from sceneql.quantities.units import unit_of
 from sceneql.report.topics import page, topics
 

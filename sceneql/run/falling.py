@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, cast
 
-from sceneql.compiler.passes.touchable import touchable
-from sceneql.kinds import Interaction, Object
+from sceneql.kinds import Interaction, Model, Object
 from sceneql.quantities.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
+    from sceneql.graph import Task
     from sceneql.run.instant import Instant
     from sceneql.run.run import IslandRun
 
@@ -66,9 +66,15 @@ def falling(island: IslandRun) -> list[Falling]:
     weighed = [model for force, model in island.island.forces if cast(Interaction, tasks[force].kind).weighs]
     hit = {model for _, model, _ in island.island.contacts}
     alone = [model for model in dict.fromkeys(weighed) if model not in hit and island.bodies.get(model) is not None]
-    others = [name for name in touchable(tasks) if _solid(tasks[name].kind)] if alone else []
+    others = _standing(tasks) if alone else []
     return [Falling(model, island, others) for model in alone] if 0 < len(others) <= MOST_OBJECTS else []
 
 
-def _solid(kind: Any) -> bool:
-    return type(kind).implicit is not Object.implicit and not kind.hidden
+def _standing(tasks: Mapping[str, Task]) -> list[str]:
+    """The objects with an inside that are seen, are no parts of others, and that no model moves or is made of."""
+    objects = {name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}
+    aside = {ref.name for kind in objects.values() for ref in kind.members()}
+    aside |= {need for task in tasks.values() if isinstance(task.kind, Model) for need in task.needs}
+    solid = [name for name, kind in objects.items() if type(kind).implicit is not Object.implicit and not kind.hidden]
+    led = {name for name in solid for need in tasks[name].needs if isinstance(tasks[need].kind, Model)}
+    return [name for name in solid if name not in aside | led]
