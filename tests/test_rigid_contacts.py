@@ -276,3 +276,13 @@ def test_a_body_may_be_named_by_its_object_too(tmp_path):
         tmp_path, objects, bodies, [0.1], "it.positions", law="restitution: 0, between: [it, o0, floor]"
     )
     np.testing.assert_allclose(places, [[0, 0.5, 0]], atol=1e-12)
+
+
+def test_what_is_read_within_the_step_of_an_impact_has_the_energy_of_its_end(tmp_path):
+    """A body moves over the whole of that step by its velocity afterwards: between the two it had next to no energy."""
+    objects = {"o": "{box: {size: 0.2 0.2 0.2 m, position: 0 0.3 0 m}}", "floor": "plane"}
+    bodies = {"b": "{of: o, mass: 1 kg, velocity: 0.3 -2 0 m/s, spin: 1 2 3 rad/s}"}
+    law, times = "restitution: 0.8, friction: 0.3", np.linspace(0, 0.3, 301)
+    rows = watch(tmp_path, objects, bodies, times, "it.energy", law=law, solver="rk4: {step: 5 ms}")
+    energy = np.array(rows)[:, 0]
+    assert np.abs(energy - energy[0]).max() < 0.05 * energy[0]

@@ -23,6 +23,7 @@ from sceneql.march.first_step import first_step
 from sceneql.march.pace import Pace
 from sceneql.march.statistics import Statistics
 from sceneql.march.switching import Switch
+from sceneql.march.within_contact import WithinContact
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -85,7 +86,7 @@ class March:
         self.corrected: Floats | None = None
         """(n,) what was taken from the state at the start, as velocities that ties forbid; None: nothing settles it."""
         self._floats_time = math.nan
-        self._alone = np.zeros(n, dtype=bool)
+        self._alone, self._within = np.zeros(n, dtype=bool), WithinContact(system)
         self._methods = Methods(several=stiff is not None)
         self._switch = None
         if stiff is not None:
@@ -235,9 +236,7 @@ class March:
         if engaged.mixed or (settles and touched):
             changed = self._sample != self._y1
             if changed.any():
-                line = np.empty_like(y)
-                kernels.straightened((t - t0) / h, h, *steps, line)
-                y[changed] = line[changed]
+                self._within.read((t - t0) / h, h, steps, changed, y)
         return self._settled(t, y), False
 
     def _settled(self, t: float, y: Floats) -> Floats:

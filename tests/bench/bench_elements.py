@@ -132,15 +132,18 @@ def le10() -> None:
     outer = "(abs((x/3.25)^2 + (z/2.75)^2 - 1) < 1e-6)"
     hold = f"outer: {{where: '{outer}', components: xz}}, middle: {{where: '{outer}*(abs(y) < 0.1)', components: y}}, "
     hold += "one: {where: x < 1e-6, components: x}, two: {where: z < 1e-6, components: z}"
-    for spacing in (0.4, 0.35, 0.3, 0.28, 0.25, 0.22, 0.2):
+    cases = [(spacing, None) for spacing in (0.4, 0.37, 0.34, 0.31, 0.28, 0.25, 0.22, 0.2)]
+    for spacing, fine in [*cases, (0.4, 0.2), (0.4, 0.1), (0.35, 0.1), (0.3, 0.2), (0.3, 0.1), (0.27, 0.12)]:
+        finer = f"finer: {{d: {{near: 2 0.3 0 m, within: 0.1 m, spacing: {fine} m}}}}, " if fine else ""
         start = time.perf_counter()
         one = solid(
-            f"{{of: plate, spacing: {spacing} m, element: p2, law: {{linear: {{modulus: 210 GPa, poisson: 0.3}}}}, "
+            f"{{of: plate, spacing: {spacing} m, {finer}element: p2, "
+            "law: {linear: {modulus: 210 GPa, poisson: 0.3}}, "
             f"hold: {{{hold}}}, loads: {{top: {{where: y > 0.299999, pressure: 1 MPa}}}}, probes: {{d: 2 0.3 0 m}}}}",
             objects,
         )
         places, _ = one.rest(tolerance=1e-6)
-        name = f"LE10, p2, spacing {spacing}, {len(one.mesh.cells)} elements"
+        name = f"LE10, p2, spacing {spacing}{f', {fine} near it' if fine else ''}, {len(one.mesh.cells)} elements"
         told(name, one.read("d.stress", places)[2, 2] / -5.38e6 - 1, seconds=time.perf_counter() - start)
 
 

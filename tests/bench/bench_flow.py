@@ -9,10 +9,12 @@
     python tests/bench/bench_flow.py cavity 128 100     cells a side, Reynolds number: extrema of the lid-driven cavity
     python tests/bench/bench_flow.py heated 1e5 64      Nusselt numbers of the heated cavity by Ra and cells a side
     python tests/bench/bench_flow.py rolls 1740 24      growth of a roll between plates by Ra and cells of height [1/s]
+    python tests/bench/bench_flow.py annulus 0.05       heat between cylinders, by the side of a cell [m]
     python tests/bench/bench_flow.py spheres 32 0.125   drag of rows of spheres, cells a side, their part of the volume
 
 Times are processor time of the march alone, all threads together, compiled and set up. Published: Schafer & Turek
-(1996); Botella & Peyret (1998); de Vahl Davis (1983), Le Quere (1991); Chandrasekhar (1961); Zick & Homsy (1982).
+(1996); Botella & Peyret (1998); de Vahl Davis (1983), Le Quere (1991); Chandrasekhar (1961); Zick & Homsy (1982); Kuehn
+& Goldstein (1976).
 """
 
 from __future__ import annotations
@@ -327,6 +329,30 @@ def rolls(rayleigh: str, cells: str) -> None:
     print(f"rolls Ra {ra:g}, {n} cells: growth {0.5 * math.log(energies[2] / energies[1]):+.4f} 1/s (0 at 1707.762)")
 
 
+def annulus(cell: str) -> None:
+    """Heat between cylinders, the inner one warm, Ra 1e4, Pr 0.7, over that by conduction."""
+    h = float(cell)
+    ring = "objects: {outer: {sphere: {position: 0 0 0 m, radius: 1.625 m}}, inner: {sphere: {position: 0 0 0 m, "
+    ring += "radius: 0.625 m}}, ring: {difference: {of: [outer, inner]}}}\n"
+    said = 'of: temperature, coefficient: 1 m^2/s, initial: "0.5", drift: {by: air}, domain: ring, flat: yes'
+    held = '{warm: {where: "1 - x^2 - y^2", value: 1}, rest: {value: 0}}'
+    heat = f"  heat: {{diffusion: {{{said}, cell: {cell} m, boundary: {held}}}}}\n"
+    air = Air(
+        "{ark3: {}}", 0.6, ring, heat, domain="ring", flat="yes", cell=f"{cell} m",
+        density="1 kg/m^3", viscosity="0.7 Pa*s", advection="central",
+        buoyancy="{by: heat.temperature, expansion: 7000 1/K, reference: 0.5 K, gravity: 0 -1 0 m/s^2}",
+    )  # fmt: skip
+    for now in (0.2, 0.4, 0.6):
+        air.run.advance(now)
+        pairs = zip(air.read("centers", "heat"), air.read("temperature", "heat"), strict=True)
+        known = {(round(x / h * 4), round(y / h * 4)): c for (x, y, _), c in pairs}
+        centers = air.read("centers")
+        warm = np.array([known.get((round(x / h * 4), round(y / h * 4)), 0.0) for x, y, _ in centers])
+        outwards = (air.read("velocity") * centers).sum(axis=1) / np.maximum((centers**2).sum(axis=1), 0.1)
+        found = 1 + float((outwards * warm).sum()) * h * h / (2 * math.pi)
+        print(f"annulus, {cell} m at {now} s: {found:.4f} times conduction (2.010)", flush=True)
+
+
 SPHERES = {0.027: 2.008, 0.064: 2.810, 0.125: 4.292, 0.216: 7.442, 0.343: 15.4, 0.45: 28.1}
 
 
@@ -349,7 +375,7 @@ def spheres(cells: str, part: str) -> None:
         print(f"spheres {n}^3, part {fraction} at {now} s: K {found:.4f} ({known}), force by balance {held:.4f}")
 
 
-PARTS = {one.__name__: one for one in (steps, peer, cylinder, vortices, drawn, cavity, heated, rolls, spheres)}
+PARTS = {one.__name__: one for one in (steps, peer, cylinder, vortices, drawn, cavity, heated, rolls, annulus, spheres)}
 
 if __name__ == "__main__":
     if len(sys.argv) > 1:

@@ -13,12 +13,12 @@ from sceneql import kinds
 from sceneql.bodies import bodies as masses
 from sceneql.bodies import solid_modes
 from sceneql.bodies.elements import strain_outputs
-from sceneql.bodies.elements.block import Block
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
 from sceneql.bodies.elements.load import Load
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
+from sceneql.bodies.filling.block import Block
 from sceneql.bodies.filling.finer import Finer
 from sceneql.bodies.solid_modes import Bent
 from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
@@ -92,6 +92,12 @@ class Elastic(Model):
     )
     finer: dict[str, Finer] = field(
         "Places near which its elements are smaller, by name; elements of a file have straight edges then.", {}
+    )
+    turn: kinds.FixedAngle = field(
+        "Beside holes and in fillets of an object elements of ten nodes are so small that its surface turns no more "
+        "along an edge of them, down to a quarter of the spacing.",
+        "0.5 rad",
+        above=0,
     )
     element: str | None = field(
         "Its elements, p1, p2 or p2_mean: of 4 or 10 nodes; the last, of one dilatation each, do not lock. By default "
@@ -219,7 +225,7 @@ class Elastic(Model):
         if self.file is not None:
             return of_file(self.file, element, self.finer, assembly)
         assert self.of is not None
-        return filled(self.of, self.spacing, element, self.finer, assembly)
+        return filled(self.of, self.spacing, element, self.finer, assembly, self.turn if element.edges else None)
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the nodes as masses; add the forces of strain, of loads, of damping, and what holds it."""

@@ -29,6 +29,7 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Link, Type
 
 if TYPE_CHECKING:
+    from sceneql.grids.domain.cells import Cells
     from sceneql.system import Assembly, ModelState
 
 THICKEST = 1e100
@@ -257,17 +258,21 @@ class Flow(Model):
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a face, and add the terms of the rate. Raises ScriptError."""
         from sceneql.flows.assembly import add_flow
-        from sceneql.flows.fluid_box import box_of
         from sceneql.flows.varying.fluid_layout import MASSES
         from sceneql.grids.ground import Ground
 
-        size = self.size or ()
-        corner = self.corner or (0.0,) * len(size)
-        named = self.boundary
-        ground = Ground(box_of(self.domain, self.flat, size, corner, self.cell, self.depth, named, assembly), assembly)
+        ground = Ground(self.box(assembly), assembly)
         flow = add_flow(name, self, ground.cells, assembly)
         self._masses_at = flow.varying[MASSES] if flow.varying else -1
         assembly.remember(*ground.memory, *flow.ints)
+
+    def box(self, assembly: Assembly) -> Cells:
+        """Its cells. Raises ScriptError, LimitRefused."""
+        from sceneql.flows.fluid_box import box_of
+
+        size = self.size or ()
+        corner = self.corner or (0.0,) * len(size)
+        return box_of(self.domain, self.flat, size, corner, self.cell, self.depth, self.boundary, assembly)
 
     def connect(self, name: str, assembly: Assembly) -> None:
         """Add what fields do to it. Raises ScriptError where one is of another domain."""
