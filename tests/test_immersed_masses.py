@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from flows import WAVES, Air
+from sceneql.failure import RunFailure
 from sceneql.flows.varying.fluid_layout import FASTEST, MASSES
-from sceneql.kinds.stable_step import StaticScene
+from sceneql.kinds.stable_step import StaticScene, stable_step
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.words.forces.immersion import swing
+from sceneql.words.solvers.imex_midpoint import ImexMidpoint
 
 IMMERSED = "forces: [{immersion: {on: [net], in: air}}]\n"
 ROUND = '{velocity: "[1 + 0.3*sin(2*pi*y), 0.2*sin(2*pi*x)]"}'
@@ -171,6 +173,26 @@ def test_the_fastest_swing_that_check_tells_bounds_that_of_the_run(tmp_path, cel
         at = air.run.march.system.fields.flow.varying[FASTEST]
         told = swing("net", air.tasks["net"].kind, 1.0, 1 / cells, 2, 1.0, StaticScene({}, 1.0))
         assert 0.97 <= told / air.run.state("air").floats[at] <= 1.3
+
+
+@pytest.mark.parametrize(("part", "holds"), [(0.9, True), (2.5, False)])
+def test_fixed_steps_bear_what_check_tells(tmp_path, part, holds):
+    waved = '{velocity: "[0.01*sin(2*pi*x)*cos(2*pi*y), -0.01*cos(2*pi*x)*sin(2*pi*y)]"}'
+    turn = 2.0 * (200.0 / 0.02) ** 0.5 * 0.6 * 0.025 * 12 * (0.02 / (0.02 + 0.025 * 2.5 / 12)) ** 0.5
+    bound = stable_step(lambda step: ImexMidpoint().oscillation(0.0, 0.0, step, turn))
+    assert bound == pytest.approx(2.0 / turn, rel=1e-5)  # as Verlet's method
+    end, solver = 100 * part * bound, f"{{imex_midpoint: {{step: {part * bound!r} s}}}}"
+    air = netted(
+        tmp_path, rope(0.02, stiffness=200.0), initial=waved, cell="1/12 m", viscosity="1e-4 Pa*s", solver=solver,
+        end=end,
+    )  # fmt: skip
+    told = [one.message for one in air.graph.warnings]
+    assert any("set by the springs of 'net'" in one for one in told) is not holds
+    if holds:
+        assert air.at(end).read("largest_speed") < 0.02
+    else:
+        with pytest.raises(RunFailure):
+            air.at(end)
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,10 @@ COARSER = {
 """What else leaves a scene's steps as they are: of these alone the law of frame rates tells."""
 
 
-LONGER = {"rollers": "friction on what turns takes half a minute"}
+LONGER = {
+    "flag": "a flag begins to flap after seconds",
+    "rollers": "friction on what turns takes half a minute",
+}
 """Scenes whose numbers are measured in the long run alone, and by `gallery check`; why."""
 
 

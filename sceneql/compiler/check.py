@@ -16,7 +16,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
 from sceneql.compiler.read import Reader, Unreadable
-from sceneql.compiler.unknown import report_unknown, word_having, word_meant
+from sceneql.compiler.unknown import mover_of, report_unknown, word_having, word_meant
 from sceneql.compiler.values import read_expr
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
@@ -106,6 +106,7 @@ class _Checker:
             found=found,
             given=script.gives,
             broken=script.broken,
+            mover=lambda name: mover_of(name, self.entries, self.family_of),
             unsure=cache(self.unsure),  # which reads all of a part, and a part of many bodies is named by many
             parsed=parsed,
         )
@@ -325,6 +326,8 @@ class _Checker:
         if unsure(node):
             return None
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
+        if mark.bodies and isinstance(node, SequenceNode):
+            return self._no_place(node)
         together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
         help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
         if isinstance(node, SequenceNode) and len(node.items) == 1:
@@ -333,6 +336,12 @@ class _Checker:
             help = word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)
         return None
+
+    def _no_place(self, node: Node) -> None:
+        """Report a place where a body stands."""
+        place = " ".join(node.span.text.strip("[]").replace(",", " ").split())
+        help = f"write `world`, and the place in another field of the tie, `to: {place} m` of a rod, `at` of others"
+        self.found.error("entry-shape", "a place is no body", node.span, help=help)
 
     def _body(self, node: Scalar, model: str, body: str) -> Ref | None:
         """One body of a model, or the only one, where there is such a one."""
@@ -372,6 +381,8 @@ class _Checker:
         words = self.catalogue.words(mark.family)
         section, _, inside = name.partition(".")
         hint = instead("part", name) or suggestion(name, [*choices, *words])
+        if mark.bodies:
+            hint = suggestion(name, choices) or instead("body", name) or "name a body, or what stands still, `world`"
         if several := self.script.groups.get(name):
             hint = (
                 f"'{name}' is {len(several)} parts: name one, `{several[0]}`, or repeat this part, with `{name}.{{i}}`"
@@ -381,7 +392,9 @@ class _Checker:
         if section in self.script.sections and inside in self.entries:
             hint = f"a part is named without its section: write `{inside}`"
         elif "models" in (mark.family, mark.also) and (model := self.names.model_of(name)):
-            hint = f"'{name}' is one of the bodies or masses of '{model}': write `{model}`, which means all of them"
+            whose = f"'{name}' is one of the bodies or masses of '{model}'"
+            all_of_it = f"{whose}: write `{model}`, which means all of them"
+            hint = f"{whose}: write `{model}.{name}`" if mark.bodies else all_of_it
         elif hint is None and words:
             hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
         self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)

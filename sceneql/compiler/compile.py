@@ -9,17 +9,22 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS, check
 from sceneql.compiler.names import Parsed
 from sceneql.compiler.over_time import check_latest
+from sceneql.compiler.passes.boundary_names import report_boundary_names
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.contact_words import report_contacts
 from sceneql.compiler.passes.doubts import warn_of_doubts
+from sceneql.compiler.passes.empty_holds import report_empty_holds
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.far_joints import warn_of_far_joints
 from sceneql.compiler.passes.fillings import check_fillings
 from sceneql.compiler.passes.insides import report_hollow
 from sceneql.compiler.passes.islands import islands
+from sceneql.compiler.passes.keys_beyond import warn_of_keys
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.open_meshes import warn_of_open_meshes
+from sceneql.compiler.passes.outside_flows import report_outside_flows
+from sceneql.compiler.passes.overlaps import report_overlaps
 from sceneql.compiler.passes.probes import report_probes
 from sceneql.compiler.passes.prune import prune
 from sceneql.compiler.passes.readable import report_unreadable
@@ -74,10 +79,15 @@ def compile_script(
     found.raise_errors()
     check_fillings(tasks, found)
     report_probes(script, tasks, found)
+    report_boundary_names(script, tasks, found)
+    report_empty_holds(tasks, found)
+    report_overlaps(tasks, groups, found)
+    report_outside_flows(tasks, found)
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
     warn_of_far_joints(tasks, found)
     warn_of_doubts(tasks, checked.settings.clock, found)
+    warn_of_keys(tasks, checked.settings.clock, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
     found.raise_errors()

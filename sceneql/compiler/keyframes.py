@@ -13,6 +13,7 @@ from sceneql.language.tree import Sequence as SequenceNode
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import TIME
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Symbol, Type
+from sceneql.quantities.other_words import instead
 
 CURVES = ("step", "linear", "smooth", "cubic")
 KEY_FIELDS = ("value", "slope", "slope_in", "slope_out")
@@ -30,7 +31,7 @@ def read_keys(
     ok = True
     for key in node.entries:
         if key not in ("keys", "curve", "cycle", "delay"):
-            hint = suggestion(key, ("keys", "curve", "cycle", "delay"))
+            hint = instead("keys", key) or suggestion(key, ("keys", "curve", "cycle", "delay"))
             found.error("unknown-field", f"keyframes have no field '{key}'", node.keys[key].span, help=hint)
             ok = False
     table = node.entries["keys"]

@@ -9,6 +9,7 @@ from typing import Any, get_args
 from sceneql.kinds import LIMITS, Quantity, Value
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.other_words import instead
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import unit_of
 
@@ -41,7 +42,8 @@ def check_limits(
             holds, word = LIMITS[limit]
             if not holds(number, bound):
                 asked, given = (_told(one, annotation) for one in (bound, number))
-                found.error("out-of-range", f"{what} must be {word} {asked}, not {given}", span)
+                help = instead("zero", what.rpartition(".")[2]) if number == 0.0 else None
+                found.error("out-of-range", f"{what} must be {word} {asked}, not {given}", span, help=help)
                 return
 
 

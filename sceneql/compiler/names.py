@@ -62,6 +62,8 @@ class Names:
     """Names whose definitions were reported as unreadable, about which no further error is reported."""
     unsure: Callable[[str], bool] = lambda name: False
     """Whether a part may have more outputs than are known, since its fields have errors."""
+    mover: Callable[[str], str] = lambda name: ""
+    """The model, or the body of it, that moves an object; empty where none does."""
     parsed: Parsed = field(default_factory=lambda: Parsed())
     scope: Scope | None = None
     _bound: dict[str, Expr | None] = field(default_factory=dict)
@@ -194,14 +196,18 @@ class Names:
         if self.unsure(task):
             return None
         wanted = ".".join(parts[first:])
-        names = ", ".join(sorted(outputs)) or "nothing"
-        self.found.error(
-            "unknown-output",
-            f"'{'.'.join(parts[:first])}' gives no '{wanted}'",
-            span,
-            help=suggestion(wanted, outputs) or f"it gives {names}",
-        )
+        help = self._of_mover(task, parts[first:]) or suggestion(wanted, outputs)
+        help = help or f"it gives {', '.join(sorted(outputs)) or 'nothing'}"
+        self.found.error("unknown-output", f"'{'.'.join(parts[:first])}' gives no '{wanted}'", span, help=help)
         return None
+
+    def _of_mover(self, task: str, wanted: tuple[str, ...]) -> str | None:
+        """The help for an output of an object that the model which moves it gives."""
+        mover = self.mover(task)
+        model, body = self.part_of(mover) if mover else ("", "")
+        known = self.outputs_of(model) or {}
+        gives = f"{body}.{wanted[0]}".strip(".") in known
+        return f"'{model}' moves it: write `{'.'.join((mover, *wanted))}`" if gives else None
 
     def _component(self, whole: Expr, parts: tuple[str, ...], size: int, span: Span) -> Expr | None:
         """The component that the name's pieces behind the first ``size`` say, if any."""

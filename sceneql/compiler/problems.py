@@ -28,7 +28,8 @@ def validated(cls: type[BaseModel], got: dict[str, Any], node: Node | None, span
         return None
     problems = [problem for one, problem in context if one is result]  # those inside were reported
     for told in problems:
-        found.error(told.code, told.text, _place(told.path, node, span, told.at_key, told.part))
+        place = _place(told.path, node, span, told.at_key, told.part)
+        found.error(told.code, told.text, place, help=told.help)
     return None if problems and issubclass(cls, kinds.Kind) else result
 
 

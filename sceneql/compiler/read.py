@@ -34,6 +34,7 @@ from sceneql.language.tree import written as plainly
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.span import Span
+from sceneql.quantities.units import format_quantity
 
 TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
 
@@ -84,7 +85,8 @@ class Reader:
         if isinstance(node, MappingNode):
             known = [kinds.written_name(name) for name in cls.model_fields]
             said_by = cls.said_by if issubclass(cls, kinds.Record) else {}
-            ok = report_unknown(node, known, title, self.found, said_by) and not node.partial
+            family = cls.family if issubclass(cls, kinds.Kind) else ""
+            ok = report_unknown(node, known, title, self.found, said_by, family) and not node.partial
             mistaken = {meant_field(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
@@ -117,16 +119,24 @@ class Reader:
         required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
         if not isinstance(node, Scalar):
             return f"write `{{{required[0]}: {node.span.text}}}`" if len(required) == 1 else None
+        if node.text.lower() in TRUE and not required:
+            return "write `{}`: all of its fields have defaults"
         name, _, rest = node.text.partition(" ")
         if name in map(kinds.written_name, cls.model_fields):
             rest = rest.strip().removeprefix("=").strip()
-            return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {{...}}}}`"
+            return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {self._example(cls, name)}}}`"
         if list(cls.model_fields) == [only := next(iter(cls.model_fields), "")]:
             return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
         found = list(self._fitting(node, cls.model_fields)) or list(self._formulas(node, cls))
         alone = required if len(required) == 1 else []
         likely = alone or [kinds.written_name(name) for name in found] or self._paints(node, cls)
         return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
+
+    def _example(self, cls: type[BaseModel], name: str) -> str:
+        """What may stand behind a field: a quantity in its unit, or fields."""
+        (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
+        dimension = next((mark.dimension for mark in quantities(info) if not mark.shape), None)
+        return "{...}" if dimension is None else format_quantity(1.0, dimension)
 
     def _paints(self, node: Node, cls: type[BaseModel]) -> list[str]:
         """The color, where a value can be one."""

@@ -2,43 +2,53 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from collections.abc import Mapping as Naming
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.kinds import written_name
 from sceneql.language.scope import Entry
-from sceneql.language.tree import Mapping
-from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
+from sceneql.language.tree import Mapping, Scalar
+from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
 from sceneql.quantities.other_words import OURS, instead
 
 MANY = 6
 """Words up to which all that have a field are told."""
 
+_UNPARTED = re.compile(r"(\w+)(?:(:)| )(.*)")
+
 
 def report_unknown(
-    node: Mapping, known: Collection[str], title: str, found: Diagnostics, said_by: Naming[str, str] | None = None
+    node: Mapping,
+    known: Collection[str],
+    title: str,
+    found: Diagnostics,
+    said_by: Naming[str, str] | None = None,
+    family: str = "",
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; True if there are none.
 
-    ``said_by``: what says it instead, for names that are likely to be tried.
+    ``said_by``: what says it instead, for names that are likely to be tried; ``family``: that of the word, if any.
     """
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        help = (said_by or {}).get(name) or suggestion(name, known)
-        help = help or instead("field", name) or "it has " + ", ".join(known)
-        if len(known) == 1 and nearest(name, known) is None and not (said_by or {}).get(name):
+        help = (said_by or {}).get(name) or (suggestion(name, known) if same_as(name, known) else None)
+        help = help or instead(f"field.{family}", name) or instead("field", name) or suggestion(name, known)
+        if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
+            space = ", with a space behind the colon" if written[2] else ""
+            help = f"write `{written[1]}: {written[3].strip()}`{space}"
+        if help is None and len(known) == 1:
             help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
-        if (meant := meant_field(name, known)) is not None and name.startswith(f"{meant} "):
-            help = f"write `{meant}: {name.removeprefix(meant).strip()}`"
+        help = help or "it has " + ", ".join(known)
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
     return not unknown
 
 
 def meant_field(name: str, known: Collection[str]) -> str | None:
-    """The field meant by an unknown name: its first word, if a colon is missing behind that, or the nearest field."""
-    first = name.partition(" ")[0]
-    return first if first in known else nearest(name, known)
+    """The field meant by an unknown name: its first word, if colon or space is missing there, or the nearest one."""
+    written = _UNPARTED.fullmatch(name)
+    return written[1] if written is not None and written[1] in known else nearest(name, known)
 
 
 def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
@@ -47,6 +57,8 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
     inner = next(iter(fields.entries)) if isinstance(fields, Mapping) and len(fields.entries) == 1 else ""
     if fields is not None and entry.name == entry.word and catalogue.load(family, inner) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.span.text}}}`"
+    if (same := same_as(entry.word, words)) is not None:
+        return f"did you mean '{same}'?"
     if others := catalogue.families_of(entry.word):
         return f"it belongs under '{others[0]}:'"
     if catalogue.load(family, entry.name) is not None:
@@ -59,12 +71,32 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
     return instead(family, entry.word) or suggestion(entry.word, words)
 
 
+def mover_of(name: str, entries: Naming[str, Entry], family_of: Naming[str, str]) -> str:
+    """The model that moves an object, or the body of it that does, ``stones.first``; empty where none does."""
+    for part, entry in entries.items():
+        if family_of[part] != "models" or not isinstance(entry.fields, Mapping):
+            continue
+        for key, node in entry.fields.entries.items():
+            if key == "of" and isinstance(node, Scalar) and node.text == name:
+                return part
+            for body, inner in node.entries.items() if isinstance(node, Mapping) else ():
+                of = inner.entries.get("of") if isinstance(inner, Mapping) else None
+                if isinstance(of, Scalar) and of.text == name:
+                    return f"{part}.{body}"
+    return ""
+
+
 def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
     """The help for fields without the word around them."""
-    having = _having(list(node.entries), family, catalogue)
-    if not having:
-        return None
-    return f"the word stands around its fields, {', '.join(having)}: write `{{{having[0]}: {node.span.text}}}`"
+    having, text = _having(list(node.entries), family, catalogue), node.span.text
+    for name, value in () if having else node.entries.items():
+        having = _having([name], family, catalogue)
+        text = f"{{{name}: {value.span.text}}}"
+        if having:
+            break
+    return (
+        f"the word stands around its fields, {', '.join(having)}: write `{{{having[0]}: {text}}}`" if having else None
+    )
 
 
 def _having(fields: Collection[str], family: str, catalogue: Catalogue) -> list[str]:

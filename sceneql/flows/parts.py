@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
+from math import prod
 from typing import Annotated, Literal
 
 from sceneql import kinds
@@ -26,6 +27,8 @@ VISCOSITY = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"), dim.PRESSURE *
 FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME)]
 
 
+ROUNDED = 1e-9
+"""Part of what comes in and goes out below which the difference is rounding."""
 MOST_FACTORED = {2: 40_000, 3: 4_000}
 """Cells of a flat or deep flow whose equation of the pressure is factored: the numbers stand in each of its terms."""
 
@@ -95,6 +98,26 @@ class Side(Record):
     def span(self) -> Span | None:
         """Its line in the script, where a formula tells it."""
         return next((one.span for one in (self.velocity, self.where) if one is not None), None)
+
+
+def comes_in(boundary: Mapping[str, Side], size: Sequence[float]) -> float:
+    """What comes into a box of so many sides [m] more than goes out of it [m^3/s], where constants tell it.
+
+    0 where the boundary has a way out, or a formula or a part of a side tells what comes in.
+    """
+    through = [0.0]
+    for name, side in boundary.items():
+        given = None if side.inflow is None else side.inflow.velocity.expr
+        if side.outflow is not None:
+            return 0.0
+        if given is None:
+            continue
+        if name not in SIDES or side.chosen or any(isinstance(node, Symbol | Link) for node in walk(given)):
+            return 0.0
+        axis, high = divmod(SIDES.index(name), 2)
+        area = prod(length for k, length in enumerate(size) if k != axis)
+        through.append((-1.0 if high else 1.0) * area * float(evaluate(components(given)[axis], {})))
+    return sum(through) if abs(sum(through)) > ROUNDED * sum(map(abs, through)) else 0.0
 
 
 class Start(Record):

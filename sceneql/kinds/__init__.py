@@ -13,7 +13,17 @@ from sceneql.kinds.objects import Collider, Object
 from sceneql.kinds.outputs import EachVariant, Output, Picture, Sink, Tools
 from sceneql.kinds.physics import Contact, Doubt, Force, Interaction, Model, Tie
 from sceneql.kinds.pictures import Camera, Light, Material, Overlay, Renderer
-from sceneql.kinds.settings import MOST_MOMENTS, Clock, Exceeds, Expect, Gallery, Settings, Study, bounded_moments
+from sceneql.kinds.settings import (
+    MOST_MOMENTS,
+    Clock,
+    Exceeds,
+    Expect,
+    Gallery,
+    Settings,
+    Study,
+    TooCoarse,
+    bounded_moments,
+)
 from sceneql.kinds.solving import Methods, Solver
 from sceneql.kinds.texts import Text, TextValue
 from sceneql.kinds.types import (

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from sceneql.kinds.probed import Probed
+from sceneql.kinds.probed import HeldPart, Probed
 from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.kinds.types import BodyRef, ModelRef
 from sceneql.kinds.values import Quantity, Ref, Value
@@ -130,6 +130,10 @@ class Model(Kind):
 
         The function raises Exceeds where that is sure to be too much.
         """
+        return ()
+
+    def held_parts(self) -> Iterable[HeldPart]:
+        """Parts of it that it holds by their places."""
         return ()
 
     def insides(self) -> Iterable[Ref]:

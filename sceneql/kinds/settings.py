@@ -19,6 +19,10 @@ class Exceeds(ValueError):
     """A size beyond what is allowed: refused with the code `limit-refused` where the script says it."""
 
 
+class TooCoarse(ValueError):
+    """A spacing at which an object cannot be filled: refused with the code `not-filled`."""
+
+
 def bounded_moments(count: float) -> float:
     """The number itself. Raises Exceeds where an output would take more instants than a run can have."""
     if not count <= MOST_MOMENTS:

@@ -94,6 +94,8 @@ class Problem:
     code: str = "invalid"
     part: tuple[str, int, int] | None = None
     """A text and the first and last (exclusive) of its characters that are wrong, where it is the value of the path."""
+    help: str | None = None
+    """What to write in its place."""
 
 
 def grammar_of(info: Any) -> tuple[Quantity | Paint | Turn | None, Any]:

@@ -10,6 +10,8 @@ from typing import Final
 
 from sceneql.language.tree import Scalar
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
+from sceneql.quantities.operations import FUNCTIONS
+from sceneql.quantities.other_words import instead
 from sceneql.quantities.span import Source, Span
 
 _MOST_SCANNED: Final = 20_000
@@ -22,6 +24,7 @@ _SWALLOWED = re.compile(rf"[ \t]+({_COLOR.pattern})")
 _SPACE = re.compile(r"(?:\s+#[^\n]*|\s)*")
 _PROPERTY = re.compile(r"[&!][^\s,\[\]{}]*\s*")
 _QUOTED = re.compile(r"\"(?:[^\"\\]|\\.)*\"|'(?:[^']|'')*'", re.DOTALL)
+_CALLED = re.compile(r"(\w+)\(")
 _UNIT = re.compile(r"[^\W\d_]|[%°]")
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _ITEM = r"(?:[^(),]|\([^(),]*\))+"
@@ -97,6 +100,9 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
                 found.add(fault.diagnostic)
                 continue
             written = source.text[fault.caret : fault.end]
+            called = _CALLED.match(written)
+            if called is not None and called[1] not in FUNCTIONS and instead("function", called[1]) is not None:
+                continue  # it is reported where the value is read
             line = _corrected(source, fault, together)
             match fault.code:
                 case "comment-color":

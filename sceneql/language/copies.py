@@ -60,7 +60,8 @@ class Copies:
 
     def _made(self, name: str, item: Node, scope: Scope | None) -> Iterator[tuple[str, Node]]:
         """An entry or item with its name, or its copies with theirs."""
-        if not (isinstance(item, Mapping) and KEY in item.entries and len(item.entries) > 1):
+        keyed = isinstance(item, Mapping) and "keys" in item.entries and isinstance(item.entries.get(KEY), Scalar)
+        if keyed or not (isinstance(item, Mapping) and KEY in item.entries and len(item.entries) > 1):
             yield name, self._walked(item, scope)
             return
         times = read_repeat(item.entries[KEY], scope, self.define, self.lost, self.found, names=True)

@@ -56,7 +56,8 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
         help = (
             f"fields stand below the word: {{word: {{{words[0]}: ..., {words[1]}: ...}}}}: `sceneql words` lists them"
         )
-        if (other := instead("entry", words[0])) is not None:
+        beside = (instead("beside", word) for word in words)
+        if (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:
             help = other
         elif empty(node.entries[words[0]]):
             help = f"the fields of a word are indented below it: {{{words[0]}: {{{words[1]}: ..., ...}}}}"

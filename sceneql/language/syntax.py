@@ -103,6 +103,8 @@ def _long_key(text: str, at: int, flow: int | None) -> int | None:
 
 def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
     if at < len(source.text) and source.position(at)[0] == source.position(opening)[0]:
+        if (braces := _for_braces(source.text[opening:at])) is not None:
+            return _syntax("fields stand in braces, not in parentheses", source, at, braces)
         if source.text[at : at + 1] == ":":
             help = "a text that holds a colon goes in quotes; items are separated by commas"
             return _syntax("a second colon in this value, where no key can stand", source, at, help)
@@ -114,9 +116,17 @@ def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
     return _syntax(f"this `{bracket}` is never closed", source, opening, f"close it with `{closing}`", note)
 
 
+def _for_braces(before: str) -> str | None:
+    """The help for a colon behind the first of some fields that stand in parentheses."""
+    found = re.search(r"\(\s*(\w+)\s*$", before)
+    return None if found is None else f"write `{{{found[1]}: ...}}`"
+
+
 def _misplaced_colon(source: Source, at: int) -> Diagnostic:
     number, column = source.position(at)
     before = source.line(number)[: column - 1]
+    if (braces := _for_braces(before)) is not None:
+        return _syntax("fields stand in braces, not in parentheses", source, at, braces)
     if ": " in before:
         help = "put a text that holds a colon in quotes, or begin a new line after the first colon"
         return _syntax("a second colon on this line, where no key can stand", source, at, help)

@@ -27,6 +27,8 @@ bar behind a number (``1500 /s``). None: the name is one of these constants, or 
 
 SECONDS = "the time is `t` here, a plain number of seconds, as all numbers here: write `sin(3*t)`, not `sin(3 /s*time)`"
 """The help for a time in a formula over plain numbers."""
+TURNS, FEWEST_DEGREES = ("sin", "cos", "tan"), 15.0
+"""Operations on an angle, and what numbers alone are whole multiples of that most likely mean degrees."""
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
 """Names of a vector's components by their number."""
 
@@ -57,6 +59,8 @@ def _bound(node: Expr, bound: dict[int, Expr | None], lookup: Lookup, found: Dia
             try:
                 if isinstance(node, Vector):
                     return Vector(args, listed(args), node.span)
+                if node.op in TURNS:
+                    _doubt_degrees(node, found)
                 return fold(Call(node.op, args, OPERATIONS[node.op].rule(args), node.span))
             except MismatchError as error:
                 _report(node, parts, error, lookup, found)
@@ -93,6 +97,17 @@ def fold(expr: Call) -> Expr:
     value = evaluate(expr, {})
     bare = not operation.angle and all(n.bare for n in each_once(expr) if isinstance(n, Number))
     return _literal(value, expr, bare) if _finite(value) else expr
+
+
+def _doubt_degrees(call: Call, found: Diagnostics) -> None:
+    """Warn of a sine of a number alone that is most likely one of degrees."""
+    (angle,) = call.args
+    if isinstance(angle, Number) and angle.bare and angle.span is not None:
+        size = abs(angle.value)
+        if size >= FEWEST_DEGREES and size % FEWEST_DEGREES == 0:
+            text = f"{call.op}({angle.span.text}) is of {angle.value:g} radians"
+            help = f"write `{call.op}({angle.span.text} deg)` for degrees"
+            found.warning("radians", text, call.span, help=help)
 
 
 def _constant(expr: Expr) -> bool:

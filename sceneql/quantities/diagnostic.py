@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -175,6 +175,19 @@ def _place(diagnostic: Diagnostic) -> tuple[str, int]:
     return ("", -1) if span is None else (span.source.name, span.start)
 
 
+def same_as(name: str, choices: Collection[str]) -> str | None:
+    """The choice that a name is, but for capitals, or that another program calls so (``pos``), if any."""
+    name = _of_library(name)
+    close = [choice for choice in choices if choice.lower() == name.lower()]
+    close = close or [ours for ours in OURS.get(name.lower(), ()) if ours in choices]
+    return close[0] if close else None
+
+
+def _of_library(name: str) -> str:
+    library, _, inside = name.partition(".")
+    return inside if inside and library in LIBRARIES else name
+
+
 def nearest(name: str, choices: Iterable[str]) -> str | None:
     """The choice that is most like the name, means the same (``pos``) or is abbreviated by it (``fov``), if any."""
     from difflib import get_close_matches
@@ -182,11 +195,10 @@ def nearest(name: str, choices: Iterable[str]) -> str | None:
     if len(name) > LONGEST_WORD:
         return None
     choices = list(choices)
-    library, _, inside = name.partition(".")
-    name = inside if inside and library in LIBRARIES else name
-    close = [choice for choice in choices if choice.lower() == name.lower()]
-    close = close or [ours for ours in OURS.get(name.lower(), ()) if ours in choices]
-    close = close or get_close_matches(name, choices, n=1, cutoff=0.8)
+    if (same := same_as(name, choices)) is not None:
+        return same
+    name = _of_library(name)
+    close = get_close_matches(name, choices, n=1, cutoff=0.8)
     close = close or get_close_matches(name, choices, n=1, cutoff=0.6)
     if not close and len(name) > 1:
         close = [choice for choice in choices if name == "".join(part[:1] for part in choice.split("_"))]

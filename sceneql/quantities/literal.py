@@ -22,6 +22,7 @@ _WORD = re.compile(WORD)
 _GAP = re.compile(r"\s*")
 _ITEM = re.compile(rf"\s*([+-]?{NUMBER})\s*([^\W\d][\w^*/·-]*|%)?\s*,?\s*")
 _ITEMS = re.compile(rf"(?:{_ITEM.pattern})+")
+_THOUSANDS = re.compile(r"(?<![\d,.])([1-9]\d{0,2}(?:,\d{3})+)(?![\d,])")
 _DECIMAL = re.compile(r"(?<![\d,])(\d+),(?=\d+(?![\d,]))")
 EXACT = 40
 """Digits up to which a literal is converted exactly and rounded once: 1.7 mm is the double nearest to 0.0017."""
@@ -48,6 +49,8 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
             raise
         if sign_of(word.group()) is not None:
             raise
+        if (other := instead("behind", word.group())) is not None:
+            raise ScriptError([replace(found, help=other)]) from None
         if instead("unit", word.group()) is not None:
             raise
         hint = f"for a product write `*{word.group()[:40]}`"
@@ -131,6 +134,9 @@ def comma_meant(text: str, at: int = 0) -> str:
     point = "a decimal number has a point"
     if (numbers := _ITEMS.match(text, at, at + 3 * EXACT)) is not None:
         text = numbers.group().strip(", \t\r\n")
+    whole = _THOUSANDS.sub(lambda one: one[1].replace(",", ""), text.strip())
+    if ", " not in text and whole != text.strip():
+        return f"digits stand together: write `{whole}`; {point}"
     decimal = _DECIMAL.sub(r"\1.", text.strip())
     if ", " not in text and decimal != text.strip():
         return f"{point}: write `{decimal}`"

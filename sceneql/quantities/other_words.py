@@ -151,7 +151,7 @@ _LISTS = (
     ("dopri5", "rk45 ode45"),
     ("rk4", "runge_kutta4 rungekutta"),
     ("semi_implicit_euler", "symplectic_euler leapfrog"),
-    ("implicit_euler", "backward_euler"),
+    ("implicit_euler", "backward_euler implicit"),
     ("matte", "diffuse plain lambert lambertian"),
     ("glossy", "plastic phong pbr principled standard shiny"),
     ("metal", "metallic chrome steel iron gold silver"),
@@ -220,8 +220,8 @@ _SENTENCES = (
         "random",
         "write `random(1)`, `random(2)`, ...: each is a number from 0 to 1, the same in every run",
     ),
-    ("function name", "and", _AND),
-    ("function name", "or", _OR),
+    ("function name behind", "and", _AND),
+    ("function name behind", "or", _OR),
     ("function name", "not", "write `1 - (a > b)`"),
     ("sign", "&", _AND),
     ("sign", "|", _OR),
@@ -245,13 +245,13 @@ _SENTENCES = (
     ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
     ("unit", "fps frames frame", "a number of frames has no unit: `clock: {fps: 30}`"),
     ("name", "t", "the time is written 'time'"),
-    ("name", "if then else elif when", f"{_IF}: `sceneql words functions`"),
+    ("name behind", "if then else elif when", f"{_IF}: `sceneql words functions`"),
     (
         "name",
         "x y z",
         "an axis is `1 0 0`, `0 1 0` or `0 0 1`; the coordinates of a place stand in formulas of fields alone",
     ),
-    ("name", "to until", "from when to when is two conditions: `(time > 1 s)*(time < 2 s)`"),
+    ("name behind", "to until", "from when to when is two conditions: `(time > 1 s)*(time < 2 s)`"),
     ("name", "true yes", "in a formula write `1`"),
     ("name", "false no", "in a formula write `0`"),
     (
@@ -259,21 +259,59 @@ _SENTENCES = (
         "i index id",
         "copies have numbers, where `repeat: {count: 5, as: i}` makes them: `sceneql words repeat`",
     ),
-    ("field entry", "repeat", _REPEAT),
+    ("field entry", "repeat for foreach loop array times", _REPEAT),
+    (
+        "keys",
+        "repeat loop looping period periodic infinite",
+        "write `cycle: 2 s`, the time after which they begin anew",
+    ),
+    ("keys", "interpolation ease easing type mode", "write `curve: linear`, `smooth`, `step` or `cubic`"),
+    (
+        "beside",
+        "matte glossy metal glass mirror glow checker",
+        "a material is a field of the object: `{sphere: {radius: 1 m, material: {matte: {color: red}}}}`",
+    ),
+    ("beside", "name id", "the name stands before the word, in a section of names: `objects: {ball: {sphere: {...}}}`"),
+    (
+        "beside",
+        "particles rigid elastic cloth collision",
+        "a model is a part of its own, that names the object: `models: {fall: {particles: {of: ball, mass: 1 kg}}}`",
+    ),
     ("field entry", "type kind shape", _WORD),
-    ("field", "scale", "no part is scaled: write its sizes as they shall be"),
+    (
+        "field",
+        "scale",
+        "write its sizes as they shall be, or let a group scale it: `{group: {children: [ball], scale: 1 1.4 1}}`",
+    ),
     (
         "field",
         "roughness metallic metalness shininess specular reflectivity",
         "a material says it, `material: {metal: {roughness: 0.2}}`: `sceneql words glossy`",
     ),
-    ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
-    ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
+    (
+        "field.materials",
+        "shininess gloss smoothness glossiness",
+        "write `roughness: 0.1`: 0 is a mirror, 1 is dull",
+    ),
+    ("field.materials", "emission emissive emit", "what shines is `{glow: {color: orange}}`"),
+    ("field.materials", "opacity alpha transparency", "what one sees through is `{glass: {color: white}}`"),
+    (
+        "field.materials",
+        "texture map image normal_map bump",
+        "there is `checker`, and a color may be a formula of x, y, z",
+    ),
+    (
+        "field.cameras",
+        "rotation orientation euler angles quaternion",
+        "a camera looks at a place: `look_at: 0 1 0 m`",
+    ),
     (
         "field",
-        "friction restitution bounce bounciness elasticity",
-        "a contact says it, `contacts: {c: {collision: {restitution: 0.8, friction: 0.3}}}`: `sceneql words collision`",
+        "restitution bounce bounciness bouncy elasticity friction",
+        "a contact has it, `contacts: {touch: {collision: {restitution: 0.8, friction: 0.3}}}`",
     ),
+    ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
+    ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
     ("field", "distance", "write where it stands, `position: 0 1 5 m`; without that it finds its place"),
     ("field", "min max low high corner corners", "write its `size`, and of its middle the `position`"),
     (
@@ -284,8 +322,8 @@ _SENTENCES = (
     ("field", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
     ("field", "diameter", "write half of it as `radius`"),
     (
-        "field",
-        "velocity speed mass acceleration weight",
+        "field.objects",
+        "velocity speed mass acceleration weight density",
         "an object moves by a model, `models: {fall: {particles: {of: NAME, mass: 1 kg, velocity: 1 0 0 m/s}}}`:"
         " `sceneql words particles`",
     ),
@@ -320,6 +358,14 @@ _SENTENCES = (
     ("section", "scene world root project", "the sections stand by themselves, with no key around them"),
     ("section", "floor", "write `objects: {floor: plane}`"),
     ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
+    ("zero", "mass", "what never moves is an object without a model, or a body with `fixed: yes`"),
+    ("body", "wall ground static base ceiling earth fixed none null", "what stands still is `world`"),
+    ("body", "floor", "a body is of a model; what stands still is `world`"),
+    (
+        "forces contacts",
+        "floor ground wall terrain",
+        "masses hit the floor, and all objects, by `collision`: `forces: [gravity, collision]`",
+    ),
     (
         "objects",
         "ellipsoid egg spheroid",
@@ -336,8 +382,9 @@ _SENTENCES = (
 """What a word is taken for, the words, and the sentence."""
 
 INSTEAD = {(what, word): text for kinds, words, text in _SENTENCES for what in kinds.split() for word in words.split()}
-"""The sentence of what to write in place of a called `function`, a `sign` or `name` of a formula, the `field` of a
-part, a `section` of the script, the key of an `entry`, a `unit`, or a word of a family, by the family's name."""
+"""The sentence of what to write in place of a called `function`, a `sign` or `name` of a formula or `behind` a number
+of it, the `field` of a part, or `field.FAMILY`, a `section` of the script, the key of an `entry` or one `beside` its
+word, a field of `keys`, a `unit`, a `body` of a tie, a `zero`, or a word of a family, by the family's name."""
 
 _TON = re.compile(r"\d\s*[^\s()\[\],]*[*/]t(?!\w)")
 

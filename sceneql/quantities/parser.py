@@ -227,6 +227,11 @@ class _Parser:
         if self.kind == "sign" and self.token not in "([":
             help = comma_meant(self.text) if self.token == "," else instead("sign", self.token)
             return self._fail("syntax", f"'{self.token}' cannot stand here", help=help)
+        odd = next((c for c in self.text if not c.isascii() and instead("sign", c)), None)
+        if odd is not None:
+            at = self.text.index(odd)
+            help = instead("sign", odd)
+            return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
         if isinstance(expr, Number) and self.kind == "number":
             help = "a vector is numbers alone and one unit, `0 1.2 0 m`, or expressions in brackets, `[a, b, c]`"
             if (vector := vector_meant(self.text)) is not None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import hypot
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from sceneql import kinds
@@ -12,6 +13,7 @@ from sceneql.kinds import Formula, Position, Problem, Record, Symbols, Value, fi
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol
+from sceneql.quantities.ranges import range_of
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -45,6 +47,16 @@ class Part(Record):
         """Where it stands in the script."""
         told = self.where or self.object
         return None if told is None else told.span
+
+    def misses(self, low: Sequence[float], high: Sequence[float]) -> bool:
+        """Whether no place of a box can lie in it, as far as its own fields tell."""
+        if self.where is not None:
+            known = dict(zip(AXES, zip(low, high, strict=True), strict=True))
+            return range_of(self.where.expr, known) == (0.0, 0.0)
+        if self.near is None or self.within is None:
+            return False
+        away = [max(a - x, x - b, 0.0) for x, a, b in zip(self.near, low, high, strict=True)]
+        return hypot(*away) > self.within
 
     def holds(self, places: Floats, assembly: Assembly) -> Any:
         """(n,) bool: which of places (n, 3) lie in it; by `near` alone the nearest."""

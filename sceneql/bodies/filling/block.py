@@ -52,15 +52,19 @@ class Block(Record):
         except Exceeds as error:
             yield Problem(str(error), ("cells",), code="limit-refused")
 
+    def box(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Low and high corner (3,) [m] of the box around it."""
+        if self.corners is not None:
+            rows = [*zip(*self.corners, strict=True)]
+            return tuple(map(min, rows)), tuple(map(max, rows))
+        sides = [*zip(self.center, self.size or (0.0, 0.0, 0.0), strict=True)]
+        return tuple(x - 0.5 * side for x, side in sides), tuple(x + 0.5 * side for x, side in sides)
+
     def may_hold(self, place: tuple[float, float, float]) -> bool:
         """Whether a place [m] lies inside; of corners, in the box around them."""
-        if self.corners is not None:
-            sides = [(min(row), max(row)) for row in zip(*self.corners, strict=True)]
-        else:
-            assert self.size is not None
-            sides = [(c - 0.5 * s, c + 0.5 * s) for c, s in zip(self.center, self.size, strict=True)]
-        room = ROUNDING * max(abs(x) for side in sides for x in side)
-        return all(low - room <= x <= high + room for x, (low, high) in zip(place, sides, strict=True))
+        low, high = self.box()
+        room = ROUNDING * max(map(abs, (*low, *high)))
+        return all(a - room <= x <= b + room for x, a, b in zip(place, low, high, strict=True))
 
     @property
     def finest(self) -> float:

@@ -11,8 +11,10 @@ from sceneql.graph import Task
 from sceneql.kinds import Model, Ref, Tie
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 
-FAR = 1.0
-"""Distance from the body's box, in diagonals of that, from which on a place is far."""
+FAR, FAR_OF_BOB = 1.0, 20.0
+"""Distance from the body's box, in diagonals of it, from which on a place is far: a bob may hang on an arm."""
+BOB = 2.0
+"""Longest by shortest side of the box around a bob, at most."""
 
 
 def warn_of_far_joints(tasks: Mapping[str, Task], found: Diagnostics) -> None:
@@ -47,5 +49,6 @@ def _outside(place: Any, ref: Ref, tasks: Mapping[str, Task], start: Any) -> Ite
         kind: Any = tasks[name].original or tasks[name].kind
         low, high = kind.extent(np.eye(3, 4), start)
         distance = float(np.linalg.norm(np.maximum(np.maximum(low - place, place - high), 0.0)))
-        if distance > FAR * float(np.linalg.norm(high - low)):
+        far = FAR_OF_BOB if (high - low).max() <= BOB * (high - low).min() else FAR
+        if distance > far * float(np.linalg.norm(high - low)):
             yield distance, " to ".join(", ".join(f"{x:.4g}" for x in corner) for corner in (low, high))

@@ -1,4 +1,4 @@
-"""Models that fill an object with more than memory allows, found by the object's box at the start."""
+"""Models that fill an object with more than memory allows, or too coarsely, found by the object's box at the start."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from sceneql.failure import RunFailure
 from sceneql.graph import Task
-from sceneql.kinds import Exceeds, Model, Object, Ref, Value
+from sceneql.kinds import Exceeds, Model, Object, Ref, TooCoarse, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol
@@ -48,7 +48,7 @@ class Beginning:
 
 
 def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report models that fill more than memory allows; boxes that only a run knows are refused by the run."""
+    """Report models that fill more than memory allows, or nothing; the run refuses boxes that only it knows."""
     start: Any = Beginning(tasks)
     for task in tasks.values():
         for ref, bounds in task.kind.fillings() if isinstance(task.kind, Model) else ():
@@ -58,6 +58,8 @@ def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
                     bounds(low, high)
             except Exceeds as error:
                 found.error("limit-refused", f"{task.name}: at least {error}", ref.span, help="use a larger spacing")
+            except TooCoarse as error:
+                found.error("not-filled", f"'{ref.name}' cannot be filled: {error}", ref.span)
             except (TypeError, ValueError, RunFailure, ScriptError):
                 continue  # the run reports it
 

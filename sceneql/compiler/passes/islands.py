@@ -41,7 +41,9 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             text = f"{tasks[force].word} acts on masses, and there are none in {' and '.join(targets)}"
             found.error("no-mass", text, tasks[force].span)
     report_carried(models, forces, tasks, found)
-    driver = {name: t.name for t in models if isinstance(t.kind, Model) for name in t.kind.drives()}
+    driver = {
+        name: _body(t.name, led) for t in models if isinstance(t.kind, Model) for name, led in t.kind.drives().items()
+    }
     inside = {ref.name: t.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
     for task in models:
         for name in task.kind.drives() if isinstance(task.kind, Model) and task.kind.turns else ():
@@ -54,7 +56,7 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
                 text = f"'{ref.name}' is part of '{inside[ref.name]}', in whose coordinates it stands"
                 found.error("no-body", text, ref.span, help=f"name that: `{inside[ref.name]}`")
             elif ref.name in driver:
-                text = f"'{ref.name}' is moved by '{driver[ref.name]}'"
+                text = f"'{ref.name}' is moved by '{driver[ref.name].partition('.')[0]}'"
                 found.error("no-body", text, ref.span, help=f"name that: `{driver[ref.name]}`")
         if isinstance(task.kind, Tie) and task.kind.targets() and not set(forces[task.name]) & set(names):
             text = "a tie needs a body that it can hold: neither of these is moved by forces"
@@ -109,6 +111,12 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             )
         )
     return tuple(result)
+
+
+def _body(model: str, led: Mapping[str, str]) -> str:
+    """The body of a model that leads an object by these of its outputs: ``stones.first``, or the model that is one."""
+    body = led.get("position", "").rpartition(".")[0]
+    return f"{model}.{body}" if body else model
 
 
 def pivots(ties: Sequence[str], tasks: Mapping[str, Task]) -> bool:

@@ -136,7 +136,8 @@ def shares(
         if name not in (*cells.names, "rest") and not part.chosen:
             known = ", ".join((*cells.names, "rest"))
             text = f"the boundary has no part '{name}'"
-            raise ScriptError([Diagnostic("unknown-boundary", text, part.span or line, f"it has {known}")])
+            help = f"it has {known}; a part of it says `where`, or `near` and `within`"
+            raise ScriptError([Diagnostic("unknown-boundary", text, part.span or line, help)])
         if part.periodic and name in SIDES and periodic[cells.names.index(name) // 2]:
             continue  # the side across from it has said so of both
         mine = _faces_of(name, part, cells, taken)

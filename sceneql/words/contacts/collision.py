@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 MOST_EXACT = 8
 EXACT = "sceneql.contacts.collision_kernels"
 NO_RESTITUTION = "elastic solids have no restitution: they bounce by their own elasticity"
+NODES = "leave it out; mode `local` has one, of the nodes as masses"
 LOCAL = "sceneql.contacts.back_off_kernels"
 SHAPES = "sceneql.contacts.shapes"
 MOST_CUT = 4096
@@ -245,6 +246,8 @@ class Collision(Contact):
             message = f"'{hard}' does not collide together with elastic solids yet"
             written = next((ref.span for ref in self.between or () if ref.name == hard), None)
             yield Diagnostic("no-collider", message, written, "name under `between` what may touch, without it")
+        if soft and self.restitution.span is not None:
+            yield Diagnostic("no-restitution", NO_RESTITUTION, self.restitution.span, NODES)
         if self.rolling.span is None or not models:
             return
         turning = any(model.turns for model in models.values())
@@ -278,11 +281,6 @@ class Collision(Contact):
             return False
         from sceneql.contacts.barrier.barrier_contact import assemble
 
-        if self.restitution.span is not None:
-            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-
-            help = "leave it out; mode `local` has one, of the nodes as masses"
-            raise ScriptError([Diagnostic("no-restitution", NO_RESTITUTION, self.restitution.span, help)])
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
         assembly.remember(*assemble(assembly, everyone, touched, self.friction, self.gap))

@@ -21,8 +21,8 @@ from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.filling.block import Block
 from sceneql.bodies.filling.finer import Finer
 from sceneql.bodies.solid_modes import Bent
-from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, field
-from sceneql.kinds.probed import Probed
+from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, TooCoarse, field
+from sceneql.kinds.probed import HeldPart, Probed
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import suggestion
 
@@ -42,6 +42,8 @@ LOCKS = 0.4
 """Poisson's ratio above which elements have one mean dilatation, where the script does not say."""
 STIFF = 0.45
 """Poisson's ratio above which others lock so much that `check` warns."""
+COARSEST = 2.0
+"""Spacing, in sizes of what is filled, above which no element lies in it."""
 WATER = 1000.0
 """Density where the script tells none [kg/m^3]."""
 
@@ -72,10 +74,13 @@ class Elastic(Model):
     """
 
     gives: ClassVar[Mapping[str, Gives]] = {**masses.BODY_OUTPUTS, **OUTPUTS, **solid_modes.OUTPUTS}
-    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("modulus", "young", "youngs_modulus", "stiffness", "poisson", "poisson_ratio"),
-        "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
-    )
+    said_by: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("modulus", "young", "youngs_modulus", "stiffness", "poisson", "poisson_ratio"),
+            "a law has it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`",
+        ),
+        **dict.fromkeys(("mass", "weight"), "write its density, `density: 1000 kg/m^3`"),
+    }
     has_skin: ClassVar[bool] = True
 
     of: kinds.ObjectRef | None = field(
@@ -184,13 +189,29 @@ class Elastic(Model):
         """The object."""
         from sceneql.bodies.elements.filled import bounded_by
 
-        return () if self.of is None or self.spacing is None else ((self.of, bounded_by(self.spacing)),)
+        if self.of is None or self.spacing is None:
+            return
+        spacing, bounds = self.spacing, bounded_by(self.spacing)
+
+        def fits(low: Floats, high: Floats) -> None:
+            bounds(low, high)
+            if spacing > COARSEST * (size := float((high - low).max())):
+                raise TooCoarse(f"the spacing is {spacing:g} m, and it is {size:.3g} m large; make that smaller")
+
+        yield self.of, fits
 
     def probed(self) -> Iterable[Probed]:
         """Its probes, of an object."""
         if self.of is not None:
             for name, place in self.probes.items():
                 yield Probed(("probes", name), place, self.of, self.spacing)
+
+    def held_parts(self) -> Iterable[HeldPart]:
+        """Its holds, of an object or a block."""
+        place = self.block.box() if self.block is not None else self.of
+        return (
+            () if place is None else [HeldPart(name, one.place(), place, one.misses) for name, one in self.hold.items()]
+        )
 
     def insides(self) -> Iterable[Ref]:
         """The object, and those that tell parts."""

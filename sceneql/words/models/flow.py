@@ -15,6 +15,7 @@ from sceneql.flows.parts import (
     Buoyancy,
     Side,
     Start,
+    comes_in,
     fastest_solid,
     fastest_turn,
     of_field,
@@ -23,7 +24,7 @@ from sceneql.flows.parts import (
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts, too_far
 from sceneql.grids.medium import SHORTEST, SIZES, FieldLayout, layout_of, number_in, spacing_of
 from sceneql.grids.multigrid.linear_solvers import Linear
-from sceneql.kinds import Gives, Model, Problem, Quantity, Value, field, quantity_type
+from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Link, Type
@@ -206,6 +207,8 @@ class Flow(Model):
             text = f"factors of {cells:,} cells would not fit: at most {most:,} in {len(self.size)} dimensions"
             yield Problem(f"{text}; take `multigrid`", ("pressure",), code="limit-refused")
 
+        yield from self._balanced(len(self.size))
+
     def _thickened(self) -> Iterable[Problem]:
         """A field that viscosity does not read, or one that it reads and is not said."""
         by = self.viscosity_by
@@ -218,6 +221,21 @@ class Flow(Model):
         elif by is not None and not of_field(self.viscosity):
             text = "`viscosity` does not read this field: it is `c` there, as in `0.1*exp(-0.05*(c - 20))`"
             yield Problem(text, ("viscosity_by",), at_key=True)
+
+    def _balanced(self, sides: int) -> Iterable[Problem]:
+        """Velocities with other components than the box has sides; fluid that comes in and cannot leave."""
+        given: dict[str, Formula | None] = {name: part.velocity for name, part in self.boundary.items()}
+        wrong = [name for name, one in given.items() if one is not None and one.expr.type.shape != (sides,)]
+        for name in wrong:
+            path = ("boundary", name, "wall" if self.boundary[name].inflow is None else "inflow", "velocity")
+            example = ", ".join(["1", *["0"] * (sides - 1)])
+            text = f"this velocity needs {sides} components, one for each side of the box"
+            yield Problem(text, path, code="wrong-shape", help=f"write `[{example}]`, or formulas in their places")
+        if not wrong and self.size is not None and (more := comes_in(self.boundary, self.size)):
+            text = f"{abs(more):.3g} m^3/s more come {'in' if more > 0 else 'out'} than "
+            text += f"{'out' if more > 0 else 'in'}, and the flow cannot be compressed"
+            help = "give a part of the boundary `outflow: {}`"
+            yield Problem(text, ("boundary",), code="no-way-out", help=help)
 
     def _named(self) -> Iterable[Problem]:
         """Parts of the boundary that do not fit, and a solver that bears no solids."""

@@ -92,7 +92,7 @@ class Membrane(Model):
     immersible = True
 
     of: kinds.ObjectRef = field("The object whose outline, or surface, it is.")
-    law: Law = field("How it pulls.")
+    law: Law = field("How it pulls: `{tension: 1 N/m}`, or `{springs: {stretch: 10 N/m}}`.")
     prestress: kinds.FixedStiffness = field("A tension that it has besides, always.", "0 N/m", at_least=0)
     bend: Annotated[float, Quantity(dim.ENERGY)] = field(
         "Its stiffness against bending: energy bend/2 (2 H)^2 a square meter, H its mean curvature.", "0 J", at_least=0
@@ -111,6 +111,12 @@ class Membrane(Model):
     material: kinds.MaterialRef | None = field("How it looks where no object draws it.", None)
     color: kinds.Color | None = field("Color in place of the material's.", None)
 
+    said_by: ClassVar = {
+        **dict.fromkeys(("stiffness", "modulus", "tension"), "a law has it, `law: {springs: {stretch: 10 N/m}}`"),
+        **dict.fromkeys(
+            ("pressure", "volume_constraint"), "what it holds keeps its volume: pressure is what comes of it"
+        ),
+    }
     gives: ClassVar = {
         "positions": Gives(quantity_type(dim.LENGTH, (None, 3)), "Where its vertices are."),
         "volume": Gives(quantity_type(dim.VOLUME), "What it holds; of a flat one area times depth.", computed=True),

@@ -34,7 +34,10 @@ class Motion(Model):
 
     said_by: ClassVar[Mapping[str, str]] = {
         "of": "the object says where it is, by the motion: `position: lift.position`",
-        "velocity": "write where it is, `position: [1 m/s*time, 0 m, 0 m]`",
+        **dict.fromkeys(
+            ("speed", "velocity"),
+            "write where it is by the time: `position: [1 m/s*time, 0 m, 0 m]`, or `progress: time/(4 s)`",
+        ),
     }
     kinematic: ClassVar[bool] = True
     has_bodies: ClassVar[bool] = False

@@ -1,0 +1,37 @@
+"""Parts of solids that hold nothing, as the box around the solid tells: refused before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from sceneql.compiler.passes.fillings import Beginning
+from sceneql.compiler.passes.overlaps import UNKNOWN
+from sceneql.graph import Task
+from sceneql.kinds import Model, Ref
+from sceneql.quantities.diagnostic import Diagnostics
+
+ROOM = 1e-3
+"""How far outside of the box a place still counts as in it, in parts of its size: it may be rounded."""
+
+
+def report_empty_holds(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Report each part that is sure to hold no place."""
+    start: Any = Beginning(tasks)
+    for task in tasks.values():
+        for part in task.kind.held_parts() if isinstance(task.kind, Model) else ():
+            try:
+                low, high = _box(part.inside, start) if isinstance(part.inside, Ref) else part.inside
+            except UNKNOWN:
+                continue  # the run reports it
+            room = ROOM * max(b - a for a, b in zip(low, high, strict=True))
+            if part.misses([a - room for a in low], [b + room for b in high]):
+                ends = ", ".join(f"{axis} from {a:.4g} to {b:.4g}" for axis, a, b in zip("xyz", low, high, strict=True))
+                help = f"its material goes in {ends} m"
+                found.error("no-mass", f"'{part.name}' holds no node", part.span or task.span, help=help)
+
+
+def _box(ref: Ref, start: Any) -> Any:
+    import numpy as np
+
+    return start.object(ref).extent(np.eye(3, 4), start)

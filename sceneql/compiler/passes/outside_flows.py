@@ -1,0 +1,42 @@
+"""Skins that stand wholly outside of the flow that carries them: refused before anything runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from sceneql.compiler.passes.fillings import Beginning
+from sceneql.compiler.passes.overlaps import UNKNOWN
+from sceneql.graph import Task
+from sceneql.kinds import Force, Model
+from sceneql.quantities.diagnostic import Diagnostics
+
+
+def report_outside_flows(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Report each skin whose object is sure to be nowhere in its flow's box; what is cut by it is left to the run."""
+    start: Any = Beginning(tasks)
+    for force in [task.kind for task in tasks.values() if isinstance(task.kind, Force)]:
+        carrier = force.carrier()
+        flow: Any = None if carrier is None else tasks[carrier.name].kind
+        size = getattr(flow, "size", None)
+        for name in force.targets() or () if size is not None else ():
+            kind = tasks[name].kind
+            for ref in kind.insides() if isinstance(kind, Model) else ():
+                try:
+                    side = _beyond(start.object(ref), size, flow.corner or (0.0,) * len(size), start)
+                except UNKNOWN:
+                    continue  # the run reports it
+                if side:
+                    text = f"'{ref.name}' stands outside its flow, which ends at {side}"
+                    found.error("invalid", text, ref.span, help="move it inside, or take a larger `size`")
+
+
+def _beyond(shape: Any, size: Any, corner: Any, start: Any) -> str:
+    """The side of a box that a shape is beyond; empty where it is beyond none."""
+    import numpy as np
+
+    low, high = shape.extent(np.eye(3, 4), start)
+    for axis, (first, length) in enumerate(zip(corner, size, strict=True)):
+        if high[axis] <= first or low[axis] >= first + length:
+            return f"{'xyz'[axis]} = {first if high[axis] <= first else first + length:g} m"
+    return ""
