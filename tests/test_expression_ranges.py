@@ -9,8 +9,8 @@ from sceneql.quantities.bind import bind
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Symbol
+from sceneql.quantities.intervals import range_of
 from sceneql.quantities.parser import parse_value
-from sceneql.quantities.ranges import range_of
 from sceneql.quantities.span import Source, Span
 
 BOX = {"x": (-0.5, 0.5), "y": (0.95, 1.05), "z": (-2.0, 0.0)}

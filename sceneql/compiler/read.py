@@ -359,8 +359,8 @@ class Reader:
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, help)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():
-            if (help := numbered(name)) is not None:
-                self.found.error("part-name", f"'{name}' cannot be a name", node.keys[name].span, help=help)
+            if (other := numbered(name)) is not None:
+                self.found.error("part-name", f"'{name}' cannot be a name", node.keys[name].span, help=other)
                 ok = False
                 continue
             try:

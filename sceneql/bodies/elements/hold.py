@@ -13,7 +13,7 @@ from sceneql.kinds import Formula, Position, Problem, Record, Symbols, Value, fi
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol
-from sceneql.quantities.ranges import range_of
+from sceneql.quantities.intervals import range_of
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats

@@ -18,7 +18,7 @@ def report_outside_flows(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     for force in [task.kind for task in tasks.values() if isinstance(task.kind, Force)]:
         carrier = force.carrier()
         flow: Any = None if carrier is None else tasks[carrier.name].kind
-        size = getattr(flow, "size", None)
+        size: Any = getattr(flow, "size", None)
         for name in force.targets() or () if size is not None else ():
             kind = tasks[name].kind
             for ref in kind.insides() if isinstance(kind, Model) else ():
