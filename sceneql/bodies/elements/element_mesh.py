@@ -183,7 +183,7 @@ def curved(straight: ElementMesh, onto: Onto) -> tuple[ElementMesh, int]:
     return straight, left
 
 
-def across_faces(points: Floats, faces: Ints) -> Floats:
+def across_faces(points: Floats, faces: Any) -> Floats:
     """(f, 3) normals of faces by their corners, twice as long as their areas."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     found: Floats = np.cross(b - a, c - a)
@@ -193,7 +193,8 @@ def across_faces(points: Floats, faces: Ints) -> Floats:
 def unit(vectors: Floats) -> Floats:
     """Vectors (..., 3) made of length 1, those of none left."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    found: Floats = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    return found
 
 
 @dataclass(frozen=True, slots=True, eq=False)
