@@ -72,21 +72,26 @@ def test_what_makes_nothing_finer_is_told(tmp_path):
         watch(tmp_path, f"{start}{{tip: {{near: 0 0 0 m, within: 1 m, spacing: 0.1 mm}}}}{end}", [0.0], "body.energy")
 
 
-def test_hollows_have_smaller_elements_than_bulges(tmp_path):
-    """Where a hole is narrower than the spacing follows, its edges turn by half a radian at most; `turn` tells more."""
-    objects = (
-        "objects: {shape: {difference: {hidden: yes, of: [{box: {size: 1 1 0.4 m}}, {sphere: {radius: 0.25 m}}]}}}\n"
-    )
-    turns, counts = [], []
+def test_hollows_have_smaller_elements(tmp_path):
+    """Beside a hole that is narrow for the spacing edges turn by half a radian at most; `turn` tells another angle."""
+    objects = "objects: {shape: {difference: {hidden: yes, of: "
+    objects += "[{box: {size: 0.8 0.2 0.8 m}}, {cylinder: {radius: 0.25 m, height: 1 m}}]}}}\n"
+    turns = []
     for turn in ("", "turn: 90 deg, "):
         mesh = Solid(tmp_path, f"{{of: shape, spacing: 0.2 m, {turn}element: p2, {LAW}}}", objects).mesh
-        faces = mesh.faces
-        hollow = np.abs(np.linalg.norm(mesh.points, axis=1) - 0.25) < 1e-6
-        ends = faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-        ends = ends[hollow[ends].all(axis=1)]
-        length = np.linalg.norm(mesh.points[ends[:, 0]] - mesh.points[ends[:, 1]], axis=1)
-        turns.append(2 * np.arcsin(length.max() / 0.5))
-        counts.append(len(mesh.cells))
-    assert turns[0] < 0.55
-    assert turns[1] > 0.7
-    assert counts[1] < 0.7 * counts[0]
+        away = np.hypot(mesh.points[:, 0], mesh.points[:, 2])
+        ends = mesh.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+        ends = ends[(np.abs(away - 0.25) < 1e-6)[ends].all(axis=1)]
+        along = np.arctan2(mesh.points[:, 2], mesh.points[:, 0])[ends]
+        apart = np.abs(np.diff(along, axis=1)) % (2 * np.pi)
+        turns.append(np.minimum(apart, 2 * np.pi - apart).max())
+    assert turns[0] < 0.52
+    assert turns[1] > 0.6
+
+
+def test_hollows_are_no_finer_where_their_elements_would_be_too_thin_to_bend(tmp_path):
+    """Halves of elements beside this hole could not follow it: a sixth of its nodes stood 26 mm off."""
+    objects = "objects: {shape: {difference: {hidden: yes, of: [{sphere: {radius: 2 m}}, {sphere: {radius: 1 m}}]}}}\n"
+    mesh = Solid(tmp_path, f"{{of: shape, spacing: 0.5 m, element: p2, {LAW}}}", objects).mesh
+    away = np.linalg.norm(mesh.points[np.unique(mesh.faces)], axis=1)
+    assert np.minimum(abs(away - 1), abs(away - 2)).max() < 1e-9

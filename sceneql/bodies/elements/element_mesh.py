@@ -135,7 +135,7 @@ def meshed(element: type[Element], points: Floats, tetrahedra: Ints, onto: Onto 
     middles = 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])
     cells = np.concatenate([tetrahedra, len(points) + which], axis=1).astype(np.int32)
     straight = ElementMesh(element, np.concatenate([points, middles]), cells, len(points))
-    return straight if onto is None else _curved(straight, onto)
+    return straight if onto is None else curved(straight, onto)[0]
 
 
 LEAST_BENT = 0.2
@@ -160,12 +160,12 @@ def onto_object(straight: ElementMesh, onto: Onto) -> tuple[Floats, Creases]:
     return moved, creases
 
 
-def _curved(straight: ElementMesh, onto: Onto) -> ElementMesh:
-    """With the nodes on outer edges moved onto the surface, but those that would bend an element too much.
+def curved(straight: ElementMesh, onto: Onto) -> tuple[ElementMesh, int]:
+    """With the nodes on outer edges moved onto the surface, but those that would bend an element too much: how many.
 
     Of these the nodes on creases stay there where that is enough.
     """
-    points = straight.points
+    points, left = straight.points, 0
     moved, creases = onto_object(straight, onto)
     kept = np.isin(np.arange(len(points)), creases.nodes)
     places = np.concatenate([fine_rule()[0], np.eye(4), np.asarray(straight.element.rule[0])])
@@ -174,15 +174,16 @@ def _curved(straight: ElementMesh, onto: Onto) -> ElementMesh:
         mesh = ElementMesh(straight.element, moved, straight.cells, straight.corners)
         bad = (mesh.sizes(places) < least).any(axis=1)
         if not bad.any():
-            return mesh
+            return mesh, left
         back = np.unique(straight.cells[bad, 4:])
         bent = (moved[back] != points[back]).any(axis=1)
         back = back[bent & ~kept[back]] if (bent & ~kept[back]).any() else back
+        left += int(np.count_nonzero((moved[back] != points[back]).any(axis=1)))
         moved[back] = points[back]
-    return straight
+    return straight, left
 
 
-def across_faces(points: Floats, faces: Ints) -> Floats:
+def across_faces(points: Floats, faces: Any) -> Floats:
     """(f, 3) normals of faces by their corners, twice as long as their areas."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     found: Floats = np.cross(b - a, c - a)
@@ -192,7 +193,8 @@ def across_faces(points: Floats, faces: Ints) -> Floats:
 def unit(vectors: Floats) -> Floats:
     """Vectors (..., 3) made of length 1, those of none left."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    found: Floats = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    return found
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.bodies.elements.element_mesh import ElementMesh, Onto, meshed
-from sceneql.bodies.elements.refined import hollows, refined
+from sceneql.bodies.elements.element_mesh import ElementMesh, Onto, curved, meshed
+from sceneql.bodies.elements.refined import Lengths, hollows, refined
 from sceneql.bodies.filling.fill import Inside
 from sceneql.bodies.filling.finer import Finer, lengths
 from sceneql.bodies.filling.kept_creases import creases_kept, onto_crease
@@ -96,20 +96,25 @@ def _fitted(
 
     Raises Exceeds for too many elements, ScriptError for a place that has none.
     """
-    wanted = [lengths(finer)] if finer else []
-    if onto is not None and turn is not None:
-        hollow = hollows(points, tetrahedra, onto, spacing, turn)
-        wanted += [] if hollow is None else [hollow]
-    if wanted:
 
-        def check(count: float) -> None:
-            bounded(count, "elements", BYTES[element.nodes()])
+    def check(count: float) -> None:
+        bounded(count, "elements", BYTES[element.nodes()])
 
-        def least(places: Floats) -> Floats:
-            return np.min([one(places) for one in wanted], axis=0)
+    def made(wanted: list[Lengths]) -> tuple[ElementMesh, int]:
+        """The mesh, and how many of its outer nodes could not be moved onto the object."""
+        at, cells = points, tetrahedra
+        if wanted:
+            at, cells = refined(at, cells, lambda places: np.min([one(places) for one in wanted], axis=0), onto, check)
+        straight = meshed(element, at, cells)
+        return (straight, 0) if onto is None or not element.edges else curved(straight, onto)
 
-        points, tetrahedra = refined(points, tetrahedra, least, onto, check)
-    mesh = meshed(element, points, tetrahedra, onto)
+    asked = [lengths(finer)] if finer else []
+    hollow = None if onto is None or turn is None else hollows(points, tetrahedra, onto, spacing, turn)
+    mesh, flat = made(asked)
+    if hollow is not None:
+        # Halves of elements may be too thin to be bent: more of that would cost more than smaller elements bring.
+        finest, more = made([*asked, hollow])
+        mesh = finest if more <= flat else mesh
     for name, one in finer.items():
         if not one.reaches(mesh.points):
             message = f"'{name}' is near no element"
