@@ -30,6 +30,13 @@ class Trace(Renderer):
         at_most=1e-3,
     )
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel in which things meet.", 8)
+    diffuse_bounces: int = field(
+        "Most surfaces, one after the other, by which light is reflected onto a matte one; with 0 lamps, the sky and "
+        "what glows light it alone, and shadows of hard lamps are black.",
+        256,
+        at_least=0,
+        at_most=256,
+    )
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
         """The tracer's kernel modules."""
@@ -63,4 +70,4 @@ class Trace(Renderer):
         """The Picture of a frame: linear (h, w, 3) and the number of undecided pixels."""
         from renderers.tracing.draw import draw
 
-        return draw(frame, self.samples, self.tolerance)
+        return draw(frame, self.samples, self.tolerance, bounces=self.diffuse_bounces)

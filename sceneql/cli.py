@@ -1,7 +1,6 @@
 """The command line. Nothing but click is imported before a command runs.
 
-Exit codes: 0 ok, 1 run failed, 2 usage, 3 script invalid, 4 gallery differs, 5 limit refused or out of memory,
-130 interrupted (Ctrl-C), 143 ended by SIGTERM, 129 by the end of its terminal (SIGHUP).
+Its exit codes are in exits.py.
 """
 
 from __future__ import annotations
@@ -14,14 +13,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sceneql import __version__, interrupts, room
+from sceneql.exits import GALLERY_DIFFERS, OK, failed, stopped
 from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, as_seconds, as_words, options
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from sceneql.graph import SimulationGraph
-
-OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED = 0, 1, 2, 3, 4, 5
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -43,7 +41,7 @@ def main() -> None:
         with interrupts.raised() as interrupted:
             code = _run(interrupted)
     except KeyboardInterrupt as error:
-        code = _interrupted(error)
+        code = stopped(error)
     interrupts.end_at_once(code)  # there is nothing more to keep
     sys.exit(code)
 
@@ -53,22 +51,14 @@ def _run(interrupted: Callable[[], bool]) -> int:
         code = cli.main(prog_name="sceneql", standalone_mode=False)
     except click.exceptions.Abort as abort:
         if isinstance(abort.__cause__, EOFError):  # click takes it for the end of what is typed
-            return _failure(abort.__cause__)
-        return _interrupted(abort.__cause__)
+            return failed(abort.__cause__)
+        return stopped(abort.__cause__)
     except click.ClickException as error:
         error.show()
         return error.exit_code
     except Exception as error:
-        return _interrupted(error) if interrupted() else _failure(error)
+        return stopped(error) if interrupted() else failed(error)
     return code if isinstance(code, int) else OK
-
-
-def _interrupted(error: BaseException | None) -> int:
-    code = interrupts.exit_code()
-    interrupts.end_at_once(code)
-    _say_kept(error)
-    click.echo("interrupted", err=True)
-    return code
 
 
 def _without_plugins() -> None:
@@ -84,42 +74,6 @@ def _without_overflows() -> None:
     """Hide NumPy's warnings of overflows: parts that have no finite value tell so themselves, at their place."""
     if not sys.warnoptions:
         warnings.simplefilter("ignore", RuntimeWarning)
-
-
-def _failure(error: Exception) -> int:
-    """Print an error; returns the exit code. An exception without a message for users is a bug, and is raised."""
-    from sceneql.failure import LimitRefused, OutOfMemory, RunFailure, Unsuitable, starved, want_of_memory
-    from sceneql.quantities.diagnostic import LIMITS, ScriptError
-
-    if isinstance(error, ScriptError):
-        click.echo(str(error), err=True)
-        count = len(error.diagnostics)
-        click.echo(f"\n{count} error{'s' if count > 1 else ''}", err=True)
-        return LIMIT_REFUSED if all(found.code in LIMITS for found in error.diagnostics) else SCRIPT_INVALID
-    if isinstance(error, LimitRefused):
-        click.echo(str(error), err=True)
-        _say_kept(error)
-        return LIMIT_REFUSED
-    if isinstance(error, Unsuitable):
-        click.echo(f"error: {error}", err=True)
-        return USAGE
-    if starved(error):
-        click.echo(str(error) if isinstance(error, OutOfMemory) else f"error: {want_of_memory(error)}", err=True)
-        _say_kept(error)
-        return LIMIT_REFUSED
-    if isinstance(error, RunFailure | OSError | EOFError):
-        told = f"a file ends too soon: {error}" if isinstance(error, EOFError) else str(error)
-        click.echo(told if isinstance(error, RunFailure) else f"error: {told}", err=True)
-        _say_kept(error)
-        return RUN_FAILED
-    raise error
-
-
-def _say_kept(error: BaseException | None) -> None:
-    for path in getattr(error, "kept", ()):
-        click.echo(f"kept {path}", err=True)
-    for note in getattr(error, "__notes__", ()):
-        click.echo(note, err=True)
 
 
 @cli.command()

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from sceneql.linear import cone_finish_kernels
-from sceneql.linear import cone_layout_kernels as rows
-from sceneql.linear.cones import cone_program
+from cone_programs import cone_program
+from sceneql.linear.cones import cone_finish_kernels
+from sceneql.linear.cones import cone_layout_kernels as rows
 
 CORNERS = np.array([(x, y) for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
 GRAVITY = 9.81

@@ -17,6 +17,7 @@ from sceneql.compiled.lanes_kernels import (
     root,
     spread,
     store,
+    turn_over,
 )
 
 S = types.float32[::1]
@@ -66,3 +67,14 @@ def singles_compared(a, b, out, single):
 @lean("int64(int64)")
 def first_of(bits):
     return first_bit(bits)
+
+
+@lean("void(float64[::1], float64[::1])")
+def doubles_turned(source, target):
+    """A square whose rows begin at 3 and stand 11 apart, to 5 and 9 apart."""
+    turn_over(source, 3, 11, target, 5, 9)
+
+
+@lean("void(float32[::1], float32[::1])")
+def singles_turned(source, target):
+    turn_over(source, 3, 19, target, 5, 17)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from sceneql.pipeline import load, render, simulate
-from sceneql.run.blind import look, warnings
+from sceneql.run.blind import around, look, warnings
 from sceneql.tools import frame_of
+from stage import GLOW, segment
 
 SCRIPT = """
 objects: {{thing: {{{thing}}}}}
@@ -78,3 +80,7 @@ outputs: {film: {video: {size: 16 10, fps: 10}}}
     (warning,) = render(load(tmp_path / "scene.yaml"), folder=tmp_path).warnings
     assert warning.message.startswith("the camera 'eye' stands inside 'ball' from 0.3 s to 0.7 s")
     assert warning.span.line == 4
+
+
+def test_a_segment_as_long_as_numbers_go_is_looked_at_without_a_warning():
+    assert not around(segment(GLOW, (0, 0, 0), (1e300, 0, 0), 0.1), np.array([0.0, 0.0, 3.0]))

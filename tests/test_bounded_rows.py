@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
+from cone_programs import cone_program
 from cone_scenes import GRAVITY, solve, velocities, write_body, write_contact
-from sceneql.linear import cone_finish_kernels as cones
-from sceneql.linear import cone_layout_kernels as layout
-from sceneql.linear.cone_layout_kernels import ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_S, ROW_X
-from sceneql.linear.cones import cone_program
+from sceneql.linear.cones import cone_finish_kernels as cones
+from sceneql.linear.cones import cone_layout_kernels as layout
+from sceneql.linear.cones.cone_layout_kernels import ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_S, ROW_X
 
 NONE = np.inf
 HERE = np.zeros(3)

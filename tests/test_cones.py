@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array
 
+from cone_programs import cone_program
 from cone_scenes import GRAVITY, Stack, faces, impulses, solve, velocities, write_body, write_contact
-from sceneql.linear import cone_finish_kernels as cones
-from sceneql.linear import cone_layout_kernels as rows
-from sceneql.linear.cones import cone_program
-from sceneql.linear.multifrontal import plan
+from sceneql.linear.cones import cone_finish_kernels as cones
+from sceneql.linear.cones import cone_layout_kernels as rows
+from sceneql.linear.multifrontal.planning import plan
 
 CUBE = np.eye(3) / 6.0
 UP = np.array([0.0, 0.0, 1.0])

@@ -167,6 +167,42 @@ def test_viscosity_that_varies_in_time_lets_velocities_decay_by_its_integral(tmp
     assert air.read("velocity") == pytest.approx(plain.read("velocity"), rel=1e-4, abs=1e-6)
 
 
+def warmed(folder, cells, solver, end, viscosity="exp(-2*c)", **more):
+    """Between plates a meter apart, whose field `heat.temperature` is 0 below and 1 above; the upper one moves."""
+    box = {"size": "0.5 1 m", "cell": f"1/{cells} m"}
+    said = "of: temperature, coefficient: 1e-3 m^2/s, initial: y, drift: {by: air}"
+    said += f", size: 0.5 1 m, cell: 1/{cells} m, boundary: "
+    heat = f"  heat: {{diffusion: {{{said}{{bottom: {{value: 0}}, top: {{value: 1}}, left: {{periodic: yes}}}}}}}}\n"
+    more = {"boundary": '{left: {periodic: yes}, top: {wall: {velocity: "[1, 0]"}}}', **more}
+    by = {"viscosity": f'"{viscosity}"', "viscosity_by": "heat.temperature"}
+    return Air(folder, solver, end, models=heat, **box, **by, **more).at(end)
+
+
+def test_fluid_that_is_thin_where_it_is_warm_is_sheared_there(tmp_path):
+    """The stress is the same everywhere: u = (exp(2 y) - 1)/(exp(2) - 1), of second order in the cells."""
+    errors = []
+    for cells in (8, 16):
+        air = warmed(tmp_path, cells, "{imex_midpoint: {tolerance: 1e-5}}", 8.0)
+        y, u = air.read("centers")[:, 1], air.read("velocity")[:, 0]
+        errors.append(np.abs(u - np.expm1(2 * y) / np.expm1(2)).max())
+    assert errors[1] < 2.5e-3
+    assert np.log2(errors[0] / errors[1]) > 1.85
+
+
+def test_viscosity_by_a_field_is_read_where_the_field_is_now(tmp_path):
+    """Of second order in time, while a swirl carries the field that thickens it."""
+
+    def at(step):
+        swirl = '{velocity: "[sin(2*pi*y)*cos(4*pi*x), -2*sin(pi*y)^2*sin(4*pi*x)]"}'
+        return warmed(
+            tmp_path, 12, f"{{imex_midpoint: {{step: {step} ms}}}}", 0.16, viscosity="0.02*(1 + 4*c)", initial=swirl
+        ).read("velocity")
+
+    fine = at(1)
+    errors = [np.abs(at(step) - fine).max() for step in (16, 8)]
+    assert 1.7 < np.log2(errors[0] / errors[1]) < 2.4
+
+
 @pytest.mark.parametrize("solver", ["{ark3: {}}", "{sbdf2: {step: 1 ms}}", "{cnab2: {step: 1 ms}}"])
 def test_solvers_of_one_density_refuse_several(tmp_path, solver):
     with pytest.raises(ScriptError, match="density or viscosity varies"):

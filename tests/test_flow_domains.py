@@ -87,6 +87,43 @@ def test_a_field_in_the_box_of_such_a_flow_is_carried_inside_and_told_its_number
     assert air.at(0.1).read("mass", "dye") == pytest.approx(mass, rel=1e-12)
 
 
+RING = (
+    "objects:\n  outer: {sphere: {position: 0 0 0 m, radius: 1.625 m}}\n"
+    "  inner: {sphere: {position: 0 0 0 m, radius: 0.625 m}}\n  ring: {difference: {of: [outer, inner]}}\n"
+)
+
+
+def between_cylinders(folder, cell, **more):
+    """Warm within, cold without, Ra 1e4 by the gap of a meter, Pr 0.7: a field of the flow's own domain."""
+    said = 'of: temperature, coefficient: 1 m^2/s, initial: "0.5", drift: {by: air}, domain: ring, flat: yes'
+    held = '{warm: {where: "1 - x^2 - y^2", value: 1}, rest: {value: 0}}'
+    heat = f"  heat: {{diffusion: {{{said}, cell: {cell} m, boundary: {held}}}}}\n"
+    lift = "{by: heat.temperature, expansion: 7000 1/K, reference: 0.5 K, gravity: 0 -1 0 m/s^2}"
+    fields = {"size": None, "domain": "ring", "flat": "yes", "cell": f"{cell} m", "viscosity": "0.7 Pa*s", **more}
+    return Air(folder, "{ark3: {}}", 0.3, before=RING, models=heat, advection="central", buoyancy=lift, **fields)
+
+
+def test_warm_fluid_between_cylinders_carries_as_much_heat_as_is_published(tmp_path):
+    """2.010 times what conduction does (Kuehn & Goldstein 1976, J. Fluid Mech. 74, 695-719); with cells of 5 cm
+    2.0075 (tests/bench/bench_flow.py annulus)."""
+    air = between_cylinders(tmp_path, 0.1).at(0.3)
+    assert air.read("divergence") < 1e-6
+    field, places = air.read("temperature", "heat"), air.read("centers", "heat")
+    assert field.min() > -1e-3
+    assert field.max() < 1.001
+    known = {(round(x * 1e3), round(y * 1e3)): c for (x, y, _), c in zip(places, field, strict=True)}
+    centers = air.read("centers")
+    warm = np.array([known.get((round(x * 1e3), round(y * 1e3)), 0.0) for x, y, _ in centers])
+    square = np.maximum((centers**2).sum(axis=1), 0.1)
+    carried = ((air.read("velocity") * centers).sum(axis=1) * warm / square).sum() * 0.1**2
+    assert 1.0 + carried / (2.0 * np.pi) == pytest.approx(2.010, rel=0.05)
+
+
+def test_a_field_that_ends_at_its_own_skin_is_told_of_ways_through(tmp_path):
+    with pytest.raises(ScriptError, match="ends at the skin of its domain, and the flow has ways through"):
+        between_cylinders(tmp_path, 0.1, boundary='{left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}')
+
+
 @pytest.mark.parametrize(("step", "told"), [("0.75 ms", False), ("1 ms", True)])
 def test_the_step_of_an_outline_is_that_of_a_flat_flow(tmp_path, step, told):
     path = tmp_path / "scene.yaml"

@@ -71,7 +71,7 @@ def test_a_free_surface_of_a_wall_has_no_friction_and_navier_slips(tmp_path):
 KINDS = {"wall": "", "open": "outflow: {}", "periodic": "periodic: yes"}
 
 
-@pytest.mark.parametrize("size", ["1 0.7 m", "0.9 0.7 0.5 m"])
+@pytest.mark.parametrize("size", ["1 0.7 m", "3.3 2.6 m", "0.9 0.7 0.5 m"])
 def test_projection_leaves_rounding_whatever_the_sides(tmp_path, size):
     pairs = (("left", "right"), ("bottom", "top"), ("back", "front"))[: len(size.split()) - 1]
     swirl = "[sin(3*x + y), cos(x*y)" + (", x + z*y]" if len(pairs) == 3 else "]")

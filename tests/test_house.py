@@ -40,8 +40,13 @@ LAZY = {
         "grids.embedded_kernels": "for steps that a tolerance chooses",
         "grids.iterate_kernels": "for stages that are not solved to rounding at once",
     },
-    "linear.cone_finish_kernels": {"linear.cone_kernels": "where Newton's method does not get there from the guess"},
-    "linear.cone_layout_kernels": {"linear.bounded_rows_kernels": "for programs with ties, stops, motors or friction"},
+    "linear.cones.cone_finish_kernels": {
+        "linear.cones.cone_kernels": "where Newton's method does not get there from the guess"
+    },
+    "linear.cones.cone_layout_kernels": {
+        "linear.cones.bounded_points_kernels": "where such programs take the interior-point method",
+        "linear.cones.bounded_rows_kernels": "for programs with ties, stops, motors or friction",
+    },
     "linear.newton_kernels": {"linear.newton_search_kernels": "where plain iterations fail"},
     "march.events_kernels": {"march.locate_kernels": "when the first event is met"},
     "stepping.radau_kernels": {"stepping.radau_tallies_kernels": "when the first tally changes"},

@@ -5,7 +5,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from lanes_of_numbers_kernels import doubles, doubles_compared, first_of, singles, singles_compared
+from lanes_of_numbers_kernels import (
+    doubles,
+    doubles_compared,
+    doubles_turned,
+    first_of,
+    singles,
+    singles_compared,
+    singles_turned,
+)
 
 KINDS = pytest.mark.parametrize(("kernel", "kind"), [(doubles, np.float64), (singles, np.float32)])
 
@@ -74,3 +82,17 @@ def test_comparisons_are_those_of_single_numbers(kernel, kind):
 
 def test_the_first_bit():
     assert [first_of(n) for n in (1, 12, 1 << 40)] == [0, 2, 40]
+
+
+@pytest.mark.parametrize(
+    ("kernel", "kind", "step", "to_step"), [(doubles_turned, np.float64, 11, 9), (singles_turned, np.float32, 19, 17)]
+)
+def test_squares_are_turned_over(kernel, kind, step, to_step):
+    count = 64 // np.dtype(kind).itemsize
+    source, target = np.arange(1.0, 400.0, dtype=kind), np.zeros(400, dtype=kind)
+    kernel(source, target)
+    expected = np.zeros(400, dtype=kind)
+    for row in range(count):
+        for column in range(count):
+            expected[5 + to_step * column + row] = source[3 + step * row + column]
+    assert np.array_equal(target, expected)

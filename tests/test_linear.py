@@ -15,8 +15,8 @@ from sceneql.compiled.numbered_kernels import number_of
 from sceneql.linear import dense_complex_kernels as dense_complex
 from sceneql.linear import dense_kernels as dense
 from sceneql.linear import krylov_kernels as krylov
-from sceneql.linear import multifrontal, multifrontal_kernels
-from sceneql.linear import multifrontal_layout as layout
+from sceneql.linear.multifrontal import planning, systems_kernels
+from sceneql.linear.multifrontal.planning import layout
 from sceneql.linear.solver_kernels import PRECONDITION
 from sceneql.stepping.eigenmodes_kernels import BLOCK, solve_block
 
@@ -98,12 +98,12 @@ def test_fronts_solve_to_rounding(columns, rows, seed, symmetric, dissected, bar
     matrix.setdiag(matrix.diagonal() + 30.0)
     places = np.stack(np.meshgrid(np.arange(columns), np.arange(rows), [0], indexing="ij"), axis=-1).reshape(-1, 3)
     points = places.repeat(3, axis=0).astype(float) if dissected else None
-    plan = multifrontal.plan(pattern, points=points, symmetric=symmetric and bare)
+    plan = planning.plan(pattern, points=points, symmetric=symmetric and bare)
     factors, work, numbers = np.zeros(plan.factors), np.zeros(plan.work), plan.numbers.copy()
     right = np.random.default_rng(seed).standard_normal(matrix.shape[0])
     x = right.copy()
-    assert multifrontal_kernels.factor_system(numbers, matrix.data, factors, work, symmetric)
-    multifrontal_kernels.solve_system(numbers, matrix.data, factors, x, work, symmetric)
+    assert systems_kernels.factor_system(numbers, matrix.data, factors, work, symmetric)
+    systems_kernels.solve_system(numbers, matrix.data, factors, x, work, symmetric)
     assert np.abs(matrix @ x - right).max() <= 1e-12
     if symmetric and not numbers[layout.IN_SINGLE]:
         many = np.random.default_rng(seed).standard_normal((matrix.shape[0], BLOCK))
@@ -123,11 +123,11 @@ def test_fronts_of_blocks_solve_to_rounding(dissected, symmetric):
     blocks.sort_indices()
     graph = csr_array((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr))
     places = np.stack(np.meshgrid(np.arange(13.0), np.arange(11.0), [0], indexing="ij"), axis=-1).reshape(-1, 3)
-    plan = multifrontal.plan(graph, points=places if dissected else None, unit=3)
+    plan = planning.plan(graph, points=places if dissected else None, unit=3)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     x = np.ones(matrix.shape[0])
-    assert multifrontal_kernels.factor_system(plan.numbers, blocks.data.ravel(), factors, work, symmetric)
-    multifrontal_kernels.solve_system(plan.numbers, blocks.data.ravel(), factors, x, work, symmetric)
+    assert systems_kernels.factor_system(plan.numbers, blocks.data.ravel(), factors, work, symmetric)
+    systems_kernels.solve_system(plan.numbers, blocks.data.ravel(), factors, x, work, symmetric)
     assert np.abs(matrix @ x - 1.0).max() <= 1e-12
 
 
@@ -156,15 +156,15 @@ def sheet(columns, rows, stiffness, seed=4):
 @pytest.mark.parametrize("exact", [True, False])
 @pytest.mark.parametrize("stiffness", [1e-3, 1e2, 1e5])
 def test_factors_in_single_precision_solve_to_rounding_when_refined(monkeypatch, stiffness, exact):
-    monkeypatch.setattr(multifrontal, "WORTH_SINGLE", 0.0)
+    monkeypatch.setattr(planning, "WORTH_SINGLE", 0.0)
     pattern, values, matrix = sheet(14, 11, stiffness)
-    plan = multifrontal.plan(pattern, unit=3, exact=exact)
+    plan = planning.plan(pattern, unit=3, exact=exact)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
-    assert multifrontal_kernels.factor_system(plan.numbers, values, factors, work, True)
+    assert systems_kernels.factor_system(plan.numbers, values, factors, work, True)
     for size in (1.0, 1e-60, 1e60):
         right = size * np.random.default_rng(1).standard_normal(matrix.shape[0])
         x = right.copy()
-        multifrontal_kernels.solve_system(plan.numbers, values, factors, x, work, True)
+        systems_kernels.solve_system(plan.numbers, values, factors, x, work, True)
         known = spsolve(matrix.tocsc(), right)
         wrong = np.abs(x - known).max() / np.abs(known).max()
         assert plan.numbers[layout.IN_SINGLE] > 0
@@ -172,30 +172,30 @@ def test_factors_in_single_precision_solve_to_rounding_when_refined(monkeypatch,
 
 
 def test_factors_that_are_too_poor_in_single_precision_are_made_in_double(monkeypatch):
-    monkeypatch.setattr(multifrontal, "WORTH_SINGLE", 0.0)
+    monkeypatch.setattr(planning, "WORTH_SINGLE", 0.0)
     pattern, values, matrix = sheet(14, 11, 1e11)
-    plan = multifrontal.plan(pattern, unit=3)
+    plan = planning.plan(pattern, unit=3)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     with np.errstate(all="ignore"):  # where kernels are not compiled, numpy would warn of poor factors
         for _ in range(3):
-            assert multifrontal_kernels.factor_system(plan.numbers, values, factors, work, True)
+            assert systems_kernels.factor_system(plan.numbers, values, factors, work, True)
             x = np.ones(matrix.shape[0])
-            assert multifrontal_kernels.solve_system(plan.numbers, values, factors, x, work, True)
+            assert systems_kernels.solve_system(plan.numbers, values, factors, x, work, True)
             assert plan.numbers[layout.IN_SINGLE] == 0
             assert np.abs(matrix @ x - 1.0).max() <= 1e-14 * np.abs(values).max()
         # After some time they are tried again.
         plan.numbers[layout.RESTING] = 0
         easy = sheet(14, 11, 1.0)[1]
-        assert multifrontal_kernels.factor_system(plan.numbers, easy, factors, work, True)
-        assert multifrontal_kernels.solve_system(plan.numbers, easy, factors, x, work, True)
+        assert systems_kernels.factor_system(plan.numbers, easy, factors, work, True)
+        assert systems_kernels.solve_system(plan.numbers, easy, factors, x, work, True)
     assert plan.numbers[layout.IN_SINGLE] == layout.TRIED
 
 
 @pytest.mark.parametrize("single", [True, False])
 @pytest.mark.parametrize("dissected", [True, False])
 def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected, single):
-    monkeypatch.setattr(multifrontal, "WORTH_THREADS", 0.0)
-    monkeypatch.setattr(multifrontal, "WORTH_SINGLE", 0.0 if single else np.inf)
+    monkeypatch.setattr(planning, "WORTH_THREADS", 0.0)
+    monkeypatch.setattr(planning, "WORTH_SINGLE", 0.0 if single else np.inf)
     pattern = net(24, 20, 1)
     matrix = csr_array(0.5 * (pattern + pattern.T))
     matrix.setdiag(matrix.diagonal() + 30.0)
@@ -203,26 +203,26 @@ def test_threads_share_fronts_to_the_same_bytes(monkeypatch, dissected, single):
     made = []
     for threads in (1, 2, 3):
         monkeypatch.setenv("SCENEQL_THREADS", str(threads))
-        plan = multifrontal.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
+        plan = planning.plan(pattern, points=places.repeat(3, axis=0).astype(float) if dissected else None)
         factors, work = np.zeros(plan.factors), np.zeros(plan.work)
         numbers = plan.numbers.copy()
         assert numbers[layout.PIECES] >= 2
-        assert multifrontal_kernels.factor_system(numbers, matrix.data, factors, work, True)
+        assert systems_kernels.factor_system(numbers, matrix.data, factors, work, True)
         x = np.ones(matrix.shape[0])
-        multifrontal_kernels.solve_system(numbers, matrix.data, factors, x, work, True)
+        systems_kernels.solve_system(numbers, matrix.data, factors, x, work, True)
         assert np.abs(matrix @ x - 1.0).max() <= 1e-12
         made.append(x.tobytes())
         assert numbers[layout.IN_SINGLE] == (layout.TRIED if single else 0)
-        assert not multifrontal_kernels.factor_system(numbers, np.zeros(pattern.nnz), factors, work, True)
+        assert not systems_kernels.factor_system(numbers, np.zeros(pattern.nnz), factors, work, True)
     assert made[0] == made[1] == made[2]
 
 
 def test_fronts_refuse_a_singular_matrix():
     pattern = net(3, 3, 0)
-    plan = multifrontal.plan(pattern)
+    plan = planning.plan(pattern)
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
     for symmetric in (True, False):
-        assert not multifrontal_kernels.factor_system(plan.numbers, np.zeros(pattern.nnz), factors, work, symmetric)
+        assert not systems_kernels.factor_system(plan.numbers, np.zeros(pattern.nnz), factors, work, symmetric)
 
 
 @pytest.mark.parametrize("symmetric", [True, False])

@@ -53,3 +53,14 @@ def test_listed_particles_have_colors_of_their_own(tmp_path):
     (points,) = (shape for shape in moment.lower(["them"]) if isinstance(shape, Points))
     colors = {float(x): tuple(color) for x, color in zip(points.centers[:, 0], points.colors, strict=True)}
     assert colors == {1: linear([1, 0, 0]), 2: default_color(0), 3: linear([0, 1, 0]), 4: default_color(0)}
+
+
+@pytest.mark.parametrize(("more", "count"), [("", 3), ("color: red", 1), ("material: {matte: {}}", 1)])
+def test_listed_particles_that_have_no_color_are_told_apart(tmp_path, more, count):
+    """A sun and its planets, of which a script says nothing, are not all red."""
+    listed = "list: {sun: {}, earth: {position: 1 0 0 m}, moon: {position: 2 0 0 m}}"
+    (tmp_path / "scene.yaml").write_text(f"models: {{them: {{particles: {{{listed}, {more}}}}}}}")
+    (moment,) = simulate(load(tmp_path / "scene.yaml"), [0.0])
+    (points,) = (shape for shape in moment.lower(["them"]) if isinstance(shape, Points))
+    colors = [points.surface.color] if points.colors is None else [tuple(color) for color in points.colors]
+    assert len(set(colors)) == count

@@ -1,5 +1,7 @@
 """Elastic skins full of fluid: `membrane` and `immersion`."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -226,7 +228,7 @@ def test_the_bound_of_steps_that_is_told_is_that_of_the_spectrum(tmp_path, law):
         air.run.march.driver.rate(0.0, y, out, floats, system.ints)
     fastest = np.abs(np.linalg.eigvals((rates[:n] - rates[n : 2 * n]).T / 2e-6)).max()
     immersion, skin, flow = (air.tasks[name].kind for name in ("immersion", "balloon", "air"))
-    (told,) = immersion.fastest_carried({"balloon": skin}, flow)
+    (told,) = immersion.fastest_carried({"balloon": skin}, flow, None)
     assert told.turn == pytest.approx(fastest, rel=0.06)
 
 
@@ -266,9 +268,12 @@ def test_an_outline_is_a_skin_with_even_sides():
             "has one of `springs`, `neo_hookean`, `skalak` and `tension`",
         ),
         ({"forces": "forces: [{gravity: {}}]\n"}, "no flow carries 'balloon'"),
-        ({"forces": "forces: [{immersion: {in: air}}]\n"}, "names the skins"),
+        ({"forces": "forces: [{immersion: {in: air}}]\n"}, "names the skins and masses"),
         ({"forces": "forces: [{immersion: {on: [balloon], in: balloon}}]\n"}, "is no flow"),
-        ({"forces": "forces: [{immersion: {on: [balloon, air], in: air}}]\n"}, "'air' is no skin"),
+        (
+            {"forces": "forces: [{immersion: {on: [balloon, air], in: air}}]\n"},
+            "'air' is nothing that a flow can carry",
+        ),
         (
             {"forces": "forces: [{immersion: {on: [balloon], in: air}}, {immersion: {on: [balloon], in: air}}]\n"},
             "'balloon' is carried by two forces",
@@ -307,3 +312,24 @@ def test_a_flat_skin_is_drawn_as_a_closed_line_and_what_it_holds(tmp_path, by):
     areas = 0.5 * np.cross(b - a, c - a)[:, 2]
     assert areas.min() >= 0.0
     assert areas.sum() == pytest.approx(moment.read("balloon", "volume"), rel=1e-12)
+
+
+def test_a_skin_that_is_turned_inside_out_or_crosses_itself_is_told(tmp_path):
+    air = ballooned(tmp_path, end=0.01).at(0.0)
+    skin, state = air.tasks["balloon"].kind, air.run.state("balloon")
+    at, count = skin.made.membrane.position_at, skin.made.membrane.count
+    turns = 2 * np.pi * np.arange(count) / count
+
+    def told(x, y):
+        points = np.column_stack([0.5 + 0.3 * x, 0.5 + 0.3 * y, np.zeros(count)])
+        changed = state.y.copy()
+        changed[at : at + 3 * count] = points.ravel()
+        return skin.trouble(replace(state, y=changed))[0]
+
+    assert not told(np.cos(turns), np.sin(turns))
+    assert "inside out at the end" in told(np.cos(turns), -np.sin(turns))
+    # Pascal's limacon: its inner loop goes around the same way, and crosses the outer one at the origin.
+    radii = 0.4 + 0.6 * np.cos(turns)
+    text = told(radii * np.cos(turns), radii * np.sin(turns))
+    place = [float(one) for one in text.partition("crosses itself at the end, near (")[2].split(",")[:2]]
+    assert place == pytest.approx([0.5, 0.5], abs=2e-3)

@@ -53,7 +53,7 @@ def test_curved_volumes_converge_with_order_four(text, half, exact):
 @pytest.mark.long
 def test_the_curved_volume_of_steiners_solid_extrapolates():
     errors = []
-    for cells in (128, 256):
+    for cells in (96, 192):
         found, _ = cut_finer(STEINER, 0.6, cells)
         errors.append(1.0 - curved_volume(found.vertices, found.triangles, found.normals) * 6.0)
     assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.1)

@@ -90,9 +90,15 @@ def test_blocks_stand_up_to_the_harmonic_overhang(tmp_path, part, stands):
     assert stands or moved > 0.1
 
 
-@pytest.mark.parametrize(("thick", "stands"), [(0.107, True), (0.103, False)])
-def test_an_arch_of_eleven_stones_stands_by_its_thickness_alone(tmp_path, thick, stands):
-    """The limit is 0.10491 of the mean radius, by the line of thrust (linear program; Milankovitch 1907)."""
+@pytest.mark.parametrize(
+    ("mode", "thick", "stands"),
+    [("local", 0.107, True), ("local", 0.103, False), ("exact", 0.1047, True), ("exact", 0.1042, False)],
+)
+def test_an_arch_of_eleven_stones_stands_by_its_thickness_alone(tmp_path, mode, thick, stands):
+    """The limit is 0.10491 of the mean radius, by the line of thrust (linear program; Milankovitch 1907).
+
+    Of these stones, whose inner and outer faces are flat, it is 0.10459, by the same program.
+    """
     half = np.pi / 22
     ring = [(r * np.cos(a), r * np.sin(a), z) for z in (-0.2, 0.2) for r in (1 - thick / 2, 1 + thick / 2)
             for a in (-half, half)]  # fmt: skip
@@ -105,8 +111,9 @@ def test_an_arch_of_eleven_stones_stands_by_its_thickness_alone(tmp_path, thick,
     }
     objects["floor"] = "plane"
     bodies = {f"s{k}": f"{{of: o{k}, density: 2400 kg/m^3}}" for k in range(11)}
-    law, solver = "restitution: 0, friction: 0.8", "semi_implicit_euler: {step: 5 ms}"
-    (start,), (end,) = watch(tmp_path, objects, bodies, [0, 0.8], "it.s5.position", law=law, solver=solver)
+    solver = "semi_implicit_euler: {step: 5 ms}" if mode == "local" else "dop853: {tolerance: 1e-9}"
+    law, times = f"mode: {mode}, restitution: 0, friction: 0.8", [0, 0.8 if mode == "local" else 0.5]
+    (start,), (end,) = watch(tmp_path, objects, bodies, times, "it.s5.position", law=law, solver=solver)
     assert start[1] - end[1] < 1e-9 if stands else start[1] - end[1] > 0.01
 
 
@@ -269,3 +276,13 @@ def test_a_body_may_be_named_by_its_object_too(tmp_path):
         tmp_path, objects, bodies, [0.1], "it.positions", law="restitution: 0, between: [it, o0, floor]"
     )
     np.testing.assert_allclose(places, [[0, 0.5, 0]], atol=1e-12)
+
+
+def test_what_is_read_within_the_step_of_an_impact_has_the_energy_of_its_end(tmp_path):
+    """A body moves over the whole of that step by its velocity afterwards: between the two it had next to no energy."""
+    objects = {"o": "{box: {size: 0.2 0.2 0.2 m, position: 0 0.3 0 m}}", "floor": "plane"}
+    bodies = {"b": "{of: o, mass: 1 kg, velocity: 0.3 -2 0 m/s, spin: 1 2 3 rad/s}"}
+    law, times = "restitution: 0.8, friction: 0.3", np.linspace(0, 0.3, 301)
+    rows = watch(tmp_path, objects, bodies, times, "it.energy", law=law, solver="rk4: {step: 5 ms}")
+    energy = np.array(rows)[:, 0]
+    assert np.abs(energy - energy[0]).max() < 0.05 * energy[0]

@@ -52,6 +52,19 @@ def test_what_is_round_stands_on_a_slope_up_to_the_exact_angle_whichever_way_it_
             np.testing.assert_allclose(w, (w @ axis) * axis, atol=1e-3 * abs(w @ axis))
 
 
+@pytest.mark.parametrize(("friction", "around"), [(0.55, 73), (0.7, 17), (0.7, 120)])
+def test_a_cylinder_near_its_tipping_angle_does_not_creep_whatever_the_friction(tmp_path, friction, around):
+    """Its center of pressure is within a thousandth of its circle, and not within four points at any place of that."""
+    body = "cylinder: {radius: 0.1 m, height: 0.4 m, position: 0 0.2 0 m}"
+    down = slope(0.999 * np.degrees(np.arctan(0.5)), around)
+    ((x, w),) = watch(
+        tmp_path, body, "mass: 1 kg", [0.1], "it.position", "it.spin",
+        law=f"restitution: 0, friction: {friction}", down=down,
+    )  # fmt: skip
+    np.testing.assert_allclose(x, [0, 0.2, 0], atol=1e-12)
+    np.testing.assert_allclose(w, 0, atol=1e-12)
+
+
 def test_a_cylinder_slides_down_a_slope_upright_and_keeps_to_it(tmp_path):
     """g (sin - mu cos) t^2 / 2, as a block: the center of pressure is mu h/2 ahead, within the circle."""
     down, mu = slope(30, 33), 0.4

@@ -30,6 +30,14 @@ def test_same_bytes_with_the_processor_restricted_to_avx2(name):
     assert digests_of_a_process(name, NUMBA_CPU_NAME=AVX2) == digests([name])
 
 
+def test_no_kernel_lets_the_processor_say_in_which_order_it_adds():
+    """Which would be another one where registers are wider: this holds for what the short run does not draw, too."""
+    root = Path(__file__).parent.parent
+    files = [path for folder in ("sceneql", "renderers") for path in (root / folder).rglob("*.py")]
+    assert len(files) > 1000
+    assert [path.name for path in files if "fastmath" in path.read_text(encoding="utf-8")] == []
+
+
 @pytest.mark.skipif("SCENEQL_LONG" not in os.environ, reason="without the shortcuts it compiles for minutes")
 @pytest.mark.parametrize("name", MADE)
 def test_same_bytes_with_and_without_the_shortcuts_through_numba(name):

@@ -33,9 +33,12 @@ FEWER = {
         "models.parts.rigid.bodies={drilled: {of: drilled}, die: {of: die}, pipe: {of: pipe}, ball: {of: ball}}",
         "contacts.touch.collision.between=[parts, bowl, floor]",
     ],
+    "bracket_bends": ["models.large.elastic.spacing=8 cm"],
     "benard": ["define.cells=48", "solvers.main.sbdf2.step=0.8 ms"],
     "capsules": ["define.h=12 mm/30", "solvers.main.sbdf2.step=1 ms"],
     "cushion": ["define.h=2.4 m/40"],
+    "dominoes": ["solvers.main.verlet.step=20 ms"],
+    "flag": ["define.h=1 m/20"],
     "jelly": ["models.cube.mass_spring.lattice.count=4 4 4"],
     "notes_fluid": ["models.water.flow.pressure=auto"],
     "pile": ["models.bun.elastic.spacing=9 cm"],
@@ -44,7 +47,7 @@ FEWER = {
     "rollers": ["models.jelly.elastic.spacing=50 mm", "solvers.main.tr_bdf2.step=1/120 s"],
     "treacle_balloon": ["define.h=2.8 m/56"],
 }
-"""By scene, what takes less time: parts that no expectation names are coarser or left out; fields have larger cells."""
+"""What takes less time, by scene: parts that nothing expects are coarser or left out; larger cells, longer steps."""
 COARSER = {
     "bell": [f"models.hum.elastic.{given}" for given in ROUGH],
     "bowl": ["models.parts.rigid.bodies={ring: {of: ring}, die: {of: die}, ball: {of: ball}}"],
@@ -54,7 +57,10 @@ COARSER = {
 """What else leaves a scene's steps as they are: of these alone the law of frame rates tells."""
 
 
-LONGER = {"rollers": "friction on what turns takes half a minute"}
+LONGER = {
+    "flag": "a flag begins to flap after seconds",
+    "rollers": "friction on what turns takes half a minute",
+}
 """Scenes whose numbers are measured in the long run alone, and by `gallery check`; why."""
 
 

@@ -247,3 +247,33 @@ def test_a_skin_may_stand_inside_another(tmp_path):
     skins = {"egg": ellipse(0.4, 0.3, "1 0.5"), "other": ellipse(0.2, 0.15, "1 0.5")}
     scene = Scene(tmp_path, skins, "{}")
     assert "within a gap of 0.05 m" in scene.tasks["touch"].kind.remark(scene.run.state("touch"))
+
+
+@pytest.mark.parametrize("shift", [0.0, 2.0, -4.0])
+def test_skins_touch_across_periodic_ends_as_anywhere(tmp_path, shift):
+    apart = {"egg": ellipse(0.3, 0.15, "0.32 0.5"), "other": ellipse(0.3, 0.15, "1.67 0.55")}
+    beside = {"egg": ellipse(0.3, 0.15, "1.32 0.5"), "other": ellipse(0.3, 0.15, "0.67 0.55")}
+    found = []
+    for name, skins in (("across", apart), ("within", beside)):
+        (tmp_path / name).mkdir()
+        contact = "{between: [egg, other], friction: 0.3, gap: 6 cm}"
+        scene = Scene(tmp_path / name, skins, contact, boundary="{left: {periodic: yes}}", end=0.01)
+        turn = iter((shift, 0.0))  # the first skin may stand any number of periods off
+        y, _, floats = scene.changed(lambda places, turn=turn: np.array([next(turn), 0.0]) + 0.0 * places)
+        push, back = scene.skins(y, floats)[1]
+        changed = y.copy()
+        scene.skins(changed, floats)[0][0][:, 0] += 0.08
+        found.append((push.copy(), back.copy(), limit(scene.system)(0.0, y, changed, floats, scene.system.ints)))
+        assert np.abs(push).max() > 0.0
+        assert push.sum(axis=0) + back.sum(axis=0) == pytest.approx(np.zeros(3), abs=1e-12)
+    # The same pair half a box along, but for the order in which nearest places are found.
+    for one, same in zip(*(each[:2] for each in found), strict=True):
+        assert one == pytest.approx(same, abs=1e-6 * np.abs(same).max())
+    assert found[0][2] == pytest.approx(found[1][2], rel=1e-6)
+    assert found[0][2] < 1.0
+
+
+def test_skins_that_cross_over_a_periodic_end_are_refused(tmp_path):
+    skins = {"egg": ellipse(0.3, 0.15, "0.2 0.5"), "other": ellipse(0.3, 0.15, "1.8 0.55")}
+    with pytest.raises(ScriptError, match="crosses"):
+        Scene(tmp_path, skins, "{between: [egg, other]}", boundary="{left: {periodic: yes}}")

@@ -9,6 +9,7 @@ import pytest
 
 import stage
 from renderers.trace import Trace
+from renderers.tracing import buffers
 from renderers.tracing import draw as drawing
 from renderers.tracing.pack import pack
 from renderers.tracing.probe import probe
@@ -126,7 +127,7 @@ def test_a_thing_that_moves_leaves_nothing_behind():
 
     fresh = []
     for x in (-1.2, 1.0, 9.0):
-        drawing._kept.clear()
+        buffers._kept.clear()
         fresh.append(Trace(samples=4).draw(at(x)).linear)
     for x, picture in zip((-1.2, 1.0, 9.0, 1.0, -1.2), [*fresh, fresh[1], fresh[0]], strict=True):
         assert np.array_equal(Trace(samples=4).draw(at(x)).linear, picture)

@@ -14,7 +14,7 @@ import pytest
 import stage
 from renderers.normals import Normals
 from renderers.trace import Trace
-from renderers.tracing.draw import _kept
+from renderers.tracing.buffers import _kept
 from renderers.tracing.filter.edges_kernels import BEYOND
 from renderers.tracing.pack import pack
 from renderers.tracing.scratch import scratch
@@ -238,7 +238,7 @@ def test_a_picture_shows_nothing_of_the_one_before(junk):
         lambda: draw(thin, lights=(sun((0, 1, 1), (3.0, 3.0, 3.0)), black)),
     ]
     for again in draws:
-        first = again()
+        first = again().copy()  # its memory is that of the next picture
         for kept in _kept:
             for array in vars(kept).values():
                 if isinstance(array, np.ndarray):

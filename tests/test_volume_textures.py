@@ -13,10 +13,10 @@ from renderers.tracing.layout import ITEMS
 from renderers.tracing.pack import pack
 from renderers.tracing.scratch import scratch
 from renderers.tracing.solids.surface_kernels import normal_at
-from sceneql.bodies.elements.block import Block
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.element_mesh import meshed
 from sceneql.bodies.elements.skin import Inside, Skin
+from sceneql.bodies.filling.block import Block
 from sceneql.failure import RunFailure
 from sceneql.field.tape.builder import TapeBuilder
 from sceneql.frame import Mesh, is_held

@@ -50,6 +50,14 @@ def camera_ray(reals, px, py):
 
 
 @part
+def next_place(k, last, x, y, width):
+    """(x, y) of pixel k, where those of pixel ``last`` are known: most follow one another, and a division is slow."""
+    if k == last + 1:
+        return (x + 1, y) if x + 1 < width else (0, y + 1)
+    return k % width, k // width
+
+
+@part
 def place_of(i):
     """(x, y) of the ith pixel of a band TILE rows high, in the order of tiles."""
     left, i = i // (TILE * TILE) * TILE, i % (TILE * TILE)

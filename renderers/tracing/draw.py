@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from renderers.tracing import layout
-from renderers.tracing.camera_kernels import TILE
-from renderers.tracing.certified import TOLERANCE
+from renderers.tracing.buffers import Buffers, put_back, take
+from renderers.tracing.certified import BOUNCES, TOLERANCE
 from renderers.tracing.filter.filter_kernels import deepen, widen
-from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE, lay_out
+from renderers.tracing.filter.hard_kernels import is_hard, list_cuts
+from renderers.tracing.filter.planes_kernels import LANES, lay_out
 from renderers.tracing.filter.refine_kernels import shade_rows
 from renderers.tracing.filter.spread_kernels import ROOM, spread_sky
 from renderers.tracing.light.sampling_kernels import subpixels
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import Picture, over_rows
-from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.solids.packet_choice import lender, packets_for
 from renderers.tracing.sprites import over
 from renderers.tracing.tiles_kernels import choose, reach
@@ -25,52 +25,30 @@ from renderers.tracing.waves import Waves
 from renderers.tracing.waves_kernels import layers_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
 
     from sceneql.frame import Floats, SeenFrame
 
-
-class Buffers:
-    """Working memory of a picture. Layer 0: what the camera sees; layer 1: what is mirrored or refracted in that."""
-
-    def __init__(self, width: int, height: int, columns: int, layers: int) -> None:
-        self.shape, count = (width, height, columns, layers), width * height
-        self.records = np.zeros((layers, count, COLUMNS), dtype=np.float32)
-        self.radiance = np.empty((count, 3), dtype=np.float32)
-        self.visibility = np.zeros((layers, count, columns), dtype=np.float32)
-        self.fine = np.zeros((layers, count, columns), dtype=np.float32)
-        chunks = -(-width // LANES)
-        self.planes = np.zeros((height, chunks * (KEYS + columns * WIDE)), dtype=np.float32)
-        self.sums = np.zeros((height, chunks * (1 + columns) * LANES), dtype=np.float32)
-        self.means = np.zeros((height, chunks * (1 + columns) * WIDE), dtype=np.float32)
-        bands = -(-height // TILE)
-        self.reached = np.zeros((bands, -(-width // TILE)), dtype=np.int8)
-        self.busy = np.ones_like(self.reached)
-        self.laid, self.chunks = np.ones((2, bands, chunks), dtype=np.int8)
-
-
-_kept: list[Buffers] = []
-"""The last picture's buffers: fresh memory costs the system a tenth of a frame's time."""
 
 DOUBTED = 0.01
 """Share of pixels with undecided roots up to which these are looked at by more rays: each of them takes long."""
 
 
-def _buffers(*shape: int) -> Buffers:
-    kept = _kept.pop() if _kept else None
-    return kept if kept is not None and kept.shape == shape else Buffers(*shape)
-
-
-def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0) -> Picture:
+def draw(
+    frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0, bounces: int = BOUNCES
+) -> Picture:
     """Ray-trace a frame; ``samples``, a power of two from 1 to 64: rays in a pixel at an edge between surfaces.
 
     ``tolerance`` is that of roots of implicit surfaces; with ``march`` they are sampled at so many places of a ray. At
-    the usual tolerance rays are tested against solids in packets, at others one by one.
+    the usual tolerance rays are tested against solids in packets, at others one by one. Light is reflected onto matte
+    surfaces by at most so many ``bounces``.
 
     Roots of implicit surfaces are certified (sceneql.field); shadows and the sky's light are sampled once a pixel by a
     net and averaged over the surface around it, so that the picture has no grain and repeats to the bit.
     """
-    scene, rows = pack(frame, tolerance, march)
+    scene, rows = pack(frame, tolerance, march, bounces=bounces)
     width, height = frame.view.size
     columns = FIRST_LIGHT + (2 if scene.mist == 0 else 3) * int(scene.ints[layout.LIGHT_COUNT])
     if scene.mist != 0:
@@ -78,14 +56,15 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
 
         light_up(scene, rows)
     layers = layers_of(scene)
-    buffers = _buffers(width, height, columns, layers)
+    hard = bool(is_hard(scene))
+    buffers = take(width, height, columns, layers, hard)
     reach(scene, buffers.reached)
     counts: list[tuple[int, int]] = []
     together = None if march else packets_for(frame, tolerance)
     with_waves = lender(lambda: Waves(scene, together and together(), rows, columns, layers))
 
     def gather(start: int, stop: int) -> None:
-        out = buffers.reached, buffers.busy, buffers.records, buffers.radiance, buffers.visibility
+        out = buffers.reached, buffers.busy, buffers.records, buffers.visibility, hard, buffers.radiance
         counts.append(with_waves(lambda w: w.gather(start, stop, *out)))
 
     def refine(start: int, stop: int, *of_layer: Floats) -> None:
@@ -94,33 +73,66 @@ def draw(frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march
 
     over_rows(height, gather)
     undecided, seconds = map(sum, zip(*counts, strict=True))
-    choose(buffers.busy, buffers.laid, buffers.chunks)
-    for layer in (1, 0) if seconds else (0,):
-        _filter(refine, buffers, layer)  # layer 0 last: the edges need its planes
+    layers_seen = (1, 0) if seconds else (0,)  # layer 0 last: the edges need its planes
+    if hard:
+        _soften(with_waves, buffers, layers_seen)
+    if samples > 1 or not hard:
+        choose(buffers.busy, buffers.laid, buffers.chunks)
+    for layer in () if hard else layers_seen:
+        _filter(refine, buffers, layer)
 
     def shade(start: int, stop: int) -> None:
-        shade_rows(
-            scene, start, stop, buffers.busy, buffers.records, buffers.fine, buffers.visibility, buffers.radiance
-        )
+        light = buffers.records, buffers.fine, buffers.visibility
+        shade_rows(scene, start, stop, buffers.busy, *light, buffers.radiance)
 
-    over_rows(height, shade)
-    points = subpixels(samples)
+    def lay_keys(start: int, stop: int) -> None:
+        none = np.empty((len(buffers.radiance), 0), dtype=np.float32)
+        lay_out(start, stop, width, buffers.chunks, buffers.records[0], none, buffers.planes)
+
+    if not hard:
+        over_rows(height, shade)
+    elif samples > 1:
+        over_rows(height, lay_keys)
     doubted = undecided if undecided <= DOUBTED * width * height else 0
-    linear = np.empty((width * height, 3), dtype=np.float32)
+    linear = buffers.linear()
+    points = subpixels(samples)
 
     def smooth(start: int, stop: int) -> None:
         light = buffers.records, buffers.radiance, buffers.visibility
         with_waves(lambda w: w.smooth(start, stop, points, doubted, buffers.busy, buffers.planes, *light, linear))
 
-    over_rows(height, smooth)
+    if samples > 1:
+        over_rows(height, smooth)
+    else:
+        linear[:] = buffers.radiance
     over(frame, buffers.records[0], linear)
-    _kept[:] = [buffers]
+    put_back(buffers)
     return Picture(linear.reshape(height, width, 3), undecided)
+
+
+def _soften(with_waves: Callable[..., None], buffers: Buffers, layers: Sequence[int]) -> None:
+    """Sample the edges of hard shadows in ``layers`` of records."""
+    width, height, columns = buffers.shape[:3]
+    found: dict[tuple[int, int], NDArray[np.int64]] = {}
+
+    def look(start: int, stop: int) -> None:
+        for layer in layers:
+            own = buffers.cuts[layer, start * width * columns :]
+            light = buffers.records[layer], buffers.visibility[layer]
+            found[layer, start] = own[: list_cuts(start, stop, width, buffers.busy, *light, own)]
+
+    def sample(start: int, _: int) -> None:
+        for layer in layers:
+            own = found[layer, start], buffers.records[layer], buffers.visibility[layer], buffers.radiance
+            with_waves(lambda w, own=own: w.soften(*own))
+
+    for stage in (look, sample):
+        over_rows(height, stage)
 
 
 def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> None:
     """Filter the visibility of a layer's records into buffers.fine."""
-    width, height, columns, _ = buffers.shape
+    width, height, columns = buffers.shape[:3]
     records, visibility, fine = buffers.records[layer], buffers.visibility[layer], buffers.fine[layer]
     marks, planes, sums, means = buffers.chunks, buffers.planes, buffers.sums, buffers.means
 

@@ -1,12 +1,13 @@
 """Layout of the tracer's scene (two arrays), of its scratch and of its lists of rays."""
 
 NODE_COUNT, ITEM_COUNT, ENDLESS_COUNT, LIGHT_COUNT, NODES_AT, LINKS_AT, SHAPE_COUNT = range(7)
-HAS_THIN, BOX_COUNT, EMBERS_AT, EMBERS, MISTS_AT, MISTS = range(7, 13)
+HAS_THIN, BOX_COUNT, EMBERS_AT, EMBERS, MISTS_AT, MISTS, BOUNCES = range(7, 14)
 """The header; HAS_THIN tells whether there are THIN items, EMBERS how many spheres glow, EMBERS_AT where their tree is,
-MISTS_AT where in the ints the places of the reals of so many MISTS are.
+MISTS_AT where in the ints the places of the reals of so many MISTS are, BOUNCES by how many surfaces light is reflected
+onto others.
 The first ENDLESS_COUNT items have no bounds; they stand in the first node, which has none either."""
 
-ITEMS = 13
+ITEMS = 14
 """Offset of the items, by leaf: kind, place of the reals, place of the surface, index of the shape."""
 KIND, REALS_AT, SURFACE_AT, SHAPE = range(4)
 TRIANGLE, ROUND, QUADRIC, HALF_SPACE, IMPLICIT, SHEET, GRID, THIN = range(8)
@@ -55,7 +56,7 @@ LINK = 3
 """Integers of a node: its skip link (the next node after a miss), first item, number of items (0: an inner node)."""
 
 SKY = 0
-"""Zenith, horizon, ground, visible; whether surfaces have light to reflect, whether `visible` is given: 14."""
+"""Zenith, horizon, ground, visible; whether light comes from sky or surfaces; whether `visible` is given: 14."""
 HAS_LIGHT, HAS_VISIBLE = 12, 13
 TOLERANCE, SAMPLES = 14, 15
 """Tolerance of roots of implicit objects, relative to the searched piece of a ray; number of samples on it instead."""

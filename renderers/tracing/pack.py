@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderers.tracing import layout
-from renderers.tracing.certified import TOLERANCE
+from renderers.tracing.certified import BOUNCES, TOLERANCE
 from renderers.tracing.light.embers import embers_of
 from renderers.tracing.scene_kernels import TEXTURE, Scene
 from renderers.tracing.solids.hierarchy import hierarchy
@@ -34,11 +34,14 @@ SAME = 1e-3
 """Half pixels below which two ends of thin capsules are one place."""
 
 
-def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certain: bool = False) -> tuple[Scene, int]:
+def pack(
+    frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certain: bool = False, bounces: int = BOUNCES
+) -> tuple[Scene, int]:
     """The scene of a frame, and the rows of scratch that its kernels need.
 
     With ``samples`` implicit objects are sampled at so many places of a ray instead of searched for roots; with
-    ``certain`` they are searched by certified intervals alone. ValueError names a shape outside of the closed set.
+    ``certain`` they are searched by certified intervals alone. Light is reflected onto others by at most so many
+    ``bounces``, surfaces one after the other. ValueError names a shape outside of the closed set.
     """
     tables = Rows(frame.view)
     for index, shape in enumerate(frame.shapes):
@@ -53,7 +56,7 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     links = np.concatenate([first, links]) + np.array([1, len(endless), 0])
     lights = _lights(frame.lights)
     head = np.zeros(layout.LIGHTS)
-    head[layout.SKY : layout.SKY + 14] = _sky(frame)
+    head[layout.SKY : layout.SKY + 14] = _sky(frame, bounces)
     head[[layout.TOLERANCE, layout.SAMPLES]] = tolerance, samples
     head[layout.CAMERA : layout.CAMERA + 16] = _camera(frame.view)
     head[layout.FADE : layout.FADE + 4] = _cove(frame)
@@ -76,7 +79,7 @@ def pack(frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certa
     mists = np.array(tables.mists, dtype=np.int64) + reals_at
     reals = np.concatenate([head, *parts])
     header = [len(nodes), len(items), len(endless), len(lights), nodes_at, links_at, len(frame.shapes), tables.thin]
-    header += [len(panels), len(reals) - embers.size, (len(embers) + 1) // 2, 0, len(mists)]
+    header += [len(panels), len(reals) - embers.size, (len(embers) + 1) // 2, 0, len(mists), bounces]
     ranges_of = [*tables.ranges, *tables.textures]
     code_at = ranges_at + sum(map(len, ranges_of))
     ints = np.concatenate([header, items.ravel(), links.ravel(), *ranges_of, *tables.codes, mists], dtype=np.int32)
@@ -331,10 +334,11 @@ def _soft_boxes(lights: tuple[LightSource, ...]) -> Floats:
     return np.array(rows, dtype=np.float64).reshape(-1, layout.BOX)
 
 
-def _sky(frame: SeenFrame) -> Floats:
+def _sky(frame: SeenFrame, bounces: int) -> Floats:
     """The sum of all skies; `visible` is that of the last one that has it."""
     row = np.zeros(14)
-    row[12] = any(frame.lights) or any(any(shape.surface.emission) for shape in frame.shapes)
+    shines = [light for light in frame.lights if bounces > 0 or isinstance(light, seen.Sky)]
+    row[layout.HAS_LIGHT] = any(shines) or any(any(shape.surface.emission) for shape in frame.shapes)
     for sky in frame.lights:
         if isinstance(sky, seen.Sky):
             row[:9] += [*sky.zenith, *sky.horizon, *sky.ground]

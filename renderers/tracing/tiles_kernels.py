@@ -129,7 +129,10 @@ def reach(scene, reached):
 
 @kernel(types.void(SCENE, _i, _i, MARKS, MARKS, _stack, _rows), _nrt=False)
 def fill_background(scene, start, stop, reached, busy, records, radiance):
-    """Draw the tiles of rows start..stop, at most TILE, that are not ``reached``; erase their records if ``busy``."""
+    """Draw the tiles of rows start..stop, at most TILE, that are not ``reached``; erase their records if ``busy``.
+
+    None of the tiles is busy then.
+    """
     width = int(scene.reals[layout.WIDTH])
     u = scene.reals
     row = start // TILE
@@ -141,6 +144,7 @@ def fill_background(scene, start, stop, reached, busy, records, radiance):
             even = even and u[layout.SKY + c] == u[layout.SKY + 3 + c] == u[layout.SKY + 6 + c]
     for tile in range(reached.shape[1]):
         if reached[row, tile] != 0:
+            busy[row, tile] = 0
             continue
         last = min((tile + 1) * TILE, width)
         if busy[row, tile] != 0:
@@ -159,23 +163,17 @@ def fill_background(scene, start, stop, reached, busy, records, radiance):
                 radiance[k, 0], radiance[k, 1], radiance[k, 2] = r, g, b
 
 
-@kernel(types.void(_i, _i, _i, MARKS, MARKS, _stack, _stack), _nrt=False)
-def mark_busy(start, stop, width, reached, busy, records, visibility):
-    """Mark the ``reached`` tiles of rows start..stop: SHOWN where a pixel has a record or a thin capsule before it, and
-    LOSSY where besides the ``visibility`` of one tells that light of the sky is missing."""
-    row = start // TILE
-    for tile in range(reached.shape[1]):
-        if reached[row, tile] == 0:
-            continue
-        found = lossy = False
-        for y in range(start, stop):
-            for k in range(y * width + tile * TILE, y * width + min((tile + 1) * TILE, width)):
-                found = found or records[0, k, OWNER] != 0.0 or records[0, k, UNSURE] != 0.0
-                for layer in range(len(records)):
-                    if records[layer, k, OWNER] != 0.0:
-                        for c in range(SKY, SKY + 3):
-                            lossy = lossy or not visibility[layer, k, c] == 0.0
-        busy[row, tile] = (LOSSY if lossy else SHOWN) if found else 0
+@part
+def mark_busy(records, visibility, k, x, y, busy):
+    """Mark the tile of pixel k, at (x, y): SHOWN where it has a record or a thin capsule before it, and LOSSY where its
+    ``visibility`` tells besides that light of the sky is missing."""
+    mark = SHOWN if records[0, k, OWNER] != 0.0 or records[0, k, UNSURE] != 0.0 else 0
+    for layer in range(len(records)):
+        if records[layer, k, OWNER] != 0.0:
+            for c in range(SKY, SKY + 3):
+                if not visibility[layer, k, c] == 0.0:
+                    mark = LOSSY
+    busy[y // TILE, x // TILE] = max(busy[y // TILE, x // TILE], mark)
 
 
 @part

@@ -14,7 +14,8 @@ import numpy as np
 from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter.edges_kernels import TRIAL, add_samples, list_edges, list_samples, look_from_samples
-from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE
+from renderers.tracing.filter.hard_kernels import soften
+from renderers.tracing.filter.planes_kernels import LANES
 from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.light import look_lanes_kernels as looks
@@ -23,7 +24,7 @@ from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_pa
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.scratch import scratch_beside
 from renderers.tracing.solids.plain_lanes import lanes_for
-from renderers.tracing.tiles_kernels import fill_background, mark_busy
+from renderers.tracing.tiles_kernels import fill_background
 from renderers.tracing.waves_kernels import (
     advance_paths,
     ask_paths,
@@ -46,11 +47,11 @@ if TYPE_CHECKING:
 
     Array = NDArray[Any]
 
-TILES = 10
-ROOM = TILES * TILE * TILE
-"""Rays of the camera in a wave: few enough that their memory stays in a core's cache."""
-RAYS = 4 * ROOM
-"""Rays listed at a time."""
+TILES, RAYS = 10, 40
+"""Tiles of the camera's rays in a wave, few enough that their memory stays in a core's cache, and of rays listed at a
+time."""
+MORE_TILES, MORE_RAYS = 40, 80
+"""The same where no light comes from around: a wave is a band of most pictures, as each is some calls from Python."""
 FEW = 16
 """Ways of light below which each is followed by itself: a wave would cost more than it saves, unless packets alone know
 all that ways meet. Then a single ray costs as much as a wave."""
@@ -63,55 +64,67 @@ class Waves:
         """``packets`` to intersect solids by, or None; ``rows`` of scratch, ``columns`` of visibility, ``layers`` of
         records."""
         self.scene, self.packets = scene, packets
+        around = scene.reals[layout.HAS_LIGHT] != 0.0
+        self.tiles = TILES if around else MORE_TILES
+        room, rays = (TILE * TILE * count for count in (self.tiles, RAYS if around else MORE_RAYS))
         width = -(-int(scene.reals[layout.WIDTH]) // TILE) * TILE
-        self.asked = np.zeros((1 + RAYS, layout.ANSWERS)) if packets is None else packets.asked(RAYS)
+        self.asked = np.zeros((1 + rays, layout.ANSWERS)) if packets is None else packets.asked(rays)
         self.scratch = scratch_beside(self.asked, scene, rows)
         self.lanes = lanes_for(scene, packets is not None)
         if self.lanes is not None:
+            from renderers.tracing.solids.plain_lanes_kernels import meet_plain
+
+            self.meet_plain: Callable[..., None] = meet_plain
             self.asked[0, layout.ALONE] = 1.0
         self.listed = packets is not None or self.lanes is not None
         lights, others = scene.ints[layout.LIGHT_COUNT], scene.ints[[layout.EMBERS, layout.MISTS]]
         alone = self.asked[0, layout.ALONE] != 0.0
         self.looks = np.zeros(looks.ROOM) if alone and lights <= looks.MOST_LIGHTS and not others.any() else None
-        self.waiting = np.zeros(2 + RAYS, dtype=np.int64)
-        self.cones, self.at, self.each = np.zeros((ROOM, 3)), np.zeros(ROOM, np.int64), np.arange(ROOM, dtype=np.int64)
-        self.paths, self.of = np.zeros((ROOM, PATH)), np.zeros(ROOM, dtype=np.int64)
-        self.hits, self.met, self.skins = np.zeros(ROOM, dtype=np.int64), np.zeros((ROOM, 5)), np.zeros((ROOM, 6))
-        self.gathered = np.zeros((ROOM, 4))
-        count = RAYS if self.listed else 1
+        self.waiting = np.zeros(2 + rays, dtype=np.int64)
+        self.cones, self.at, self.each = np.zeros((room, 3)), np.zeros(room, np.int64), np.arange(room, dtype=np.int64)
+        some = room if layers > 1 or scene.ints[layout.HAS_THIN] else 1  # none begins where all is matte
+        self.paths, self.of = np.zeros((some, PATH)), np.zeros(some, dtype=np.int64)
+        self.hits, self.met, self.skins = np.zeros(room, dtype=np.int64), np.zeros((room, 5)), np.zeros((room, 6))
+        self.gathered = np.zeros((room, 4))
+        count = rays if self.listed and around else 1
         self.ways, self.live, self.ways_hit = (
             np.zeros((count, WAY)),
             np.zeros(count, np.int64),
             np.zeros(count, np.int64),
         )
         self.ways_met, self.ways_skins = np.zeros((count, 5)), np.zeros((count, 6))
-        self.marks, self.same = np.zeros((TILE, width + LANES), np.float32), np.zeros(LANES, np.float32)
-        self.edges, self.sums = np.zeros(width * TILE, dtype=np.int64), np.zeros((ROOM, 4))
-        self.own = np.zeros((layers, ROOM, COLUMNS), dtype=np.float32)
-        self.found = np.zeros((layers, ROOM, columns), dtype=np.float32)
-        self.spares = np.zeros((ROOM, COLUMNS), dtype=np.float32)
+        self.marks, self.same = (
+            np.zeros((TILE, -(-width // LANES) * LANES), np.float32),
+            np.zeros(LANES, np.float32),
+        )
+        self.edges, self.sums = np.zeros(width * TILE, dtype=np.int64), np.zeros((room, 4))
+        self.own = np.zeros((layers, room, COLUMNS), dtype=np.float32)
+        self.found = np.zeros((layers, room, columns), dtype=np.float32)
+        self.spares = np.zeros((some, COLUMNS), dtype=np.float32)
 
     def gather(
-        self, start: int, stop: int, reached: Array, busy: Array, records: Array, radiance: Array, visibility: Array
-    ) -> tuple[int, int]:
+        self, start: int, stop: int, reached: Array, busy: Array, records: Array, visibility: Array, final: bool,
+        radiance: Array,
+    ) -> tuple[int, int]:  # fmt: skip
         """Fill rows start..stop: records (L, h w, COLUMNS), radiance (h w, 3), visibility (L, h w, V) of L layers.
 
         Returns the number of pixels with an undecided root, and with a second record. Radiance is the part that needs
-        no visibility. Only in tiles that are ``reached`` rays are followed; those that show something become ``busy``.
+        no visibility, unless that is ``final``. Only in tiles that are ``reached`` rays are followed; those that show
+        something become ``busy``.
         """
         fill_background(self.scene, start, stop, reached, busy, records, radiance)
         tiles = np.flatnonzero(reached[start // TILE])
         undecided = seconds = 0
-        for first in range(0, len(tiles), TILES):
-            some = tiles[first : first + TILES]
-            doubted, more = self._gather(start, stop, some, records, radiance, visibility)
+        for first in range(0, len(tiles), self.tiles):
+            some = tiles[first : first + self.tiles]
+            doubted, more = self._gather(start, stop, some, busy, records, visibility, final, radiance)
             undecided, seconds = undecided + doubted, seconds + more
-        mark_busy(start, stop, int(self.scene.reals[layout.WIDTH]), reached, busy, records, visibility)
         return undecided, seconds
 
     def _gather(
-        self, start: int, stop: int, tiles: Array, records: Array, radiance: Array, visibility: Array
-    ) -> tuple[int, int]:
+        self, start: int, stop: int, tiles: Array, busy: Array, records: Array, visibility: Array, final: bool,
+        radiance: Array,
+    ) -> tuple[int, int]:  # fmt: skip
         """As ``gather``, for some tiles."""
         scene, asked, at = self.scene, self.asked, self.at
         count = list_pixels(scene, start, stop, tiles, asked, self.cones, at)
@@ -125,7 +138,8 @@ class Waves:
             return int(kernel(scene, self.scratch, asked, self.ways, first, last, at, records, visibility))
 
         self._ask(0, count, look)
-        counts: tuple[int, int] = end_pixels(self.gathered[:count], at, records, radiance)
+        light = at, records, visibility, final, radiance
+        counts: tuple[int, int] = end_pixels(scene, self.gathered[:count], *light, busy)
         return counts
 
     def refine(self, start: int, stop: int, *more: Array) -> None:
@@ -133,17 +147,22 @@ class Waves:
         own = self.scene, self.scratch, self.asked, self.ways
         self._ask(start, stop, lambda i, end: refine(*own, i, end, self.waiting, *more))
 
+    def soften(self, cuts: Array, records: Array, visibility: Array, radiance: Array) -> None:
+        """Sample the edges of hard shadows that hard_kernels.list_cuts has found."""
+        own = self.scene, self.scratch, self.asked
+        self._ask(0, len(cuts), lambda i, end: soften(*own, i, end, cuts, records, visibility, radiance))
+
     def smooth(
         self, start: int, stop: int, points: Array, undecided: int, busy: Array, planes: Array, records: Array,
         radiance: Array, visibility: Array, picture: Array,
     ) -> None:  # fmt: skip
         """Fill rows start..stop of ``picture`` (n, 3): ``radiance``, but edges by rays through ``points`` (s, 2)."""
         scene = self.scene
-        width, size = int(scene.reals[layout.WIDTH]), KEYS + visibility.shape[2] * WIDE
+        width, size = int(scene.reals[layout.WIDTH]), planes.shape[1] * LANES // self.marks.shape[1]
         light, own = (records, radiance), (self.marks, self.same, self.edges)
         doubted = undecided + int(scene.ints[layout.HAS_THIN])
         count = list_edges(start, stop, width, size, doubted, busy, planes, *light, picture, *own)
-        some = ROOM // TRIAL
+        some = len(self.gathered) // TRIAL
         for first in range(0, count, some):
             edges = self.edges[first : min(first + some, count)]
             self.sums[:] = [0.0, 0.0, 0.0, 1.0]
@@ -214,9 +233,7 @@ class Waves:
         if self.packets is not None:
             self.packets.meet(self.asked)
         if self.lanes is not None:
-            from renderers.tracing.solids.plain_lanes_kernels import meet_plain
-
-            meet_plain(self.scene, self.asked, self.lanes)
+            self.meet_plain(self.scene, self.asked, self.lanes)
 
     def _light(self, start: int, stop: int, paths: Array) -> int:
         """Light surfaces beyond the records of paths start..stop; returns where it ends."""

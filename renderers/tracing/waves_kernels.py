@@ -5,7 +5,7 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
-from renderers.tracing.camera_kernels import TILE, camera_ray, place_of
+from renderers.tracing.camera_kernels import TILE, camera_ray, next_place, place_of
 from renderers.tracing.gather_kernels import (
     DARK,
     DOUBTED,
@@ -24,12 +24,14 @@ from renderers.tracing.gather_kernels import (
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.light_kernels import backdrop, sharpness
 from renderers.tracing.light.sampling_kernels import sample_of
+from renderers.tracing.light.shade_kernels import add_light
 from renderers.tracing.light.visibility_kernels import AWAITED, look_around
 from renderers.tracing.path_kernels import describe_by, faded
 from renderers.tracing.record_kernels import OWNER, UNSURE, WEIGHT, erase
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part
 from renderers.tracing.solids.intersect_kernels import join, put_ray, tell, walk
 from renderers.tracing.solids.surface_kernels import skin_of
+from renderers.tracing.tiles_kernels import MARKS, mark_busy
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -240,19 +242,29 @@ def end_paths(paths, of, gathered):
         gathered[of[i], 3] = paths[i, DOUBTED]
 
 
-@kernel(types.UniTuple(_i, 2)(_paths, _many, _stack, _rows), _nrt=False)
-def end_pixels(gathered, at, records, radiance):
+@kernel(types.UniTuple(_i, 2)(SCENE, _paths, _many, _stack, _stack, types.boolean, _rows, MARKS), _nrt=False)
+def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy):
     """Write the radiance of the pixels ``at`` without their records' light, and whether they are UNSURE.
 
-    Returns the number of pixels that are, and of those with a second record.
+    Their light is added where their visibility is ``final``. Their tiles become ``busy``. Returns the number of pixels
+    that are unsure, and of those with a second record.
     """
+    width = int(scene.reals[layout.WIDTH])
     doubted = seconds = 0
+    before, x, y = -2, 0, 0
     for i in range(gathered.shape[0]):
+        k = at[i]
+        x, y = next_place(k, before, x, y, width)
+        before = k
         doubted += gathered[i, 3] > 0.0
-        seconds += len(records) > 1 and records[len(records) - 1, at[i], OWNER] > 0.0
-        records[0, at[i], UNSURE] = gathered[i, 3]
+        seconds += len(records) > 1 and records[len(records) - 1, k, OWNER] > 0.0
+        records[0, k, UNSURE] = gathered[i, 3]
         for c in range(3):
-            radiance[at[i], c] = gathered[i, c]
+            radiance[k, c] = gathered[i, c]
+        for layer in range(len(records) if final else 0):
+            if records[layer, k, OWNER] != 0.0:
+                add_light(scene, records[layer, k], visibility[layer, k], radiance[k], 1.0)
+        mark_busy(records, visibility, k, x, y, busy)
     return doubted, seconds
 
 

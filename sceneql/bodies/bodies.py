@@ -153,6 +153,12 @@ def moving_masses(bodies: Bodies, state: ModelState) -> Floats:
     return masses(bodies, state) * (inverse > 0)
 
 
+def weighed(bodies: Bodies, state: ModelState) -> Floats:
+    """(n,) what gravity acts on [kg], 0 for a fixed one."""
+    at, inverse = bodies.weighed_at, state.floats[bodies.inverse_at : bodies.inverse_at + bodies.count]
+    return state.floats[at : at + bodies.count] * (inverse > 0)
+
+
 def radii(bodies: Bodies, state: ModelState) -> Floats:
     """(n,) [m]."""
     return state.floats[bodies.radius_at : bodies.radius_at + bodies.count]

@@ -36,20 +36,20 @@ def close(assembly: Assembly, bodies: Bodies, matrix: Any) -> None:
 def factored(matrix: Any, assembly: Assembly) -> tuple[int, int, int, int, Any]:
     """Offsets and counts of the factors of a matrix and of room to solve with them, then their plan, int64.
 
-    ``matrix``: scipy sparse, symmetric, positive definite. Read by multifrontal_solve_kernels.solve_symmetric.
+    ``matrix``: scipy sparse, symmetric, positive definite. Read by multifrontal.solve_kernels.solve_symmetric.
     """
     import numpy as np
     from scipy.sparse import csr_array
 
-    from sceneql.linear import multifrontal, multifrontal_kernels
-    from sceneql.linear.multifrontal_layout import SINGLE_FACTOR
+    from sceneql.linear.multifrontal import planning, systems_kernels
+    from sceneql.linear.multifrontal.layout import SINGLE_FACTOR
 
     whole = csr_array(matrix, dtype=np.float64)
     whole.sum_duplicates()
     whole.sort_indices()
-    plan = multifrontal.plan(whole, symmetric=True)
+    plan = planning.plan(whole, symmetric=True)
     plan.numbers[SINGLE_FACTOR] = -1
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
-    if not multifrontal_kernels.factor_system(plan.numbers, whole.data, factors, work, True):
+    if not systems_kernels.factor_system(plan.numbers, whole.data, factors, work, True):
         raise ValueError("the inertia is singular")
     return assembly.floats(factors), len(factors), assembly.floats(work), len(work), plan.numbers

@@ -2,11 +2,11 @@
 """The closing term of masses whose inertia is a sparse matrix."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
+from sceneql.linear.multifrontal.solve_kernels import solve_symmetric
 from sceneql.system.signatures_kernels import TERM
 
 POSITION_AT, VELOCITY_AT, COUNT, FACTORS_AT, FACTORS, WORK_AT, WORK, HELD_AT, PLAN = range(9)
-"""COUNT entries of velocities; from PLAN on the plan of the factorization (multifrontal_kernels)."""
+"""COUNT entries of velocities; from PLAN on the plan of the factorization (linear/multifrontal)."""
 
 
 @lean(TERM, inner=True)

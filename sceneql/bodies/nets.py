@@ -58,6 +58,12 @@ class Net:
     """(m,) [N/m] in place of the model's stiffness."""
     dampers: Floats | None = None
     """(m,) [N s/m] in place of the model's damping."""
+    fills: Floats | None = None
+    """(n,) the volume that each mass stands for [m^3], of a single layer the area [m^2]; None: it fills none."""
+    layer: bool = False
+    """Whether it is a single layer of cells."""
+    apart: float = 0.0
+    """Distance of neighbors that nothing passes between [m]; 0 where there is none."""
 
 
 def alike(net: Net) -> Floats:
@@ -203,7 +209,21 @@ class Lattice(Record):
             pairs=pairs,
             stiffness=parts,
             places=side_masks(grid),
+            fills=self._fills(grid),
+            layer=self.count[2] == 1,
+            apart=self.spacing,
         )
+
+    def _fills(self, grid: Any) -> Floats | None:
+        """(n,) [m^3], of one layer across z [m^2]: masses on sides have half a cell; None of a line."""
+        import numpy as np
+
+        if min(self.count[:2]) < 2:
+            return None
+        sizes = np.array([self.spacing if count > 1 else 1.0 for count in self.count])
+        ends = ((grid == 0) | (grid == np.array(self.count) - 1)) & (np.array(self.count) > 1)
+        found: Floats = sizes.prod() * np.where(ends, 0.5, 1.0).prod(axis=1)
+        return found
 
 
 class Cloth(Record):
@@ -285,6 +305,7 @@ class Cloth(Record):
             triangles=np.concatenate(
                 [np.stack([i.ravel(), j.ravel(), k.ravel()], axis=1) for i, j, k in ((a, b, c), (a, c, d))]
             ).astype(np.int32),
+            apart=max(side / cells for side, cells in zip(self.size, self.cells, strict=True)),
         )
 
 
@@ -324,6 +345,7 @@ class Rope(Record):
             stiffness=np.ones(self.count - 1),
             places=dict(zip(ROPE_ENDS, (index == 0, index == self.count - 1), strict=True)),
             line=True,
+            apart=math.dist(self.from_, self.to) / (self.count - 1),
         )
 
 

@@ -113,6 +113,8 @@ class Filling(Record):
         return Lattice(count=(3, 3, 3), shear=1.0 if self.shear is None else self.shear)
 
     def _cubes(self, inside: Inside) -> Net:
+        import numpy as np
+
         from sceneql.bodies.filling.fill import grid
 
         points, cells = grid(inside, self.spacing)
@@ -121,7 +123,14 @@ class Filling(Record):
         pairs, parts = neighbors(cells, shear)
         if not len(pairs):
             raise inside.refusal("no two neighbors of the grid lie in it; make the spacing smaller")
-        return Net(points=points, pairs=pairs, stiffness=parts, places=side_masks(cells))
+        return Net(
+            points=points,
+            pairs=pairs,
+            stiffness=parts,
+            places=side_masks(cells),
+            fills=np.full(len(points), self.spacing**3),
+            apart=self.spacing,
+        )
 
     def _tetrahedra(self, inside: Inside) -> Net:
         import numpy as np
@@ -144,6 +153,8 @@ class Filling(Record):
         if not (held > 0.0).all():
             raise inside.refusal("so far from the origin its tetrahedra have no volume in double precision")
         masses = springs = None
+        fills = np.zeros(len(points))
+        np.add.at(fills, tetrahedra, 0.25 * held[:, None])
         if self.density is not None:
             masses = np.zeros(len(points))
             np.add.at(masses, tetrahedra, 0.25 * self.density * held[:, None])
@@ -162,6 +173,8 @@ class Filling(Record):
             masses=masses,
             springs=springs,
             dampers=None if springs is None or self.retardation is None else self.retardation * springs,
+            fills=fills,
+            apart=self.spacing,
         )
 
 

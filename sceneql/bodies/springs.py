@@ -54,6 +54,8 @@ def pin_problems(pins: Iterable[str] | Mapping[str, Pin], known: Sequence[str], 
 class SpringModel(Model):
     """Point masses tied by springs."""
 
+    immersible = True
+
     gives: ClassVar[Mapping[str, Gives]] = {
         **point_masses.BODY_OUTPUTS,
         "stretch": Gives(Type(), "Largest |L - L0| / L0 of a spring that holds.", computed=True),
@@ -149,6 +151,14 @@ class SpringModel(Model):
         assert self._made is not None
         return self._made[1]
 
+    def burdens(self, density: float) -> bool:
+        """Unless it is known to weigh what it displaces."""
+        return True
+
+    def static_net(self) -> tuple[float, int] | None:
+        """How far its masses are apart [m], and along how many axes they are, as its fields alone tell it."""
+        return None
+
     def mass_radius(self) -> float:
         """Radius of the masses [m]."""
         if self.radius is not None:
@@ -160,6 +170,8 @@ class SpringModel(Model):
         """Reserve the masses and add the forces of the springs."""
         import numpy as np
 
+        from sceneql.system import Springs
+
         net, weights, blocks = self.make(assembly)
         self._made = (net, blocks[:, 0].copy())
         fixed = self.held(net)
@@ -169,11 +181,17 @@ class SpringModel(Model):
         velocities[fixed] = 0.0
         for pin, how in self.pins.items() if isinstance(self.pins, dict) else ():
             velocities[pinned(pin, net, how)] = start_velocity(how, assembly)
-        bodies = point_masses.reserve(
-            name, assembly, net.points, velocities, weights, np.full(n, self.mass_radius()), fixed
-        )
-        blocks_at = assembly.floats(blocks.ravel())
         stiffness_at, damping_at = self.shared(assembly)
+        radii, flow = np.full(n, self.mass_radius()), assembly.carrier(name)
+        if flow is None:
+            bodies = point_masses.reserve(name, assembly, net.points, velocities, weights, radii, fixed)
+        else:
+            from sceneql.bodies.filling import displacing
+
+            displacing.must_hold(self.pins, assembly)
+            pull = float(((blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]) * blocks[:, 0] ** 2).sum())
+            bodies = displacing.reserve(name, assembly, net, velocities, weights, radii, fixed, pull, flow)
+        blocks_at = assembly.floats(blocks.ravel())
         ends = net.pairs.ravel().tolist()
         places = (bodies.position_at, bodies.velocity_at, bodies.work_at)
         ints = (*places, blocks_at, stiffness_at, damping_at, m, *ends, bodies.inverse_at)
@@ -198,7 +216,9 @@ class SpringModel(Model):
             guide(self.pins, net, assembly, bodies)
         assembly.remember(blocks_at, stiffness_at, torn_at)
         stiffnesses = blocks[:, 1] + blocks[:, 2] * assembly.numbers()[stiffness_at]
-        return replace(bodies, period=_shortest_period(net.pairs, stiffnesses, weights), tied=net.pairs)
+        period = _shortest_period(net.pairs, stiffnesses, weights)
+        dampings = blocks[:, 3] + blocks[:, 4] * assembly.numbers()[damping_at]
+        return replace(bodies, springs=Springs(net.pairs, np.stack([stiffnesses, dampings]), period))
 
     def holding(self, state: ModelState) -> Any:
         """(m,) bool: the springs that have not torn."""

@@ -129,6 +129,37 @@ def _store(typing, array, at, value):
 
 
 @intrinsic
+def _turn_over(typing, source, at, step, target, to, to_step):
+    kind = Lanes(source.dtype)
+    count = kind.count
+
+    def code(context, builder, signature, args):
+        at, step, to, to_step = (context.cast(builder, args[k], signature.args[k], types.intp) for k in (1, 2, 4, 5))
+
+        def spot(array, first, apart, k):
+            number = builder.add(first, builder.mul(apart, ir.Constant(first.type, k)))
+            return _place(context, builder, signature.args[array], args[array], number, types.intp)
+
+        places = [spot(0, at, step, k) for k in range(count)]
+        rows = [builder.load(place, align=size) for place, size in places]
+        half = 1
+        while half < count:  # what stands off the diagonal in each square of 2 half by 2 half numbers changes places
+            low = [j if j & half == 0 else count + j - half for j in range(count)]
+            high = [j + half if j & half == 0 else count + j for j in range(count)]
+            picks = [ir.Constant(ir.VectorType(INDEX, count), pick) for pick in (low, high)]
+            for k in [k for k in range(count) if k & half == 0]:
+                both = rows[k], rows[k + half]
+                rows[k], rows[k + half] = (builder.shuffle_vector(*both, pick) for pick in picks)
+            half *= 2
+        for k, row in enumerate(rows):
+            place, size = spot(3, to, to_step, k)
+            builder.store(row, place, align=size)
+        return context.get_dummy_value()
+
+    return types.none(source, at, step, target, to, to_step), code
+
+
+@intrinsic
 def _fma(typing, a, b, c):
     kind = _kind((a, b, c))
 
@@ -229,6 +260,13 @@ def _store_in_python(array, at, value):
     array[at : at + len(value)] = value
 
 
+def _turn_over_in_python(source, at, step, target, to, to_step):
+    count = BYTES // source.itemsize
+    block = np.stack([source[at + k * step : at + k * step + count] for k in range(count)])
+    for k in range(count):
+        target[to + k * to_step : to + k * to_step + count] = block[:, k]
+
+
 def _fma_in_python(a, b, c):
     return (np.longdouble(a) * np.longdouble(b) + np.longdouble(c)).astype(np.result_type(a, b, c))
 
@@ -262,6 +300,9 @@ load = _load_in_python if UNCOMPILED else _load
 """load(array, at): the lanes at array[at:]."""
 store = _store_in_python if UNCOMPILED else _store
 """store(array, at, lanes): float64 may be rounded to float32."""
+turn_over = _turn_over_in_python if UNCOMPILED else _turn_over
+"""turn_over(source, at, step, target, to, to_step): the rows of a square of numbers, from at on, as columns
+of one in target, at to"""
 spread = (lambda number: np.full(BYTES // np.asarray(number).itemsize, number)) if UNCOMPILED else _spread
 """A number in all lanes."""
 fma = _fma_in_python if UNCOMPILED else _fma

@@ -338,6 +338,8 @@ class _Checker:
             return None
         together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
         help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
+        if isinstance(node, SequenceNode) and len(node.items) == 1:
+            help = f"write `{node.items[0].span.text}`"
         if isinstance(node, MappingNode):
             help = word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)
@@ -383,6 +385,10 @@ class _Checker:
         section, _, inside = name.partition(".")
         if section in self.script.sections and inside in self.entries:
             hint: str | None = f"a part is named without its section: write `{inside}`"
+        elif several := self.script.groups.get(name):
+            hint = (
+                f"'{name}' is {len(several)} parts: name one, `{several[0]}`, or repeat this part, with `{name}.{{i}}`"
+            )
         else:
             hint = part_meant(name, mark, choices, self.names, self.catalogue)
         self.found.error("unknown-name", f"no part of {mark} is called '{node.text}'", node.span, help=hint)

@@ -252,6 +252,8 @@ class Names:
 
     def _meant(self, parts: tuple[str, ...], known: list[str]) -> str:
         """The help for a dotted name whose part is not known: its nearest part, or the part without its section."""
+        if parts[0] == "define":
+            return f"what is defined is named by itself: write `{'.'.join(parts[1:])}`"
         if parts[1] in known:
             return f"a part is named without its section: write `{'.'.join(parts[1:])}`"
         part = nearest(parts[0], known)

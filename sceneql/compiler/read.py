@@ -127,7 +127,8 @@ class Reader:
         if list(cls.model_fields) == [only := next(iter(cls.model_fields), "")]:
             return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
         found = list(self._fitting(node, cls.model_fields)) or list(self._formulas(node, cls))
-        likely = [kinds.written_name(name) for name in found] or required or self._paints(node, cls)
+        alone = required if len(required) == 1 else []
+        likely = alone or [kinds.written_name(name) for name in found] or self._paints(node, cls)
         return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
 
     def _paints(self, node: Node, cls: type[BaseModel]) -> list[str]:
@@ -265,6 +266,8 @@ class Reader:
         fitting = fitting or [arm for arm in arms if arm is not type(None)]
         if len(fitting) > 1 and not whole(node):
             raise Unreadable  # which arm was meant is not known
+        if all(get_origin(arm) is Literal for arm in fitting):
+            return self._choice(node, tuple(choice for arm in fitting for choice in get_args(arm)), what)
         for arm in fitting[:-1]:
             attempt = replace(self, found=Diagnostics())
             attempt = replace(attempt, names=replace(self.names, found=attempt.found))
@@ -349,8 +352,8 @@ class Reader:
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, better)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():
-            if (help := numbered(name)) is not None:
-                self.found.error("part-name", f"'{name}' cannot be a name", node.keys[name].span, help=help)
+            if (other := numbered(name)) is not None:
+                self.found.error("part-name", f"'{name}' cannot be a name", node.keys[name].span, help=other)
                 ok = False
                 continue
             try:

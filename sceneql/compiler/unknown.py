@@ -14,6 +14,10 @@ from sceneql.language.scope import Entry
 from sceneql.language.tree import Mapping, Scalar
 from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
 from sceneql.quantities.instead import instead
+from sceneql.quantities.other_words import OURS
+
+MANY = 6
+"""Words up to which all that have a field are told."""
 
 _UNPARTED = re.compile(r"(\w+)(?:(:)| )(.*)")
 
@@ -37,6 +41,8 @@ def report_unknown(
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
             help = f"write `{written[1]}: {written[3].strip()}`{space}"
+        if help is None and len(known) == 1:
+            help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
         help = help or "it has " + ", ".join(known)
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
     return not unknown
@@ -60,10 +66,11 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
         return f"it belongs under '{others[0]}:'"
     if catalogue.load(family, entry.name) is not None:
         return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
-    near = nearest(entry.word, words)
-    if fields is not None and near is None and (having := _having([entry.word], family, catalogue)):
-        text = f"`{{{having[0]}: {{{entry.word}: {fields.span.text}}}}}`"
-        return f"it is a field of {', '.join(sorted(having))}: write {text}"
+    having = [] if fields is None or entry.word in OURS else _having([entry.word], family, catalogue)
+    if fields is not None and having:
+        near = nearest(entry.name, having) or having[0]
+        of = f" of {', '.join(sorted(having))}" if len(having) <= MANY else ""
+        return f"it is a field{of}: write `{{{near}: {{{entry.word}: {fields.span.text}}}}}`"
     return instead(family, entry.word) or suggestion(entry.word, words)
 
 

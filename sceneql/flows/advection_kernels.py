@@ -9,6 +9,7 @@ side, it brings no momentum: so what comes back in there cannot grow (Bruneau & 
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.lanes_kernels import below, load, store
 from sceneql.flows.layout import (
     AREAS,
     AT,
@@ -23,6 +24,7 @@ from sceneql.flows.layout import (
     FACES,
     FRICTION,
     INVERSES,
+    LANES,
     PERIODIC,
     PUSHES,
     SCHEME,
@@ -32,7 +34,7 @@ from sceneql.flows.layout import (
     VISCOUS,
     WORK,
 )
-from sceneql.grids.drift_kernels import koren
+from sceneql.grids.drift_kernels import koren, koren_of_lanes
 from sceneql.grids.multigrid.stencil_kernels import multiply
 from sceneql.system.signatures_kernels import TERM, A, I
 
@@ -106,7 +108,13 @@ def carried(scheme, flows, a, b, c, d, out, count):
         for i in range(count):
             out[i] = flows[i] * (b[i] if flows[i] > 0.0 else c[i])
     else:
-        for i in range(count):
+        whole = count - count % LANES
+        for i in range(0, whole, LANES):
+            flow, first, second = load(flows, i), load(b, i), load(c, i)
+            across, before, behind = second - first, first - load(a, i), second - load(d, i)
+            slope = koren_of_lanes(below(0.0, flow, before, behind), below(0.0, flow, across, -1.0 * across))
+            store(out, i, flow * (below(0.0, flow, first, second) + slope))
+        for i in range(whole, count):
             forth = flows[i] > 0.0
             behind, ahead = (b[i] - a[i] if forth else c[i] - d[i]), (c[i] - b[i] if forth else b[i] - c[i])
             out[i] = flows[i] * ((b[i] if forth else c[i]) + koren(behind, ahead))

@@ -69,11 +69,11 @@ class _Builder:
                 self.opened[mine] = True
                 self.pressure[mine] = part.outflow.pressure
         self.fluids: Fluids | None = None
-        held, viscosity = assembly.fluids(name), number_in(model.viscosity)
-        if held or viscosity is None:
+        held, viscosity, laden = assembly.fluids(name), number_in(model.viscosity), assembly.laden(name)
+        if held or laden or viscosity is None:
             from sceneql.flows.varying.fluids import Fluids
 
-            self.fluids = Fluids(model, [density for density, _ in held], self.faces, assembly)
+            self.fluids = Fluids(model, [density for density, _ in held], laden, self.faces, assembly)
         self.viscosity = 1.0 if viscosity is None or self.fluids is not None else viscosity / model.density
         staircase = model.edges == "staircase"
         self.solids: Solids | None = None

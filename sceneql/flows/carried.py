@@ -27,10 +27,12 @@ if TYPE_CHECKING:
     from sceneql.grids.drift import Drift
     from sceneql.grids.medium import Boundary
     from sceneql.grids.spreading_medium import SpreadingMedium
+    from sceneql.kinds import Value
     from sceneql.system import Assembly, Flow, Grid
 
 THROUGH = "sceneql.flows.carrying_kernels:through"
 PAST = "sceneql.flows.carrying_past_kernels"
+EVEN_OUT = "sceneql.flows.carrying_kernels:even_out"
 LIFT = "sceneql.flows.carrying_kernels:lift"
 SAME = 1e-9
 """Difference of boxes, in parts of a cell, that counts as none."""
@@ -58,14 +60,18 @@ def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Bou
     faces = Faces(cells, periodic)
     n = len(cells.volumes)
     flows = [assembly.floats(np.zeros(n)) for _ in flow.areas]
+    own_skin = model.domain is not None
+    if own_skin:
+        _must_be_closed(flow, faces, opened, assembly.object(drift.by), drift)
+        areas = [assembly.floats(one) for one in _between(cells, faces, opened)]
     for grid, boundary in fields:
-        mine, beside, sides = _boundary(flow, faces)
-        values = _values(boundary, cells, mine, grid.at, assembly)
+        mine, beside, sides = _boundary(flow, faces, own_skin)
+        values = assembly.floats([]) if own_skin else _values(boundary, cells, mine, grid.at, assembly)
         brought, leaving = assembly.floats(np.zeros(n)), assembly.floats(np.zeros(n))
         known = assembly.floats(opened[beside - first]), values, len(mine)
         if flow.ints[LED] > 0:
             _past(grid, flow, areas, assembly)
-        if flow.fractions is not None:
+        if flow.fractions is not None and not own_skin:
             _cut(grid, flow.fractions, faces, opened, drift, assembly)
         starts = [one.at for one in flow.components]
         ints = (
@@ -74,6 +80,8 @@ def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Bou
             *cells.shape, *map(int, periodic), *(*starts, 0)[:3], len(starts),
         )  # fmt: skip
         assembly.term("internal", THROUGH, ints)
+        if own_skin:
+            assembly.term("internal", EVEN_OUT, (*(*flows, flows[0])[:3], leaving, *cells.shape))
         exchange = (brought, leaving, brought, leaving)
         assembly.term(
             "close",
@@ -140,12 +148,39 @@ def _must_agree(shape: Any, low: Any, spacing: Any, periodic: Any, flow: Flow, n
         raise ScriptError([Diagnostic("other-domain", text, span, "let the boundary of both say `periodic`")])
 
 
-def _boundary(flow: Flow, faces: Faces) -> tuple[Any, Any, Any]:
-    """Of the boundary's faces, but those of periodic sides, their numbers, entries in y and sides (1 high, -1 low)."""
+def _must_be_closed(flow: Flow, faces: Faces, opened: Floats, carrier: Any, drift: Drift) -> None:
+    """Raises ScriptError where fluid crosses the sides of a flow's box, or solids stand in it, whose field ends at the
+    skin of its own domain."""
+    first = flow.components[0].at
+    _, beside, _ = _boundary(flow, faces, False)
+    if carrier.around or (opened[beside - first] > 0.0).any():
+        text = "this field ends at the skin of its domain, and the flow has ways through or solids besides"
+        sides = " ".join(f"{side * count:.12g}" for side, count in zip(flow.spacing, flow.cells.shape, strict=True))
+        help = f"give it a `size` in place of its `domain`: {sides} m, and the flow's `corner`"
+        raise ScriptError([Diagnostic("other-domain", text, drift.by.span if drift.by else None, help)])
+
+
+def _between(cells: Cells, faces: Faces, opened: Floats) -> list[Floats]:
+    """By component the open areas of faces, without those beside cells that the field does not fill."""
+    found = []
+    filled = (cells.volumes > 0.0).reshape(cells.shape[::-1])
+    for axis in range(faces.axes):
+        area = opened[faces.index(axis)].copy()
+        line, count = 2 - axis, cells.shape[axis]
+        inner = tuple(slice(1, count) if k == line else slice(None) for k in range(3))
+        low, high = filled.take(range(count - 1), axis=line), filled.take(range(1, count), axis=line)
+        area[inner] *= low & high
+        found.append(area.ravel())
+    return found
+
+
+def _boundary(flow: Flow, faces: Faces, own_skin: bool) -> tuple[Any, Any, Any]:
+    """Of the boundary's faces, but those of periodic sides, their numbers, entries in y and sides (1 high, -1 low);
+    none of a field that ends at its own skin."""
     mine, beside, sides = [], [], []
     at = flow.components[0].at
     for axis in range(faces.axes):
-        for high in range(0 if faces.periodic[axis] else 2):
+        for high in range(0 if faces.periodic[axis] or own_skin else 2):
             chosen = faces.side(axis, high).ravel()
             mine.append(chosen)
             beside.append(at + faces.on_side(axis, high).ravel())
@@ -184,17 +219,24 @@ def _nodes(expr: Any) -> Any:
     return walk(expr)
 
 
-def add_buoyancy(buoyancy: Buoyancy, name: str, assembly: Assembly) -> None:
-    """Have a field lift the flow of a model. Raises ScriptError where that is none of the same box."""
-    link, flow = buoyancy.by.expr, assembly.flow_of(name)
+def field_in(by: Value, flow: Flow, name: str, assembly: Assembly) -> Grid:
+    """A field in the cells of a flow, that of model ``name``. Raises ScriptError where it is none of these."""
+    link = by.expr
     assert isinstance(link, Link)
-    if flow is None:
-        return  # its own assembly has failed
     grid = assembly.field_of(link)
     if grid is None:
         text = f"'{link.task}.{link.output}' is no field on a grid that is solved with the flow"
-        raise ScriptError([Diagnostic("no-field", text, buoyancy.by.span, "name one of a `diffusion`")])
+        raise ScriptError([Diagnostic("no-field", text, by.span, "name one of a `diffusion`")])
     box = assembly.numbers()[grid.cells.box_at : grid.cells.box_at + 6]
-    _must_agree(grid.cells.shape, box[:3], box[3:], grid.cells.periodic, flow, name, buoyancy.by.span)
+    _must_agree(grid.cells.shape, box[:3], box[3:], grid.cells.periodic, flow, name, by.span)
+    return grid
+
+
+def add_buoyancy(buoyancy: Buoyancy, name: str, assembly: Assembly) -> None:
+    """Have a field lift the flow of a model. Raises ScriptError where that is none of the same box."""
+    flow = assembly.flow_of(name)
+    if flow is None:
+        return  # its own assembly has failed
+    grid = field_in(buoyancy.by, flow, name, assembly)
     values = [assembly.value(one) for one in (buoyancy.expansion, buoyancy.reference, buoyancy.gravity)]
     assembly.term("force", LIFT, (grid.at, grid.cells.insides_at, *values, *flow.ints))

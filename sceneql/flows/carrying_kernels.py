@@ -10,6 +10,8 @@ FLOWS, AREAS, BROUGHT, LEAVING, BOUNDARY_AREAS, VALUES, FACES, HEAD = 0, 3, 6, 7
 cell, the areas of faces on the boundary, what comes in there has, and their number; then of each its cell, its entry in
 y and 1 where it is on the high side, -1 on the low one; then cells along x, y, z, 1 where periodic, first entries in y,
 axes."""
+LEAKS, SHAPE = 3, 4
+"""Of `even_out`, after flows along x, y, z: what leaves cells a second; cells along x, y, z."""
 FIELD, INSIDES, EXPANSION, REFERENCE, GRAVITY, FLOW = range(6)
 """Of `lift`: the field's first entry in y, ..., and where the flow's integers begin."""
 
@@ -42,6 +44,21 @@ def through(t, y, rate, floats, ints):
             floats[ints[LEAVING] + cell] += out
         else:
             floats[ints[BROUGHT] + cell] -= out * floats[ints[VALUES] + b]
+
+
+@lean(TERM, inner=True)
+def even_out(t, y, rate, floats, ints):
+    """Have what flows into a cell at its own skin be what its faces lack, with what the cell has: as a field's skin and
+    the flow's are cut each by its own planes, what its faces let through need not be 0 in sum."""
+    nx, ny, nz = ints[SHAPE], ints[SHAPE + 1], ints[SHAPE + 2]
+    leaving = floats[ints[LEAKS] : ints[LEAKS] + nx * ny * nz]
+    for axis in range(3 if nz > 1 else 2):
+        flows = floats[ints[axis] : ints[axis] + leaving.size]
+        stride = 1 if axis == 0 else (nx if axis == 1 else nx * ny)
+        for c in range(leaving.size):
+            if flows[c] != 0.0:
+                leaving[c] += flows[c]
+                leaving[c - stride] -= flows[c]
 
 
 @lean(TERM, inner=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from sceneql.contacts.colliders import is_moving
 from sceneql.failure import LimitRefused
+from sceneql.flows.transforms import factors
 from sceneql.grids.domain import cells
 from sceneql.grids.domain.cells import SIDES
 from sceneql.grids.domain.domain import inside
@@ -26,6 +27,10 @@ if TYPE_CHECKING:
 INSET = 3.0
 """How far off an open side of the box, in cells, the level there is taken, as the domain may end at that side: further
 than distances from walls are looked at (obstacles.ROUND)."""
+
+
+LARGEST_FACTOR = 11
+"""Of numbers of cells: transforms of n numbers by a factor p take about n p."""
 
 
 class Around:
@@ -63,11 +68,19 @@ def level_of(ref: Ref, flat: bool, assembly: Assembly) -> tuple[Any, Floats, Flo
         raise ScriptError([Diagnostic("no-domain", message, ref.span)]) from error
 
 
+def _quick(count: int) -> int:
+    """The next number from a count on without large prime factors, by which transforms take as long as they are."""
+    while max(factors(count), default=1) > LARGEST_FACTOR:
+        count += 1
+    return count
+
+
 def box_of(
     domain: Ref | None, flat: bool, size: tuple[float, ...], corner: tuple[float, ...], cell: float, depth: float,
     named: Container[str], assembly: Assembly,
 ) -> cells.Cells:  # fmt: skip
-    """The cells of a flow's box: where the script names no side, a cell more than its domain, whose skin is the wall.
+    """The cells of a flow's box: where the script names no side, a cell more than its domain, whose skin is the wall,
+    and so many that transforms are fast.
 
     Raises ScriptError where the domain moves or has no inside; LimitRefused.
     """
@@ -87,8 +100,12 @@ def box_of(
     if not (sides > 2.0 * cell).all():
         text = f"'{domain.name}' holds no two cells of {cell:g} m along each side"
         raise ScriptError([Diagnostic("no-cell", text, domain.span, "take a smaller `cell`")])
-    for number, name in enumerate(SIDES[: 2 * axes]):
-        if name not in named:
-            end = high if number % 2 else low
-            end[number // 2] += cell if number % 2 else -cell
+    for axis in range(axes):
+        ends = [end for side, end in zip(SIDES[2 * axis : 2 * axis + 2], (low, high), strict=True) if side not in named]
+        for end in ends:
+            end[axis] += cell if end is high else -cell
+        count = int(np.ceil((high - low)[axis] / cell * (1.0 - 1e-9)))
+        more = _quick(count) - count
+        for end in ends:
+            end[axis] += (cell if end is high else -cell) * more / len(ends)
     return cells.box(tuple((high - low)[:axes].tolist()), tuple(low[:axes].tolist()), cell, depth)

@@ -6,11 +6,13 @@ Frameworks for the Fast Fourier Transform (1992), 1.7); cosines come from it by 
 27-34. There and back a number comes out times the length of the complex transform.
 """
 
+from math import cos, pi, sin
+
 from numba import types
 
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.lanes_kernels import load, spread, store
+from sceneql.compiled.lanes_kernels import load, spread, store, turn_over
 from sceneql.flows.layout import (
     FACTORS,
     FREE_FREE,
@@ -20,6 +22,7 @@ from sceneql.flows.layout import (
     LENGTH,
     NODES,
     NODES_FREE,
+    PAD,
     PLAN,
     QUARTER_COSINES,
     QUARTER_SINES,
@@ -29,6 +32,9 @@ from sceneql.flows.layout import (
     WAVES,
 )
 from sceneql.system.signatures_kernels import A, I, N
+
+SINE_3 = sin(2 * pi / 3)
+COSINE_5, COSINE_52, SINE_5, SINE_52 = cos(2 * pi / 5), cos(4 * pi / 5), sin(2 * pi / 5), sin(4 * pi / 5)
 
 
 @lean_inlined
@@ -70,17 +76,63 @@ def by_four(re, im, to_re, to_im, at, far, into, width, wave, n, turn):
 
 
 @lean_inlined
+def turned(to_re, to_im, o, xr, xi, wave, n, turn):
+    """Store a number times exp(-2 pi i turn/n)."""
+    c, s = wave[turn], -wave[n + turn]
+    store(to_re, o, xr * c - xi * s)
+    store(to_im, o, xr * s + xi * c)
+
+
+@lean_inlined
+def by_three(re, im, to_re, to_im, at, far, into, width, wave, n, turn):
+    """One butterfly of three for all lanes."""
+    for q in range(0, width, LANES):
+        k, o = at + q, into + q
+        ar, ai, br, bi = load(re, k), load(im, k), load(re, k + far), load(im, k + far)
+        cr, ci = load(re, k + 2 * far), load(im, k + 2 * far)
+        er, ei, fr, fi = br + cr, bi + ci, SINE_3 * (br - cr), SINE_3 * (bi - ci)
+        gr, gi = ar - 0.5 * er, ai - 0.5 * ei
+        store(to_re, o, ar + er)
+        store(to_im, o, ai + ei)
+        turned(to_re, to_im, o + width, gr + fi, gi - fr, wave, n, turn)
+        turned(to_re, to_im, o + 2 * width, gr - fi, gi + fr, wave, n, 2 * turn)
+
+
+@lean_inlined
+def by_five(re, im, to_re, to_im, at, far, into, width, wave, n, turn):
+    """One butterfly of five for all lanes."""
+    for q in range(0, width, LANES):
+        k, o = at + q, into + q
+        ar, ai, br, bi = load(re, k), load(im, k), load(re, k + far), load(im, k + far)
+        cr, ci = load(re, k + 2 * far), load(im, k + 2 * far)
+        dr, di = load(re, k + 3 * far), load(im, k + 3 * far)
+        er, ei = load(re, k + 4 * far), load(im, k + 4 * far)
+        pr, pm, qr, qi, ur, ui, vr, vi = br + er, bi + ei, br - er, bi - ei, cr + dr, ci + di, cr - dr, ci - di
+        store(to_re, o, ar + (pr + ur))
+        store(to_im, o, ai + (pm + ui))
+        xr, xi = ar + (COSINE_5 * pr + COSINE_52 * ur), ai + (COSINE_5 * pm + COSINE_52 * ui)
+        yr, yi = SINE_5 * qr + SINE_52 * vr, SINE_5 * qi + SINE_52 * vi
+        turned(to_re, to_im, o + width, xr + yi, xi - yr, wave, n, turn)
+        turned(to_re, to_im, o + 4 * width, xr - yi, xi + yr, wave, n, 4 * turn)
+        xr, xi = ar + (COSINE_52 * pr + COSINE_5 * ur), ai + (COSINE_52 * pm + COSINE_5 * ui)
+        yr, yi = SINE_52 * qr - SINE_5 * vr, SINE_52 * qi - SINE_5 * vi
+        turned(to_re, to_im, o + 2 * width, xr + yi, xi - yr, wave, n, 2 * turn)
+        turned(to_re, to_im, o + 3 * width, xr - yi, xi + yr, wave, n, 3 * turn)
+
+
+@lean_inlined
 def by_many(re, im, to_re, to_im, p, m, r, width, wave, n, fold):
     """One butterfly of r for all lanes."""
     for k in range(r):
-        o = (r * p + k) * width
+        o, begin, apart = (r * p + k) * width, p * k * fold % n, k * (n // r)
         for q in range(0, width, LANES):
-            sum_re, sum_im = spread(0.0), spread(0.0)
+            sum_re, sum_im, turn = spread(0.0), spread(0.0), begin
             for j in range(r):
-                turn = (j * k * (n // r) + p * k * fold) % n
                 c, s, at = wave[turn], -wave[n + turn], (p + j * m) * width + q
                 xr, xi = load(re, at), load(im, at)
                 sum_re, sum_im = sum_re + (xr * c - xi * s), sum_im + (xr * s + xi * c)
+                turn += apart
+                turn -= n if turn >= n else 0
             store(to_re, o + q, sum_re)
             store(to_im, o + q, sum_im)
 
@@ -102,6 +154,10 @@ def fourier(re, im, other_re, other_im, n, wave, factors):
                 by_two(re, im, other_re, other_im, p * width, m * width, 2 * p * width, width, wave, n, p * fold)
             elif r == 4:
                 by_four(re, im, other_re, other_im, p * width, m * width, 4 * p * width, width, wave, n, p * fold)
+            elif r == 3:
+                by_three(re, im, other_re, other_im, p * width, m * width, 3 * p * width, width, wave, n, p * fold)
+            elif r == 5:
+                by_five(re, im, other_re, other_im, p * width, m * width, 5 * p * width, width, wave, n, p * fold)
             else:
                 by_many(re, im, other_re, other_im, p, m, r, width, wave, n, fold)
         re, other_re, im, other_im = other_re, re, other_im, im
@@ -139,37 +195,41 @@ def extended(j, kind, count, n, forward):
 def bring(x, raw, count, stride, step, lanes):
     """Numbers of rows ``step`` apart, the j-th of row l at 2 LANES j + l; 0 in rows from ``lanes`` on.
 
-    By blocks, so that rows whose numbers are neighbors are read a line of memory at a time.
+    By squares where rows' numbers are neighbors, so that a line of memory is read at a time.
     """
-    for first in range(0, count, LANES):
-        last = min(first + LANES, count)
-        if step == 1:
-            for j in range(first, last):
-                for lane in range(lanes):
-                    raw[2 * LANES * j + lane] = x[j * stride + lane]
-        else:
-            for lane in range(lanes):
-                for j in range(first, last):
-                    raw[2 * LANES * j + lane] = x[j * stride + lane * step]
-        if lanes < 2 * LANES:
-            for j in range(first, last):
-                for lane in range(lanes, 2 * LANES):
-                    raw[2 * LANES * j + lane] = 0.0
+    if lanes == 2 * LANES and step == 1:
+        for j in range(count):
+            store(raw, 2 * LANES * j, load(x, j * stride))
+            store(raw, 2 * LANES * j + LANES, load(x, j * stride + LANES))
+        return
+    first = 0
+    if lanes == 2 * LANES and stride == 1:
+        first = count - count % LANES
+        for j in range(0, first, LANES):
+            turn_over(x, j, step, raw, 2 * LANES * j, 2 * LANES)
+            turn_over(x, j + LANES * step, step, raw, 2 * LANES * j + LANES, 2 * LANES)
+    for lane in range(2 * LANES):
+        for j in range(first, count):
+            raw[2 * LANES * j + lane] = x[j * stride + lane * step] if lane < lanes else 0.0
 
 
 @lean_inlined
 def take_back(raw, x, count, stride, step, lanes):
     """The way back of `bring`."""
-    for first in range(0, count, LANES):
-        last = min(first + LANES, count)
-        if step == 1:
-            for j in range(first, last):
-                for lane in range(lanes):
-                    x[j * stride + lane] = raw[2 * LANES * j + lane]
-        else:
-            for lane in range(lanes):
-                for j in range(first, last):
-                    x[j * stride + lane * step] = raw[2 * LANES * j + lane]
+    if lanes == 2 * LANES and step == 1:
+        for j in range(count):
+            store(x, j * stride, load(raw, 2 * LANES * j))
+            store(x, j * stride + LANES, load(raw, 2 * LANES * j + LANES))
+        return
+    first = 0
+    if lanes == 2 * LANES and stride == 1:
+        first = count - count % LANES
+        for j in range(0, first, LANES):
+            turn_over(raw, 2 * LANES * j, 2 * LANES, x, j, step)
+            turn_over(raw, 2 * LANES * j + LANES, 2 * LANES, x, j + LANES * step, step)
+    for lane in range(lanes):
+        for j in range(first, count):
+            x[j * stride + lane * step] = raw[2 * LANES * j + lane]
 
 
 @lean_inlined
@@ -242,22 +302,23 @@ def along(x, count, stride, rows, step, groups, outer, forward, tables, scratch,
     """Transform x in place along an axis of ``count`` numbers ``stride`` apart, forward or back.
 
     Of each of ``groups`` groups, ``outer`` apart, there are ``rows`` rows, ``step`` apart. ``scratch``: 2 LANES count +
-    4 LANES (length of the complex transform).
+    4 LANES (length of the complex transform) + 3 PAD; without these the four arrays of a length of a power of two would
+    share their lines of the cache.
     """
     widest()
     kind, n = plan[KIND], plan[LENGTH]
     wave = tables[plan[TWIDDLES] : plan[TWIDDLES] + 2 * n]
     cosines = tables[plan[TWISTS] : plan[TWISTS] + n]
     sines = tables[plan[TWISTS] + n : plan[TWISTS] + 2 * n]
-    size, at = n * LANES, 2 * LANES * count
+    size, at, apart = n * LANES, 2 * LANES * count, n * LANES + PAD
     raw = scratch[:at]
     for number in range(groups * ((rows + 2 * LANES - 1) // (2 * LANES))):
         batches = (rows + 2 * LANES - 1) // (2 * LANES)
         begin = 2 * LANES * (number % batches)
         here = x[(number // batches) * outer + begin * step :]
         lanes = min(2 * LANES, rows - begin)
-        re, im = scratch[at : at + size], scratch[at + size : at + 2 * size]
-        more_re, more_im = scratch[at + 2 * size : at + 3 * size], scratch[at + 3 * size : at + 4 * size]
+        re, im = scratch[at : at + size], scratch[at + apart : at + apart + size]
+        more_re, more_im = scratch[at + 2 * apart :][:size], scratch[at + 3 * apart :][:size]
         bring(here, raw, count, stride, step, lanes)
         back = kind < WAVES and not forward
         if back:
@@ -271,6 +332,24 @@ def along(x, count, stride, rows, step, groups, outer, forward, tables, scratch,
         else:
             modes_of(re, im, raw, kind, count, n, forward, cosines, sines)
         take_back(raw, here, count, stride, step, lanes)
+
+
+@lean(types.void(A, N, N, N, N, N, N, N, types.boolean, A, A, I), inner=True)
+def transform_of_rows(x, nx, ny, nz, first, last, back, front, forward, tables, scratch, plans):
+    """`transform`, forward where all is 0 but rows from ``first`` to before ``last`` along y, ``back`` to before
+    ``front`` along z; back where no others are wanted."""
+    plane, deep = nx * ny, front - back
+    for turn in range(3):
+        axis = turn if forward else 2 - turn
+        if axis == 0 and last - first == ny:
+            along(x[back * plane :], nx, 1, ny * deep, nx, 1, 0, forward, tables, scratch, plans[:PLAN])
+        elif axis == 0:
+            here = x[back * plane + first * nx :]
+            along(here, nx, 1, last - first, nx, deep, plane, forward, tables, scratch, plans[:PLAN])
+        elif axis == 1:
+            along(x[back * plane :], ny, nx, nx, 1, deep, plane, forward, tables, scratch, plans[PLAN : 2 * PLAN])
+        elif nz > 1:
+            along(x, nz, plane, plane, 1, 1, 0, forward, tables, scratch, plans[2 * PLAN : 3 * PLAN])
 
 
 @lean(types.void(A, N, N, N, types.boolean, A, A, I), inner=True)

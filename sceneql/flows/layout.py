@@ -42,8 +42,10 @@ SOLVER_AT, STORE, STORE_SIZE = 42, 43, 44
 one number a cell; floats of the store."""
 LED = 45
 """By cell where solids move: what they leave of it (0: none moves); the rate of what their walls push [m^3/s^2] is then
-by cell after SEEPING."""
-PLANS, PLAN = 46, 24
+by cell after SEEPING, and then what all push into a closed box, in parts of what they push at all."""
+UNCUT = 46
+"""Along x, y, z: the conductance of a face of the box in the pressure's equation."""
+PLANS, PLAN = 47, 24
 """Of each axis PLAN integers."""
 KIND, LENGTH, TWIDDLES, TWISTS, FACTORS = 0, 1, 2, 3, 4
 """Of a plan: the modes; length of the Fourier transform; cosines and sines of 2 pi k/length, then of pi k/(2 length);
@@ -62,3 +64,5 @@ CHANGE, VELOCITY, RATE = range(3)
 rates."""
 LANES = 8
 """Pairs of rows that are transformed side by side: as many as numbers in a lane, and in a line of memory."""
+PAD = 24
+"""Numbers between arrays that are read side by side: three lines of memory."""

@@ -23,7 +23,7 @@ from sceneql.quantities.units import describe, in_words
 MOVING = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.VELOCITY)]
 VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True)]
 STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_start=True)]
-VISCOSITY = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.PRESSURE * dim.TIME)]
+VISCOSITY = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"), dim.PRESSURE * dim.TIME)]
 FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME)]
 
 
@@ -157,6 +157,11 @@ class Buoyancy(Record):
                     yield Problem(text, (name,), code="dimension-mismatch")
 
 
+def of_field(viscosity: Formula) -> bool:
+    """Whether a viscosity varies with a field, which is `c` in it."""
+    return Symbol("c") in walk(viscosity.expr)
+
+
 MOMENTS = 200
 """Pieces of a run in which the mean velocities of solids are sampled before it."""
 SAMPLES = 12
@@ -188,10 +193,13 @@ def fastest_turn(
 
 
 def thickest(viscosity: Formula, corner: Sequence[float], size: Sequence[float]) -> float:
-    """The viscosity [Pa s] of a flow's own fluid, of a formula the largest at the start by samples of its box."""
+    """The viscosity [Pa s] of a flow's own fluid, of a formula the largest at the start by samples of its box; 0 where
+    it varies with a field, of which nothing is known before the run."""
     alone = number_in(viscosity)
     if alone is not None:
         return alone
+    if of_field(viscosity):
+        return 0.0
     rows = [[low + side * k / SAMPLES for k in range(SAMPLES + 1)] for low, side in zip(corner, size, strict=True)]
     found = 0.0
     for place in product(*rows):

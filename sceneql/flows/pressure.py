@@ -69,6 +69,7 @@ def write_pressure(
     inner = [faces.areas[axis] / float(cells.spacing[axis]) for axis in range(faces.axes)]
     tables, spectrum, room = plans(cells.shape, faces.periodic, ends_open, inner, assembly)
     ints[layout.PLANS : layout.EDGE_FIRST] = tables
+    ints[layout.UNCUT] = assembly.floats(np.array(inner))
     ints[layout.SPECTRUM] = assembly.floats(spectrum)
     ints[layout.PRESSURE] = assembly.floats(np.zeros(n))
     if solver == "fast_transform" and not uniform:

@@ -40,6 +40,7 @@ from sceneql.flows.layout import (
     VELOCITY,
     WORK,
 )
+from sceneql.flows.near_solids_kernels import by_few, near_solids
 from sceneql.grids.multigrid.layout import SOLVER
 from sceneql.grids.multigrid.linear_kernels import solver_at
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
@@ -106,13 +107,21 @@ def by_iterations(b, small, floats, ints):
     """Solve the pressure's equation in place, by conjugate gradients from 0, to a residual; whether it was reached.
 
     The transform alone as preconditioner would take the more iterations the less is left of a cell: so a step of
-    Jacobi's method in cut cells goes before it and comes after it.
+    Jacobi's method in cut cells goes before it and comes after it. Where few cells are near solids these alone are
+    iterated on.
     """
     nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
     n = nx * ny * nz
     room = floats[ints[WORK] - 5 * n : ints[WORK]]
+    most, sink = n // 3, floats[ints[SINK] : ints[SINK] + n]
+    few = near_solids(room[4 * n :], room, room[most:], most, floats, ints)
+    if few >= 0:
+        centered(b, sink, ints)
+        solved = by_few(b, small, few, room, floats, ints)
+        centered(b, sink, ints)
+        return solved
     r, z, p, q, volume = room[:n], room[n : 2 * n], room[2 * n : 3 * n], room[3 * n : 4 * n], room[4 * n :]
-    sink, cut = floats[ints[SINK] : ints[SINK] + n], floats[ints[CUT] : ints[CUT] + n]
+    cut = floats[ints[CUT] : ints[CUT] + n]
     gx = floats[ints[CONDUCTANCES] : ints[CONDUCTANCES] + n]
     gy = floats[ints[CONDUCTANCES + 1] : ints[CONDUCTANCES + 1] + n]
     gz = floats[ints[CONDUCTANCES + 2] : ints[CONDUCTANCES + 2] + (n if nz > 1 else 0)]
@@ -241,6 +250,23 @@ def less_gradient(x, q, factor, floats, ints):
                     lessen(u[low + up :], scales[low + up :], factor, q, q[row:], False, True, nx)
 
 
+@lean(types.boolean(A, N, A, I), inner=True)
+def rid(x, what, floats, ints):
+    """`project`, where floats[ints[PRESSURE]:] are the inflows of cells."""
+    n = ints[CELLS] * ints[CELLS + 1] * ints[CELLS + 2]
+    q = floats[ints[PRESSURE] : ints[PRESSURE] + n]
+    solved = True
+    small = SMALL * through_faces(x, what, floats, ints) if ints[ITERATES] > 0 else 0.0
+    if ints[ITERATES] == 1:
+        solved = by_iterations(q, small, floats, ints)
+    elif ints[ITERATES] == 2:
+        solved = by_name(q, small, floats, ints)
+    else:
+        by_transform(q, floats, ints)
+    less_gradient(x, q, 1.0, floats, ints)
+    return solved
+
+
 @lean(types.boolean(A, N, A, I))
 def project(x, what, floats, ints):
     """Make x free of divergence; floats[ints[PRESSURE]:] is then what its gradient takes away. Whether it is.
@@ -252,16 +278,7 @@ def project(x, what, floats, ints):
     outflow(x, q, what, floats, ints)
     for c in range(n):
         q[c] = -q[c]
-    solved = True
-    small = SMALL * through_faces(x, what, floats, ints) if ints[ITERATES] > 0 else 0.0
-    if ints[ITERATES] == 1:
-        solved = by_iterations(q, small, floats, ints)
-    elif ints[ITERATES] == 2:
-        solved = by_name(q, small, floats, ints)
-    else:
-        by_transform(q, floats, ints)
-    less_gradient(x, q, 1.0, floats, ints)
-    return solved
+    return rid(x, what, floats, ints)
 
 
 @lean(TERM, inner=True)

@@ -7,12 +7,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.flows import layout
+from sceneql.flows.obstacles.no_slip_numbers import UNEVEN
 from sceneql.grids.multigrid.layout import HISTORY, RECORD
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from sceneql.frame import Floats
     from sceneql.grids.medium import FieldLayout
     from sceneql.system import ModelState
+
+
+def crowded(ints: Sequence[int], floats: Floats) -> bool:
+    """Whether solids that move push into a closed box about as much as no flow has room for; ``ints``: the flow's."""
+    if ints[layout.LED] <= 0 or ints[layout.SINGULAR] == 0:
+        return False
+    cells = int(np.prod(ints[layout.CELLS : layout.CELLS + 3]))
+    return bool(abs(floats[ints[layout.SEEPING] + 2 * cells]) > 0.5 * UNEVEN)
 
 
 def measure(

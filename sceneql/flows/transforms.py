@@ -15,6 +15,7 @@ from sceneql.flows.layout import (
     LANES,
     NODES,
     NODES_FREE,
+    PAD,
     PLAN,
     QUARTER_COSINES,
     QUARTER_SINES,
@@ -83,7 +84,8 @@ def plans(
     spectrum = total.ravel()
     least = spectrum[spectrum > 1e-12 * spectrum.max(initial=1e-300)].min(initial=np.inf)
     inverse = 1.0 / (np.where(spectrum >= least, spectrum, least) * prod(lengths))
-    return ints, np.where(np.isfinite(inverse), inverse, 0.0), LANES * (16 * max(shape) + 2 * (max(shape) + 1))
+    room = LANES * (16 * max(shape) + 2 * (max(shape) + 1)) + 3 * PAD
+    return ints, np.where(np.isfinite(inverse), inverse, 0.0), room
 
 
 def factors(n: int) -> list[int]:

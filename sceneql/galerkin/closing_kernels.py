@@ -2,13 +2,13 @@
 """The closing terms of fields on elements: what flows in becomes a rate by the mass."""
 
 from sceneql.compiled.kernels import lean
-from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
+from sceneql.linear.multifrontal.solve_kernels import solve_symmetric
 from sceneql.system.signatures_kernels import TERM
 
 AT, COUNT, VOLUMES = range(3)
 """Integers of `lumped`."""
 FACTORS_AT, FACTORS, WORK_AT, WORK, PLAN = range(2, 7)
-"""Of `consistent`, besides AT and COUNT: from PLAN on the plan of the factorization (multifrontal_kernels)."""
+"""Of `consistent`, besides AT and COUNT: from PLAN on the plan of the factorization (linear/multifrontal)."""
 
 
 @lean(TERM, inner=True)

@@ -8,9 +8,11 @@ smooth; without a limiter, or where the cell behind the upstream one is missing,
 """
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.lanes_kernels import below
 from sceneql.system.signatures_kernels import TERM
 
 UPWIND, VAN_LEER, KOREN = range(3)
+SIXTH = 1.0 / 6.0
 AT, NX, NY, NZ, DIVISORS, VOLUMES, FLOWS, PERIODIC, LIMITER = *range(7), 9, 12
 STRENGTH, BROUGHT, LEAVING, BROUGHT_BACK, LEAVING_BACK, INFLOW = range(13, 19)
 """Volumes are 0 outside; flows, and 1 where periodic, along x, y, z; BACK: for a strength below 0."""
@@ -20,11 +22,20 @@ STRENGTH, BROUGHT, LEAVING, BROUGHT_BACK, LEAVING_BACK, INFLOW = range(13, 19)
 def koren(behind, ahead):
     """Half of Koren's limited slope: selected, not branched to, so that loops over it are vectorized."""
     a, b = abs(behind), abs(ahead)
-    third = (2.0 * b + a) / 6.0
+    third = (2.0 * b + a) * SIXTH
     size = a if a < b else b
     size = third if third < size else size
     size = size if ahead > 0.0 else -size
     return 0.0 if behind * ahead <= 0.0 else size
+
+
+@lean_inlined
+def koren_of_lanes(behind, ahead):
+    """`koren` of lanes: the part of the slope above 0, and that below."""
+    third = (ahead + ahead + behind) * SIXTH
+    low, high = below(behind, ahead, behind, ahead), below(ahead, behind, behind, ahead)
+    low, high = below(third, low, third, low), below(high, third, third, high)
+    return below(0.0, low, low, 0.0) + below(high, 0.0, high, 0.0)
 
 
 @lean_inlined

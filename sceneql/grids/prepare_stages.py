@@ -37,7 +37,7 @@ KERNELS = {
     "direct": "sceneql.grids.multigrid.grid_factors_kernels:solve",
     "fast_transform": "sceneql.grids.multigrid.transform_kernels:solve",
 }
-FIRST = {"direct": ("sceneql.linear.multifrontal_symmetric_kernels",)}
+FIRST = {"direct": ("sceneql.linear.multifrontal.symmetric_kernels",)}
 """Modules of a solver that the background process compiles first, while this one compiles others."""
 COARSEST = 2
 LONGEST_ROW = 512
@@ -178,10 +178,10 @@ def _iterations(grid: Grid) -> _Plan:
 def _direct(grid: Grid) -> _Plan:
     import numpy as np
 
-    from sceneql.linear import multifrontal
+    from sceneql.linear.multifrontal import planning
 
     pattern, entries = _pattern(grid)
-    plan = multifrontal.plan(pattern)
+    plan = planning.plan(pattern)
     numbers = np.concatenate([[len(entries), plan.factors, plan.work], entries.ravel(), plan.numbers])
     text = f"a sparse factorization with {plan.factors:.3g} numbers, made once for each length of step"
     return _Plan(numbers, len(entries) + plan.factors + plan.work, text)

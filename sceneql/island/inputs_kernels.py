@@ -11,7 +11,6 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.noise_kernels import noise_line, noise_space
-from sceneql.island import layout
 from sceneql.system.signatures_kernels import A, F, I, N
 
 WIDTH = 7
@@ -194,11 +193,3 @@ def refresh(t, y, floats, program):
             floats[out] = binary(code, floats[a], floats[b])
         else:
             floats[out] = unary(code, floats[a])
-
-
-@lean_inlined
-def values_at(t, y, floats, ints):
-    """Evaluate an island's values that vary (layout.py): none, as a rule."""
-    table = ints[layout.TABLE_AT]
-    if ints[table] < ints[table + 1]:
-        refresh(t, y, floats, ints[ints[table] : ints[table + 1]])

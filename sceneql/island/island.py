@@ -20,11 +20,11 @@ from sceneql.island.breakpoint_table import Breakpoint, BreakpointTable
 from sceneql.island.breakpoints import Breakpoints
 from sceneql.island.inputs import Inputs, WithoutSlopes
 from sceneql.island.jacobian import BY_DIFFERENCES, full, section
-from sceneql.island.reserved import Reserved
+from sceneql.island.offered import Offered
 from sceneql.island.system import Origin, Structure, System
 from sceneql.island.value_slopes import Layout, own_slopes, value_slopes
 from sceneql.kinds import Object, Ref, Value
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.expression import Expr, Link
 from sceneql.system import Fields, Place
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.island.inputs import Word
     from sceneql.island.setting import Setting
-    from sceneql.system import Bodies, Flow, Grid, Membrane, Mode, Slopes, Stage, Tied
+    from sceneql.system import Bodies, Flow, Mode, Slopes, Stage, Tied
     from sceneql.system.assembly import Ints
 
 STAGES: tuple[Stage, ...] = ("velocity", "internal", "force", "tie", "close", "constrain")
@@ -44,7 +44,7 @@ TIED = 150
 
 
 @dataclass
-class IslandAssembly(Reserved):
+class IslandAssembly(Offered):
     """The Assembly (system/assembly.py) of one island.
 
     ``places`` gives the indices into y of a solved model's output (None: it is computed); settable until `finish`.
@@ -56,8 +56,6 @@ class IslandAssembly(Reserved):
     places: Callable[[Link], NDArray[int64] | None] = lambda link: None
     points: Callable[[Link], tuple[Bodies, int, tuple[float, float, float]] | None] = lambda link: None
     """The masses of a link to a position, which of them, and where on it (Model.point); settable as ``places``."""
-    fields: dict[tuple[str, str], Grid] = field(default_factory=dict)
-    """The grids by model and output."""
     ties: list[Tied] = field(default_factory=list)
     """What its ties hold, for the term that finds all their forces."""
     tie_ints: tuple[int, ...] = ()
@@ -80,9 +78,6 @@ class IslandAssembly(Reserved):
     _varying: list[tuple[int, Value, Word]] = field(default_factory=list)
     _largest_step: float = float("inf")
     _stops: set[Breakpoint] = field(default_factory=set)
-    _grids: list[Grid] = field(default_factory=list)
-    _flows: dict[str, Flow] = field(default_factory=dict)
-    _membranes: dict[str, Membrane] = field(default_factory=dict)
     _apart: bool = True
     _unsloped: str = ""
     _remembered: dict[tuple[str, str | None], tuple[int, ...]] = field(default_factory=dict)
@@ -157,40 +152,18 @@ class IslandAssembly(Reserved):
         self._free.append(Block((kernel,), ints))
         self._frees.append((at, count))
 
-    def grid(self, grid: Grid) -> None:
-        """Say that part of the state is a field (system.Assembly)."""
-        self._grids.append(grid)
-
-    def offer(self, output: str, grid: Grid) -> None:
-        """Say where a field lies (system.Assembly)."""
-        self.fields[self._word[0], output] = grid
-
-    def field_of(self, link: Link) -> Grid | None:
-        """Where the field of a link lies (system.Assembly)."""
-        return self.fields.get((link.task, link.output))
-
-    def flow(self, flow: Flow) -> None:
-        """Say that part of the state is a flow (system.Assembly). Raises ScriptError for a second one."""
-        if self._flows:
-            text = f"'{next(iter(self._flows))}' is solved together with it, and an island has one flow"
-            raise ScriptError([Diagnostic("two-flows", text, self.line(), "let them not read one another")])
-        self._flows[self._word[0]] = flow
-
-    def flow_of(self, model: str | None = None) -> Flow | None:
-        """The flow of a model, or the only one (system.Assembly)."""
-        return next(iter(self._flows.values()), None) if model is None else self._flows.get(model)
-
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
         """Those that skins in it hold (system.Assembly)."""
         return self.setting.fluids(flow)
 
-    def membrane(self, membrane: Membrane) -> None:
-        """Say that entries are those of a skin (system.Assembly)."""
-        self._membranes[self._word[0]] = membrane
+    def carrier(self, model: str) -> Flow | None:
+        """The flow that carries a model (system.Assembly)."""
+        name = self.setting.carrier(model)
+        return None if name is None else self._flows.get(name)
 
-    def membrane_of(self, model: str) -> Membrane | None:
-        """The skin of a model (system.Assembly)."""
-        return self._membranes.get(model)
+    def laden(self, flow: str) -> bool:
+        """Whether masses add to its inertia (system.Assembly)."""
+        return self.setting.laden(flow)
 
     @property
     def on_grids(self) -> Fields:
@@ -368,6 +341,7 @@ class IslandAssembly(Reserved):
             inertia=tuple(self._matrices.items()),
             border=border,
             alike=tuple(self._alike),
+            following=tuple(self._following),
             rests=tuple(self._rests),
             terms=tuple(Origin(block.part, block.span) for block in blocks[1:first_exact]),
             events=tuple((block.pairs, Origin(block.part, block.span), block.help) for block in events),

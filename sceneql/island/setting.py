@@ -24,5 +24,11 @@ class Setting(Protocol):
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
         """Density and viscosity of each other fluid that skins in a flow hold (Model.fluid)."""
 
+    def carrier(self, model: str) -> str | None:
+        """The name of the flow that carries a model by a force; None where none does."""
+
+    def laden(self, flow: str) -> bool:
+        """Whether masses that a flow carries add to its inertia, or take some away (Model.burdens)."""
+
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""

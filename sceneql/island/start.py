@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from collections.abc import Callable, Hashable
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from sceneql.kinds import Object
 
 if TYPE_CHECKING:
     from sceneql.kinds import Ref, Shaped, Value
     from sceneql.system import Assembly
+
+T = TypeVar("T")
 
 
 class Start:
@@ -22,6 +25,10 @@ class Start:
     def at(self, value: Value) -> Any:
         """A value at the start."""
         return self._assembly.initial(value)
+
+    def kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:
+        """What is made for a part, for this start alone."""
+        return make()
 
     def object(self, ref: Ref) -> Shaped:
         """An object of the script."""

@@ -94,6 +94,8 @@ class System:
     """Unknowns that border the linear systems of implicit stages (Slopes.border)."""
     alike: tuple[tuple[int, int], ...] = ()
     """Offset and number of further entries of y that are of one size."""
+    following: tuple[tuple[int, int], ...] = ()
+    """Offset and number of entries of y that are functions of others (Assembly.follows)."""
     rests: tuple[tuple[int, Floats], ...] = ()
     """Offset and values at rest of entries of y that start elsewhere."""
     terms: tuple[Origin, ...] = ()

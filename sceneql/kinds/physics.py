@@ -53,7 +53,9 @@ class Model(Kind):
     """Whether its masses span a surface: all of a contact with such a model are solved together."""
 
     carried: ClassVar[bool] = False
-    """Whether it is a skin without inertia that a flow carries (system.Membrane), assembled after the flow."""
+    """Whether it is a skin without inertia that a flow carries (system.Membrane)."""
+    immersible: ClassVar[bool] = False
+    """Whether a flow may carry it (Interaction.carrier): it is then assembled after the flow."""
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies | None:
         """Reserve state, give initial values, add the terms of its own rate; the point masses forces may act on."""
@@ -114,6 +116,10 @@ class Model(Kind):
     def items(self, output: str) -> int | None:
         """How many items an output has, where its fields tell."""
         return None
+
+    def burdens(self, density: float) -> bool:
+        """Whether its masses, where a flow carries them, weigh other than what they displace of a density [kg/m^3]."""
+        return False
 
     def fluid(self) -> tuple[float, float] | None:
         """Density [kg/m^3] and viscosity [Pa s] of what it holds, where these are not those of its flow."""
@@ -226,11 +232,11 @@ class Interaction(Kind):
         return None
 
     def carrier(self) -> Ref | None:
-        """The flow by which it has skins carried (Model.carried), in place of acting on masses; else None."""
+        """The flow by which it has models carried (Model.immersible), in place of acting on masses; else None."""
         return None
 
-    def fastest_carried(self, skins: Mapping[str, Model], flow: Model) -> Iterable[Oscillation]:
-        """As `fastest`, of skins that its `carrier` carries."""
+    def fastest_carried(self, models: Mapping[str, Model], flow: Model, scene: StaticScene) -> Iterable[Oscillation]:
+        """As `fastest`, of models that its `carrier` carries."""
         return ()
 
     def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:
@@ -359,9 +365,15 @@ class Contact(Kind):
         raise NotImplementedError
 
     def assemble_carried(
-        self, name: str, assembly: Assembly, skins: Sequence[str], everyone: Sequence[Bodies], others: tuple[Ref, ...]
+        self,
+        name: str,
+        assembly: Assembly,
+        skins: Sequence[str],
+        carried: Sequence[Bodies],
+        everyone: Sequence[Bodies],
+        others: tuple[Ref, ...],
     ) -> None:
-        """Add its terms for all models at once that a flow carries (Model.carried); ``everyone``: its masses."""
+        """Add its terms for all skins and masses at once that a flow carries; ``everyone``: its other masses."""
         raise NotImplementedError
 
     def assemble_skins(

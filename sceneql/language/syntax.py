@@ -38,6 +38,8 @@ _PROBLEMS: Final = (
 )
 _NO_KEY = re.compile(r"(?:^|[,{\n\r])[ \t]*\Z")
 _KEY: Final = "write `name: value`"
+_LONGEST: Final = 1024
+"""Letters of a key (YAML 1.2, 7.4: implicit keys)."""
 
 
 def unprintable(text: str) -> int | None:
@@ -67,6 +69,9 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
         at -= 1
     if source.text[at : at + 1] == ":" and _NO_KEY.search(source.text[max(0, at - 80) : at]) is not None:
         return Diagnostic("key-not-text", "a key is missing before this colon", Span(source, at, at + 1), _KEY)
+    if (long := _long_key(source.text, at, flow)) is not None:
+        help = "a name is short: say more in a comment behind it"
+        return _syntax(f"a key of {at - long:,} letters; it may have {_LONGEST:,}", source, long, help)
     if flow is not None:
         return _in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow)
     character = source.text[at : at + 1]
@@ -82,6 +87,18 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
         if words in problem:
             return _syntax(message, source, at, help)
     return _syntax("this is not YAML", source, at, f"the parser says: {problem or error}")
+
+
+def _long_key(text: str, at: int, flow: int | None) -> int | None:
+    """Where the key begins that a colon ends, where it is longer than the parser takes one for a key."""
+    if text[at : at + 1] != ":" or at - 1 <= _LONGEST or text[at - 1].isspace():
+        return None
+    if text[at - 1] in "'\"":
+        start = text.rfind(text[at - 1], 0, at - 1)
+    else:
+        start = 1 + max(text.rfind(one, 0, at) for one in ("\n" if flow is None else "\n,[{"))
+        start += len(text[start:at]) - len(text[start:at].lstrip())
+    return start if at - start > _LONGEST else None
 
 
 def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:

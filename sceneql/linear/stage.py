@@ -236,12 +236,12 @@ def likely_kernels(system: System) -> tuple[str, ...]:
     if few:
         return ("sceneql.linear.dense_systems_kernels",)
     if system.border:
-        return ("sceneql.linear.multifrontal_kernels", "sceneql.linear.multifrontal_general_kernels")
+        return ("sceneql.linear.multifrontal.systems_kernels", "sceneql.linear.multifrontal.general_kernels")
     return (  # the process beside begins with the first, this one with the last
-        "sceneql.linear.multifrontal_forward_kernels",
-        "sceneql.linear.multifrontal_kernels",
-        "sceneql.linear.multifrontal_backward_kernels",
-        "sceneql.linear.multifrontal_symmetric_kernels",
+        "sceneql.linear.multifrontal.forward_kernels",
+        "sceneql.linear.multifrontal.systems_kernels",
+        "sceneql.linear.multifrontal.backward_kernels",
+        "sceneql.linear.multifrontal.symmetric_kernels",
     )
 
 
@@ -268,21 +268,21 @@ def _factored(
             True,
         )
 
-    from sceneql.linear import multifrontal, multifrontal_kernels
-    from sceneql.linear.ordering import Groups, grouped
+    from sceneql.linear.multifrontal import planning, systems_kernels
+    from sceneql.linear.multifrontal.ordering import Groups, grouped
 
     groups = grouped(pattern) if unit == 1 else Groups(list(np.arange(size).reshape(-1, 1)), pattern)
     count = groups.graph.shape[0]
     solid = not filling and groups.graph.nnz > (SOLID + 1) * count and count > SOLID_GROUPS
     if (solid or count > MOST_GROUPS) and not border:
         return None
-    plan = multifrontal.plan(pattern, groups, points, unit, exact, border)
+    plan = planning.plan(pattern, groups, points, unit, exact, border)
     if plan.operations > MOST_OPERATIONS and not border:
         return None
     tied = f", {border} of them forces of ties" if border else ""
     text = f"sparse factorization of {m} unknowns{tied}, {plan.factors:.3g} numbers in its factors"
     return _Solver(
-        multifrontal_kernels,
+        systems_kernels,
         plan.numbers,
         plan.factors,
         plan.work,

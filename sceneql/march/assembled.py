@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import cast
 
 from sceneql.doing import doing
@@ -20,7 +21,7 @@ BLOCK = 4608
 """Bodies of a block, roughly: at some 300 bytes each they stay in a core's cache from step to step."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Setting:
     """The part of the scene that an island's assembly reads."""
 
@@ -43,11 +44,25 @@ class Setting:
 
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
         """Density and viscosity of each other fluid that skins in a flow hold."""
-        kinds = [task.kind for task in self.tasks.values()]
-        carrying = [kind for kind in kinds if isinstance(kind, Interaction) and kind.carrier() is not None]
-        names = [name for kind in carrying if cast(Ref, kind.carrier()).name == flow for name in kind.targets() or ()]
-        found = [cast(Model, self.tasks[name].kind).fluid() for name in dict.fromkeys(names) if name in self.tasks]
+        found = [cast(Model, self.tasks[name].kind).fluid() for name, by in self._carriers.items() if by == flow]
         return tuple(one for one in found if one is not None)
+
+    def carrier(self, model: str) -> str | None:
+        """The flow that carries a model."""
+        return self._carriers.get(model)
+
+    def laden(self, flow: str) -> bool:
+        """Whether masses that a flow carries add to its inertia, or take some away."""
+        density = getattr(self.tasks[flow].kind, "density", 0.0)
+        carried = [cast(Model, self.tasks[name].kind) for name, by in self._carriers.items() if by == flow]
+        return any(model.burdens(density) for model in carried)
+
+    @cached_property
+    def _carriers(self) -> dict[str, str]:
+        """By model the flow that carries it."""
+        kinds = [task.kind for task in self.tasks.values() if isinstance(task.kind, Interaction)]
+        carried = [(name, flow.name) for kind in kinds if (flow := kind.carrier()) for name in kind.targets() or ()]
+        return {name: flow for name, flow in carried if name in self.tasks}
 
     def formula(self, link: Link) -> Expr | None:
         """The output of a kinematic model, or an object's field, as an expression; None of what stands in the state."""
@@ -96,7 +111,11 @@ class Assembled:
     def act(self) -> None:
         """Add the forces and contacts."""
         tasks = self.graph.tasks
-        for force in dict.fromkeys(force for force, _ in self.island.forces):
+        forces = dict.fromkeys(force for force, _ in self.island.forces)
+        # Masses that a flow carries come first: its skins move by its inertia, and theirs is part of it.
+        for force in [force for force in forces if cast(Interaction, tasks[force].kind).carrier()]:
+            self._add_to_masses(force)
+        for force in forces:
             self._add_force(force)
         if self.assembly.ties:
             from sceneql.bodies.rigid.tie_system import add_ties
@@ -114,7 +133,7 @@ class Assembled:
             add_bounded_step(self.assembly)
 
     def _add_force(self, force: str) -> None:
-        """Add a force on the masses of all its models."""
+        """Add a force on the masses of all its models, on skins and on fluids."""
         task = self.graph.tasks[force]
         kind = cast(Interaction, task.kind)
         for model in [model for name, model in self.island.forces if name == force] if kind.carrier() else ():
@@ -129,16 +148,25 @@ class Assembled:
         if kind.mutual and masses:
             with self.word(force):
                 kind.assemble_together(force, self.assembly, masses)
-        for bodies in masses if not kind.mutual else ():
-            with self.word(force, bodies.model):
-                kind.assemble(force, self.assembly, bodies)
+        if not kind.mutual and not kind.carrier():
+            self._add_to_masses(force)
+
+    def _add_to_masses(self, force: str) -> None:
+        """Add a force on the masses of each of its models."""
+        kind = cast(Interaction, self.graph.tasks[force].kind)
+        for model in [model for name, model in self.island.forces if name == force]:
+            bodies = self.bodies.get(model)
+            if bodies is not None:
+                with self.word(force, model):
+                    kind.assemble(force, self.assembly, bodies)
 
     def _add_contact(self, contact: str) -> None:
         """Add a contact of the masses of all its models with its objects."""
         task = self.graph.tasks[contact]
         kind = cast(Contact, task.kind)
         rows = [(self.bodies.get(model), others) for name, model, others in self.island.contacts if name == contact]
-        masses = [(bodies, tuple(Ref(other) for other in others)) for bodies, others in rows if bodies is not None]
+        found = [(bodies, tuple(Ref(other) for other in others)) for bodies, others in rows if bodies is not None]
+        masses = [(bodies, refs) for bodies, refs in found if bodies.immersed is None]
         with self.word(contact):
             if kind.mutual and masses:
                 kind.assemble_together(contact, self.assembly, [bodies for bodies, _ in masses], masses[0][1])
@@ -154,13 +182,15 @@ class Assembled:
         self._add_carried(contact, kind, [bodies for bodies, _ in masses])
 
     def _add_carried(self, contact: str, kind: Contact, everyone: Sequence[Bodies]) -> None:
-        """Add a contact of skins that a flow carries, with its objects and masses."""
+        """Add a contact of skins and masses that a flow carries, with its objects and other masses."""
         rows = [(model, others) for name, model, others in self.island.contacts if name == contact]
-        rows = [row for row in rows if cast(Model, self.graph.tasks[row[0]].kind).carried]
+        rows = [row for row in rows if self.assembly.carrier(row[0]) is not None]
+        carried = [bodies for model, _ in rows if (bodies := self.bodies.get(model)) is not None]
         with self.word(contact):
             if rows:
                 touched = tuple(Ref(other) for other in rows[0][1])
-                kind.assemble_carried(contact, self.assembly, [model for model, _ in rows], everyone, touched)
+                skins = [model for model, _ in rows if model not in {bodies.model for bodies in carried}]
+                kind.assemble_carried(contact, self.assembly, skins, carried, everyone, touched)
 
 
 def models_of(graph: SimulationGraph, island: Island) -> Assembled:
@@ -168,7 +198,8 @@ def models_of(graph: SimulationGraph, island: Island) -> Assembled:
     made = Assembled(graph, island, IslandAssembly(Setting(graph.tasks, graph.settings.clock.end)))
     stepper = cast(Solver, graph.tasks[island.solver].kind).stepper()
     made.assembly.by_tolerance = stepper.control.adaptive and not (stepper.needs.jacobian or stepper.needs.march)
-    for name in sorted(island.models, key=lambda name: cast(Model, graph.tasks[name].kind).carried):
+    setting = made.assembly.setting
+    for name in sorted(island.models, key=lambda name: setting.carrier(name) is not None):
         with made.word(name), doing(f"making {name}"):
             made.bodies[name] = cast(Model, graph.tasks[name].kind).assemble(name, made.assembly)
     for name in island.models:

@@ -35,7 +35,7 @@ def driver(system: System) -> Driver:
     structure = system.structure
     _write(system, layout.CALLS_AT, _calls(structure))
     none = load("sceneql.march.march_kernels")
-    met = load("sceneql.march.driver_contacts_kernels") if structure.exact or structure.local else none
+    met = load("sceneql.march.driver_contacts_kernels") if structure.exact else none
     gap, impact = (met.gap, met.impact) if structure.exact else (none.no_gap, none.no_impact)
     acting = (structure.after, structure.settling, structure.free, structure.tied)
     acts = load("sceneql.march.driver_acts_kernels") if any(acting) else none
@@ -43,7 +43,7 @@ def driver(system: System) -> Driver:
         function("sceneql.march.driver_kernels:rate"),
         gap,
         impact,
-        met.back_off if structure.local else none.no_back_off,
+        function("sceneql.march.driver_local_kernels:back_off") if structure.local else none.no_back_off,
         acts.after_step if structure.after else none.no_act,
         acts.settle if structure.settling else none.no_act,
         acts.free_motion if structure.free else none.no_free_motion,
@@ -70,7 +70,7 @@ def energy(system: System) -> Any:
 
 def limit(system: System) -> Any:
     """The largest part of a change that keeps surfaces apart; None on an island without such surfaces."""
-    return load("sceneql.march.driver_contacts_kernels").limit if system.structure.limits else None
+    return load("sceneql.march.driver_limit_kernels").limit if system.structure.limits else None
 
 
 def modules(structure: Structure) -> tuple[str, ...]:

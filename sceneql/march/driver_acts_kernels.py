@@ -6,7 +6,7 @@ from sceneql.compiled.numba.lazy_kernels import brought
 from sceneql.compiled.numbered_kernels import kernel_at
 from sceneql.compiled.pointers_kernels import after_step_at, free_motion_at
 from sceneql.island import layout
-from sceneql.island.inputs_kernels import values_at
+from sceneql.island.varying_kernels import values_at
 from sceneql.system.signatures_kernels import AFTER_STEP, FREE_MOTION, TIED_DRIFT, TIED_DRIFT_OF
 
 part_of_drift_at = kernel_at(TIED_DRIFT_OF)

@@ -4,7 +4,7 @@
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import rate_at
 from sceneql.island import layout
-from sceneql.island.inputs_kernels import values_at
+from sceneql.island.varying_kernels import values_at
 from sceneql.system import channels
 from sceneql.system.signatures_kernels import TERM
 

@@ -5,8 +5,8 @@ from sceneql.compiled.kernels import lean
 from sceneql.compiled.numba.lazy_kernels import brought
 from sceneql.compiled.pointers_kernels import AT_RATE, energy_at, rate_at
 from sceneql.island import layout
-from sceneql.island.inputs_kernels import values_at
 from sceneql.island.jacobian_kernels import gather
+from sceneql.island.varying_kernels import values_at
 from sceneql.system import channels
 from sceneql.system.signatures_kernels import ENERGY, JACOBIAN
 

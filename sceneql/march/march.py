@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +21,9 @@ from sceneql.march.engaged import Methods
 from sceneql.march.failing import GROWTH_LIMIT, LEAST, Stopped, blamed, failure
 from sceneql.march.first_step import first_step
 from sceneql.march.pace import Pace
+from sceneql.march.statistics import Statistics
 from sceneql.march.switching import Switch
+from sceneql.march.within_contact import WithinContact
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,23 +41,6 @@ AT_ONCE = 16
 """Steps of a first call: steps of flows may be as long as all those of later ones."""
 LARGEST = 1e100
 """Largest number at the start in SI units, so that the square of its growth does not overflow."""
-
-
-@dataclass(slots=True)
-class Statistics:
-    """The cost of a march so far."""
-
-    steps: int = 0
-    rejected: int = 0
-    """Rejected steps."""
-    events: int = 0
-    """Impacts of exact contacts."""
-    evaluations: int = 0
-    """Evaluations of the rate."""
-    orderings: int = 0
-    """How many times linear systems were ordered anew, since pairs came near that had no place in the Jacobian."""
-    seconds: float = 0.0
-    """Run time of the compiled steps [s]."""
 
 
 class March:
@@ -102,7 +86,7 @@ class March:
         self.corrected: Floats | None = None
         """(n,) what was taken from the state at the start, as velocities that ties forbid; None: nothing settles it."""
         self._floats_time = math.nan
-        self._alone = np.zeros(n, dtype=bool)
+        self._alone, self._within = np.zeros(n, dtype=bool), WithinContact(system)
         self._methods = Methods(several=stiff is not None)
         self._switch = None
         if stiff is not None:
@@ -252,9 +236,7 @@ class March:
         if engaged.mixed or (settles and touched):
             changed = self._sample != self._y1
             if changed.any():
-                line = np.empty_like(y)
-                kernels.straightened((t - t0) / h, h, *steps, line)
-                y[changed] = line[changed]
+                self._within.read((t - t0) / h, h, steps, changed, y)
         return self._settled(t, y), False
 
     def _settled(self, t: float, y: Floats) -> Floats:

@@ -51,6 +51,8 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
             raise
         if (other := instead("behind", word.group())) is not None:
             raise ScriptError([replace(found, help=other)]) from None
+        if instead("unit", word.group()) is not None:
+            raise
         hint = f"for a product write `*{word.group()[:40]}`"
         raise ScriptError([replace(found, help=hint if found.help is None else f"{found.help}; {hint}")]) from None
 

@@ -10,7 +10,20 @@ from sceneql.compiler.catalogue import ROOT, Catalogue
 from sceneql.compiler.passes.stable_steps import duration, later_bound
 from sceneql.failure import RunFailure
 from sceneql.graph import SimulationGraph
-from sceneql.kinds import Camera, Contact, Interaction, Model, Object, Output, Overlay, Picture, Tie
+from sceneql.kinds import (
+    Camera,
+    Contact,
+    Formula,
+    Interaction,
+    Model,
+    Object,
+    Output,
+    Overlay,
+    Picture,
+    Record,
+    Tie,
+    Value,
+)
 
 if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
@@ -44,6 +57,7 @@ def explain(graph: SimulationGraph) -> dict[str, Any]:
         "ahead": [name for name in dict.fromkeys(graph.cameras.values()) if _looks_ahead(graph, name)],
         "ahead_objects": _objects_ahead(graph),
         "ahead_overlays": _placed(graph),
+        "changing": _changing(graph),
         **_solved(graph),
         "left_out": [{"name": part.name, "word": part.word, "why": part.reason} for part in graph.left_out],
         "avoided": {
@@ -64,6 +78,23 @@ def _objects_ahead(graph: SimulationGraph) -> dict[str, str]:
     """What objects take from a dry run of the physics, by their names."""
     objects = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Object)}
     return {name: why for name, kind in objects.items() if graph.islands and (why := kind.looks_ahead())}
+
+
+def _changing(graph: SimulationGraph) -> dict[str, list[str]]:
+    """The fields of each object that a frame may have other values of than the one before; empty: it is made once."""
+    objects = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Object)}
+    return {name: [field for field, value in kind if not _constant(value)] for name, kind in objects.items()}
+
+
+def _constant(value: Any) -> bool:
+    """Whether what stands in a field is the same at all times."""
+    if isinstance(value, Value | Formula):
+        return value.constant
+    if isinstance(value, Record):
+        return all(_constant(part) for _, part in value)
+    if isinstance(value, dict):
+        return all(map(_constant, value.values()))
+    return not isinstance(value, list | tuple) or all(map(_constant, value))
 
 
 def _placed(graph: SimulationGraph) -> list[str]:
@@ -265,6 +296,10 @@ def text(plan: dict[str, Any]) -> str:
     ahead += [f"{name} stands where it hides none of it" for name in plan["ahead_overlays"]]
     ahead += [f"the range of {', '.join(plan['ranges'])} is all of it"] if plan["ranges"] else []
     lines += ["", f"the physics runs once ahead of the film: {'; '.join(ahead)}"] if ahead else []
+    once = [name for name, fields in plan["changing"].items() if not fields]
+    again = [f"{name} by its {', '.join(fields)}" for name, fields in plan["changing"].items() if fields]
+    lines += ["", f"made once: {', '.join(once) or 'no object'}"] if once or again else []
+    lines += [f"each frame anew: {'; '.join(again)}"] if again else []
     if plan["left_out"]:
         lines += ["", "left out:"]
         lines += [f"  {part['name']} ({part['word']}): {part['why']}" for part in plan["left_out"]]

@@ -34,6 +34,7 @@ def look(frame: SeenFrame, camera: str, within: Within) -> None:
             within[camera, shape.name] = min(first, frame.time), max(last, frame.time)
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def around(shape: Shape, eye: Floats) -> bool:
     """Whether a bounded solid is around a point (3,) [m]."""
     match shape:

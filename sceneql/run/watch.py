@@ -81,13 +81,16 @@ class Balance:
         tasks = self.island.graph.tasks
         forces = [cast(Interaction, tasks[force].kind) for force, _ in island.forces]
         within = all(force.internal() and {*(force.targets() or ())} <= {*island.models} for force in forces)
-        return free and within and not any(objects for _, _, objects in island.contacts)
+        carried = any(one is not None and one.immersed is not None for one in self.island.bodies.values())
+        return free and within and not carried and not any(objects for _, _, objects in island.contacts)
 
     @property
     def closed(self) -> bool:
-        """Whether energy is conserved: no value in time drives, no body is born or dies; forces count their work."""
+        """Whether energy is conserved: no value in time drives, no body is born or dies, no flow carries any; forces
+        count their work."""
         lasting = all(cast(Model, self.island.graph.tasks[name].kind).lasts() for name in self.models)
-        return lasting and not self.island.march.system.structure.varying
+        carried = any(one is not None and one.immersed is not None for one in self.island.bodies.values())
+        return lasting and not carried and not self.island.march.system.structure.varying
 
 
 class Watch:

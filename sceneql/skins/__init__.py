@@ -1,1 +1,1 @@
-"""Elastic skins full of fluid, that a flow carries."""
+"""Skins full of fluid, and masses, that a flow carries."""

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from sceneql.kinds import Moment, Ref
     from sceneql.system import Assembly
 
+SKINS = "a skin is that of a bounded object with an inside, as a `sphere`, an `implicit`, or a closed `mesh`"
 LOOKED = 256
 """Cells along the longer side of the box around an object in which its outline is looked for."""
 FINER = 8
@@ -37,7 +38,7 @@ def closed_line(ref: Ref, spacing: float, assembly: Assembly) -> Floats:
             lines, polish = _contour(level, low, high), _towards(level, float((high - low)[:2].max()))
     except (TypeError, ValueError) as error:
         text = f"'{ref.name}' cannot be a skin: {error}"
-        raise ScriptError([Diagnostic("no-domain", text, ref.span)]) from error
+        raise ScriptError([Diagnostic("no-domain", text, ref.span, SKINS)]) from error
     if len(lines) != 1:
         what = f"has {len(lines)} outlines" if lines else "has no outline"
         text = f"'{ref.name}' {what} in the plane z = 0: a flat skin is one closed line"

@@ -10,6 +10,7 @@ from sceneql.failure import LimitRefused
 from sceneql.grids.domain.domain import inside
 from sceneql.island.start import Start
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.skins.closed_line import SKINS
 from sceneql.skins.onto_level import onto
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def closed_surface(ref: Ref, spacing: float, assembly: Assembly) -> tuple[Floats
         points, triangles = _nets(level, low, high, spacing, assembly)
     except (TypeError, ValueError) as error:
         text = f"'{ref.name}' cannot be a skin: {error}"
-        raise ScriptError([Diagnostic("no-domain", text, ref.span)]) from error
+        raise ScriptError([Diagnostic("no-domain", text, ref.span, SKINS)]) from error
     why = wrong(len(points), triangles)
     if why:
         help = "take a smaller `spacing`, or a `cell` that goes with it"

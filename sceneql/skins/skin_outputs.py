@@ -58,6 +58,42 @@ def widest(skin: Line | Sheet, state: ModelState) -> float:
     return float(skin.sides_of(positions(skin, state)).max() / min(skin.flow.spacing[: len(skin.flow.areas)]))
 
 
+def turned(skin: Line | Sheet, state: ModelState) -> str:
+    """How a skin has turned inside out, as a run says it; empty where it has not."""
+    points = positions(skin, state)
+    if not np.isfinite(points).all():
+        return ""
+    if skin.volume(points) <= 0.0:
+        return "its skin is inside out at the end"
+    if len(skin.triangles):
+        return ""
+    crossed = _crossing(points[:, :2])
+    if crossed is None:
+        return ""
+    x, y = crossed
+    return f"its skin crosses itself at the end, near ({x:.4g}, {y:.4g}, 0) m: part of it is inside out"
+
+
+def _crossing(line: Floats) -> Floats | None:
+    """Where two sides of a closed line (n, 2) cross each other; None where none do."""
+    from scipy.spatial import cKDTree
+
+    ends = np.roll(line, -1, axis=0)
+    middles, longest = 0.5 * (line + ends), float(np.hypot(*(ends - line).T).max())
+    pairs = cKDTree(middles).query_pairs(longest, output_type="ndarray")
+    apart = np.abs(pairs[:, 1] - pairs[:, 0])
+    a, b = pairs[(apart > 1) & (apart < len(line) - 1)].T
+
+    def side(p: Floats, q: Floats, r: Floats) -> Floats:
+        found: Floats = (q[:, 0] - p[:, 0]) * (r[:, 1] - p[:, 1]) - (q[:, 1] - p[:, 1]) * (r[:, 0] - p[:, 0])
+        return found
+
+    over = side(line[a], ends[a], line[b]) * side(line[a], ends[a], ends[b]) < 0.0
+    over &= side(line[b], ends[b], line[a]) * side(line[b], ends[b], ends[a]) < 0.0
+    found: Floats | None = middles[a[np.argmax(over)]] if over.any() else None
+    return found
+
+
 def _pressure_jump(skin: Line | Sheet, points: Floats, state: ModelState) -> float:
     """The mean of the pressure in the cells that it holds, less that in all others, but for those beside it [Pa]."""
     flow = skin.flow

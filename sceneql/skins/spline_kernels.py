@@ -30,6 +30,28 @@ def four_points(f):
 
 
 @lean_inlined
+def odd(first, count, periodic, a, b, c, d):
+    """The weights of four faces where those beyond a wall are continued oddly."""
+    if not periodic:
+        if first == 0:
+            a, b, c = 0.0, b + 2.0 * a, c - a
+        if first == count - 1:
+            b, c, d = b - d, c + 2.0 * d, 0.0
+    return a, b, c, d
+
+
+@lean_inlined
+def even(first, count, periodic, a, b, c):
+    """The weights of three faces, and of none, where those beyond a wall are continued evenly."""
+    if not periodic:
+        if first == 0:
+            a, b = 0.0, b + a
+        if first == count - 1:
+            b, c = b + c, 0.0
+    return a, b, c, 0.0
+
+
+@lean_inlined
 def along(place, count, periodic, peskin):
     """The weights of four faces at 0, 1, ... ``count`` and the first one's number."""
     first = min(max(math.floor(place), 0), count - 1)
@@ -41,12 +63,7 @@ def along(place, count, periodic, peskin):
     b, c = (3.0 * f * f * f - 6.0 * f * f + 4.0) / 6.0, (3.0 * g * g * g - 6.0 * g * g + 4.0) / 6.0
     if peskin:
         a, b, c, d = four_points(min(max(f, 0.0), 1.0))
-    if not periodic:
-        if first == 0:
-            a, b, c = 0.0, b + 2.0 * a, c - a
-        if first == count - 1:
-            b, c, d = b - d, c + 2.0 * d, 0.0
-    return first - 1, (a, b, c, d)
+    return first - 1, odd(first, count, periodic, a, b, c, d)
 
 
 @lean_inlined
@@ -59,12 +76,7 @@ def across(place, count, periodic, peskin):
         first = math.floor(place)
     f = place - first - 0.5
     a, b, c = 0.5 * (0.5 - f) * (0.5 - f), 0.75 - f * f, 0.5 * (0.5 + f) * (0.5 + f)
-    if not periodic:
-        if first == 0:
-            a, b = 0.0, b + a
-        if first == count - 1:
-            b, c = b + c, 0.0
-    return first - 1, (a, b, c, 0.0)
+    return first - 1, even(first, count, periodic, a, b, c)
 
 
 @lean_inlined

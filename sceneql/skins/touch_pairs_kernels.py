@@ -38,6 +38,13 @@ def holds(ints, p, s):
     return ints[layout.HOLDS] + layout.HOLD * (ints[layout.SKINS] * p + s)
 
 
+@lean_inlined
+def nearest(floats, ints, axis, way):
+    """The shortest of ways along an axis that differ by whole periods of the flow [m]."""
+    period = floats[ints[layout.NUMBERS] + layout.PERIODS + axis]
+    return way - period * math.floor(way / period + 0.5) if period > 0.0 else way
+
+
 @lean(types.UniTuple(F, 4)(A, A, I, N, N, F, F), inner=True)
 def pull(y, floats, ints, p, s, load, grip):
     """From where friction holds a vertex to that vertex, across the normal (3) [m], and the part of the pull that
@@ -51,6 +58,7 @@ def pull(y, floats, ints, p, s, load, grip):
     for k in range(ints[layout.CORNERS]):
         other, part = ints[vertex(ints, corner(ints, f, k)) + layout.POSITION], floats[hold + layout.PARTS + k]
         x, y_, z = x - part * y[other], y_ - part * y[other + 1], z - part * y[other + 2]
+    x, y_, z = nearest(floats, ints, 0, x), nearest(floats, ints, 1, y_), nearest(floats, ints, 2, z)
     along = x * floats[n] + y_ * floats[n + 1] + z * floats[n + 2]
     x, y_, z = x - along * floats[n], y_ - along * floats[n + 1], z - along * floats[n + 2]
     drag, most = grip * math.sqrt(x * x + y_ * y_ + z * z), floats[ints[layout.FRICTION]] * load

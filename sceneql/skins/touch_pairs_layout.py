@@ -10,8 +10,9 @@ begin, and, after the last, its end; that list."""
 POSITION, FORCE, SKIN, VERTEX = range(4)
 """Offsets in y of the place and in the floats of the force of a vertex; number of its skin."""
 
-GAP, SIDE, STEEP = range(3)
-"""NUMBERS: the gap [m]; the longest side of a face in the state that was looked at last [m]; touch_layout.STEEP."""
+GAP, SIDE, STEEP, PERIODS = range(4)
+"""NUMBERS: the gap [m]; the longest side of a face in the state that was looked at last [m]; touch_layout.STEEP; along
+each axis how long the flow is where it is periodic, else 0 [m]."""
 
 LOW, SCALE, ACROSS, STARTS = 0, 3, 4, 7
 CELLS = 4

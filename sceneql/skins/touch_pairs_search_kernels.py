@@ -134,23 +134,16 @@ def parted(y, changed, ints, p, f):
     return math.sqrt(most)
 
 
-@lean(types.void(A, A, A, I, N, F), inner=True)
-def look(y, changed, floats, ints, p, reach):
-    """Write down the BEST of each skin that is nearer to a vertex than ``reach``; of others its distance is infinite.
-
-    Where ``changed`` is not empty, in place of the least distance the least part of that change in which it is gone.
-    """
+@lean(types.void(A, A, A, I, N, F, types.boolean), inner=True)
+def search(y, changed, floats, ints, p, reach, own_place):
+    """Write down the BEST that is nearer than so far; ``own_place``: the vertex is where it is, and not periods off."""
     room, best, own = ints[layout.ROOM], ints[layout.BEST], vertex(ints, p)
     count, corners, at = ints[layout.VERTICES], ints[layout.CORNERS], ints[own + layout.POSITION]
-    for s in range(ints[layout.SKINS]):
-        floats[best + layout.FOUND * s] = math.inf
     nx, ny, nz = (
         int(floats[room + layout.ACROSS]),
         int(floats[room + layout.ACROSS + 1]),
         int(floats[room + layout.ACROSS + 2]),
     )
-    if nx == 0:
-        return
     starts = room + layout.STARTS
     listed = starts + layout.CELLS * count + 1
     at_faces = layout.HEAD + layout.VERTEX * count + corners * ints[layout.FACES]
@@ -164,7 +157,7 @@ def look(y, changed, floats, ints, p, reach):
                 q = int(floats[listed + place])
                 other = vertex(ints, q)
                 there, s = ints[other + layout.POSITION], ints[other + layout.SKIN]
-                mine = s == ints[own + layout.SKIN]
+                mine = own_place and s == ints[own + layout.SKIN]
                 if mine and near_at_start(floats, ints, p, q):
                     continue
                 u, v, w = y[there] - y[at], y[there + 1] - y[at + 1], y[there + 2] - y[at + 2]
@@ -189,3 +182,48 @@ def look(y, changed, floats, ints, p, reach):
                         n0, s0 = found + layout.NORMAL, found + layout.SHARES
                         floats[n0], floats[n0 + 1], floats[n0 + 2] = x, y_, z
                         floats[s0], floats[s0 + 1], floats[s0 + 2] = w0, w1, w2
+
+
+@lean_inlined
+def images(y, floats, ints, at, axis, reach):
+    """Along an axis the first and the last number of periods by which a place is brought near where vertices are."""
+    period = floats[ints[layout.NUMBERS] + layout.PERIODS + axis]
+    if period == 0.0:
+        return 0, 0
+    room = ints[layout.ROOM]
+    low = floats[room + layout.LOW + axis] - reach
+    high = floats[room + layout.LOW + axis] + floats[room + layout.ACROSS + axis] / floats[room + layout.SCALE] + reach
+    return math.ceil((low - y[at + axis]) / period), math.floor((high - y[at + axis]) / period)
+
+
+@lean(types.void(A, A, A, I, N, F), inner=True)
+def look(y, changed, floats, ints, p, reach):
+    """Write down the BEST of each skin that is nearer to a vertex than ``reach``; of others its distance is infinite.
+
+    Where ``changed`` is not empty, in place of the least distance the least part of that change in which it is gone.
+    Where the flow is periodic the vertex is looked at from all places that it has.
+    """
+    room, best, at = ints[layout.ROOM], ints[layout.BEST], ints[vertex(ints, p) + layout.POSITION]
+    for s in range(ints[layout.SKINS]):
+        floats[best + layout.FOUND * s] = math.inf
+    if floats[room + layout.ACROSS] == 0.0:
+        return
+    far = reach + floats[ints[layout.NUMBERS] + layout.SIDE]
+    goes = changed.size > 0
+    x, y_, z = y[at], y[at + 1], y[at + 2]
+    u, v, w = (changed[at], changed[at + 1], changed[at + 2]) if goes else (0.0, 0.0, 0.0)
+    periods = ints[layout.NUMBERS] + layout.PERIODS
+    first_i, last_i = images(y, floats, ints, at, 0, far)
+    first_j, last_j = images(y, floats, ints, at, 1, far)
+    first_k, last_k = images(y, floats, ints, at, 2, far)
+    for k in range(first_k, last_k + 1):
+        for j in range(first_j, last_j + 1):
+            for i in range(first_i, last_i + 1):
+                a, b, c = i * floats[periods], j * floats[periods + 1], k * floats[periods + 2]
+                y[at], y[at + 1], y[at + 2] = x + a, y_ + b, z + c
+                if goes:
+                    changed[at], changed[at + 1], changed[at + 2] = u + a, v + b, w + c
+                search(y, changed, floats, ints, p, reach, i == 0 and j == 0 and k == 0)
+    y[at], y[at + 1], y[at + 2] = x, y_, z
+    if goes:
+        changed[at], changed[at + 1], changed[at + 2] = u, v, w

@@ -50,6 +50,7 @@ class Solid:
 def assemble(
     assembly: Assembly,
     skins: Sequence[tuple[str, Line | Sheet]],
+    carried: Sequence[Bodies],
     everyone: Sequence[Bodies],
     refs: Sequence[Ref],
     friction: Value,
@@ -57,14 +58,16 @@ def assemble(
 ) -> tuple[int, ...]:
     """Add what keeps skins off objects, masses, rigid bodies and each other; the offset of the gap in the floats.
 
-    Raises ScriptError for what cannot be collided with, and for what starts too near.
+    Masses that a flow carries are kept off all but each other and its skins: what one flow moves stays apart. Raises
+    ScriptError for what cannot be collided with, and for what starts too near.
     """
-    gap = max(made.membrane.cell for _, made in skins) if gap is None else gap
+    them = [(name, made.membrane) for name, made in skins]
+    them += [(bodies.model, bodies.immersed.points) for bodies in carried if bodies.immersed is not None]
+    gap = max(skin.cell for _, skin in them) if gap is None else gap
     rubs = not friction.constant or assembly.initial(friction) > 0.0
     told, touch = assembly.floats([gap]), Touch(assembly.value(friction), rubs, gap)
     solids = [solid for bodies in everyone for solid in _solids(bodies, assembly)]
-    for name, made in skins:
-        skin = made.membrane
+    for name, skin in them:
         if refs:
             objects = surfaces(refs, assembly, layout.HEAD)
             ints = _ints(assembly, skin, len(refs), objects, touch)
@@ -80,7 +83,8 @@ def assemble(
             numbered = list(_ints(assembly, skin, len(solids), (*heads, *data, *places), touch))
             numbered[own.BODIES] = at + len(data)
             _add(assembly, name, skin, [one.ref for one in solids], numbered, touch, BODIES, f"{BODIES}:limit")
-    add_pairs(assembly, skins, touch.friction_at, rubs, gap)
+    if skins:
+        add_pairs(assembly, skins, touch.friction_at, rubs, gap)
     return (told,)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.skins.deep import Sheet
     from sceneql.skins.flat import Line
-    from sceneql.system import Assembly
+    from sceneql.system import Assembly, Flow
 
 KERNELS = "sceneql.skins.touch_pairs_kernels"
 
@@ -45,7 +46,7 @@ def add_pairs(
     head = [0] * layout.HEAD
     head[layout.VERTICES], head[layout.FACES] = count, len(faces)
     head[layout.CORNERS], head[layout.SKINS] = corners, len(skins)
-    head[layout.NUMBERS] = assembly.floats([gap, 0.0, STEEPER])
+    head[layout.NUMBERS] = assembly.floats([gap, 0.0, STEEPER, *_periods(made[0][1].flow)])
     head[layout.FRICTION] = friction_at
     head[layout.WEIGHTS] = assembly.floats(np.concatenate(weights))
     head[layout.REST] = assembly.floats(np.concatenate(rest))
@@ -65,6 +66,12 @@ def add_pairs(
         assembly.after_step(f"{KERNELS}:hold", ints)
 
 
+def _periods(flow: Flow) -> list[float]:
+    """How long a flow is along x, y and z where it is periodic [m], else 0."""
+    sides = zip(flow.cells.periodic, flow.cells.shape, flow.spacing, strict=True)
+    return [n * side if around and n > 1 else 0.0 for around, n, side in sides]
+
+
 def _must_be_apart(
     assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], places: Sequence[Floats], ints: Any, gap: float
 ) -> float:
@@ -76,11 +83,12 @@ def _must_be_apart(
 
     all_points = [place.reshape(-1, 3) for place in places]
     help = f"leave a distance between them: forces begin at the gap of {gap:.3g} m"
-    for (name, skin), points in zip(made, all_points, strict=True):
-        for (other, _), others in zip(made, all_points, strict=True):
-            apart = (others.min(axis=0) > points.max(axis=0)) | (others.max(axis=0) < points.min(axis=0))
-            if name == other or apart.any():
-                continue
+    offsets = np.array(list(product(*((-one, 0.0, one) if one else (0.0,) for one in _periods(made[0][1].flow)))))
+    pairs = product(zip(made, all_points, strict=True), zip(made, all_points, strict=True), offsets)
+    for ((name, skin), points), ((other, _), whole), offset in pairs:
+        others = whole + offset
+        apart = (others.min(axis=0) > points.max(axis=0)) | (others.max(axis=0) < points.min(axis=0))
+        if (name != other or offset.any()) and not apart.any():
             held = skin.encloses(others, points)
             if held.any() and not held.all():
                 x, y, z = others[np.argmax(held != held[0])]

@@ -115,17 +115,17 @@ def _inverse(stiffness: Any, mass: Any, points: Floats, shift: float) -> Callabl
     """The solutions with K + shift M of the columns (n, k), at most BLOCK of them."""
     from scipy.sparse import csr_array
 
-    from sceneql.linear import multifrontal, multifrontal_kernels
-    from sceneql.linear.multifrontal_layout import SINGLE_FACTOR
+    from sceneql.linear.multifrontal import planning, systems_kernels
+    from sceneql.linear.multifrontal.layout import SINGLE_FACTOR
     from sceneql.stepping.eigenmodes_kernels import BLOCK, solve_block
 
     whole = csr_array(stiffness + shift * mass)
     whole.sum_duplicates()
     whole.sort_indices()
-    plan = multifrontal.plan(whole, points=points, symmetric=True)
+    plan = planning.plan(whole, points=points, symmetric=True)
     plan.numbers[SINGLE_FACTOR] = -1
     factors, work = np.zeros(plan.factors), np.zeros(plan.work)
-    multifrontal_kernels.factor_system(plan.numbers, whole.data, factors, work, True)
+    systems_kernels.factor_system(plan.numbers, whole.data, factors, work, True)
 
     room = np.zeros(BLOCK * plan.work)
 

@@ -1,7 +1,7 @@
 # mypy: ignore-errors
 """Solutions of eight systems at once with the factors of a symmetric matrix: each number of the factors is read once.
 
-For the plan and the factors, in double precision, see linear/multifrontal_kernels; b (n, 8), row by row.
+For the plan and the factors, in double precision, see linear/multifrontal/systems_kernels; b (n, 8), row by row.
 """
 
 from numba import types
@@ -9,8 +9,8 @@ from numba import types
 from sceneql.compiled.arithmetic_kernels import widest
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.lanes_kernels import BYTES, fma, load, store
-from sceneql.linear import multifrontal_layout as layout
-from sceneql.linear.multifrontal_entries_kernels import at_front
+from sceneql.linear.multifrontal import layout
+from sceneql.linear.multifrontal.entries_kernels import at_front
 from sceneql.system.signatures_kernels import A, I
 
 BLOCK = BYTES // 8

@@ -41,7 +41,7 @@ flow), `constrain` (a resting contact removes accelerations into the surface, a 
 
 from sceneql.system.assembly import Assembly, Mode
 from sceneql.system.fields import Cells, Fields, Flow, Grid, Membrane
-from sceneql.system.state import Bodies, ModelState, Place, Skin, Turning
+from sceneql.system.state import Bodies, Immersed, ModelState, Place, Skin, Springs, Turning
 from sceneql.system.stepping import Control, IslandFacts, Method, Needs, Prepared, Stepper
 from sceneql.system.terms import Pattern, Slopes, Stage
 from sceneql.system.ties import Drive, Led, Mover, Tied, TieRow
@@ -55,6 +55,7 @@ __all__ = [
     "Fields",
     "Flow",
     "Grid",
+    "Immersed",
     "IslandFacts",
     "Led",
     "Membrane",
@@ -68,6 +69,7 @@ __all__ = [
     "Prepared",
     "Skin",
     "Slopes",
+    "Springs",
     "Stage",
     "Stepper",
     "TieRow",

@@ -163,6 +163,15 @@ class Assembly(Protocol):
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
         """Density and viscosity of each other fluid that skins in a flow hold (Model.fluid)."""
 
+    def carrier(self, model: str) -> Flow | None:
+        """The flow that carries a model by a force (Interaction.carrier); None where none does."""
+
+    def laden(self, flow: str) -> bool:
+        """Whether masses that a flow carries add to its inertia, or take some away (Model.burdens)."""
+
+    def follows(self, at: int, count: int) -> None:
+        """Say that entries of y follow from others, written by a term or summed up: their errors are not measured."""
+
     def membrane(self, membrane: Membrane) -> None:
         """Say that entries of the state are a skin that a flow carries."""
 

@@ -84,7 +84,7 @@ class Flow:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Membrane:
-    """Points without inertia, a closed skin, that move as a flow does and hand it their forces."""
+    """Points, a closed skin without inertia or masses, that move as a flow does and hand it their forces."""
 
     count: int
     position_at: int

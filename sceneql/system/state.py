@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
+    from sceneql.system.fields import Membrane
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +40,28 @@ class Skin:
     """Its elastic modulus [Pa]: the pressure at which a barrier lets through half a gap or so."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Springs:
+    """Springs between masses at the start."""
+
+    ends: Any
+    """(m, 2) int: the bodies at their ends."""
+    strength: Any
+    """(2, m): stiffness [N/m], and damping [N s/m]."""
+    period: float
+    """Lower bound of the periods of oscillations [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Immersed:
+    """Masses that a flow carries."""
+
+    points: Membrane
+    """What moves as the flow does, for contacts."""
+    excess_at: int
+    """floats[excess_at + k]: mass less that of the fluid whose place it takes [kg], which it weighs."""
+
+
 @dataclass(frozen=True, slots=True)
 class Bodies:
     """Masses in an island's state, as offsets: body k has its center of mass at y[position_at + 3k : +3] [m]."""
@@ -56,14 +79,19 @@ class Bodies:
     """floats[inverse_at + k]: 1/mass; 0 for a fixed body."""
     radius_at: int
     """floats[radius_at + k]: collision radius [m]."""
-    period: float = float("inf")
-    """Lower bound of the periods of the springs' oscillations at the start [s]; infinite without springs."""
-    tied: Any = None
-    """(m, 2) int: the bodies at the ends of these springs; None without springs."""
+    springs: Springs | None = None
+    """The springs between them; None without."""
     turning: Turning | None = None
     """How they turn; None for point masses."""
     skin: Skin | None = None
     """The surface that they span; None for masses alone."""
+    immersed: Immersed | None = None
+    """What a flow carries of them, whose velocities then are the flow's there; None where none does."""
+
+    @property
+    def weighed_at(self) -> int:
+        """floats[weighed_at + k]: what gravity acts on [kg]."""
+        return self.mass_at if self.immersed is None else self.immersed.excess_at
 
 
 @dataclass(frozen=True, slots=True)

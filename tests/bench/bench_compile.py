@@ -37,6 +37,8 @@ PENDULUM = """{equations: {start: {a: 90 deg, b: 90 deg, a': 0, b': 0}, where: {
 HEAT = "{diffusion: {of: number, coefficient: 1e-2 m^2/s, size: 1 1 m, cell: 50 mm, initial: x}}"
 BALL = "{diffusion: {of: number, coefficient: 1e-2 m^2/s, domain: ball, cell: 0.2 m, initial: x}}"
 PULL = "{mutual_gravity: {constant: 1 m^3/kg/s^2, softening: 60 mm}}"
+SOFT = """{elastic: {block: {size: 0.4 0.4 0.4 m, center: 0 1.25 0 m, cells: [2, 2, 2]}, element: p1,
+  law: {neo_hookean: {modulus: 50 kPa, poisson: 0.4}}}}"""
 SOLVERS = (
     "euler", "semi_implicit_euler", "rk4", "verlet", "blanes_moan", "boris", "dopri5", "dop853", "gauss_radau15",
     "implicit_euler", "implicit_midpoint", "bdf2", "tr_bdf2", "rodas5p", "radau", "auto",
@@ -89,6 +91,8 @@ ISLANDS = {
     "cloth, implicit_euler": scene(CLOTH, "implicit_euler"),
     "cloth, bdf2": scene(CLOTH, "bdf2"),
     "cloth on sphere, rk4": scene(CLOTH, "rk4", touched="sphere"),
+    "elements, bdf2": scene(SOFT, "bdf2"),
+    "elements with barrier on sphere and plane, bdf2": scene(SOFT, "bdf2", touched="sphere plane"),
     "heat in a square, crank_nicolson": scene(HEAT, "crank_nicolson", ""),
     "heat in a ball, implicit_euler": scene(BALL, "implicit_euler", ""),
     "stars by tree, verlet": scene(

@@ -2,7 +2,7 @@
 
 Run: python tests/bench/bench_elements.py [name ...]. Rest is found by plain Newton's method on the project's own forces
 and stiffness (tests/solids.py), frequencies by SciPy from its matrices; `falling` times steps of bdf2 with 28,000
-elements beside the same tetrahedra as springs.
+elements beside the same tetrahedra as springs, `dropped` those that fall onto a torus.
 """
 
 from __future__ import annotations
@@ -132,15 +132,18 @@ def le10() -> None:
     outer = "(abs((x/3.25)^2 + (z/2.75)^2 - 1) < 1e-6)"
     hold = f"outer: {{where: '{outer}', components: xz}}, middle: {{where: '{outer}*(abs(y) < 0.1)', components: y}}, "
     hold += "one: {where: x < 1e-6, components: x}, two: {where: z < 1e-6, components: z}"
-    for spacing in (0.4, 0.35, 0.3, 0.28, 0.25, 0.22, 0.2):
+    cases = [(spacing, None) for spacing in (0.4, 0.37, 0.34, 0.31, 0.28, 0.25, 0.22, 0.2)]
+    for spacing, fine in [*cases, (0.4, 0.2), (0.4, 0.1), (0.35, 0.1), (0.3, 0.2), (0.3, 0.1), (0.27, 0.12)]:
+        finer = f"finer: {{d: {{near: 2 0.3 0 m, within: 0.1 m, spacing: {fine} m}}}}, " if fine else ""
         start = time.perf_counter()
         one = solid(
-            f"{{of: plate, spacing: {spacing} m, element: p2, law: {{linear: {{modulus: 210 GPa, poisson: 0.3}}}}, "
+            f"{{of: plate, spacing: {spacing} m, {finer}element: p2, "
+            "law: {linear: {modulus: 210 GPa, poisson: 0.3}}, "
             f"hold: {{{hold}}}, loads: {{top: {{where: y > 0.299999, pressure: 1 MPa}}}}, probes: {{d: 2 0.3 0 m}}}}",
             objects,
         )
         places, _ = one.rest(tolerance=1e-6)
-        name = f"LE10, p2, spacing {spacing}, {len(one.mesh.cells)} elements"
+        name = f"LE10, p2, spacing {spacing}{f', {fine} near it' if fine else ''}, {len(one.mesh.cells)} elements"
         told(name, one.read("d.stress", places)[2, 2] / -5.38e6 - 1, seconds=time.perf_counter() - start)
 
 
@@ -248,22 +251,36 @@ def torsion() -> None:
 
 def falling() -> None:
     """Steps of bdf2 at 10 ms: 28,392 p1 elements in free fall beside springs along the same edges."""
+    _steps("falling", "cube: {box: {size: 0.78 0.78 0.78 m, hidden: yes}}", "", 0.3)
+
+
+def dropped() -> None:
+    """The same cubes that fall by 1 cm onto a torus, with friction: steps in touch, of processor time, too."""
+    ring = "cube: {box: {size: 0.78 0.78 0.78 m, position: 0 0.60 0 m, hidden: yes}}, "
+    ring += "ring: {torus: {radius: 0.3 m, tube: 0.1 m, position: 0 0.1 0 m}}"
+    _steps("dropped", ring, "contacts: {touch: {collision: {between: [body, ring, floor], friction: 0.3}}}\n", 0.15)
+
+
+def _steps(called: str, objects: str, contacts: str, end: float) -> None:
+    """Print times of steps of elements and of springs; those after a third of ``end`` [s] where they touch."""
     fill = "of: cube, spacing: 60 mm, element: p1, law: {neo_hookean: {modulus: 55 kPa, poisson: 0.4}}"
     models = {
         "elements": f"elastic: {{{fill}}}",
         "springs": "mass_spring: {solid: {object: cube, spacing: 60 mm, density: 1000 kg/m^3, modulus: 55 kPa}}",
     }
     for name, model in models.items():
-        script = "clock: {end: 1 s}\nobjects: {cube: {box: {size: 0.78 0.78 0.78 m, hidden: yes}}}\n"
-        script += f"models: {{body: {{{model}}}}}\nforces: [gravity]\nsolvers: {{main: {{bdf2: {{step: 10 ms}}}}}}\n"
+        script = f"clock: {{end: 1 s}}\nobjects: {{{objects}}}\nmodels: {{body: {{{model}}}}}\nforces: [gravity]\n"
+        script += f"{contacts}solvers: {{main: {{bdf2: {{step: 10 ms}}}}}}\n"
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "scene.yaml"
             path.write_text(script)
-            times = [time.perf_counter() for _ in Run(load(path, pruned=False)).moments(np.arange(0, 0.3, 0.01))]
-        print(f"falling, {name}: median step {1e3 * np.median(np.diff(times)):.0f} ms", flush=True)
+            moments = Run(load(path, pruned=False)).moments(np.arange(0, end, 0.01))
+            times = np.diff([(time.perf_counter(), time.process_time()) for _ in moments], axis=0)
+        wall, own = 1e3 * np.median(times[len(times) // 3 if contacts else 0 :], axis=0)
+        print(f"{called}, {name}: median step {wall:.0f} ms, of processors {own:.0f} ms", flush=True)
 
 
-BENCHES = {one.__name__: one for one in (cook, le10, elastica, rolled, lame, rubber, sphere, torsion, falling)}
+BENCHES = {one.__name__: one for one in (cook, le10, elastica, rolled, lame, rubber, sphere, torsion, falling, dropped)}
 
 if __name__ == "__main__":
     for asked in sys.argv[1:] or BENCHES:

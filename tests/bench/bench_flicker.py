@@ -24,6 +24,7 @@ from scipy.ndimage import maximum_filter
 
 from renderers.develop import develop
 from renderers.tracing import draw as tracer
+from renderers.tracing.buffers import _kept
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT
 from renderers.tracing.record_kernels import NORMAL, OWNER, TINT, UNSURE
 from sceneql import pipeline
@@ -52,7 +53,7 @@ class Drawn:
     def __init__(self, frame: SeenFrame, picture: Traced) -> None:
         self.frame = frame
         width, height = frame.view.size
-        (buffers,) = tracer._kept
+        (buffers,) = _kept
         self.linear = picture.linear
         self.pixels = develop(picture.linear).astype(np.int64)
         self.records = _layers(buffers.records, height, width)
@@ -128,10 +129,10 @@ def triples(scene: Path) -> Iterator[list[list[Drawn]]]:
     drawn: list[Drawn] = []
     draw = tracer.draw
 
-    def kept(frame: SeenFrame, *rest: Any) -> Traced:
+    def kept(frame: SeenFrame, *rest: Any, **more: Any) -> Traced:
         sampled = tuple(s for s in frame.shapes if not (isinstance(s, Mist) or (isinstance(s, Points) and s.soft)))
         frame = replace(frame, shapes=sampled)
-        picture = draw(frame, *rest)
+        picture = draw(frame, *rest, **more)
         drawn.append(Drawn(frame, picture))
         return picture
 

@@ -2,8 +2,9 @@
 
 Run it as ``python tests/bench/bench_implicit.py [--tape] [SCENE...]``. Films have 48 frames of 640 x 360 pixels, a ray
 each, with one hard sun, in which the thing turns: processor time of a frame on one thread from the script to the PNG
-file, start and compilation apart, by its stages. Light that surfaces reflect onto one another is in it, of which the
-peer has none. Where POV-Ray is installed, the processor time of a whole run of it that writes a PNG file stands beside.
+file, start and compilation apart, by its stages. Where POV-Ray is installed, the processor time of a whole run of it
+that writes a PNG file stands beside: of the same picture, without light that surfaces reflect onto one another
+(`diffuse_bounces: 0`). With that light, as films are by default, is the last figure.
 
 The second column is that of a kernel of the bench alone: one ray a pixel, and a shadow ray where the light is faced.
 A pixel is wrong where its center disagrees with the certified routine.
@@ -33,7 +34,7 @@ from typing import Any
 
 import numpy as np
 from bench_polygonise import ELSEWHERE, SCENES, quoted, register, scene_tape
-from implicit_films import film, scripts
+from implicit_films import film, like_for_like, scripts
 
 from sceneql.compiled.kernels import over_tiles
 from sceneql.field.packets import packets
@@ -49,8 +50,12 @@ POV_ELSEWHERE = ELSEWHERE["pictures"]["POV-Ray 3.7"]
 """ms with 1 and 2 threads: blob, isosurface, polynomial with sturm."""
 BARS = {"blob40": 12, "gyroid": 25, "barth_sextic": 25, "kummer": 25, "steiner": 25}
 ROUNDS = 9
+TURNS = 3
+"""Rounds of films."""
 FRAMES = 15
 CROWD = 4000
+PEERS = ("blob40", "blob4000", "gyroid", "barth_sextic", "kummer", "steiner", "ball on plane")
+"""Scenes that ``povray`` has."""
 
 
 def crowd(count: int) -> dict[str, Any]:
@@ -74,9 +79,9 @@ def view(name: str) -> Any:
     yaw = np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]])
     axes = (pitch @ yaw).T
     light = axes @ np.array(VIEW["light_view"]) / np.linalg.norm(VIEW["light_view"])
-    clip = SCENES[name]["clip"]
+    clip, away = (SCENES[name]["clip"], 2.0) if name in SCENES else (4.0 / VIEW["window_height_over_clip"], 20.0)
     size = VIEW["window_height_over_clip"] * clip / HEIGHT
-    return np.array([axes[:, 0], axes[:, 1], -axes[:, 2], light, [size, 2.0 * clip, 0.0]])
+    return np.array([axes[:, 0], axes[:, 1], -axes[:, 2], light, [size, away * clip, 0.0]])
 
 
 def tile_pixels() -> Any:
@@ -154,9 +159,9 @@ def milliseconds(draw: Callable[[], object], threads: int) -> float:
     return statistics.median(times)
 
 
-def medians(works: dict[str, Callable[[], float]]) -> dict[str, float]:
+def medians(works: dict[str, Callable[[], float]], rounds: int = ROUNDS) -> dict[str, float]:
     """Of what works return, in rounds of one of each: what slows the machine down slows all of them."""
-    found = [[work() for work in works.values()] for _ in range(ROUNDS)]
+    found = [[work() for work in works.values()] for _ in range(rounds)]
     return dict(zip(works, map(statistics.median, zip(*found, strict=True)), strict=True))
 
 
@@ -179,6 +184,8 @@ def vector(v: Any) -> str:
 
 def povray_object(name: str) -> str:
     """The object of a scene as POV-Ray has it: its own blob, sturm, isosurface with the true gradient."""
+    if name == "ball on plane":
+        return "sphere { 0, 1 pigment { rgb 1 } } plane { y, -1 pigment { rgb 1 } }"
     ball = f"sphere {{ 0, {SCENES[name]['clip']} }}"
     if name in ("blob40", "blob4000"):
         parts = "".join(f"sphere {{ {vector(row[:3])}, {row[3]:.12g}, 1 }}" for row in SCENES[name]["parts"])
@@ -226,16 +233,25 @@ def povray(name: str, threads: int) -> tuple[float, float]:
 
 
 def films(names: list[str]) -> None:
-    """The table of films."""
+    """The table of films: with light that surfaces reflect onto others, as films are by default, and without."""
     os.environ["SCENEQL_THREADS"] = "1"
     for name, text in scripts({name: SCENES[name] for name in SCENES if name in names}):
-        took = statistics.median(film(text)["all"] for _ in range(3))
-        line = f"{name:13} {took:7.1f} ms of one processor a frame"
-        if name in SCENES and shutil.which("povray") and name != "shell":
-            peer = statistics.median(povray(name, 1)[1] for _ in range(3))
-            line += f", POV-Ray {peer:.0f} ms, ratio {peer / took:.1f}"
-        stages = ", ".join(f"{stage} {ms:.1f}" for stage, ms in film(text, stages=True).items() if stage != "all")
-        print(f"{line}: {stages}", flush=True)
+        scene = name.split(" moving")[0]
+        same = like_for_like(text)
+        film(same)  # compiles
+        peer = (lambda scene=scene: povray(scene, 1)[1]) if scene in PEERS and shutil.which("povray") else None
+        works = {"default": lambda text=text: film(text)["all"], "same": lambda text=same: film(text)["all"]}
+        took = medians(works | ({"peer": peer} if peer else {}), TURNS)
+        line = f"{name:15} {took['same']:7.1f} ms of one processor a frame"
+        if peer:
+            line += f", POV-Ray {took['peer']:.0f} ms, ratio {took['peer'] / took['same']:.1f}"
+        print(f"{line}; {took['default']:.1f} ms with light of surfaces", flush=True)
+        for way, script in (("", same), ("with light of surfaces: ", text)):
+            stages = film(script, by_stages=True)
+            print(
+                f"    {way}{', '.join(f'{stage} {ms:.1f}' for stage, ms in stages.items() if stage != 'all')}",
+                flush=True,
+            )
 
 
 def main(names: list[str]) -> None:

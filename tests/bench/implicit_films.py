@@ -6,7 +6,7 @@ import statistics
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
@@ -21,19 +21,24 @@ FRAMES = 48
 SCENE = """
 clock: {{end: {end} s, fps: 24}}
 define: {{{names}}}
-models: {{wheel: {{motion: {{rotation: {{about: y, angle: 60 deg*time/(1 s)}}}}}}}}
+models: {{wheel: {{motion: {{rotation: {{about: y, angle: 60 deg*time/(1 s)}}}}}}{models}}}
+forces: {{{forces}}}
 objects:
 {objects}
 lights: {{key: {{sun: {{elevation: 42 deg, azimuth: -40 deg, angle: 0 deg, strength: 1}}}}}}
 cameras: {{eye: {{orthographic: {{look_along: -0.5 -0.4 -0.75, look_at: 0 0 0 m, height: {height} m}}}}}}
 outputs: {{film: {{images: {{size: 640 360, renderer: tracer}}}}}}
-renderers: {{tracer: {{trace: {{samples: {samples}}}}}}}
+renderers: {{tracer: {{trace: {{samples: {samples}, diffuse_bounces: {bounces}}}}}}}
 """
 CLAY = "material: matte"
+MOST = 256
+"""Of `diffuse_bounces`: the default."""
+MANY = 1000
+"""Points from which on they are drawn moving by a simulation, too."""
 STAGES = {
     "lowering": ("sceneql.tools:frame_of", "sceneql.run.never_drawn:look"),
     "packing": ("renderers.tracing.draw:pack", "renderers.tracing.solids.bundles:Packets.__init__"),
-    "roots": ("renderers.tracing.solids.bundles:meet_asked",),
+    "roots": ("renderers.tracing.solids.bundles:meet_asked", "renderers.tracing.solids.plain_lanes_kernels:meet_plain"),
     "hits": tuple(
         f"renderers.tracing.{where}"
         for where in (
@@ -41,13 +46,18 @@ STAGES = {
             "waves:ask_paths", "waves:advance_paths", "waves:end_pixels", "waves:fill_background",
         )
     ),
-    "light": tuple(
-        f"renderers.tracing.waves:{name}"
-        for name in ("look_from", "step_all", "look_about", "dress_hits", "follow_all", "light_paths")
+    "light": (
+        *(
+            f"renderers.tracing.waves:{name}"
+            for name in ("look_from", "step_all", "look_about", "dress_hits", "follow_all", "light_paths")
+        ),
+        "renderers.tracing.light.look_lanes_kernels:list_looks",
+        "renderers.tracing.light.look_lanes_kernels:tell_looks",
     ),
     "filter": (
         *(f"renderers.tracing.draw:{name}" for name in ("lay_out", "widen", "deepen", "spread_sky", "choose")),
-        "renderers.tracing.waves:refine", "renderers.tracing.waves:mark_busy",
+        *(f"renderers.tracing.waves:{name}" for name in ("refine", "soften")),
+        "renderers.tracing.draw:list_cuts",
     ),
     "shading": ("renderers.tracing.draw:shade_rows",),
     "edges": tuple(
@@ -56,13 +66,21 @@ STAGES = {
     "develop": ("renderers.develop:develop",),
     "PNG": ("renderers.encoders.png:Writer.write",),
 }  # fmt: skip
-"""The functions of each stage; what is in none of them is Python, and what else a frame takes."""
+"""The functions of each stage."""
+CALLS = 10000
+"""Of a function that does nothing, to time the timers."""
 
 
-def script(objects: str, height: float, names: str = "", samples: int = 1) -> str:
-    """A film of objects, in YAML, seen from a window so many meters high."""
+def script(objects: str, height: float, names: str = "", models: str = "", forces: str = "") -> str:
+    """A film of objects, in YAML, seen from a window so many meters high: a ray a pixel."""
     end = (FRAMES - 1) / 24
-    return SCENE.format(end=f"{end:.6f}", objects=objects, height=f"{height:g}", names=names, samples=samples)
+    more = {"names": names, "models": models, "forces": forces, "samples": 1, "bounces": MOST}
+    return SCENE.format(end=f"{end:.6f}", objects=objects, height=f"{height:g}", **more)
+
+
+def like_for_like(text: str) -> str:
+    """The same film without light that surfaces reflect onto others, of which the peer has none."""
+    return text.replace(f"diffuse_bounces: {MOST}", "diffuse_bounces: 0")
 
 
 def scripts(scenes: dict[str, Any]) -> Iterator[tuple[str, str]]:
@@ -81,31 +99,58 @@ def scripts(scenes: dict[str, Any]) -> Iterator[tuple[str, str]]:
             shape = f"points: [{centers}], radius: [{radii}], threshold: {scene['threshold']}, {CLAY}"
             turned = "thing: {group: {children: [blobs], rotation: wheel.rotation}}"
             yield name, script(f"  blobs: {{blobby: {{{shape}}}}}\n  {turned}", height)
+            if len(rows) > MANY:
+                moved = shape.replace(f"[{centers}]", "cloud.positions")
+                cloud = f", cloud: {{particles: {{positions: [{centers}], velocity: 0 0.3 0 m/s}}}}"
+                pull = "down: {gravity: {strength: 0.3 m/s^2}}"
+                yield f"{name} moving", script(f"  blobs: {{blobby: {{{moved}}}}}", height, "", cloud, pull)
         elif scene.get("mode") != "surface":
             where = ", ".join(f"{key}: {value}" for key, value in scene.get("where", {}).items())
             shape = f'field: "{scene["f"]}", bounds: {{ball: {scene["clip"]}}}, rotation: wheel.rotation, {CLAY}'
             yield name, script(f"  thing: {{implicit: {{{shape}}}}}", height, where)
 
 
-@contextmanager
-def timed(spent: dict[str, float]) -> Iterator[None]:
-    """Add the processor time of each stage to ``spent``, without that of stages within it."""
-    kept: list[tuple[Any, str, Any]] = []
-    inner = [0.0]
+class Stages:
+    """Processor time [ms] of each stage since the beginning, without that of stages within it, and of the timers."""
 
-    def wrapped(stage: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    def __init__(self) -> None:
+        self.spent: dict[str, float] = dict.fromkeys(STAGES, 0.0)
+        self.calls = 0
+        self._inner = [0.0]
+        nothing = self.wrapped("nothing", lambda: None)
+        begin = time.thread_time()
+        for _ in range(CALLS):
+            nothing()
+        took = 1e3 * (time.thread_time() - begin)
+        self.own, self.around = self.spent.pop("nothing") / CALLS, took / CALLS
+        self.calls = 0
+        self._inner = [0.0]
+
+    def wrapped(self, stage: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        """A function whose calls are counted to a stage."""
+
         def call(*args: Any, **options: Any) -> Any:
             begin = time.thread_time()
-            inner.append(0.0)
+            self._inner.append(0.0)
             try:
                 return function(*args, **options)
             finally:
-                took = time.thread_time() - begin
-                spent[stage] = spent.get(stage, 0.0) + took - inner.pop()
-                inner[-1] += took
+                took = 1e3 * (time.thread_time() - begin)
+                self.spent[stage] = self.spent.get(stage, 0.0) + took - self._inner.pop()
+                self._inner[-1] += took
+                self.calls += 1
 
         return call
 
+    def now(self) -> dict[str, float]:
+        """What is spent so far; the timers' own part of it is ``timers``."""
+        return self.spent | {"timers": self.around * self.calls}
+
+
+@contextmanager
+def timed(stages: Stages) -> Iterator[None]:
+    """Count the functions of all stages inside the block."""
+    kept: list[tuple[Any, str, Any]] = []
     for stage, names in STAGES.items():
         for name in names:
             module, _, path = name.partition(":")
@@ -114,7 +159,7 @@ def timed(spent: dict[str, float]) -> Iterator[None]:
             for part in owners:
                 owner = getattr(owner, part)
             kept.append((owner, last, getattr(owner, last)))
-            setattr(owner, last, wrapped(stage, getattr(owner, last)))
+            setattr(owner, last, stages.wrapped(stage, getattr(owner, last)))
     try:
         yield
     finally:
@@ -122,15 +167,18 @@ def timed(spent: dict[str, float]) -> Iterator[None]:
             setattr(owner, last, function)
 
 
-def film(text: str, stages: bool = False) -> dict[str, float]:
-    """ms of processor time of a frame, ``all`` of it and by stages: medians over the film but its first two frames."""
-    marks: list[tuple[float, dict[str, float]]] = []
-    spent: dict[str, float] = {}
+def film(text: str, by_stages: bool = False) -> dict[str, float]:
+    """ms of processor time of a frame, ``all`` of it and by stages: medians over the film but its first two frames.
+
+    What is in no stage is Python, without what the timers take.
+    """
+    marks: list[dict[str, float]] = []
+    stages = Stages()
     write = png.Writer.write
 
     def marked(writer: Any, picture: Any) -> None:
         write(writer, picture)
-        marks.append((time.process_time(), dict(spent)))
+        marks.append({"all": 1e3 * time.process_time()} | stages.now())
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "film.yaml")
@@ -138,17 +186,14 @@ def film(text: str, stages: bool = False) -> dict[str, float]:
         graph = pipeline.load(path)
         png.Writer.write = marked
         try:
-            if stages:
-                with timed(spent):
-                    pipeline.render(graph, folder=Path(folder))
-            else:
+            with timed(stages) if by_stages else nullcontext():
                 pipeline.render(graph, folder=Path(folder))
         finally:
             png.Writer.write = write
-    frames = list(pairwise(marks[1:]))
-    found = {"all": 1e3 * statistics.median(b[0] - a[0] for a, b in frames)}
-    for stage in STAGES if stages else ():
-        found[stage] = 1e3 * statistics.median(b[1].get(stage, 0.0) - a[1].get(stage, 0.0) for a, b in frames)
-    if stages:
-        found["Python and the rest"] = found["all"] - float(np.sum([found[stage] for stage in STAGES]))
+    found = {name: statistics.median(b[name] - a[name] for a, b in pairwise(marks[1:])) for name in marks[0]}
+    if not by_stages:
+        return {"all": found["all"]}
+    timers = found.pop("timers")
+    found["all"] -= timers
+    found["Python"] = found["all"] - sum(found[stage] for stage in STAGES)
     return found

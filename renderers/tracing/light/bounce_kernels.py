@@ -9,6 +9,7 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
+from renderers.tracing.certified import BOUNCES
 from renderers.tracing.light.embers_kernels import ROUGHLY, ember_seen, met, sum_up
 from renderers.tracing.light.light_kernels import sky_ambient, sky_radiance
 from renderers.tracing.light.lights_kernels import in_a_lamp, light_at, reach
@@ -34,7 +35,7 @@ BRIGHTEST_AGAIN = 1.0
 """The same of lamps' light on surfaces seen from these, of which samples tell even less."""
 AGAIN = 1 / 64
 """Share of the sky that the last of SURFACES is assumed to see: little, since none before it has led out."""
-SURFACES, LEAST = 256, 0.02
+SURFACES, LEAST = BOUNCES, 0.02
 """Most surfaces beside the lit one that light from around is followed to, and its share of what the last of them
 gives below which it is followed no further: in closed rooms the sky is far, and in white corners."""
 BLURRED = 2
@@ -72,6 +73,7 @@ def step(scene, scratch, asked, way):
     """Follow a way from its surface to the next one, in the mode of ``asked``; it is not LIVE when it has ended.
 
     Light goes on in one direction from each surface, and those beyond the first are lit by one lamp in place of all.
+    Surfaces behind as many as the scene has BOUNCES send what they emit alone.
     After SURFACES, all of them bright, the last sees a little of the sky between neighbors as bright as the first, so
     that nothing is lost in white corners and closed rooms. In ASKING the rays are listed alone.
     """
@@ -92,6 +94,9 @@ def step(scene, scratch, asked, way):
             way[LIGHT + 1] + wg * hg,
             way[LIGHT + 2] + wb * hb,
         )
+    if number >= scene.ints[layout.BOUNCES]:
+        way[LIVE] = way[LIVE] if asking else 0.0
+        return
     paint = way[SKIN + 8], way[SKIN + 9], way[SKIN + 10]
     r, g, b = color_at(scene, item, paint, x, y, z, nx, ny, nz, dx, dy, dz, radius)
     wr, wg, wb = wr * r, wg * g, wb * b

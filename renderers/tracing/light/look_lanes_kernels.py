@@ -9,6 +9,7 @@ import numpy as np
 from numba import types
 
 from renderers.tracing import layout
+from renderers.tracing.camera_kernels import next_place
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.lights_kernels import light_at
 from renderers.tracing.light.sampling_kernels import COUNT, DISK, SKY_DISK, across, sample_of
@@ -46,11 +47,14 @@ def load(record, number, i, lanes):
 def gather(width, start, last, at, records, lanes):
     """Copy the records of the pixels ``at[start:last]`` into lanes, until these are full; (their number, the next)."""
     n, i, layers = 0, start, len(records)
+    before, x, y = -2, 0, 0
     while i < last and n + layers <= LANES:
         k = at[i]
+        x, y = next_place(k, before, x, y, width)
+        before = k
         for layer in range(layers):
             if records[layer, k, OWNER] > 0.0:
-                load(records[layer, k], sample_of(k % width, k // width), n, lanes)
+                load(records[layer, k], sample_of(x, y), n, lanes)
                 lanes[PIXEL + n] = i
                 n += 1
         i += 1

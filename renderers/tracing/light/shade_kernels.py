@@ -173,6 +173,15 @@ def shade_here(scene, record, visibility):
     return sums
 
 
+@part
+def add_light(scene, record, visibility, radiance, share):
+    """Add ``share`` of a record's light to a pixel's radiance (3,)."""
+    r, g, b = shade_here(scene, record, visibility)
+    radiance[0] += share * r
+    radiance[1] += share * g
+    radiance[2] += share * b
+
+
 @kernel(types.UniTuple(types.float64, 3)(SCENE, ROW, ROW), _nrt=False, inner=True)
 def shade(scene, record, visibility):
     """``shade_here``, by a call."""

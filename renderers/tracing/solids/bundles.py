@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,26 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from renderers.tracing.scene_kernels import Scene
-    from sceneql.frame import Floats, Shape
+    from sceneql.frame import Floats, Shape, Tape
+
+
+_of_thread = threading.local()
+"""What each thread has made for the last picture: a solid that moves as a whole is the same in its own coordinates."""
+
+
+def _memory(tape: Tape, kept: list[Memory]) -> Memory:
+    """Working memory for a tape, taken from ``kept`` if there is one for the same numbers."""
+    for i, memory in enumerate(kept):
+        if memory.tape is tape or all(
+            np.array_equal(one, other)
+            for one, other in (
+                (memory.tape.code, tape.code),
+                (memory.tape.constants, tape.constants),
+                (memory.tape.parts, tape.parts),
+            )
+        ):
+            return kept.pop(i)
+    return Memory(tape, RAYS, clip_rows(tape))
 
 
 class Packets:
@@ -28,16 +48,18 @@ class Packets:
 
     def __init__(self, shapes: tuple[Shape, ...], solids: list[int]) -> None:
         self.solids = solids
+        kept = list(getattr(_of_thread, "memories", ()))
         self.memories: list[Memory] = []
         self.bounds: list[tuple[Floats, ...]] = []
         for i in self.solids:
             shape = shapes[i]
             assert isinstance(shape, Implicit)
             tape, matrix = in_own_coordinates(shape.tape)
-            self.memories.append(Memory(tape, RAYS, clip_rows(tape)))
+            self.memories.append(_memory(tape, kept))
             box, clips = np.array([shape.low, shape.high], dtype=np.float64), clips_of(shape.tape)
             reach = float(np.abs(box).max()) ** np.array([2.0] * 6 + [1.0] * 3 + [0.0])
             self.bounds.append((box, clips, np.abs(clips) @ reach, matrix))
+        _of_thread.memories = self.memories
         self.asked_last: Floats | None = None
         self.calls: list[tuple[Any, ...]] = []
         """Arguments of ``meet_asked`` for the list of rays ``asked_last``."""

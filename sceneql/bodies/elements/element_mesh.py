@@ -135,65 +135,97 @@ def meshed(element: type[Element], points: Floats, tetrahedra: Ints, onto: Onto 
     middles = 0.5 * (points[ends[:, 0]] + points[ends[:, 1]])
     cells = np.concatenate([tetrahedra, len(points) + which], axis=1).astype(np.int32)
     straight = ElementMesh(element, np.concatenate([points, middles]), cells, len(points))
-    return straight if onto is None else _curved(straight, onto)
+    return straight if onto is None else curved(straight, onto)[0]
 
 
 LEAST_BENT = 0.2
 """An element is bent no more than to this part of its straight size at any place that is looked at."""
 
 
-def _curved(straight: ElementMesh, onto: Onto) -> ElementMesh:
-    """With the nodes on outer edges moved onto the surface, but those that would bend an element too much.
-
-    Of these the nodes on creases stay there where that is enough.
-    """
+def onto_object(straight: ElementMesh, onto: Onto) -> tuple[Floats, Creases]:
+    """Nodes (n, 3), those on outer edges moved onto the surface, and the edges among these that are creases."""
     faces, points = straight.faces, straight.points
     normals = np.zeros_like(points)
-    a, b, c = (points[faces[:, k]] for k in range(3))
-    across = np.cross(b - a, c - a)
+    across = across_faces(points, faces)
     for k in range(6):
         np.add.at(normals, faces[:, k], across)
     outer = np.unique(faces[:, 3:])
-    length = np.linalg.norm(normals[outer], axis=1, keepdims=True)
     moved = points.copy()
-    along = np.divide(normals[outer], length, out=np.zeros((len(outer), 3)), where=length > 0)
-    moved[outer] = onto.surface(points[outer], along)
-    nodes, flat, sides = _creases(points, faces, across)
-    if len(nodes):
-        found = onto.crease(points[nodes], flat, sides)
+    moved[outer] = onto.surface(points[outer], unit(normals[outer]))
+    creases = Creases.of(points, faces)
+    if len(creases.nodes):
+        found = onto.crease(points[creases.nodes], creases.normals, creases.sides)
         met = ~np.isnan(found).any(axis=1)
-        moved[nodes[met]] = found[met]
-    kept = np.isin(np.arange(len(points)), nodes)
+        moved[creases.nodes[met]] = found[met]
+    return moved, creases
+
+
+def curved(straight: ElementMesh, onto: Onto) -> tuple[ElementMesh, int]:
+    """With the nodes on outer edges moved onto the surface, but those that would bend an element too much: how many.
+
+    Of these the nodes on creases stay there where that is enough.
+    """
+    points, left = straight.points, 0
+    moved, creases = onto_object(straight, onto)
+    kept = np.isin(np.arange(len(points)), creases.nodes)
     places = np.concatenate([fine_rule()[0], np.eye(4), np.asarray(straight.element.rule[0])])
     least = LEAST_BENT * straight.sizes(places[:1])
-    for _ in range(len(outer)):
+    for _ in range(len(points)):
         mesh = ElementMesh(straight.element, moved, straight.cells, straight.corners)
         bad = (mesh.sizes(places) < least).any(axis=1)
         if not bad.any():
-            return mesh
+            return mesh, left
         back = np.unique(straight.cells[bad, 4:])
         bent = (moved[back] != points[back]).any(axis=1)
         back = back[bent & ~kept[back]] if (bent & ~kept[back]).any() else back
+        left += int(np.count_nonzero((moved[back] != points[back]).any(axis=1)))
         moved[back] = points[back]
-    return straight
+    return straight, left
 
 
-def _creases(points: Floats, faces: Ints, across: Floats) -> tuple[Any, Floats, Floats]:
-    """Nodes (k,) on edges over which the outer faces turn, the faces' normals, directions into them (k, 2, 3)."""
-    normals = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-300)
-    nodes = faces[:, 3:].ravel().astype(np.int64)
-    twice = np.bincount(nodes)[nodes] == 2  # parts that touch along an edge have four faces there
-    order = np.argsort(nodes, kind="stable")
-    pairs = order[twice[order]].reshape(-1, 2)
-    one, two = normals[pairs[:, 0] // 3], normals[pairs[:, 1] // 3]
-    pairs = pairs[np.einsum("ki,ki->k", one, two) < CREASE]
-    corners = faces[:, :3]
-    start, end, top = (points[corners[pairs // 3, (pairs % 3 + k) % 3]] for k in range(3))
-    way, sides = end - start, top - start
-    way = way / np.linalg.norm(way, axis=2, keepdims=True)
-    sides -= np.einsum("kji,kji->kj", sides, way)[..., None] * way
-    sides /= np.maximum(np.linalg.norm(sides, axis=2, keepdims=True), 1e-300)
-    return nodes[pairs[:, 0]], normals[pairs // 3], sides
+def across_faces(points: Floats, faces: Any) -> Floats:
+    """(f, 3) normals of faces by their corners, twice as long as their areas."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    found: Floats = np.cross(b - a, c - a)
+    return found
+
+
+def unit(vectors: Floats) -> Floats:
+    """Vectors (..., 3) made of length 1, those of none left."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    found: Floats = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    return found
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Creases:
+    """Outer edges over which the outer faces turn."""
+
+    nodes: Any
+    """(k,) the nodes on them."""
+    ends: Any
+    """(k, 2) their corners."""
+    normals: Floats
+    """(k, 2, 3) of the faces beside them."""
+    sides: Floats
+    """(k, 2, 3) unit directions from them into these faces."""
+
+    @classmethod
+    def of(cls, points: Floats, faces: Ints) -> Creases:
+        """Those of faces (f, 6) of points (n, 3)."""
+        normals = unit(across_faces(points, faces))
+        nodes = faces[:, 3:].ravel().astype(np.int64)
+        twice = np.bincount(nodes)[nodes] == 2  # parts that touch along an edge have four faces there
+        order = np.argsort(nodes, kind="stable")
+        pairs = order[twice[order]].reshape(-1, 2)
+        one, two = normals[pairs[:, 0] // 3], normals[pairs[:, 1] // 3]
+        pairs = pairs[np.einsum("ki,ki->k", one, two) < CREASE]
+        corners = faces[:, :3]
+        start, end, top = (points[corners[pairs // 3, (pairs % 3 + k) % 3]] for k in range(3))
+        way, sides = unit(end - start), top - start
+        sides = unit(sides - np.einsum("kji,kji->kj", sides, way)[..., None] * way)
+        ends = corners[pairs[:, :1] // 3, (pairs[:, :1] % 3 + np.arange(2)) % 3]
+        return cls(nodes[pairs[:, 0]], ends, normals[pairs // 3], sides)
 
 
 def gathered(cells: Ints, count: int) -> NDArray[int64]:

@@ -10,16 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.bodies.elements.element import elements
-from sceneql.bodies.elements.element_mesh import ElementMesh, Onto, meshed
-from sceneql.bodies.filling.bisection import bisected
+from sceneql.bodies.elements.element_mesh import ElementMesh, Onto, curved, meshed
+from sceneql.bodies.elements.refined import Lengths, hollows, refined
 from sceneql.bodies.filling.fill import Inside
-from sceneql.bodies.filling.finer import Finer, wanted
+from sceneql.bodies.filling.finer import Finer, lengths
 from sceneql.bodies.filling.kept_creases import creases_kept, onto_crease
 from sceneql.bodies.filling.msh import Read, read_msh
 from sceneql.bodies.filling.split_creases import creases_split
 from sceneql.bodies.filling.stuffing import lattice_counts, stuffed
-from sceneql.bodies.filling.tetrahedra import ENDS, volumes
+from sceneql.bodies.filling.tetrahedra import volumes
 from sceneql.doing import doing
 from sceneql.failure import LimitRefused
 from sceneql.island.memory import PLACE, bounded
@@ -27,11 +26,11 @@ from sceneql.kinds import Exceeds
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
-    from numpy import bool_, int64
+    from numpy import bool_
     from numpy.typing import NDArray
 
-    from sceneql.bodies.elements.block import Block
     from sceneql.bodies.elements.element import Element
+    from sceneql.bodies.filling.block import Block
     from sceneql.frame import Floats, Ints
     from sceneql.kinds import Ref
     from sceneql.quantities.span import Span
@@ -64,7 +63,7 @@ def bounded_by(spacing: float) -> Callable[[Floats, Floats], None]:
 
 def laid(block: Block, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly) -> ElementMesh:
     """The mesh of a block. Raises ScriptError for one that is inside out, LimitRefused for too many elements."""
-    from sceneql.bodies.elements.block import CUT
+    from sceneql.bodies.filling.block import CUT
 
     try:
         bounded(float(prod(block.cells)) * CUT[block.cut], "elements", BYTES[element.nodes()])
@@ -90,50 +89,38 @@ def _fitted(
     finer: Mapping[str, Finer],
     onto: Onto | None,
     line: Span | None,
+    spacing: float = 0.0,
+    turn: float | None = None,
 ) -> ElementMesh:
-    """The mesh, finer in places. Raises Exceeds for too many elements, ScriptError for a place that has none."""
-    if finer:
+    """The mesh, finer in places and in hollows.
 
-        def check(count: float) -> None:
-            bounded(count, "elements", BYTES[element.nodes()])
+    Raises Exceeds for too many elements, ScriptError for a place that has none.
+    """
 
-        coarse = meshed(elements()["p2"], points, tetrahedra, onto)
-        mesh = _within(coarse, element, *bisected(points, tetrahedra, wanted(finer), check))
-    else:
-        mesh = meshed(element, points, tetrahedra, onto)
+    def check(count: float) -> None:
+        bounded(count, "elements", BYTES[element.nodes()])
+
+    def made(wanted: list[Lengths]) -> tuple[ElementMesh, int]:
+        """The mesh, and how many of its outer nodes could not be moved onto the object."""
+        at, cells = points, tetrahedra
+        if wanted:
+            at, cells = refined(at, cells, lambda places: np.min([one(places) for one in wanted], axis=0), onto, check)
+        straight = meshed(element, at, cells)
+        return (straight, 0) if onto is None or not element.edges else curved(straight, onto)
+
+    asked = [lengths(finer)] if finer else []
+    hollow = None if onto is None or turn is None else hollows(points, tetrahedra, onto, spacing, turn)
+    mesh, flat = made(asked)
+    if hollow is not None:
+        # Halves of elements may be too thin to be bent: more of that would cost more than smaller elements bring.
+        finest, more = made([*asked, hollow])
+        mesh = finest if more <= flat else mesh
     for name, one in finer.items():
         if not one.reaches(mesh.points):
             message = f"'{name}' is near no element"
             help = "its place is one of the material, before the solid is moved or turned"
             raise ScriptError([Diagnostic("no-mass", message, line, help)])
     return mesh
-
-
-def _within(
-    coarse: ElementMesh, element: type[Element], points: Floats, tetrahedra: Ints, parents: NDArray[int64]
-) -> ElementMesh:
-    """The mesh of parts (t, 4) of elements p2, whose numbers are ``parents`` (t,), bent as these are.
-
-    ``points`` (n, 3): where the corners stand in elements with straight edges.
-    """
-    straight = meshed(element, points, tetrahedra)
-    nodes, first = np.unique(straight.cells, return_index=True)
-    own = parents[first // straight.cells.shape[1]]
-    corners = coarse.points[coarse.cells[own, :4]]
-    sides = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
-    local = np.linalg.solve(sides, (straight.points[nodes] - corners[:, 0])[..., None])[..., 0]
-    shares = coarse.element.functions(np.concatenate([1.0 - local.sum(axis=1, keepdims=True), local], axis=1))
-    bent = straight.points.copy()
-    bent[nodes] += np.einsum("nk,nkj->nj", shares, coarse.points[coarse.cells[own]] - _straight(coarse)[own])
-    return ElementMesh(element, bent, straight.cells, straight.corners)
-
-
-def _straight(mesh: ElementMesh) -> Floats:
-    """(e, nodes, 3) where the nodes of elements stood if their edges were straight."""
-    corners = mesh.points[mesh.cells[:, :4]]
-    a, b = np.array(ENDS).T
-    found: Floats = np.concatenate([corners, 0.5 * (corners[:, a] + corners[:, b])], axis=1)
-    return found
 
 
 def of_file(file: str, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly) -> ElementMesh:
@@ -186,9 +173,16 @@ def _told(held: Floats, corners: Floats, read: Read, name: str, line: Span | Non
 
 
 def filled(
-    ref: Ref, spacing: float | None, element: type[Element], finer: Mapping[str, Finer], assembly: Assembly
+    ref: Ref,
+    spacing: float | None,
+    element: type[Element],
+    finer: Mapping[str, Finer],
+    assembly: Assembly,
+    turn: float | None = None,
 ) -> ElementMesh:
     """The mesh of an object. Raises ScriptError where it cannot be filled, LimitRefused for too many elements.
+
+    ``turn``: angle [rad] by which its surface turns along an edge at most, where it is hollow.
 
     That of a field at a spacing is kept: variants, studies and twins fill the same again and again.
     """
@@ -196,10 +190,10 @@ def filled(
     key = None
     if inside.field is not None and not finer:
         parts = (inside.field.code, inside.field.constants, inside.field.parts, inside.low, inside.high)
-        key = (element, spacing, *(part.tobytes() for part in parts))
+        key = (element, spacing, turn, *(part.tobytes() for part in parts))
     if key is None or (mesh := _kept.pop(key, None)) is None:
         with doing(f"filling {ref.name}"):
-            mesh = _filled(inside, spacing, element, finer, assembly.line())
+            mesh = _filled(inside, spacing, element, finer, assembly.line(), turn)
     if key is not None:
         _kept[key] = mesh
         if len(_kept) > KEPT:
@@ -217,7 +211,12 @@ def spacing_of(ref: Ref, spacing: float | None, assembly: Assembly) -> float:
 
 
 def _filled(
-    inside: Inside, spacing: float, element: type[Element], finer: Mapping[str, Finer], line: Span | None
+    inside: Inside,
+    spacing: float,
+    element: type[Element],
+    finer: Mapping[str, Finer],
+    line: Span | None,
+    turn: float | None,
 ) -> ElementMesh:
     inside.bounded(bounded_by(spacing), inside.low, inside.high)
 
@@ -250,7 +249,7 @@ def _filled(
         return onto_crease(places, normals, sides, spacing, inside.holds, inside.crossing)
 
     try:
-        return _fitted(element, points, tetrahedra, finer, Onto(onto, onto_edge), line)
+        return _fitted(element, points, tetrahedra, finer, Onto(onto, onto_edge), line, spacing, turn)
     except Exceeds as error:
         raise LimitRefused(str(error), inside.span, TOO_FINE) from None
 

@@ -34,15 +34,15 @@ class Finer(Record):
         return bool(away.min() <= self.within + self.spacing)
 
 
-def wanted(finer: Mapping[str, Finer]) -> Callable[[Floats], Floats]:
+def lengths(finer: Mapping[str, Finer]) -> Callable[[Floats], Floats]:
     """A function of places (k, 3) of the longest edges (k,) that are wanted there [m]."""
     import numpy as np
 
-    def lengths(places: Floats) -> Floats:
+    def wanted(places: Floats) -> Floats:
         found = np.full(len(places), np.inf)
         for one in finer.values():
             away = np.linalg.norm(places - np.asarray(one.near), axis=1)
             found = np.minimum(found, one.spacing + GROWTH * np.maximum(away - one.within, 0.0))
         return found
 
-    return lengths
+    return wanted

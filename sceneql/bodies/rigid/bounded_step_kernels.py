@@ -17,7 +17,7 @@ from sceneql.bodies.rigid.tied_rows_kernels import begin_ties, drive_of, first_s
 from sceneql.bodies.rigid.tied_step_kernels import again, end_ties, strike, tell_work, tied_to
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel
-from sceneql.linear.cone_layout_kernels import ROW
+from sceneql.linear.cones.cone_layout_kernels import ROW
 from sceneql.system.signatures_kernels import BACK_OFF
 
 BODIES, BODIES_AT, OWN_AT, OWN, HEAD = range(5)

@@ -1,19 +1,19 @@
 # mypy: ignore-errors
 """Rigid bodies by groups: those that touch one another, or that ties hold, through bodies that move: solved together.
 
-What stands connects nothing. Every group is a cone program of its own (linear/cone_kernels), planned for its pairs.
+What stands connects nothing. Every group is a cone program of its own (linear/cones), planned for its pairs.
 """
 
 import numpy as np
 from numba import types
 
 import sceneql.bodies.rigid.point_list as points
-import sceneql.linear.cone_layout_kernels as rows
+import sceneql.linear.cones.cone_layout_kernels as rows
 from sceneql.bodies.rigid.point_list import BODY_A, BODY_B, WHERE, WHO
+from sceneql.compiled.integers_kernels import filled
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
-from sceneql.linear.block_order_kernels import filled
-from sceneql.linear.cone_finish_kernels import LOOSE, solve
-from sceneql.linear.cone_layout_kernels import ROW, ROW_HIGH, ROW_LOW, lay_out
+from sceneql.linear.cones.cone_finish_kernels import LOOSE, solve
+from sceneql.linear.cones.cone_layout_kernels import ROW, ROW_HIGH, ROW_LOW, lay_out
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MASS = 10

@@ -7,6 +7,7 @@ With the velocities closed behind the step (tie_kernels.settle) this is RATTLE (
 
 from sceneql.bodies.rigid.tie_kernels import (
     CLOSED,
+    KEPT,
     KEPT_AT,
     MOVED_AT,
     MOVERS_AT,
@@ -39,8 +40,6 @@ from sceneql.system.signatures_kernels import TIED_DRIFT_OF
 
 MOST_ROUNDS = 50
 """Rounds, each of which leaves a part of the gaps that is in proportion to the step's length."""
-KEPT = 12
-"""Floats of a row that are kept of where the drift began: J."""
 
 
 @lean(TIED_DRIFT_OF, inner=True)

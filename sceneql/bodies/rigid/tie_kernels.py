@@ -44,18 +44,26 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     write_row,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
-from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
+from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
+
+# Compiled at the first system of many rows, or of few.
+factor_sparse = lazy("sceneql.linear.multifrontal.symmetric_kernels:factor_symmetric", types.boolean(I, A, A, A))
+solve_sparse = lazy("sceneql.linear.multifrontal.solve_kernels:solve_symmetric", types.void(I, A, A, A))
+factor_dense = lazy("sceneql.linear.dense_kernels:factor", types.boolean(A, N, I))
+solve_dense = lazy("sceneql.linear.dense_kernels:solve", types.void(A, N, I, A))
 
 MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, STARTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(10)
 MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, EASE_AT, HEAD = range(10, 21)
 """Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where each
 begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes of
-what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels). A mover that ties
+what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels). Few rows have a
+matrix that is whole, its factors in place, and their pivots in place of the plan. A mover that ties
 share: their number n and its own; of each tie its first row, how many it has, their floats at its side; then n x n
 places in a row of the first where the rows of the second begin, counted from that row's first value."""
 
+KEPT = 12
+"""Floats of a row that drifts keep of where they began: J."""
 EASE, LITTLE = 1e-9, 1e-13
 """Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: the less where no row follows from others at the
 start, so that light bodies may hold heavy ones."""
@@ -117,18 +125,25 @@ def factor(floats, ints):
         place = ints[ints[DIAGONAL_AT] + k]
         # A row that no mass can meet, as of two parts that are led, has no force.
         values[place] = values[place] * (1.0 + floats[ints[EASE_AT]]) if values[place] > 0.0 else 1.0
+    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
+    if ints[FACTORS] == 0:
+        return factor_dense(values, ints[ROWS], plan)
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
-    return factor_symmetric(ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]], values, factors, work)
+    return factor_sparse(plan, values, factors, work)
 
 
 @lean(types.void(A, I))
 def solve(floats, ints):
     """Solve with the factors, in place."""
+    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
+    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
+    if ints[FACTORS] == 0:
+        solve_dense(floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]], ints[ROWS], plan, right)
+        return
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
-    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
-    solve_symmetric(ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]], factors, right, work)
+    solve_sparse(plan, factors, right, work)
 
 
 @lean(types.void(A, I, N, N))

@@ -24,6 +24,8 @@ MOST = 600
 """Conditions above which it is not looked whether they contradict each other at the start."""
 APART = 1e-6
 """Speed of a tie that comes apart at the start from which it is told."""
+WHOLE = 24
+"""Rows up to which their matrix is whole: as quick as one of fronts, and compiled in a tenth of the time."""
 LEAST = 7
 """Numbers of a row, of which the last may be left out where it is 0."""
 
@@ -34,9 +36,8 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     from scipy.sparse import csr_array
 
     from sceneql.bodies.rigid import tie_kernels as kernels
-    from sceneql.bodies.rigid.rattle_kernels import KEPT
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, ROW
-    from sceneql.linear.multifrontal import plan
+    from sceneql.linear.multifrontal.planning import plan
 
     movers: dict[tuple[int, ...], int] = {}
     rows: list[tuple[int, ...]] = []
@@ -56,8 +57,8 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
             if solved[mover]:
                 of_mover.setdefault(mover, []).append((first, count, scratch + 6 * side))
     # Ties of as many rows each make a matrix of blocks, which a plan has in a small part of the integers.
-    counts = {len(tie.rows) for tie in ties}
-    unit = counts.pop() if len(counts) == 1 else 1
+    counts, few = {len(tie.rows) for tie in ties}, len(rows) <= WHOLE
+    unit = counts.pop() if len(counts) == 1 and not few else 1
     parts = {
         ((one[0] + i) // unit, (other[0] + j) // unit)
         for some in of_mover.values()
@@ -65,7 +66,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         for i, j in product(range(0, one[1], unit), range(0, other[1], unit))
     }
     blocks = len(rows) // unit
-    parts.update((k, k) for k in range(blocks))
+    parts.update(product(range(blocks), range(blocks)) if few else ((k, k) for k in range(blocks)))
     across = np.array(sorted(parts))
     pattern = csr_array((np.ones(len(across)), tuple(across.T)), shape=(blocks, blocks))
     pattern.sort_indices()
@@ -84,21 +85,22 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         ]
         for mover, some in of_mover.items()
     ]
-    planned = plan(pattern, unit=unit)
+    planned = None if few else plan(pattern, unit=unit)
     lists: list[Sequence[int]] = [
         [number for which in movers for number in which],
         [number for row in rows for number in row],
         [number for some in shared for number in some],
         starts,
         [starts[k] + along(k, k) for k in range(len(rows))],
-        planned.numbers.tolist(),
+        len(rows) * [0] if planned is None else planned.numbers.tolist(),
     ]
     begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
-    sizes = (MOVED * len(movers), unit * unit * len(columns), planned.factors, planned.work + len(rows), len(rows))
+    spent = (0, 0) if planned is None else (planned.factors, planned.work + len(rows))
+    sizes = (MOVED * len(movers), unit * unit * len(columns), *spent, len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
     head = [len(movers), len(rows), begins[0], begins[1], len(shared), *begins[2:6], len(lists[5])]
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
-    kept = assembly.floats(np.zeros(KEPT * len(rows) if free else 0))
+    kept = assembly.floats(np.zeros(kernels.KEPT * len(rows) if free else 0))
     ease = assembly.floats([kernels.EASE])
     head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept, ease]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))

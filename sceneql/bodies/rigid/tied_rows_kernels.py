@@ -62,7 +62,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     SCRATCH,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.cone_layout_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_X
+from sceneql.linear.cones.cone_layout_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_X
 from sceneql.system.signatures_kernels import A, F, I, N
 
 GROUP, FLIPPED, SIDE_INTS = range(3)

@@ -70,7 +70,7 @@ from sceneql.bodies.rigid.tied_rows_kernels import (
 )
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
 from sceneql.compiled.kernels import kernel, lean
-from sceneql.linear.cone_layout_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_X
+from sceneql.linear.cones.cone_layout_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_X
 from sceneql.system.signatures_kernels import A, F, I, N
 
 CLOSED = 1e-13

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import isfinite
+from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
 from sceneql.failure import RunFailure
@@ -33,6 +32,10 @@ class Beginning:
         assert isinstance(kind, Object)
         return kind
 
+    def kept(self, name: str, key: Hashable, make: Callable[[], Any]) -> Any:
+        """What is made for a part, for this start alone."""
+        return make()
+
     def _look_up(self, node: Symbol | Link) -> Any:
         if isinstance(node, Symbol):
             return self.time
@@ -51,7 +54,7 @@ def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
         for ref, bounds in task.kind.fillings() if isinstance(task.kind, Model) else ():
             try:
                 low, high = start.object(ref).extent(_place(), start)
-                if isfinite(sum(high - low)):
+                if _finite(low, high):
                     bounds(low, high)
             except Exceeds as error:
                 found.error("limit-refused", f"{task.name}: at least {error}", ref.span, help="use a larger spacing")
@@ -59,6 +62,14 @@ def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
                 found.error("not-filled", f"'{ref.name}' cannot be filled: {error}", ref.span)
             except (TypeError, ValueError, RunFailure, ScriptError):
                 continue  # the run reports it
+
+
+def _finite(low: Any, high: Any) -> bool:
+    """Whether a box has sides."""
+    import numpy as np
+
+    with np.errstate(over="ignore", invalid="ignore"):
+        return bool(np.isfinite(high - low).all())
 
 
 def _place() -> Any:

@@ -19,11 +19,11 @@ from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 if TYPE_CHECKING:
     from sceneql.frame import Floats
 
-SIDE = 7
+SIDE = 5
 """Places along each axis of the box that two objects share."""
 DEEP = 0.02
 """How deep a place lies in both, at least, in parts of the smaller one's size: what touches is apart."""
-MOST_PAIRS = 500
+MOST_PAIRS = 100
 """Pairs of boxes from which on none is compared: the run does."""
 UNKNOWN = (TypeError, ValueError, ArithmeticError, RunFailure, LimitRefused, ScriptError)
 
@@ -82,8 +82,9 @@ def _overlap(body: str, other: str, whole: bool, tasks: Mapping[str, Task], star
     least = DEEP * min(size for size in [*sizes, 1.0] if np.isfinite(size))
     deepest = 0.0
     for place in product(*(np.linspace(a, b, SIDE) for a, b in zip(low, high, strict=True))):
-        values = [_field(shape, np.array(place), start) for shape in shapes]
-        deepest = max(deepest, -max(values))
+        depth = -_field(shapes[0], np.array(place), start)
+        if depth > deepest:
+            deepest = max(deepest, min(depth, -_field(shapes[1], np.array(place), start)))
     return deepest if deepest > least else 0.0
 
 

@@ -82,14 +82,18 @@ def _modes(island: Island, tasks: Mapping[str, Task], end: float) -> Iterator[tu
     """Each model and force by name, with bounds on its fastest oscillations."""
     models = {name: cast(Model, tasks[name].kind) for name in island.models}
     scene = StaticScene({name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}, end)
+    carrying = {force: cast(Interaction, tasks[force].kind).carrier() for force, _ in island.forces}
+    carried = {model for force, model in island.forces if carrying[force] is not None}
     for name, model in models.items():
-        yield name, _known(partial(model.fastest, name, scene))
+        if name not in carried:
+            yield name, _known(partial(model.fastest, name, scene))
     known = {name: model.static_masses() for name, model in models.items()}
     for force in dict.fromkeys(force for force, _ in island.forces):
         kind, on = cast(Interaction, tasks[force].kind), [model for other, model in island.forces if other == force]
         flow = kind.carrier()
         if flow is not None:
-            yield force, _known(partial(kind.fastest_carried, {name: models[name] for name in on}, models[flow.name]))
+            them = {name: models[name] for name in on}
+            yield force, _known(partial(kind.fastest_carried, them, models[flow.name], scene))
             continue
         yield force, _known(partial(kind.fastest, force, {model: known[model] for model in on}))
 

@@ -1,18 +1,19 @@
-"""Skins without inertia move as the one flow that carries them: refused before anything runs where there is none."""
+"""What a flow carries moves as that flow: refused before anything runs where there is none, or what it cannot carry."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
 from sceneql.graph import Task
-from sceneql.kinds import Force, Model
+from sceneql.kinds import Force, Model, Tie
 from sceneql.quantities.diagnostic import Diagnostics, Note
 
 
 def report_carried(
     models: Iterable[Task], forces: Mapping[str, Sequence[str]], tasks: Mapping[str, Task], found: Diagnostics
 ) -> None:
-    """Report skins that no force has a flow carry, or two, and such forces on other models.
+    """Report skins that no force has a flow carry, what two have, such forces on other models, and ties on what they
+    carry.
 
     ``forces``: by force and tie the models that it acts on.
     """
@@ -27,15 +28,22 @@ def report_carried(
         places = {ref.name: ref.span for ref in getattr(kind, "on", None) or ()}
         for target in dict.fromkeys(targets):
             other = tasks[target].kind
-            if isinstance(other, Model) and not other.carried:
-                text = f"'{target}' is no skin that a flow can carry: a `membrane` is one"
-                found.error("no-skin", text, places.get(target) or tasks[name].span)
+            if isinstance(other, Model) and not other.immersible:
+                text = f"'{target}' is nothing that a flow can carry: a `membrane`, `mass_spring` or `cloth` is"
+                around = "let the flow go `around` an object, which may move by keys or a formula"
+                help = around if other.turns or other.has_skin else None
+                found.error("no-skin", text, places.get(target) or tasks[name].span, help=help)
             carriers.setdefault(target, []).append(tasks[name])
+    for name, targets in forces.items():
+        for target in targets if isinstance(tasks[name].kind, Tie) else ():
+            if target in carriers:
+                text = f"'{target}' is carried by a flow, and ties hold nothing that moves as a fluid"
+                help = "hold masses by `pins`, or by springs to places"
+                found.error("refuses-ties", text, tasks[name].span, help=help)
     for task in models:
-        if not (isinstance(task.kind, Model) and task.kind.carried):
-            continue
         by = carriers.get(task.name, [])
-        if not by and not found.errors:  # a force that is refused is not among these
+        skin = isinstance(task.kind, Model) and task.kind.carried
+        if skin and not by and not found.errors:  # a force that is refused is not among these
             text = f"no flow carries '{task.name}', and by itself it does not move"
             help = f"write `forces: [{{immersion: {{on: [{task.name}], in: ...}}}}]` with the name of a flow"
             found.error("not-carried", text, task.span, help=help)

@@ -29,7 +29,6 @@ from sceneql.contacts.distance.core_kernels import (
     ROUNDING,
     VERTICES,
     at3,
-    cross,
     dot,
     end_of,
     put3,
@@ -44,6 +43,7 @@ overlay = lazy(
 two_lines = lazy(
     "sceneql.contacts.distance.overlay_kernels:two_lines", types.Tuple((N, N, N))(I, N, N, N, N, A, N, F, F, F)
 )
+thin_out = lazy("sceneql.contacts.distance.thin_out_kernels:thin_out", types.void(A, N, N, N, F, F, F))
 
 MOST = 8
 """Most points of a pair."""
@@ -86,40 +86,6 @@ def sift(room, at, count, most, same):
                 room[at + CORNER * kept + c] = room[p + c]
             kept += 1
     return kept
-
-
-@lean(N(A, N, N, F, F, F), inner=True)
-def thin_out(room, at, count, nx, ny, nz):
-    """Keeps MOST of the corners: the farthest in seven directions across the normal, and the lowest; their number."""
-    if count <= MOST:
-        return count
-    if abs(nx) <= min(abs(ny), abs(nz)):
-        ux, uy, uz = cross(nx, ny, nz, 1.0, 0.0, 0.0)
-    elif abs(ny) <= abs(nz):
-        ux, uy, uz = cross(nx, ny, nz, 0.0, 1.0, 0.0)
-    else:
-        ux, uy, uz = cross(nx, ny, nz, 0.0, 0.0, 1.0)
-    vx, vy, vz = cross(nx, ny, nz, ux, uy, uz)
-    for turn in range(MOST):
-        best, found = math.inf, 0
-        angle = 2.0 * math.pi * turn / (MOST - 1)
-        pu, pv = math.cos(angle), math.sin(angle)
-        for k in range(count):
-            p = at + CORNER * k
-            if room[p + 3] < math.inf:
-                x, y, z = at3(room, p)
-                away = (
-                    room[p + 3] if turn == MOST - 1 else -pu * dot(ux, uy, uz, x, y, z) - pv * dot(vx, vy, vz, x, y, z)
-                )
-                if away < best:
-                    best, found = away, k
-        # Those that are taken stand behind the others, and are out of the search.
-        for c in range(CORNER):
-            room[at + CORNER * (count + turn) + c] = room[at + CORNER * found + c]
-        room[at + CORNER * found + 3] = math.inf
-    for k in range(CORNER * MOST):
-        room[at + k] = room[at + CORNER * count + k]
-    return MOST
 
 
 @lean(types.Tuple((N, F, F, F, F))(A, I, N, N, A, N, N, F, A, I, A))
@@ -177,7 +143,9 @@ def manifold(floats, ints, a, b, places, at_a, at_b, margin, points, names, room
         put_corner(room, work + CORNER * count, *at3(room, at), gap + ra + rb, LONE, LONE)
         count += 1
     count = sift(room, work, count, margin + ra + rb, SAME * size)
-    count = thin_out(room, work, count, nx, ny, nz)
+    if count > MOST:
+        thin_out(room, work, count, MOST, nx, ny, nz)
+        count = MOST
     for k in range(count):
         p, to = work + CORNER * k, POINT * k
         x, y, z = at3(room, p)

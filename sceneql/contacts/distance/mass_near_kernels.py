@@ -7,13 +7,13 @@ import numpy as np
 from numba import types
 
 from sceneql.bodies.rigid.rigid_kernels import to_body, to_world
+from sceneql.compiled.integers_kernels import filled, longer
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts import layout
 from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.rigid_layout import BODIES, MASSES_AT, SHAPES_AT
 from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE
 from sceneql.contacts.shape_kernels import near_at
-from sceneql.linear.block_order_kernels import filled, longer
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MODELS, THICKNESS_AT, MEMORY_AT, TALLY_AT, SURFACES, SURFACES_AT, HEAD = range(7)

@@ -26,6 +26,7 @@ from sceneql.bodies.rigid.point_list import (
     WHO,
 )
 from sceneql.bodies.rigid.rigid_kernels import to_body, to_world
+from sceneql.compiled.integers_kernels import filled
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts import layout
 from sceneql.contacts.body_path_kernels import NEVER, first_contact, moving, place
@@ -52,7 +53,6 @@ from sceneql.contacts.distance.rigid_layout import BODIES, MASSES_AT, RESTITUTIO
 from sceneql.contacts.distance.rigid_rows_kernels import BOUNCES, MOTION, PLACE, speed_along, with_room
 from sceneql.contacts.impact_kernels import MOST_CUTS, count_hit
 from sceneql.contacts.shape_kernels import surface
-from sceneql.linear.block_order_kernels import filled
 from sceneql.system.signatures_kernels import A, F, I, N
 
 LONGEST, LONGER = 3, 4

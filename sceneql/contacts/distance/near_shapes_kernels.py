@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Which shapes of rigid bodies come near each other in a step, and how far it may go at once."""
+"""Which shapes of rigid bodies come near each other in a step."""
 
 import math
 
@@ -7,15 +7,12 @@ import numpy as np
 from numba import types
 
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import POINT as MASS_SHAPE
 from sceneql.contacts.distance.convex import SHAPE, SKINNED
 from sceneql.contacts.distance.rigid_layout import BODIES, JOINED_AT, SHAPES, SHAPES_AT
 from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE
 from sceneql.contacts.distance.swept_boxes_kernels import BOX, near_pairs, swept_box
 from sceneql.system.signatures_kernels import A, F, I, N
-
-cut = lazy("sceneql.contacts.distance.skin_pair_kernels:cut", F(F, A, I, N, N, A, A, F))
 
 
 @lean(F(A, N, F))
@@ -32,17 +29,6 @@ def speed_at(places, motions, a, b, reach):
     for c in range(3):
         far += (places[PLACE * a + c] - places[PLACE * b + c]) ** 2
     return reach_of(motions, MOTION * b, math.sqrt(far) + reach)
-
-
-@lean(F(A, I, A, A, N, N))
-def nearing(floats, ints, places, motions, a, b):
-    """The largest speed of points of two shapes against each other, at most."""
-    head = ints[SHAPES_AT]
-    reach = floats[ints[head + SHAPE * a + 1] + 1]
-    fast = reach_of(motions, MOTION * a, reach)
-    if b < ints[BODIES]:
-        return fast + reach_of(motions, MOTION * b, floats[ints[head + SHAPE * b + 1] + 1])
-    return fast + speed_at(places, motions, a, b, reach)
 
 
 @lean(types.boolean(I, N, N))
@@ -103,21 +89,3 @@ def is_skinned(ints, a, b):
     """Whether a pair of shapes touches by skins."""
     head = ints[SHAPES_AT]
     return ints[head + SHAPE * a] == SKINNED or ints[head + SHAPE * b] == SKINNED
-
-
-@lean(F(F, A, I, A, A, A, types.int64[:, ::1]), inner=True)
-def shortened(h, floats, ints, places, motions, before, pairs):
-    """How much of a step pairs of skins may do at once [s]."""
-    n, head, least = ints[BODIES], ints[SHAPES_AT], h
-    for p in range(pairs.shape[0]):
-        a, b = pairs[p, 0], pairs[p, 1]
-        if a < n and is_skinned(ints, a, b) and not joined(ints, a, b):
-            reach = floats[ints[head + SHAPE * a + 1] + 1]
-            fast = reach_of(motions, MOTION * a, reach) + reach_of(before, MOTION * a, reach)
-            if b < n:
-                other = floats[ints[head + SHAPE * b + 1] + 1]
-                fast += reach_of(motions, MOTION * b, other) + reach_of(before, MOTION * b, other)
-            else:
-                fast += speed_at(places, motions, a, b, reach)
-            least = min(least, cut(h, floats, ints, a, b, places, motions, fast))
-    return least

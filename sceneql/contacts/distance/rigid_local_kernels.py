@@ -31,6 +31,7 @@ from sceneql.bodies.rigid.moved_bodies_kernels import (
 )
 from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_POINT, AT_PUSH, BODY_A, BODY_B, WHERE, WHO
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, gather
+from sceneql.compiled.integers_kernels import filled
 from sceneql.compiled.kernels import kernel, lean
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.contacts.distance.convex import SHAPE
@@ -38,10 +39,8 @@ from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT, manifo
 from sceneql.contacts.distance.near_shapes_kernels import (
     is_skinned,
     joined,
-    nearing,
     pairs_of,
     reach_of,
-    shortened,
     speed_at,
     sweep,
 )
@@ -76,8 +75,7 @@ from sceneql.contacts.distance.rigid_layout import (
 )
 from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, note_places, recall, with_room
 from sceneql.contacts.distance.swept_boxes_kernels import BOX
-from sceneql.linear.block_order_kernels import filled
-from sceneql.linear.cone_layout_kernels import ROW
+from sceneql.linear.cones.cone_layout_kernels import ROW
 from sceneql.system.signatures_kernels import BACK_OFF, A, F, I, N
 
 TOUCH, ROLLING = "sceneql.contacts.distance.first_touch_kernels", "sceneql.contacts.distance.rolling_kernels"
@@ -85,10 +83,10 @@ first_touch = lazy(f"{TOUCH}:first_touch", F(A, I, N, N, A, N, N, A, N, N, F, F,
 place_after = lazy(f"{TOUCH}:move", types.void(A, N, A, N, F, A, N))
 solve_rolling = lazy(f"{ROLLING}:solve_rolling", N(N, N, I, A, N, A, A, A, A, A, F, F, A, I, I, N))
 lead = lazy("sceneql.contacts.distance.led_kernels:lead", types.void(F, F, A, I, N, A, N, A, N))
-skin_points = lazy(
-    "sceneql.contacts.distance.skin_pair_kernels:skin_points",
-    types.Tuple((I, A, N))(F, A, I, N, N, A, A, A, F, N, I, A, N),
-)
+SKINS = "sceneql.contacts.distance.skin_pair_kernels"
+skin_points = lazy(f"{SKINS}:skin_points", types.Tuple((I, A, N))(F, A, I, N, N, A, A, A, F, N, I, A, N))
+nearing = lazy(f"{SKINS}:nearing", F(A, I, A, A, N, N))
+shortened = lazy(f"{SKINS}:shortened", F(F, A, I, A, A, A, types.int64[:, ::1]))
 MASSES = "sceneql.contacts.distance.mass_points_kernels"
 mass_points = lazy(f"{MASSES}:mass_points", types.Tuple((I, A, N))(F, A, I, A, A, A, A, A, A, N, I, A, N))
 cut_at_impact = lazy(f"{MASSES}:cut_at_impact", types.void(F, F, A, I, A, A, A, A, A, A))
@@ -99,7 +97,7 @@ LAZY_FIRST = (
     "sceneql.contacts.distance.separation_kernels",
     "sceneql.contacts.distance.overlay_kernels",
     TOUCH,
-    "sceneql.linear.cone_kernels",
+    "sceneql.linear.cones.cone_kernels",
 )
 """Lazily compiled modules with which a background process begins (driver.lazy_first)."""
 ROUNDS = 12

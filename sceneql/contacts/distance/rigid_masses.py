@@ -37,7 +37,7 @@ def masses_of(everyone: Sequence[Bodies], thickness: float, assembly: Assembly) 
     from sceneql.contacts.impact_kernels import MOST_CUTS
 
     # Impulses at the end of a step are to springs as an explicit method is: stable up to 2 / (2 pi / period).
-    longest = min(bodies.period for bodies in everyone) / math.pi
+    longest = min(bodies.springs.period if bodies.springs else math.inf for bodies in everyone) / math.pi
     assembly.step_at_most(longest)
     few = sum(bodies.count for bodies in everyone) <= MOST_CUT
     cuts = [0.0, 0.0, 0.0] if few else [float("inf"), 0.0, float(MOST_CUTS)]

@@ -24,10 +24,10 @@ from sceneql.bodies.rigid.point_list import (
     WHO,
 )
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, Q_AT, X_AT
+from sceneql.compiled.integers_kernels import longer
 from sceneql.compiled.kernels import kernel, lean, lean_inlined
 from sceneql.contacts.distance.manifold_kernels import MOST, NAME, POINT
 from sceneql.contacts.distance.rigid_layout import BODIES, BODIES_AT
-from sceneql.linear.block_order_kernels import longer
 from sceneql.system.signatures_kernels import A, F, I, N
 
 PLACE, MOTION = 7, 6

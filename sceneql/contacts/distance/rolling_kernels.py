@@ -14,9 +14,9 @@ from numba import types
 from sceneql.bodies.rigid.groups_kernels import solve_groups
 from sceneql.bodies.rigid.point_list import AT_NORMAL, AT_PUSH, BODY_A, BODY_B, WHERE, WHO
 from sceneql.bodies.rigid.velocity_step_kernels import BODY_INTS, Q_AT
+from sceneql.compiled.integers_kernels import filled
 from sceneql.compiled.kernels import kernel, lean
-from sceneql.linear.block_order_kernels import filled
-from sceneql.linear.cone_layout_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_X
+from sceneql.linear.cones.cone_layout_kernels import ROW, ROW_GIVEN, ROW_HIGH, ROW_J, ROW_LOW, ROW_X
 from sceneql.system.signatures_kernels import A, F, I, N
 
 MOTION = 6

@@ -4,10 +4,11 @@
 import numpy as np
 from numba import types
 
-from sceneql.compiled.kernels import kernel
+from sceneql.compiled.kernels import kernel, lean
 from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.manifold_kernels import NAME
 from sceneql.contacts.distance.manifold_kernels import POINT as FLAT
+from sceneql.contacts.distance.near_shapes_kernels import is_skinned, joined, reach_of, speed_at
 from sceneql.contacts.distance.rigid_layout import BODIES, RESTITUTION_AT, SHAPES_AT, SKINS_AT
 from sceneql.contacts.distance.rigid_rows_kernels import MOTION, PLACE, add_points, with_room
 from sceneql.contacts.distance.skin_contact_kernels import MOST, POINT, safe, touching
@@ -49,8 +50,32 @@ def skin_points(h, floats, ints, a, b, places, motions, before, margin, ahead, w
     return who, where, contacts
 
 
-@kernel(F(F, A, I, N, N, A, A, F))
-def cut(h, floats, ints, a, b, places, motions, fast):
-    """How much of a step two skins may do at once [s], as skin_contact_kernels.safe has it."""
-    one, two = ints[ints[SKINS_AT] + a], ints[ints[SKINS_AT] + b]
-    return abs(safe(floats, ints, one, two, places, PLACE * a, PLACE * b, motions, MOTION * a, MOTION * b, fast, h))
+@lean(F(A, I, A, A, N, N), inner=True)
+def nearing(floats, ints, places, motions, a, b):
+    """The largest speed of points of two shapes against each other, at most."""
+    head = ints[SHAPES_AT]
+    reach = floats[ints[head + SHAPE * a + 1] + 1]
+    fast = reach_of(motions, MOTION * a, reach)
+    if b < ints[BODIES]:
+        return fast + reach_of(motions, MOTION * b, floats[ints[head + SHAPE * b + 1] + 1])
+    return fast + speed_at(places, motions, a, b, reach)
+
+
+@lean(F(F, A, I, A, A, A, types.int64[:, ::1]), inner=True)
+def shortened(h, floats, ints, places, motions, before, pairs):
+    """How much of a step pairs of skins may do at once [s]."""
+    n, head, least = ints[BODIES], ints[SHAPES_AT], h
+    for p in range(pairs.shape[0]):
+        a, b = pairs[p, 0], pairs[p, 1]
+        if a < n and is_skinned(ints, a, b) and not joined(ints, a, b):
+            reach = floats[ints[head + SHAPE * a + 1] + 1]
+            fast = reach_of(motions, MOTION * a, reach) + reach_of(before, MOTION * a, reach)
+            if b < n:
+                other = floats[ints[head + SHAPE * b + 1] + 1]
+                fast += reach_of(motions, MOTION * b, other) + reach_of(before, MOTION * b, other)
+            else:
+                fast += speed_at(places, motions, a, b, reach)
+            one, two = ints[ints[SKINS_AT] + a], ints[ints[SKINS_AT] + b]
+            part = safe(floats, ints, one, two, places, PLACE * a, PLACE * b, motions, MOTION * a, MOTION * b, fast, h)
+            least = min(least, abs(part))
+    return least

@@ -99,6 +99,7 @@ from sceneql.contacts.rigid_exact.extra_rows_kernels import (
     write_more,
 )
 from sceneql.contacts.rigid_exact.rim_kernels import any_rim, exchange_all, save
+from sceneql.contacts.rigid_exact.rim_pressure_kernels import enclose_pressure
 from sceneql.contacts.rigid_exact.stop_kernels import STOP
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, I, N
 
@@ -271,6 +272,8 @@ def hold(t, y, rate, floats, ints):
         return
     friction = floats[ints[FRICTION_AT]]
     follow_all(floats, ints)
+    if floats[memory + UNDECIDED] > 0.0 and any_rim(floats, ints):
+        enclose_pressure(floats, ints)
     n, solved, jammed = forces(floats, ints, friction)
     turns = 0
     # With as few points of a circle as bear it; where no solution is found so, with more.

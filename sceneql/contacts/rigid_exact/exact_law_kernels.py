@@ -13,13 +13,11 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
+from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.contacts.rigid_exact.law_kinds import ACROSS, ALONG, BILATERAL, BOUNDED, MOMENT, NORMAL, UNILATERAL
 from sceneql.linear.dense_kernels import factor, solve
 from sceneql.system.signatures_kernels import A, F, I, N
 
-BILATERAL, UNILATERAL, NORMAL, ACROSS, ALONG, BOUNDED, MOMENT, SECOND, THIRD = range(9)
-"""Kinds of rows: a tie; a contact whose friction is known by its normal force; one of three rows of a contact with
-Coulomb's cone; one between bounds of its own; one of three of a moment. Behind the kinds of all rows stands of each
-moment's row that of the normal force which bounds it."""
 STIFF, SOFT = 1e9, 1e3
 """Stiffness of the proximal steps, of the rows' effective masses: the last, and that which finds its way."""
 EASE = 2.0**-7
@@ -43,6 +41,11 @@ VECTORS = 9
 given by the caller, sizes of the numbers that b is a sum of, and the bounds: the lower (of a moment its length over
 the normal force), and the upper. Behind the matrix stands what is left, as a sum of squares
 (in energies), and after it how many operations it took."""
+
+MANY = 30
+"""Rows from which an interior-point method leads to the solution, where Newton's does not find it from the guess."""
+
+interior = lazy("sceneql.contacts.rigid_exact.exact_interior_kernels:interior", types.boolean(N, A, A, I, F, A))
 
 WORST = F(N, A, A, I, F, A, A, A)
 TRY = types.boolean(N, A, A, I, F, A, A, A, I, F, N)
@@ -292,6 +295,10 @@ def solve_law(n, w, b, kinds, mu, x, s, work, pivots, thorough):
     # Where forces are not unique, those near the guess; else nearly those of rows that yield a little.
     if attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST):
         return True
+    if n >= MANY and thorough and interior(n, w, b, kinds, mu, x):
+        work[VECTORS * n + n * n + 1] += 30.0 * n * n * n
+        if attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST):
+            return True
     for i in range(n):
         x[i] = 0.0
     sweeps = FEWEST

@@ -86,6 +86,22 @@ def is_rim(floats, rec):
     return floats[rec + KIND] == CORNER_FACE and floats[rec + LINE_A] > 0.0
 
 
+@lean_inlined
+def same_circle(floats, rec, other):
+    """Whether a contact is of a point of the circle of another one."""
+    same = floats[other + PAIR] == floats[rec + PAIR] and floats[other + SIGN] == floats[rec + SIGN]
+    return same and is_rim(floats, other)
+
+
+@lean(types.boolean(A, I, N))
+def first_of_circle(floats, ints, k):
+    """Whether contact k is the first one of its circle."""
+    for j in range(k):
+        if same_circle(floats, ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * j):
+            return False
+    return True
+
+
 @lean(types.boolean(A, I))
 def any_rim(floats, ints):
     """Whether a circle lies flat."""
@@ -192,8 +208,7 @@ def spare(floats, ints, n, k, to):
     a0 = a1 = a2 = a3 = 0
     for j in range(int(floats[memory + KEPT])):
         other = ints[RECORDS_AT] + RECORD * j
-        same = floats[other + PAIR] == floats[rec + PAIR] and floats[other + SIGN] == floats[rec + SIGN]
-        if not is_rim(floats, other) or not same or not floats[found + row_of(floats, ints, n, j)] > 0.0:
+        if not same_circle(floats, rec, other) or not floats[found + row_of(floats, ints, n, j)] > 0.0:
             continue
         a0, a1, a2, a3 = a1, a2, a3, j
         four += 1
@@ -251,9 +266,7 @@ def exchange(floats, ints, n, k, pressed):
     count, slot, most = 0, -1, 0.0
     for j in range(int(floats[memory + KEPT])):
         other = ints[RECORDS_AT] + RECORD * j
-        if not is_rim(floats, other) or floats[other + PAIR] != floats[rec + PAIR]:
-            continue
-        if floats[other + SIGN] != floats[rec + SIGN]:
+        if not same_circle(floats, rec, other):
             continue
         away = 0.0
         for c in range(3):
@@ -288,15 +301,7 @@ def exchange_all(floats, ints, n, pressed):
     count, some, asked = int(floats[ints[MEMORY_AT] + KEPT]), False, False
     for k in range(count):
         rec = ints[RECORDS_AT] + RECORD * k
-        if not is_rim(floats, rec):
-            continue
-        first = True
-        for j in range(k):
-            other = ints[RECORDS_AT] + RECORD * j
-            same = floats[other + PAIR] == floats[rec + PAIR] and floats[other + SIGN] == floats[rec + SIGN]
-            if same and is_rim(floats, other):
-                first = False
-        if not first:
+        if not is_rim(floats, rec) or not first_of_circle(floats, ints, k):
             continue
         if pressed and not asked:
             answer(floats, ints, n)

@@ -5,6 +5,7 @@ Imports numpy: to be imported by the function that needs it.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,6 +55,7 @@ def branches(tape: Tape) -> list[int]:
     return found
 
 
+@lru_cache(maxsize=16)
 def _clips(tape: Tape) -> list[tuple[Floats, int]]:
     """Polynomials as of ``clips_of``, each with the row whose sign it has."""
     found = []

@@ -9,6 +9,7 @@ Imports numpy: to be imported by the function that needs it.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,8 +24,12 @@ LEAST = 1e-9
 """Volume of three directions, relative to the product of their lengths, below which they count as coplanar."""
 
 
+@lru_cache(maxsize=16)
 def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
-    """(tape g, A (3, 4)) with f(p) = g(A (p, 1)); the tape itself and the identity where it has no such coordinates."""
+    """(tape g, A (3, 4)) with f(p) = g(A (p, 1)); the tape itself and the identity where it has no such coordinates.
+
+    Of an object that moves as a whole g is the same at all times, number by number.
+    """
     same = tape, np.eye(3, 4)
     forms = _affine_rows(tape)
     seen = sorted({row for k in range(len(tape.code)) if k not in forms for row in _operands(tape, k) if row in forms})
@@ -42,7 +47,14 @@ def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
     for row in seen:
         code[row] = ops.X + axes[(forms[row] + 0.0).tobytes()], 0, 0, 0
     own = replace(tape, code=code)
-    return replace(own, code=tape_of_rows(own, [len(code) - 1])), matrix
+    return _with_its_own_constants(replace(own, code=tape_of_rows(own, [len(code) - 1]))), matrix
+
+
+def _with_its_own_constants(tape: Tape) -> Tape:
+    """A tape without the constants that its code does not read."""
+    code, of_constants = tape.code.copy(), tape.code[:, 0] == ops.CONSTANT
+    read, code[of_constants, 1] = np.unique(code[of_constants, 1], return_inverse=True)
+    return replace(tape, code=code, constants=tape.constants[read])
 
 
 def _affine_rows(tape: Tape) -> dict[int, Floats]:

@@ -19,14 +19,14 @@ from sceneql.flows.advection_kernels import sides
 from sceneql.flows.obstacles import moving_layout as own
 from sceneql.flows.obstacles.cut_kernels import cut, nearest, place, reach, side, wall_velocity
 from sceneql.flows.obstacles.moving_skin_kernels import opened_wall, scales, tie
-from sceneql.flows.obstacles.no_slip_numbers import BESIDE, LEAST, SLIVER
+from sceneql.flows.obstacles.no_slip_numbers import BESIDE, LEAST, SLIVER, UNEVEN
 from sceneql.flows.projection_kernels import first_face, project
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
 APART = 0.02
 """How far walls are thought to go on, in cells, for the rate of what they leave open."""
-UNEVEN = 0.05
-"""What all walls together push into a closed box, in parts of what they push at all, from which on it has no place."""
+NEAR, LONGEST = 3.0, 16
+"""Cells that are near a wall, whose distance is not always that along a row; places that are passed over at most."""
 
 
 @lean(F(A, I, N, N, F, F, F, F, F, F), inner=True)
@@ -45,18 +45,34 @@ def growth(floats, ints, component, number, a, b, c, x, y, z):
     return (later - earlier) / (2.0 * time)
 
 
+@lean_inlined
+def passed_over(d, floats, ints, axes):
+    """How many places further on in a row a wall at a distance d does not come near: its normal is not asked for there,
+    and its distance is at least what is left of half of d."""
+    at = ints[own.NUMBERS] + own.SPACING
+    dx, dy, dz = floats[at], floats[at + 1], floats[at + 2] if axes == 3 else 0.0
+    return max(0, min(LONGEST, int((0.5 * abs(d) - NEAR * max(dx, dy, dz)) / dx)))
+
+
 @lean(types.void(A, I, N), inner=True)
 def open_faces(floats, ints, component):
     """What is open of a component's faces."""
     flow = ints[ints[own.FLOW] :]
     axes, start = flow[layout.AXES], flow[layout.STARTS + component]
     nx, ny, nz = sides(component, flow)
+    dx = floats[ints[own.NUMBERS] + own.SPACING]
+    d, a, b, c, number = 0.0, 0.0, 0.0, 0.0, 0
     for k in range(nz):
         for j in range(ny):
+            last = -1
             for i in range(nx):
                 f = start + i + nx * (j + ny * k)
                 x, y_, z = place(floats, ints, axes, component, i, j, k)
-                d, a, b, c, number = nearest(floats, ints, axes, x, y_, z)
+                if i > last:
+                    d, a, b, c, number = nearest(floats, ints, axes, x, y_, z)
+                    last = i + passed_over(d, floats, ints, axes)
+                else:  # no wall has come near since
+                    d -= dx if d > 0.0 else -dx
                 part, depth = 1.0 if d > 0.0 else 0.0, max(d, 0.0)
                 cx, cy, cz = x, y_, z
                 if abs(d) <= reach(floats, ints, axes, component, a, b, c):
@@ -119,12 +135,19 @@ def open_cells(floats, ints):
     flow = ints[ints[own.FLOW] :]
     axes = flow[layout.AXES]
     nx, ny, nz = flow[layout.CELLS], flow[layout.CELLS + 1], flow[layout.CELLS + 2]
+    dx = floats[ints[own.NUMBERS] + own.SPACING]
+    d, a, b, c, number = 0.0, 0.0, 0.0, 0.0, 0
     for k in range(nz):
         for j in range(ny):
+            last = -1
             for i in range(nx):
                 cell = i + nx * (j + ny * k)
                 x, y, z = place(floats, ints, axes, 3, i, j, k)
-                d, a, b, c, number = nearest(floats, ints, axes, x, y, z)
+                if i > last:
+                    d, a, b, c, number = nearest(floats, ints, axes, x, y, z)
+                    last = i + passed_over(d, floats, ints, axes)
+                else:
+                    d -= dx if d > 0.0 else -dx
                 part = 1.0 if d > 0.0 else 0.0
                 if abs(d) <= reach(floats, ints, axes, 3, a, b, c):
                     part = cut(floats, ints, axes, 3, x, y, z)[0]
@@ -196,6 +219,7 @@ def push(floats, ints):
                 change, changes = change + rate[cell], changes + abs(rate[cell])
     if flow[layout.SINGULAR] == 0:
         return True
+    out[2 * n] = total / size if size > 0.0 else 0.0
     for cell in range(n):
         out[cell] -= abs(out[cell]) * total / size if size > 0.0 else 0.0
         rate[cell] -= abs(rate[cell]) * change / changes if changes > 0.0 else 0.0

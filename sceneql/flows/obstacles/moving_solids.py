@@ -88,7 +88,7 @@ class MovingSolids:
         self.scratch = [assembly.floats(zeros) for _ in range(3 + 3 + 2 + 2)]
         self.middles = assembly.floats(np.concatenate([np.arange(faces.count), *[zeros] * 3]))
         self.owners = assembly.floats(np.zeros(faces.count + cells))
-        self.seeping = assembly.floats(np.zeros(2 * cells))
+        self.seeping = assembly.floats(np.zeros(2 * cells + 1))
 
     def describe(self, ints: Any) -> None:
         """Write what the flow's own integers say of solids."""

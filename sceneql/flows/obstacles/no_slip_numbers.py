@@ -12,3 +12,5 @@ SLIVER = 0.02
 """Open part of a face below which it is closed: what little flows there would need a large pressure behind it."""
 LEAST = 0.3
 """Least volume of a velocity's own cell, of a whole one: smaller ones have this inertia, for the sake of the step."""
+UNEVEN = 0.05
+"""What all walls together push into a closed box, in parts of what they push at all, from which on it has no place."""

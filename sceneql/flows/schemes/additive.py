@@ -83,10 +83,9 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
 def growth(decay: float, turn: float, step: float) -> float:
     """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
-    import numpy as np
-
     implicit, explicit = -step * decay, 1j * step * turn
-    stages = np.linalg.solve(
-        np.eye(len(NODES)) - implicit * np.array(IMPLICIT) - explicit * np.array(EXPLICIT), np.ones(len(NODES))
-    )
-    return float(abs(1.0 + (implicit + explicit) * (np.array(WEIGHTS) @ stages)))
+    stages: list[complex] = []
+    for e, d in zip(EXPLICIT, IMPLICIT, strict=True):
+        known = sum((explicit * a + implicit * b) * y for a, b, y in zip(e, d, stages, strict=False))
+        stages.append((1.0 + known) / (1.0 - implicit * d[len(stages)]))
+    return abs(1.0 + (implicit + explicit) * sum(b * y for b, y in zip(WEIGHTS, stages, strict=True)))

@@ -17,14 +17,12 @@ from numba import types
 
 from sceneql.compiled.kernels import lean
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.flows.layout import AT, CHANGE, FACES, LED, RATE, SKIP, VELOCITY, WORK
+from sceneql.flows.layout import AT, CHANGE, FACES, INVERSES, LED, RATE, SKIP, VELOCITY, WORK
 from sceneql.flows.projection_kernels import project
 from sceneql.flows.schemes.multistep_kernels import OPERATOR, same, solve, spread, tally
 from sceneql.system.signatures_kernels import STEP, A, F, I, N
 
 STAGES, FLOW_AT, BLOCKS, AXES, OPERATORS, TABLES_AT, HEAD = range(7)
-SPREAD = 1
-"""Where the integers begin as multistep_kernels.spread reads them."""
 EXACT, SHARE = 1e-10, 1e-3
 """Residual of a stage's velocities, in parts of their size, and of the tolerance, whichever is larger."""
 FINE, COARSE = 1e-12, 1e-3
@@ -64,7 +62,7 @@ def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
     r, z, p, q = more[:n], more[n : 2 * n], more[2 * n : 3 * n], more[3 * n : 4 * n]
     for k in range(first, last):
         q[k] = 0.0
-    spread(y, q, 0, axes, floats, numbers[SPREAD:])
+    spread(y, q, 0, axes, floats, numbers)
     solved &= project(q, CHANGE, floats, one)
     for k in range(first, last):
         r[k] = wanted[k] - y[k] + a * q[k]
@@ -87,7 +85,7 @@ def implicit(a, exact, wanted, y, room, more, floats, tables, numbers):
         part = now / before if count > 0 else 0.0
         for k in range(first, last):
             p[k] = z[k] + part * p[k]
-        spread(p, q, 0, axes, floats, numbers[SPREAD:])
+        spread(p, q, 0, axes, floats, numbers)
         solved &= project(q, CHANGE, floats, one)
         for k in range(first, last):
             q[k] = p[k] - a * q[k]
@@ -132,17 +130,20 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
                 y1[k] = wanted[k]
             a, exact = h * d[i * s + i], max(EXACT, SHARE * tolerance)
             solved &= implicit(a, exact, wanted, y1, room, more, floats, tables, numbers)
-        if i == 0 and same(y0, end) and settings[latest] == t:
+        if i == 0 and one[LED] == 0 and same(y0, end) and settings[latest] == t:
             for k in range(n):
                 own[k] = end_rate[k]
         else:
             rate(t + nodes[i] * h, y1, own, floats, ints)
+        if i == 0 and one[LED] > 0:
+            for f in range(one[FACES]):
+                spreading[f] = floats[one[INVERSES] + f]
         for k in range(n):
             mine[k] = 0.0
-        spread(y1, mine, velocities, numbers[OPERATORS], floats, numbers[SPREAD:])
+        spread(y1, mine, velocities, numbers[OPERATORS], floats, numbers)
         for k in range(n):
             own[k] -= mine[k]
-        spread(y1, mine, 0, velocities, floats, numbers[SPREAD:])
+        spread(y1, mine, 0, velocities, floats, numbers)
     for k in range(n):
         total = error = 0.0
         for j in range(s):
@@ -155,10 +156,14 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     for number in range(numbers[OPERATORS]):
         tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     rate(t + h, y1, end_rate, floats, ints)
+    if one[LED] > 0:  # what solids leave in a step or come to has a velocity of theirs then, and no order
+        for f in range(one[FACES]):
+            if spreading[f] == 0.0 or floats[one[INVERSES] + f] == 0.0:
+                wanted[one[AT] + f] = 0.0
     floats[one[SKIP]] = 0.0
     for k in range(n):
         end[k], spreading[k] = y1[k], 0.0
-    spread(y1, spreading, 0, velocities, floats, numbers[SPREAD:])
+    spread(y1, spreading, 0, velocities, floats, numbers)
     for k in range(n):
         rate1[k] = end_rate[k] + spreading[k]
     settings[latest] = t + h

@@ -22,9 +22,8 @@ SAME = 1e-9
 
 def stepper(scheme: int, order: int, step: float) -> Stepper:
     """Fixed steps [s] of multistep_kernels.step."""
-    method = Method(
-        step="sceneql.flows.schemes.multistep_kernels:step", order=order, numbers=(scheme, 0), settings=(), last_stage=0
-    )
+    kernel = "sceneql.flows.schemes.multistep_kernels:step"
+    method = Method(step=kernel, order=order, numbers=(scheme, 0, 0), settings=(), last_stage=0)
     return Stepper(
         method, Control(first_step=step, unsolved=UNSOLVED), Needs(prepare="sceneql.flows.schemes.multistep:prepare")
     )

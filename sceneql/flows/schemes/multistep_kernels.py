@@ -7,11 +7,12 @@ its divergence; the pressure grows by what that takes away, less viscosity times
 2001, J. Comput. Phys. 168, 464-499; Guermond & Shen 2004, Math. Comp. 73, 1719-1737), or is left out (Chorin 1968).
 
 ``settings``: start and end of the latest step, length of the one before it. ``numbers``: [scheme, 1 if there is a step
-before, number of operators, where the flow's integers begin, operators of velocities, which come first], then of each
-operator OPERATOR integers (a field's offset in y, cells along x, y, z, volumes, 0 where nothing is solved, sinks,
-conductances along x, y, z; offsets into the tables, which follow the settings, of decay rates by mode along x, y, z,
-and of the length of all transforms, the volume of a cell and the sum of its conductances; the entry of y that tells
-what has come in, or -1; 1 where the transforms solve it; the plans of the transforms, flows/layout).
+before, how often a step went on from the one before, number of operators, where the flow's integers begin, operators of
+velocities, which come first], then of each operator OPERATOR integers (a field's offset in y, cells along x, y, z,
+volumes, 0 where nothing is solved, sinks, conductances along x, y, z; offsets into the tables, which follow the
+settings, of decay rates by mode along x, y, z, and of the length of all transforms, the volume of a cell and the sum of
+its conductances; the entry of y that tells what has come in, or -1; 1 where the transforms solve it; the plans of the
+transforms, flows/layout).
 """
 
 import math
@@ -37,16 +38,17 @@ from sceneql.flows.layout import (
     VELOCITY,
     WORK,
 )
-from sceneql.flows.projection_kernels import less_gradient, outflow, project
+from sceneql.flows.projection_kernels import less_gradient, outflow, project, rid
 from sceneql.grids.multigrid.stencil_kernels import dot, multiply
 from sceneql.system.signatures_kernels import STEP, A, F, I, N
 
 CHORIN, CNAB2, SBDF2 = range(3)
-SCHEME, HAS_BEFORE, OPERATORS, FLOW_AT, VELOCITIES, HEAD = range(6)
+SCHEME, HAS_BEFORE, TURN, OPERATORS, FLOW_AT, VELOCITIES, HEAD = range(7)
 START, END, LENGTH, VISCOSITY, TABLES = range(5)
 DECAYS, SIZES_AT, TALLY, EXACT, PLANS_AT = 9, 12, 13, 14, 15
 OPERATOR = PLANS_AT + 3 * PLAN
-ARRAYS = 12
+GOES_ON, REPEATS, BEGINS = range(3)
+ARRAYS = 11
 SMALL = 1e-10
 """Residual of implicit parts, in parts of the right side."""
 MOST = 200
@@ -85,6 +87,19 @@ def more_at_end(place, count, kind):
     return 2.0 if (low and place == 0) or (high and place == count - 1) else 1.0
 
 
+@lean_inlined
+def by_decay(op, a, z, tables):
+    """Divide modes by 1 + a times their decay rates, and by what the transforms there and back make them larger."""
+    nx, ny, nz = op[1], op[2], op[3]
+    size, along = tables[op[SIZES_AT]], tables[op[DECAYS] : op[DECAYS] + nx]
+    for k in range(nz):
+        deep = tables[op[DECAYS + 2] + k] if nz > 1 else 0.0
+        for j in range(ny):
+            row, both = z[nx * (j + ny * k) :], size * (1.0 + a * (deep + tables[op[DECAYS + 1] + j]))
+            for i in range(nx):
+                row[i] /= both + size * a * along[i]
+
+
 @lean(types.void(A, A, A, F, A, A, I), inner=True)
 def precondition(r, z, volume, a, tables, scratch, op):
     """z = (1 - a coefficient lap)^-1 (r / V) with the volumes V of the uncut box, so that it is symmetric; 0 where
@@ -100,12 +115,7 @@ def precondition(r, z, volume, a, tables, scratch, op):
             z[row] *= more_at_end(0, nx, plans[KIND])
             z[row + nx - 1] *= more_at_end(nx - 1, nx, plans[KIND])
     transform(z, nx, ny, nz, True, tables, scratch, plans)
-    for k in range(nz):
-        deep = tables[op[DECAYS + 2] + k] if nz > 1 else 0.0
-        for j in range(ny):
-            both = deep + tables[op[DECAYS + 1] + j]
-            for i in range(nx):
-                z[i + nx * (j + ny * k)] /= tables[op[SIZES_AT]] * (1.0 + a * (both + tables[op[DECAYS] + i]))
+    by_decay(op, a, z, tables)
     transform(z, nx, ny, nz, False, tables, scratch, plans)
     for c in range(z.size):
         z[c] = z[c] if volume[c] > 0.0 else 0.0
@@ -139,29 +149,40 @@ def diagonal(op, a, easy, floats, tables, out):
                     out[c] = 0.5 / whole if abs(whole - uncut) > 1e-9 * uncut else 0.0
 
 
-@lean_inlined
-def given_beside(op, a, x, r, floats):
-    """Add what comes over the faces to entries that are given, which in a box stand at the ends of an axis."""
-    at_faces = 0
-    for axis in range(3):
-        at_faces += NODES <= op[PLANS_AT + PLAN * axis + KIND] <= FREE_NODES
-    if at_faces == 0:
-        return
-    counts = op[1:4]
-    volume = floats[op[4] : op[4] + x.size]
-    for axis in range(2 if op[3] == 1 else 3):
-        ties = floats[op[6 + axis] : op[6 + axis] + x.size]
-        stride, last = 1, counts[axis] - 1
-        for before in range(axis):
-            stride *= counts[before]
-        rows = x.size // counts[axis]
-        for row in range(rows if last > 0 else 0):
-            low = (row // stride) * stride * counts[axis] + row % stride
-            high = low + last * stride
-            if volume[low] == 0.0:
-                r[low + stride] += a * ties[low + stride] * x[low]
-            if volume[high] == 0.0:
-                r[high - stride] += a * ties[high] * x[high]
+@lean(types.void(I, F, A, A, A, A, A), inner=True)
+def by_modes(op, a, x, floats, tables, scratch, ends):
+    """Solve (V - a L) x = V times what stands in x, in place, on a box of one coefficient; where V is 0, x stays.
+
+    That is at the ends of an axis. ``ends``: scratch, twice as long as such an end.
+    """
+    nx, ny, nz, plans, counts = op[1], op[2], op[3], op[PLANS_AT:], op[1:4]
+    volume, kept = floats[op[4] : op[4] + x.size], 0
+    for back in range(2):
+        kept = 0
+        for axis in range(2 if nz == 1 else 3):
+            if not NODES <= plans[PLAN * axis + KIND] <= FREE_NODES:
+                continue
+            ties = floats[op[6 + axis] : op[6 + axis] + x.size]
+            stride, last = 1, counts[axis] - 1
+            for before in range(axis):
+                stride *= counts[before]
+            for row in range(x.size // counts[axis]):
+                low = (row // stride) * stride * counts[axis] + row % stride
+                for way in range(2):
+                    end = low if way == 0 else low + last * stride
+                    if volume[end] > 0.0:
+                        continue
+                    if back == 1:
+                        x[end] = ends[kept]
+                    else:
+                        beside = end + stride if way == 0 else end - stride
+                        x[beside] += a * ties[beside if way == 0 else end] * x[end] / volume[beside]
+                        ends[kept], x[end] = x[end], 0.0
+                    kept += 1
+        if back == 0:
+            transform(x, nx, ny, nz, True, tables, scratch, plans)
+            by_decay(op, a, x, tables)
+            transform(x, nx, ny, nz, False, tables, scratch, plans)
 
 
 @lean(types.boolean(I, F, A, A, F, A, A, A, A), inner=True)
@@ -180,11 +201,8 @@ def solve(op, a, wanted, y, small, floats, tables, scratch, room):
     r, p, q, z, own = room[:n], room[n : 2 * n], room[2 * n : 3 * n], room[3 * n : 4 * n], room[4 * n : 5 * n]
     if op[EXACT] == 1:
         for c in range(n):
-            r[c] = volume[c] * aim[c]
-        given_beside(op, a, x, r, floats)
-        precondition(r, z, volume, a, tables, scratch, op)
-        for c in range(n):
-            x[c] = z[c] if volume[c] > 0.0 else x[c]
+            x[c] = aim[c] if volume[c] > 0.0 else x[c]
+        by_modes(op, a, x, floats, tables, scratch, room)
         return True
     scale = 1.0 / a
     multiply(nx, ny, nz, scale, volume, sink, gx, gy, gz, x, q)
@@ -230,44 +248,58 @@ def tally(op, y0, y1, floats):
 
 
 @lean_inlined
-def remember(t, y0, latest, n_before, start, before, end, settings, numbers, settled):
-    """Whether this step goes on from the latest, whose start and rates are then those before, or repeats it."""
+def add_spread(y, out, factor, first, spreading, floats, numbers):
+    """out += factor L y, where the operators from ``first`` on act."""
+    spread(y, spreading, first, numbers[OPERATORS], floats, numbers)
+    for number in range(first, numbers[OPERATORS]):
+        op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
+        for k in range(op[0], op[0] + op[1] * op[2] * op[3]):
+            out[k] += factor * spreading[k]
+
+
+@lean_inlined
+def remember(t, y0, start, before, end, settings, numbers, settled):
+    """How a step goes on: GOES_ON from the latest, whose end is its start then, REPEATS that, or BEGINS."""
     if t == settings[END] and (settled or same(y0, end)):
-        for k in range(y0.size):
-            before[k], n_before[k] = start[k], latest[k]
         settings[LENGTH] = settings[END] - settings[START]
         numbers[HAS_BEFORE] = 1
-    elif not (t == settings[START] and same(y0, start)):
-        numbers[HAS_BEFORE] = 0
+        numbers[TURN] += 1
+        return GOES_ON
+    if t == settings[START] and same(y0, start):
+        return REPEATS
+    numbers[HAS_BEFORE] = 0
     for k in range(y0.size):
         start[k] = y0[k]
+    return REPEATS if t == settings[START] else BEGINS
 
 
 @lean(STEP, inner=True)
 def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h; returns 0."""
     n = y0.size
-    rate1, latest, n_before = work[:n], work[n : 2 * n], work[2 * n : 3 * n]
-    start, before, end = work[3 * n : 4 * n], work[4 * n : 5 * n], work[5 * n : 6 * n]
-    wanted, spreading, room, pressure = work[6 * n : 7 * n], work[7 * n : 8 * n], work[8 * n :], work[12 * n :]
+    rate1, wanted, spreading, room = work[:n], work[6 * n : 7 * n], work[7 * n : 8 * n], work[8 * n :]
     one = numbers[numbers[FLOW_AT] :]
     cells = one[CELLS] * one[CELLS + 1] * one[CELLS + 2]
+    pressures = work[ARRAYS * n : ARRAYS * n + 3 * cells]
     q = floats[one[PRESSURE] : one[PRESSURE] + cells]
     scheme = numbers[SCHEME]
     rate = rate_at(functions[AT_RATE])
-    settled = floats[channels.SETTLED] != 0.0
-    remember(t, y0, latest, n_before, start, before, end, settings, numbers, settled)
+    states = work[n : 4 * n]  # those of the latest three times, which take turns
+    turn = numbers[TURN] % 3
+    start, before = states[turn * n : (turn + 1) * n], states[(turn + 2) % 3 * n :]
+    how = remember(
+        t, y0, start, before, states[(turn + 1) % 3 * n :], settings, numbers, floats[channels.SETTLED] != 0.0
+    )
+    turn = numbers[TURN]
+    before, end = states[(turn + 2) % 3 * n :], states[(turn + 1) % 3 * n :]
+    latest, n_before = work[(4 + turn % 2) * n : (5 + turn % 2) * n], work[(5 - turn % 2) * n :]
+    pressure, pressure_after = pressures[turn % 2 * cells :], pressures[(1 - turn % 2) * cells :]
     has_before = numbers[HAS_BEFORE] == 1
-    if not has_before and t != settings[START]:  # the pressure of the start, or after a change from outside
+    if how == BEGINS:  # the pressure of the start, or after a change from outside
         rate(t, y0, latest, floats, ints)
         for c in range(cells):
             pressure[c] = q[c]
-    elif t == settings[START]:
-        for c in range(cells):
-            pressure[c] = pressure[cells + c]
     settings[START], settings[END] = t, t + h
-    for c in range(cells):
-        pressure[cells + c] = pressure[c]
     floats[one[SKIP]] = 1.0
     rate(t, y0, latest, floats, ints)
     floats[one[SKIP]] = 0.0
@@ -278,62 +310,56 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     elif scheme == SBDF2:
         lead, a1, a2 = (1.0 + 2.0 * w) / (1.0 + w), 1.0 + w, -w * w / (1.0 + w)
         b1, b2 = 1.0 + w, -w
-    if numbers[VELOCITIES] < numbers[OPERATORS]:
+    add_spread(y0, latest, -1.0, numbers[VELOCITIES], spreading, floats, numbers)
+    first, second, new, former = a1 / lead, a2 / lead, h * b1 / lead, h * b2 / lead
+    if has_before:
         for k in range(n):
-            spreading[k] = 0.0
-        spread(y0, spreading, numbers[VELOCITIES], numbers[OPERATORS], floats, numbers)
+            y1[k] = first * y0[k] + second * before[k] + new * latest[k] + former * n_before[k]
+    else:
         for k in range(n):
-            latest[k] -= spreading[k]
-    first, second, old, new, former = a1 / lead, a2 / lead, before, h * b1 / lead, h * b2 / lead
-    if not has_before:
-        old, new, former = y0, h * (b1 + b2), 0.0
-    for k in range(n):
-        wanted[k] = first * y0[k] + second * old[k] + new * latest[k] + former * n_before[k]
+            y1[k] = (first + second) * y0[k] + (new + former) * latest[k]
     if implicit < 1.0:
-        for k in range(n):
-            spreading[k] = 0.0
-        spread(y0, spreading, 0, numbers[OPERATORS], floats, numbers)
-        for k in range(n):
-            wanted[k] += h * (1.0 - implicit) * spreading[k]
+        add_spread(y0, y1, h * (1.0 - implicit), 0, spreading, floats, numbers)
     if scheme != CHORIN:
-        less_gradient(wanted, pressure, h / lead, floats, one)
-    for k in range(n):
-        y1[k] = wanted[k]
-    solved, ahead = True, w if has_before else 0.0
+        less_gradient(y1, pressure, h / lead, floats, one)
+    solved, ahead, tables = True, w if has_before else 0.0, settings[TABLES:]
     for number in range(numbers[OPERATORS]):
         op = numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)]
-        if op[EXACT] == 0:  # iterations begin with the values that go on as they went
-            size = op[1] * op[2] * op[3]
-            x, x0, x_before = y1[op[0] : op[0] + size], y0[op[0] : op[0] + size], before[op[0] : op[0] + size]
-            for c in range(size):
-                x[c] = x0[c] + ahead * (x0[c] - x_before[c]) if floats[op[4] + c] > 0.0 else x[c]
-        solved &= solve(
-            op, h * implicit / lead, wanted, y1, SMALL, floats, settings[TABLES:], floats[one[WORK] :], room
-        )
-    if scheme != CHORIN:
-        gathered = room[:cells]
-        outflow(y1, gathered, VELOCITY, floats, one)
-    latest_q = pressure[2 * cells : 3 * cells]  # iterations begin with what the step before took away
-    guessed = has_before and one[ITERATES] > 0
-    if guessed:
+        size = op[1] * op[2] * op[3]
+        x = y1[op[0] : op[0] + size]
+        if op[EXACT] == 1:
+            by_modes(op, h * implicit / lead, x, floats, tables, floats[one[WORK] :], room)
+            continue
+        volume, aim = floats[op[4] : op[4] + size], wanted[op[0] : op[0] + size]
+        x0, x_before = y0[op[0] : op[0] + size], before[op[0] : op[0] + size]
+        for c in range(size):  # iterations begin with the values that go on as they went
+            aim[c] = x[c]
+            x[c] = x0[c] + ahead * (x0[c] - x_before[c]) if volume[c] > 0.0 else x[c]
+        solved &= solve(op, h * implicit / lead, wanted, y1, SMALL, floats, tables, floats[one[WORK] :], room)
+    gathered, latest_q = room[:cells], pressures[2 * cells :]
+    outflow(y1, gathered, VELOCITY, floats, one)
+    if has_before and one[ITERATES] > 0:  # iterations begin with what the step before took away
         less_gradient(y1, latest_q, 1.0, floats, one)
-    solved &= project(y1, VELOCITY, floats, one)
-    if guessed:
+        solved &= project(y1, VELOCITY, floats, one)
         for c in range(cells):
             q[c] += latest_q[c]
-    for c in range(cells):
-        latest_q[c] = q[c]
-    if scheme != CHORIN:
-        part, damped = lead / h, implicit * settings[VISCOSITY]
+    else:
         for c in range(cells):
-            pressure[c] += q[c] * part - damped * gathered[c]
+            q[c] = -gathered[c]
+        solved &= rid(y1, VELOCITY, floats, one)
+    if one[ITERATES] > 0:
+        for c in range(cells):
+            latest_q[c] = q[c]
+    part, damped = lead / h, implicit * settings[VISCOSITY]
+    for c in range(cells):
+        pressure_after[c] = pressure[c] + (q[c] * part - damped * gathered[c])
     for number in range(numbers[OPERATORS]):
         tally(numbers[HEAD + OPERATOR * number : HEAD + OPERATOR * (number + 1)], y0, y1, floats)
     bend = w / (1.0 + w) if has_before else 0.0
     slope, before_slope = (1.0 + bend) / h, -bend / settings[LENGTH] if has_before else 0.0
+    old = before if has_before else y0
     for k in range(n):
         rate1[k] = slope * (y1[k] - y0[k]) + before_slope * (y0[k] - old[k])
-    for k in range(n):
         end[k] = y1[k]
     if not solved:
         y1[one[AT]] = math.nan

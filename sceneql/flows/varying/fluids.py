@@ -8,14 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sceneql.flows import layout
-from sceneql.flows.edges import timed
+from sceneql.flows.parts import of_field
 from sceneql.flows.varying import fluid_layout as own
-from sceneql.grids.at_points import at_points
-from sceneql.grids.cell_program import over_cells
+from sceneql.flows.varying.thickness import by_formula, measure
 from sceneql.grids.medium import number_in
-from sceneql.quantities.derivative import components
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.quantities.expression import TIME_SYMBOL
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -26,7 +23,6 @@ if TYPE_CHECKING:
     from sceneql.flows.staggered import Faces
     from sceneql.system import Assembly, Flow, Membrane
 
-FLAT, DEEP = "sceneql.flows.varying.flat_parts_kernels:measure", "sceneql.flows.varying.deep_parts_kernels:measure"
 FLOW_IN, DRIVE = "sceneql.flows.varying.mass_flow_kernels:flow_in", "sceneql.flows.varying.mass_flow_kernels:drive"
 FIXED = ("fast_transform", "direct")
 """Solvers of the pressure for one density, whose equation stays."""
@@ -35,29 +31,32 @@ FIXED = ("fast_transform", "direct")
 class Fluids:
     """What a flow of several fluids reserves; skins that hold them say so as they are made (`fill`)."""
 
-    def __init__(self, model: Model, densities: Sequence[float], faces: Faces, assembly: Assembly) -> None:
-        """``densities``: of the fluids that skins hold [kg/m^3]."""
+    def __init__(self, model: Model, densities: Sequence[float], laden: bool, faces: Faces, assembly: Assembly) -> None:
+        """``densities``: of the fluids that skins hold [kg/m^3]; ``laden``: whether masses add to its inertia."""
         self.model, self.count, self.faces, self.assembly = model, len(densities), faces, assembly
-        self.unequal = any(density != model.density for density in densities)
+        self.laden = laden
+        self.unequal = laden or any(density != model.density for density in densities)
 
     @property
     def text(self) -> str:
         """For `explain`."""
-        return f", of {1 + self.count} fluids" if self.count else ""
+        return (f", of {1 + self.count} fluids" if self.count else "") + (", laden with masses" if self.laden else "")
 
     def solver(self, named: str) -> str:
         """How the equation of the pressure is solved. Raises ScriptError for one that stays as it is."""
         if not self.unequal:
             return named
         if named in FIXED:
-            text = f"skins hold fluids of other densities: the equation of the pressure changes, and not by `{named}`"
+            what = "skins hold fluids of other densities" if self.count else "masses in it weigh other than its fluid"
+            text = f"{what}: the equation of the pressure changes, and not by `{named}`"
             raise ScriptError([Diagnostic("invalid", text, self.assembly.line(), "take `pressure: auto`")])
         return "multigrid" if named == "auto" else named
 
     def must_stand(self, moving: bool) -> None:
         """Raise ScriptError where solids in the flow move, or their walls."""
         if moving:
-            what = "skins in it hold other fluids" if self.count else "its viscosity varies"
+            what = "masses in it add to its inertia" if self.laden else "its viscosity varies"
+            what = "skins in it hold other fluids" if self.count else what
             text = f"walls of solids in the flow move, and {what}"
             help = "let the solids stand, or let the flow have one density and viscosity"
             raise ScriptError([Diagnostic("invalid", text, self.assembly.line(), help)])
@@ -85,7 +84,7 @@ class Fluids:
         box = [*faces.low, *cells.spacing]
         ints[own.OWN] = assembly.floats([self.model.density, number_in(self.model.viscosity) or 0.0, *box])
         if number_in(self.model.viscosity) is None:
-            ints[own.BASE] = self._by_formula(int(flow[layout.AT]))
+            ints[own.BASE] = by_formula(self.model.viscosity, int(flow[layout.AT]), faces, assembly)
         ints[own.TABLE] = assembly.floats([0.0, float(zeros(own.ROW * self.count))])
         for place in (own.DENSITY, own.MEAN, own.FLUIDITY, own.PART, own.COVER):
             ints[place] = zeros(halves)
@@ -104,35 +103,10 @@ class Fluids:
 
             ints[own.CLIPPED] = zeros(ROOM)
         found = (*ints.tolist(), *flow.tolist())
-        assembly.term("velocity", FLAT if flat else DEEP, found)
+        if not of_field(self.model.viscosity):  # else `thicken` does it, after what is measured then
+            measure(found, flat, assembly)
         assembly.term("close", FLOW_IN, found)
         assembly.term("close", DRIVE, found)
-        return found
-
-    def _by_formula(self, at: int) -> int:
-        """Offset of the viscosity by half: blocks of those at the same place in their cells, as many as cells.
-
-        Raises ScriptError where it is not above 0 at the start.
-        """
-        assembly, cells, formula = self.assembly, self.faces.cells, self.model.viscosity
-        flat, n = self.faces.axes == 2, int(np.prod(cells.shape))
-        shifts = [(a, b, c) for c in ((0.0,) if flat else (-0.25, 0.25)) for b in (-0.25, 0.25) for a in (-0.25, 0.25)]
-        index = np.stack(np.meshgrid(*map(np.arange, cells.shape[::-1]), indexing="ij")[::-1], axis=-1).reshape(-1, 3)
-        first = self.faces.low - (0.0, 0.0, 0.5 * cells.spacing[2] if flat else 0.0)
-        values = [
-            at_points(formula, first + (index + 0.5 + np.array(shift)) * cells.spacing, t=0.0, **{TIME_SYMBOL: 0.0})
-            for shift in shifts
-        ]
-        found, ones = assembly.floats(np.concatenate(values)), assembly.floats(np.ones(n))
-        if not (np.concatenate(values) > 0.0).all():
-            text = f"the viscosity is {np.concatenate(values).min():.3g} Pa s at some places at the start"
-            raise ScriptError([Diagnostic("out-of-range", text, formula.span, "let it be above 0 everywhere")])
-        zeros = assembly.floats(np.zeros(n))
-        for number, shift in enumerate(shifts if timed(formula.expr) else ()):
-            box = assembly.floats([*(first + np.array(shift) * cells.spacing), *cells.spacing])
-            arrays = (found + n * number, zeros, ones)
-            kernel, ints = over_cells(assembly, components(formula.expr)[0], at, arrays, cells.shape, box)
-            assembly.term("velocity", kernel, ints)
         return found
 
 

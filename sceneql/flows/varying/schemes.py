@@ -37,7 +37,8 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
         message = f"this solver marches a flow of several fluids, and '{part}' has one density and viscosity"
         raise ScriptError([Diagnostic("no-flow", message, spans[0], "let auto march it")])
     tallies = {grid.at + int(np.prod(grid.cells.shape)) for grid in system.fields.grids}
-    blocks = [(first, last - first - (last - 1 in tallies)) for first, last, *_ in system.ranges]
+    follow = {at for at, _ in system.following}
+    blocks = [(at, end - at - (end - 1 in tallies)) for at, end, *_ in system.ranges if at not in follow]
     head = (*stepper.method.numbers, len(blocks), HEAD + 2 * len(blocks))
     settings = np.zeros(SIZES + len(blocks))
     settings[:SIZES] = -np.inf, -np.inf, 0.0, stepper.control.tolerance
@@ -56,4 +57,18 @@ def growth(order: int, decay: float, turn: float, step: float) -> float:
     if order == 1:
         return abs((1.0 + explicit) / (1.0 - implicit))
     half = (1.0 + 0.5 * explicit + 0.25 * implicit) / (1.0 - 0.25 * implicit)
-    return abs((1.0 + explicit * half + implicit / 3.0 * (1.0 + half)) / (1.0 - implicit / 3.0))
+    grown = abs((1.0 + explicit * half + implicit / 3.0 * (1.0 + half)) / (1.0 - implicit / 3.0))
+    return min(grown, _swing(decay, turn, step))
+
+
+def _swing(decay: float, turn: float, step: float) -> float:
+    """That of x' = v, v' = -turn^2 x - decay v, as skins and springs swing with the fluid around them: order 2."""
+    z, d = (step * turn) ** 2, step * decay
+    # v in the middle and at the end, x at the end, by x and step v at the start
+    half_x, half_v = -0.5 * z / (1.0 + 0.25 * d), (1.0 - 0.25 * d - 0.25 * z) / (1.0 + 0.25 * d)
+    end_x = (-z - d / 3.0 * half_x) / (1.0 + d / 3.0)
+    end_v = (1.0 - 0.5 * z - d / 3.0 * (1.0 + half_v)) / (1.0 + d / 3.0)
+    middle = 0.5 * (1.0 + half_x + end_v)
+    product = (1.0 + half_x) * end_v - half_v * end_x
+    apart = middle * middle - product
+    return float(product**0.5 if apart < 0.0 else abs(middle) + apart**0.5)

@@ -58,7 +58,7 @@ def cells_of(model: Medium, assembly: Assembly) -> cells.Cells:
         raise LimitRefused(
             f"{count:.3g} cells: at most {cells.MOST_CELLS:,} are possible", assembly.line(), "take a larger `cell`"
         )
-    grid = cut.frame(low, high, model.cell, model.depth, flat)
+    grid = _of_flow(model, assembly) or cut.frame(low, high, model.cell, model.depth, flat)
     if model.edges == "cut_cell":
         found = cut.cut(level, grid, held_by(tuple(model.boundaries()), level.names))
     else:
@@ -67,6 +67,18 @@ def cells_of(model: Medium, assembly: Assembly) -> cells.Cells:
         message = f"no cell of {model.cell:g} m lies inside '{model.domain.name}'"
         raise ScriptError([Diagnostic("no-cell", message, model.domain.span, "take a smaller `cell`")])
     return replace(found, around=(low, high))
+
+
+def _of_flow(model: Medium, assembly: Assembly) -> cut.Frame | None:
+    """The grid of the flow in the same domain that carries a model; None where there is none."""
+    by = getattr(getattr(model, "drift", None), "by", None)
+    if by is None or model.domain is None:
+        return None
+    carrier: Any = assembly.object(by)
+    if not getattr(carrier, "flows", False) or carrier.domain is None or carrier.domain.name != model.domain.name:
+        return None
+    box = carrier.box(assembly)
+    return cut.Frame(box.shape, box.low, box.spacing)
 
 
 def inside(ref: Ref, flat: bool, start: Moment) -> tuple[Any, Floats, Floats, bool]:

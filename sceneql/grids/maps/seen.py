@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
@@ -131,6 +131,10 @@ class AtStart:
     def object(self, ref: Ref) -> Any:
         """The kind of an object."""
         return self._moment.object(ref)
+
+    def kept(self, name: str, key: Hashable, make: Callable[[], Any]) -> Any:
+        """What is made for a part, for this start alone."""
+        return make()
 
 
 def level_of(field: Seen, moment: Moment) -> Any:

@@ -9,8 +9,8 @@ values, factors, scratch.
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.grids.multigrid import layout
 from sceneql.grids.multigrid.linear_kernels import SOLVE, divided, forget, matrix, noted, to_prepare
-from sceneql.linear.multifrontal_solve_kernels import solve_symmetric
-from sceneql.linear.multifrontal_symmetric_kernels import factor_symmetric
+from sceneql.linear.multifrontal.solve_kernels import solve_symmetric
+from sceneql.linear.multifrontal.symmetric_kernels import factor_symmetric
 
 VALUES, FACTORS, SCRATCH, ENTRIES = range(4)
 

@@ -187,7 +187,8 @@ class Collision(Contact):
                 one for one in lazy_kernels.modules() if one.startswith(f"{SHAPES}.")
             )  # every gap asks for them
         nan = float("nan")
-        square = (2.0 * math.pi / bodies.period) ** 2 if bodies.period > 0.0 else math.inf
+        period = math.inf if bodies.springs is None else bodies.springs.period
+        square = (2.0 * math.pi / period) ** 2 if period > 0.0 else math.inf
         cuts = (0.0, 0.0, 0.0) if assembly.body_count() <= MOST_CUT else (float("inf"), 0.0, MOST_CUTS)
         tally_at = assembly.floats([0.0, nan, nan, 0.0, nan])
         pairs = bodies.count * len(others)
@@ -286,18 +287,36 @@ class Collision(Contact):
         return True
 
     def assemble_carried(
-        self, name: str, assembly: Assembly, skins: Sequence[str], everyone: Sequence[Bodies], others: tuple[Ref, ...]
+        self,
+        name: str,
+        assembly: Assembly,
+        skins: Sequence[str],
+        carried: Sequence[Bodies],
+        everyone: Sequence[Bodies],
+        others: tuple[Ref, ...],
     ) -> None:
-        """Add the contacts of skins that a flow carries, with one another and with objects."""
+        """Add the contacts of what a flow carries: of skins with one another, of these and masses with objects."""
         from sceneql.skins.touching import assemble
 
+        if carried and self.mode in ("exact", "local", "barrier"):
+            from sceneql.quantities.diagnostic import ScriptError
+
+            text = f"masses of '{carried[0].model}' move as their flow does, and have no impacts in mode `{self.mode}`"
+            raise ScriptError([Diagnostic("no-collider", text, assembly.line(), "leave the mode out")])
+        for what in ("restitution", "rolling") if carried and not everyone else ():
+            if getattr(self, what).span is not None:
+                from sceneql.quantities.diagnostic import ScriptError
+
+                text = f"masses of '{carried[0].model}' move as their flow does, and have no {what}"
+                raise ScriptError([Diagnostic("no-restitution", text, getattr(self, what).span, "leave it out")])
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
         # Of a skin that could not be made that is told.
         models: list[tuple[str, Any]] = [(skin, assembly.object(Ref(skin))) for skin in skins]
         made = [(skin, model.made) for skin, model in models if assembly.membrane_of(skin) is not None]
-        if made:
-            assembly.remember(tallies.CARRIED, *assemble(assembly, made, everyone, touched, self.friction, self.gap))
+        if made or carried:
+            told = assemble(assembly, made, carried, everyone, touched, self.friction, self.gap)
+            assembly.remember(tallies.CARRIED, *told)
 
     def assemble_rigid(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]

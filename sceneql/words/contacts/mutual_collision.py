@@ -59,6 +59,21 @@ class MutualCollision(Contact):
         """The models and objects of `between`."""
         return self.between or ()
 
+    def assemble_carried(
+        self,
+        name: str,
+        assembly: Assembly,
+        skins: Sequence[str],
+        carried: Sequence[Bodies],
+        everyone: Sequence[Bodies],
+        others: tuple[Ref, ...],
+    ) -> None:
+        """Raises ScriptError: a flow keeps apart what it carries."""
+        from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+
+        text = f"masses of '{carried[0].model}' move as their flow does, which keeps them apart: they have no impacts"
+        raise ScriptError([Diagnostic("no-collider", text, assembly.line(), "name under `between` others alone")])
+
     def assemble_together(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
@@ -140,14 +155,14 @@ def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> tuple[
     from sceneql.contacts.mutual.sphere_pair_kernels import TOUCHING
 
     y, floats = assembly.start(), assembly.numbers()
-    nets = () if exact else tuple(k for k, at in enumerate(everyone) if at.tied is not None)
+    tied = {} if exact else {k: at.springs.ends for k, at in enumerate(everyone) if at.springs is not None}
     model = np.repeat(np.arange(len(everyone)), [at.count for at in everyone])
     places = np.concatenate([y[at.position_at : at.position_at + 3 * at.count] for at in everyone]).reshape(-1, 3)
     radii = np.concatenate([floats[at.radius_at : at.radius_at + at.count] for at in everyone])
     moving = np.concatenate([floats[at.inverse_at : at.inverse_at + at.count] for at in everyone]) > 0.0
     pairs = np.sort(_near(places, 2.0 * float(radii.max(initial=0.0))), axis=1)
     depth = radii[pairs].sum(axis=1) - np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
-    own = (model[pairs[:, 0]] == model[pairs[:, 1]]) & np.isin(model[pairs[:, 0]], nets)
+    own = (model[pairs[:, 0]] == model[pairs[:, 1]]) & np.isin(model[pairs[:, 0]], tuple(tied))
     wrong = np.where(moving[pairs].all(axis=1) & ~own, depth, 0.0)
     rounding = TOUCHING * radii.max(initial=0.0)
     if len(pairs) and wrong.max() > rounding:
@@ -159,7 +174,7 @@ def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> tuple[
             [Diagnostic("masses-overlap", text, assembly.line(), "move them apart, or make them smaller")]
         )
     none = np.empty((0, 2), dtype=np.int64)
-    springs = [np.sort(everyone[k].tied, axis=1) + np.searchsorted(model, k) for k in nets]
+    springs = [np.sort(ends, axis=1) + np.searchsorted(model, k) for k, ends in tied.items()]
     by_springs = np.unique(np.concatenate([none, *springs]), axis=0)
     return np.unique(np.concatenate([pairs[own & (depth > rounding)], by_springs]), axis=0), len(by_springs)
 

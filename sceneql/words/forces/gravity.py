@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 class Gravity(Force):
     """Uniform gravity: F = m g, with the potential energy -m g . x (zero at the origin).
 
-    By default 9.81 m/s^2 downwards, along -y exactly. Source: Newton, Principia (1687), book I, law II.
+    By default 9.81 m/s^2 downwards, along -y exactly. Of masses that a flow carries m is less what they displace.
+    Source: Newton, Principia (1687), book I, law II.
     """
 
     weighs: ClassVar[bool] = True
@@ -42,7 +43,7 @@ class Gravity(Force):
 
         vector = self.direction if self.acceleration is None else self.acceleration
         given = int(self.acceleration is not None)
-        ints = (bodies.velocity_at, bodies.count, bodies.mass_at, given)
+        ints = (bodies.velocity_at, bodies.count, bodies.weighed_at, given)
         parameters = (assembly.value(vector), assembly.value(self.strength))
         assembly.term(
             "force",
@@ -74,4 +75,4 @@ class Gravity(Force):
 
         given, vector_at, strength_at = state.ints
         g = acceleration(state.floats, given, vector_at, strength_at)
-        return -float(masses.moving_masses(bodies, state) @ (masses.positions(bodies, state) @ g))
+        return -float(masses.weighed(bodies, state) @ (masses.positions(bodies, state) @ g))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 from sceneql.bodies.place import HELP, model_of, place_of
 from sceneql.kinds import FixedTime, Interaction, Position, Problem, Quantity, Value, field
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Link
 
 if TYPE_CHECKING:
@@ -41,6 +42,10 @@ class Impulse(Interaction):
         from sceneql.island.breakpoint_table import after
 
         place = place_of(self.on, assembly)
+        if place.bodies.immersed is not None:
+            text = f"'{place.bodies.model}' moves as its flow does, which a blow at an instant would not move"
+            help = 'take a `force` by formula that lasts a little: `{components: "[step(0.1, t), 0, 0]", at: ...}`'
+            raise ScriptError([Diagnostic("invalid", text, self.on.span, help)])
         ints = (*place.ints, assembly.value(self.value), assembly.floats([self.at]))
         assembly.after_step("sceneql.words.forces.impulse_kernels:strike", ints)
         assembly.stop_at(self.at - APART)  # frames within a step see the velocities at both ends: the last is short

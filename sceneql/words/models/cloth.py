@@ -92,6 +92,10 @@ class Cloth(SpringModel):
         square, decay = (stiffest(these) / mass for these in (springs, damped))
         return (Oscillation(math.sqrt(square), decay, f"the springs of '{name}'", ("stretch",)),)
 
+    def static_net(self) -> tuple[float, int]:
+        """Its cells' shorter side."""
+        return min(side / cells for side, cells in zip(self.size, self.cells, strict=True)), 2
+
     def make(self, assembly: Assembly) -> tuple[Net, Floats, Floats]:
         """The sheet with numbers by the areas that masses and springs stand for."""
         import numpy as np

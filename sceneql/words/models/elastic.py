@@ -13,12 +13,12 @@ from sceneql import kinds
 from sceneql.bodies import bodies as masses
 from sceneql.bodies import solid_modes
 from sceneql.bodies.elements import strain_outputs
-from sceneql.bodies.elements.block import Block
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
 from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
 from sceneql.bodies.elements.load import Load
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
+from sceneql.bodies.filling.block import Block
 from sceneql.bodies.filling.finer import Finer
 from sceneql.bodies.solid_modes import Bent
 from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, TooCoarse, field
@@ -97,6 +97,12 @@ class Elastic(Model):
     )
     finer: dict[str, Finer] = field(
         "Places near which its elements are smaller, by name; elements of a file have straight edges then.", {}
+    )
+    turn: kinds.FixedAngle = field(
+        "Beside holes and in fillets of an object elements of ten nodes are so small that its surface turns no more "
+        "along an edge of them, down to a quarter of the spacing.",
+        "0.5 rad",
+        above=0,
     )
     element: str | None = field(
         "Its elements, p1, p2 or p2_mean: of 4 or 10 nodes; the last, of one dilatation each, do not lock. By default "
@@ -240,7 +246,7 @@ class Elastic(Model):
         if self.file is not None:
             return of_file(self.file, element, self.finer, assembly)
         assert self.of is not None
-        return filled(self.of, self.spacing, element, self.finer, assembly)
+        return filled(self.of, self.spacing, element, self.finer, assembly, self.turn if element.edges else None)
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies:
         """Reserve the nodes as masses; add the forces of strain, of loads, of damping, and what holds it."""
@@ -253,7 +259,7 @@ class Elastic(Model):
         from sceneql.bodies.elements.strain_outputs import probe
         from sceneql.bodies.filling.tetrahedra import edges
         from sceneql.shapes.placement import rotation_matrix
-        from sceneql.system import Skin
+        from sceneql.system import Skin, Springs
 
         mesh, line = self.mesh(assembly), assembly.line()
         inertia, count = Inertia.of(mesh, density_of(self.density, WATER)), len(mesh.points)
@@ -307,7 +313,8 @@ class Elastic(Model):
         first, shear = (np.asarray(one) for one in self.law.law.moduli(mesh.points))
         stiffness = float(np.min(shear * (3.0 * first + 2.0 * shear) / (first + shear)))
         skin = Skin(skins.triangles(mesh), held, stiffness)
-        return replace(bodies, period=period, tied=edges(mesh.cells[:, :4])[0], skin=skin)
+        ends = edges(mesh.cells[:, :4])[0]
+        return replace(bodies, springs=Springs(ends, np.zeros((2, len(ends))), period), skin=skin)
 
     def remark(self, state: ModelState) -> str:
         """Its elements, their worst angle, the one that bounds steps, and what its law cannot do."""

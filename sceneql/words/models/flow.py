@@ -18,6 +18,7 @@ from sceneql.flows.parts import (
     comes_in,
     fastest_solid,
     fastest_turn,
+    of_field,
     thickest,
 )
 from sceneql.grids.domain.cells import MOST_CELLS, SIDES, counts, too_far
@@ -29,6 +30,7 @@ from sceneql.quantities import dimension as dim
 from sceneql.quantities.expression import Link, Type
 
 if TYPE_CHECKING:
+    from sceneql.grids.domain.cells import Cells
     from sceneql.system import Assembly, ModelState
 
 THICKEST = 1e100
@@ -50,7 +52,7 @@ class Flow(Model):
     One density would add the pressure of its weight and no motion: the scene's `gravity` and other forces leave a flow
     alone. `force: "[0, -9.81*1000]"` has that pressure; `buoyancy` has warm fluid rise. What skins hold (`filling` of
     `membrane`) weighs what it is heavier than the fluid around it, whose own pressure is left out. A `viscosity` that
-    varies gives the stress mu (grad u + grad u^T); fields and densities by formula do not go with it. Several fluids,
+    varies gives the stress mu (grad u + grad u^T); fields that such a flow carries spread explicitly. Several fluids,
     and such a viscosity, go past solids that stand, with an error of order 1 in their cells; the force on these is then
     not known.
 
@@ -78,7 +80,13 @@ class Flow(Model):
     depth: kinds.FixedLength = field("How thick a flat box is.", "1 m", above=0)
     cell: kinds.FixedLength = field("Largest side of a cell.", above=0)
     density: Annotated[float, Quantity(dim.DENSITY)] = field("The density.", above=0)
-    viscosity: VISCOSITY = field("The dynamic viscosity, a number or by place and time: `1e-3*(1 + x)`.")
+    viscosity: VISCOSITY = field(
+        "The dynamic viscosity, a number or by place and time: `1e-3*(1 + x)`; or by a field that it carries, which is "
+        "`c` there, a plain number in SI: `0.1*exp(-0.05*(c - 20))`."
+    )
+    viscosity_by: Annotated[Value, Quantity(None, (None,))] | None = field(
+        "The field that is `c` in `viscosity`, in the same domain: `heat.temperature`.", None
+    )
     initial: Start | None = field("The flow at the start; by default at rest.", None)
     boundary: dict[str, Side] = field(
         "What holds on the sides `left`, `right` (x), `bottom`, `top` (y), `back`, `front` (z), on any part `where` a "
@@ -168,6 +176,7 @@ class Flow(Model):
         if viscosity is not None and not 0.0 <= viscosity <= THICKEST:
             ends = f"at least 0 and at most {THICKEST:g}"
             yield Problem(f"viscosity must be {ends}, and is {viscosity:g}", ("viscosity",), code="out-of-range")
+        yield from self._thickened()
         if (self.size is None) == (self.domain is None):
             yield Problem("a flow fills one of `domain` and `size`")
             return
@@ -199,6 +208,19 @@ class Flow(Model):
             yield Problem(f"{text}; take `multigrid`", ("pressure",), code="limit-refused")
 
         yield from self._balanced(len(self.size))
+
+    def _thickened(self) -> Iterable[Problem]:
+        """A field that viscosity does not read, or one that it reads and is not said."""
+        by = self.viscosity_by
+        if by is None and of_field(self.viscosity):
+            yield Problem(
+                "`c` in the viscosity is a field: say which by `viscosity_by: heat.temperature`", ("viscosity",)
+            )
+        elif by is not None and not isinstance(by.expr, Link):
+            yield Problem("this is the field of a model itself: `heat.temperature`", ("viscosity_by",))
+        elif by is not None and not of_field(self.viscosity):
+            text = "`viscosity` does not read this field: it is `c` there, as in `0.1*exp(-0.05*(c - 20))`"
+            yield Problem(text, ("viscosity_by",), at_key=True)
 
     def _balanced(self, sides: int) -> Iterable[Problem]:
         """Velocities with other components than the box has sides; fluid that comes in and cannot leave."""
@@ -254,24 +276,41 @@ class Flow(Model):
     def assemble(self, name: str, assembly: Assembly) -> None:
         """Reserve a number a face, and add the terms of the rate. Raises ScriptError."""
         from sceneql.flows.assembly import add_flow
-        from sceneql.flows.fluid_box import box_of
         from sceneql.flows.varying.fluid_layout import MASSES
         from sceneql.grids.ground import Ground
 
-        size = self.size or ()
-        corner = self.corner or (0.0,) * len(size)
-        named = self.boundary
-        ground = Ground(box_of(self.domain, self.flat, size, corner, self.cell, self.depth, named, assembly), assembly)
+        ground = Ground(self.box(assembly), assembly)
         flow = add_flow(name, self, ground.cells, assembly)
         self._masses_at = flow.varying[MASSES] if flow.varying else -1
         assembly.remember(*ground.memory, *flow.ints)
 
+    def box(self, assembly: Assembly) -> Cells:
+        """Its cells. Raises ScriptError, LimitRefused."""
+        from sceneql.flows.fluid_box import box_of
+
+        size = self.size or ()
+        corner = self.corner or (0.0,) * len(size)
+        return box_of(self.domain, self.flat, size, corner, self.cell, self.depth, self.boundary, assembly)
+
     def connect(self, name: str, assembly: Assembly) -> None:
-        """Add what buoyancy does. Raises ScriptError where it reads the field of another domain."""
+        """Add what fields do to it. Raises ScriptError where one is of another domain."""
         if self.buoyancy is not None:
             from sceneql.flows.carried import add_buoyancy
 
             add_buoyancy(self.buoyancy, name, assembly)
+        if self.viscosity_by is not None:
+            from sceneql.flows.varying.thickness import thicken
+
+            thicken(self.viscosity_by, self.viscosity, name, assembly)
+
+    def trouble(self, state: ModelState) -> tuple[str, str]:
+        """Solids that go through the sides of a closed box."""
+        from sceneql.flows.readings import crowded
+
+        if not crowded(state.ints[5:], state.floats):
+            return "", ""
+        text = "a solid moves through a side of a closed box, and the flow cannot be compressed"
+        return text, "give a part of the boundary `outflow: {}`, or keep the solid inside"
 
     def layout(self, state: ModelState, output: str) -> FieldLayout:
         """Where the values at centers lie, for pictures."""

@@ -108,6 +108,20 @@ class MassSpring(SpringModel):
         shape = self.lattice or self.cloth or self.rope
         return len(self.masses) if self.masses is not None else shape.mass_count() if shape else None
 
+    def burdens(self, density: float) -> bool:
+        """All but a solid of that density."""
+        return self.solid is None or self.solid.density != density
+
+    def static_net(self) -> tuple[float, int] | None:
+        """All but that of single masses."""
+        if self.lattice is not None:
+            return self.lattice.spacing, sum(count > 1 for count in self.lattice.count)
+        if self.cloth is not None:
+            return min(side / n for side, n in zip(self.cloth.size, self.cloth.cells, strict=True)), 2
+        if self.rope is not None:
+            return math.dist(self.rope.from_, self.rope.to) / (self.rope.count - 1), 1
+        return None if self.solid is None else (self.solid.spacing, 3)
+
     def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
         """The object of a solid."""
         return () if self.solid is None else ((self.solid.object, self.solid.bounded),)

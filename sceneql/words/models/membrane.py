@@ -89,6 +89,7 @@ class Membrane(Model):
 
     has_bodies = False
     carried = True
+    immersible = True
 
     of: kinds.ObjectRef = field("The object whose outline, or surface, it is.")
     law: Law = field("How it pulls: `{tension: 1 N/m}`, or `{springs: {stretch: 10 N/m}}`.")
@@ -231,9 +232,13 @@ class Membrane(Model):
         return measure(output, self.made, state)
 
     def trouble(self, state: ModelState) -> tuple[str, str]:
-        """Vertices that have gone so far apart that fluid passes between them."""
-        from sceneql.skins.skin_outputs import widest
+        """Vertices that have gone so far apart that fluid passes between them, and a skin that is inside out."""
+        from sceneql.skins.skin_outputs import turned, widest
 
+        inside_out = turned(self.made, state)
+        if inside_out:
+            help = "take a smaller `spacing` and `cell`, a `bend`, or a `collision`, which keeps it off itself"
+            return inside_out, help
         apart = widest(self.made, state)
         text = f"the vertices of its skin are {apart:.2g} cells apart at the end: fluid passes between them"
         help = "take a smaller `spacing`, or a law that stretches less"

@@ -32,12 +32,15 @@ class Motion(Model):
     over 0.2 ms.
     """
 
+    said_by: ClassVar[Mapping[str, str]] = {
+        "of": "the object says where it is, by the motion: `position: lift.position`",
+        **dict.fromkeys(
+            ("speed", "velocity"),
+            "write where it is by the time: `position: [1 m/s*time, 0 m, 0 m]`, or `progress: time/(4 s)`",
+        ),
+    }
     kinematic: ClassVar[bool] = True
     has_bodies: ClassVar[bool] = False
-    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("speed", "velocity"),
-        "write where it is by the time: `position: [1 m/s*time, 0 m, 0 m]`, or `progress: time/(4 s)`",
-    )
     gives: ClassVar[Mapping[str, Gives]] = {
         "position": Gives(quantity_type(dim.LENGTH, (3,)), "Where it is."),
         "rotation": Gives(Type((4,)), "How it is turned: quaternion [w, x, y, z]."),

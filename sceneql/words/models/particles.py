@@ -16,7 +16,7 @@ from sceneql.kinds import Gives, Model, Moment, Problem, Record, Ref, Value, fie
 from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-from sceneql.shapes.color import linear
+from sceneql.shapes.color import default_color, linear
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -39,7 +39,9 @@ class Particle(Record):
         "Its radius in contacts and in the picture; by default the model's.", None, at_least=0
     )
     fixed: bool = field("It never moves.", False)
-    color: kinds.Color | None = field("Its color; by default the model's.", None)
+    color: kinds.Color | None = field(
+        "Its color; by default the model's, or one of its own if nothing has a color.", None
+    )
 
     def problems(self) -> Iterator[Problem]:
         """A particle that is held and moves."""
@@ -240,7 +242,9 @@ class Particles(Model):
             surface = moment.surface(name, self.material, self.color)
             listed = [one.color for one in (self.list or {}).values()]
             colors = [surface.color if color is None else linear(moment.at(color)) for color in listed]
-            yield Spheres(name, surface, places, radii, np.array(colors) if any(listed) else None)
+            if not any(listed) and self.material is None and self.color is None:
+                colors = [default_color(k) for k in range(len(listed))]
+            yield Spheres(name, surface, places, radii, np.array(colors) if len(set(colors)) > 1 else None)
             return
         for color, some, sizes in self.aging.classes(ages, radii):
             surface = moment.surface(name, self.material, self.color if color is None else color)

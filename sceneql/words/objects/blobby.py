@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, get_args
 
 from sceneql.kinds import FieldBuilder, FixedScalar, Gives, Moment, Object, Points, Problem, Value, field
@@ -33,6 +34,19 @@ TINY = 1e-300
 OWN = ("points", "segments", "radius", "weight", "kernel")
 """Fields that its parts are made of, beside `skeleton`."""
 Kernel = Literal["wyvill", "soft_object", "metaball", "gaussian", "inverse_square"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Same:
+    """A moment, equal to nothing but itself."""
+
+    moment: Moment
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.moment is other.moment
+
+    def __hash__(self) -> int:
+        return id(self.moment)
 
 
 class Blobby(Object):
@@ -99,13 +113,16 @@ class Blobby(Object):
             yield most, f"a skeleton has at most {MOST:,} parts, not {total:,}"
 
     def parts(self, moment: Moment) -> Skeleton:
-        """Its skeleton in its parent's coordinates: that of `points`, then those of its entries; made once if fixed.
+        """Its skeleton in its parent's coordinates: that of `points`, then those of its entries; made once if fixed,
+        else once for a moment.
 
         Raises RunFailure for a segment to a point that is not there, lists of other lengths than the points', radii
         that are not above 0, numbers whose products overflow, and too many parts.
         """
         told = fixed_values(OWN, self, *self.skeleton)
-        return self._parts(moment) if told is None else SKELETONS.get(*told, lambda: self._parts(moment))
+        if told is None:
+            return moment.kept(f"skeleton {id(self)}", _Same(moment), lambda: self._parts(moment))
+        return SKELETONS.get(*told, lambda: self._parts(moment))
 
     def _parts(self, moment: Moment) -> Skeleton:
         import numpy as np

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import cos, inf, isfinite, pi, sin, sqrt
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -17,11 +17,12 @@ from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Number, Symbol
 from sceneql.shapes.placement import inverse
-from sceneql.shapes.solid import Solid, block, length, less, traced
+from sceneql.shapes.solid import Solid, block, length, less, traced, triple
 
 if TYPE_CHECKING:
     from sceneql import frame
 
+Corner = tuple[float, float, float]
 PLACES = 200
 """Of the default bounds, at which a formula is looked at."""
 ROUNDING = 1e-9
@@ -43,12 +44,46 @@ class Within(Record):
             yield Problem(text, ("box",))
 
     @property
-    def corners(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def corners(self) -> tuple[Corner, Corner]:
         """Low and high corner of the box around it."""
         if self.box is not None:
             return self.box
         r = self.ball or 0.0
         return (-r, -r, -r), (r, r, r)
+
+
+@dataclass(frozen=True, slots=True)
+class _Less:
+    """A formula less the level, at an instant."""
+
+    formula: Expr
+    """Where its numbers would overflow, over a power of two."""
+    alone: frame.Tape
+    """Its tape, in units and without bounds."""
+    leveling: float
+    """The power of two that it is multiplied by."""
+
+
+def _less(formula: Expr, level: float, low: Corner, high: Corner) -> _Less:
+    """Of a formula that is written out, within the bounds low..high."""
+    from sceneql.field.tape.builder import TapeBuilder
+    from sceneql.field.tape.magnitude import leveling
+
+    formula = balanced(Call("sub", (formula, Number(level))) if level else formula)
+    build = TapeBuilder()
+    alone = build.finish(build.expression(formula, {"x": build.x, "y": build.y, "z": build.z}))
+    return _Less(formula, alone, leveling(alone, low, high))
+
+
+def _why_nothing(less: _Less, low: Corner, high: Corner) -> str:
+    """Why nothing is to be drawn of a formula within the bounds low..high; empty where something may be."""
+    from sceneql.field.tape.emptiness import bottomless, nowhere_defined
+
+    if nowhere_defined(less.alone, triple(low), triple(high)):
+        return "the formula is defined nowhere in its bounds, so there is nothing to draw"
+    if bottomless(less.alone, low, high):
+        return "the formula is nowhere finite in its bounds, so there is no surface to draw"
+    return ""
 
 
 def _on_a_ball(count: int) -> Iterator[tuple[float, float, float]]:
@@ -124,32 +159,30 @@ class Implicit(Solid):
         """
         per_unit = build.constant(1.0 / self.unit)
         u, v, w = (build.op("mul", register, per_unit) for register in (x, y, z))
-        formula = self._less_level(moment)
-        value = build.expression(formula, {"x": u, "y": v, "z": w})
-        value = build.op("mul", value, build.constant(self._leveling(formula)))
+        now = self._now(moment)
+        value = build.expression(now.formula, {"x": u, "y": v, "z": w})
+        value = build.op("mul", value, build.constant(now.leveling))
         if self.bounds.ball is not None:
             limit = less(build, length(build, u, v, w), self.bounds.ball)
         else:
             limit = block(build, (u, v, w), *self.bounds.corners)
         return value, limit
 
-    def _less_level(self, moment: Moment) -> Expr:
-        """The formula now less the level; where its numbers would overflow, both over a power of two."""
-        formula = written_out(self.field.expr, moment)
-        return balanced(Call("sub", (formula, Number(self.level))) if self.level else formula)
+    def _now(self, moment: Moment) -> _Less:
+        """The formula now less the level; that of a constant formula is made once in a run."""
 
-    def _leveling(self, formula: Expr) -> float:
-        """The power of two that the formula less the level is multiplied by."""
-        from sceneql.field.tape.magnitude import leveling
+        def make() -> _Less:
+            return _less(written_out(self.field.expr, moment), self.level, *self.bounds.corners)
 
-        return leveling(self._alone(formula), *self.bounds.corners)
+        constant, key = self.field.constant, (self.level, self.bounds.corners)
+        return moment.kept(f"formula {id(self.field)}", key, make) if constant else make()
 
-    def _alone(self, formula: Expr) -> frame.Tape:
-        """The tape of the formula less the level, in units and without bounds."""
-        from sceneql.field.tape.builder import TapeBuilder
-
-        alone = TapeBuilder()
-        return alone.finish(alone.expression(formula, {"x": alone.x, "y": alone.y, "z": alone.z}))
+    def _why_nothing(self, moment: Moment) -> str:
+        """Why nothing is to be drawn at any time; empty where something may be."""
+        if not self.field.constant:
+            return ""
+        key, less = (self.level, self.bounds.corners), self._now(moment)
+        return moment.kept(f"nothing {id(self.field)}", key, lambda: _why_nothing(less, *self.bounds.corners))
 
     def reach(self, moment: Moment) -> tuple[Any, Any]:
         """The box around its bounds."""
@@ -162,15 +195,11 @@ class Implicit(Solid):
         Raises RunFailure where the formula is nowhere defined there, or nowhere finite and yet inside, at any time.
         """
         from sceneql.failure import RunFailure
-        from sceneql.field.tape.emptiness import bottomless, nowhere_defined
 
         for solid in traced(self, name, place, moment):
             shape = solid if self.mode == "solid" else self._sheet(solid, place, moment)
-            if self.field.constant and nowhere_defined(shape.tape, shape.low, shape.high):
-                message = "the formula is defined nowhere in its bounds, so there is nothing to draw"
-                raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
-            if self.field.constant and bottomless(self._alone(self._less_level(moment)), *self.bounds.corners):
-                message = "the formula is nowhere finite in its bounds, so there is no surface to draw"
+            message = self._why_nothing(moment)
+            if message:
                 raise RunFailure(message, part="field", time=moment.time, span=self.field.span)
             yield shape
 

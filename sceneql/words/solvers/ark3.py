@@ -38,6 +38,12 @@ class Ark3(Solver):
 
         return multistep.largest_growth(jacobian, lambda decay, turn: additive.growth(decay, turn, step))
 
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
+        """What decays is implicit, what turns explicit; none is told of swings."""
+        from sceneql.flows.schemes import additive
+
+        return None if frequency > 0.0 else additive.growth(decay, turn, step)
+
     def measure(self) -> str:
         """In parts of the largest."""
         return "of the largest value of each field" if self.step is None else ""

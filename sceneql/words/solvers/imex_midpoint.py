@@ -40,6 +40,12 @@ class ImexMidpoint(Solver):
 
         return largest_growth(jacobian, lambda decay, turn: schemes.growth(2, decay, turn, step))
 
+    def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
+        """What decays is implicit, what turns explicit; none is told of swings."""
+        from sceneql.flows.varying import schemes
+
+        return None if frequency > 0.0 else schemes.growth(2, decay, turn, step)
+
     def measure(self) -> str:
         """In parts of the largest."""
         return "of the largest value of each field" if self.step is None else ""

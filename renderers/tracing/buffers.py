@@ -1,0 +1,62 @@
+"""Working memory of a picture."""
+
+from __future__ import annotations
+
+from sys import getrefcount
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from renderers.tracing.camera_kernels import TILE
+from renderers.tracing.filter.planes_kernels import KEYS, LANES, WIDE
+from renderers.tracing.record_kernels import COLUMNS
+
+if TYPE_CHECKING:
+    from numpy import float32
+    from numpy.typing import NDArray
+
+
+class Buffers:
+    """Arrays of all pixels. Layer 0: what the camera sees; layer 1: what is mirrored or refracted in that."""
+
+    def __init__(self, width: int, height: int, columns: int, layers: int, hard: bool) -> None:
+        """``columns`` of visibility; light is ``hard``, or it is filtered."""
+        self.shape, count = (width, height, columns, layers, hard), width * height
+        self.records = np.zeros((layers, count, COLUMNS), dtype=np.float32)
+        self.radiance, self._linear = (np.empty((count, 3), dtype=np.float32) for _ in range(2))
+        self.visibility = np.zeros((layers, count, columns), dtype=np.float32)
+        chunks, filtered = -(-width // LANES), 0 if hard else height
+        self.planes = np.zeros((height, chunks * (KEYS + (0 if hard else columns) * WIDE)), dtype=np.float32)
+        self.fine = np.zeros((layers, filtered * width, columns), dtype=np.float32)
+        self.sums = np.zeros((filtered, chunks * (1 + columns) * LANES), dtype=np.float32)
+        self.means = np.zeros((filtered, chunks * (1 + columns) * WIDE), dtype=np.float32)
+        self.cuts = np.empty((layers, count * columns if hard else 0), dtype=np.int64)
+        """Of ``hard_kernels.list_cuts``: of each band of rows from its first number of visibility on."""
+        bands = -(-height // TILE)
+        self.reached = np.zeros((bands, -(-width // TILE)), dtype=np.int8)
+        self.busy = np.ones_like(self.reached)
+        self.laid, self.chunks = np.ones((2, bands, chunks), dtype=np.int8)
+
+    def linear(self) -> NDArray[float32]:
+        """Memory (h w, 3) for the picture: that of the last one, unless somebody still has it."""
+        if getrefcount(self._linear) > ALONE:
+            self._linear = np.empty_like(self._linear)
+        return self._linear
+
+
+ALONE = 2
+"""References to an array that only an attribute holds: that, and the argument of the count. Views hold it too."""
+_kept: list[Buffers] = []
+"""The last picture's buffers: fresh memory costs the system a tenth of a frame's time."""
+
+
+def take(width: int, height: int, columns: int, layers: int, hard: bool) -> Buffers:
+    """Buffers of a shape, as Buffers is made with: those ``put_back`` last, if they are."""
+    shape = width, height, columns, layers, hard
+    kept = _kept.pop() if _kept else None
+    return kept if kept is not None and kept.shape == shape else Buffers(*shape)
+
+
+def put_back(buffers: Buffers) -> None:
+    """Keep buffers for the next picture."""
+    _kept[:] = [buffers]

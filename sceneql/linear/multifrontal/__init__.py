@@ -1,0 +1,1 @@
+"""Sparse systems: orders, plans, fronts."""

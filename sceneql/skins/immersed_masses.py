@@ -1,0 +1,81 @@
+"""Masses in a flow that is solved: it carries them, they push it, and their inertia is part of its."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sceneql.flows import layout as faces
+from sceneql.flows.varying import fluid_layout
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.skins import immersed_layout as layout
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from sceneql.system import Assembly, Bodies, Flow
+
+UPDATES = 40
+"""Of the mode that swings fastest, by powers: it is then known to a few percent."""
+KERNELS = "sceneql.skins.immersed_kernels"
+LADEN = "sceneql.skins.laden_kernels"
+
+
+def immerse_masses(flow: Flow, bodies: Bodies, peskin: bool, assembly: Assembly) -> None:
+    """Add what the flow does to masses, and the masses to it, by splines or Peskin's kernel."""
+    assert bodies.immersed is not None
+    if flow.varying and peskin:
+        text = "Peskin's kernel is here to compare, in flows of one density and viscosity"
+        raise ScriptError([Diagnostic("invalid", text, assembly.line(), "leave `kernel` out")])
+    own = flow.varying or flow.ints
+    own_flow = layout.HEAD + (fluid_layout.HEAD if flow.varying else 0)
+    ints = (
+        *(bodies.position_at, bodies.velocity_at, bodies.count, bodies.inverse_at, bodies.immersed.points.force_at),
+        *(bodies.immersed.excess_at, assembly.floats([*flow.low, *flow.spacing]), assembly.floats([flow.density])),
+        *(int(peskin), own_flow, *own),
+    )
+    if flow.varying:
+        assembly.term("velocity", f"{LADEN}:add", ints)
+    assembly.term("velocity", f"{KERNELS}:carry", ints)
+    if flow.varying:
+        assembly.term("close", f"{LADEN}:bring", ints)
+    assembly.term("close", f"{LADEN if flow.varying else KERNELS}:push", ints)
+    assembly.term("constrain", f"{KERNELS}:accelerate", ints)
+    assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
+    if flow.varying:
+        at = flow.varying[fluid_layout.FASTEST]
+        assembly.write(at, np.array([max(fastest(flow, bodies, ints, assembly), assembly.numbers()[at])]))
+
+
+def fastest(flow: Flow, bodies: Bodies, ints: Sequence[int], assembly: Assembly) -> float:
+    """The largest rate at which springs have masses swing, or damp them, in a flow that may be compressed [1/s].
+
+    By powers of the matrix (von Mises & Pollaczek-Geiringer 1929); the pressure lets none be faster.
+    """
+    from sceneql.skins.swing_kernels import give_way
+
+    if bodies.springs is None or not len(bodies.springs.ends):
+        return 0.0
+    y, floats, head = assembly.start(), assembly.numbers(), np.array(ints, dtype=np.int64)
+    points = y[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)
+    a, b = bodies.springs.ends.T
+    ways = points[b] - points[a]
+    lengths = np.linalg.norm(ways, axis=1)
+    ways /= np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    room = [np.zeros(flow.ints[faces.FACES]) for _ in range(2)]
+    out, rates = np.zeros(3 * bodies.count), [0.0, 0.0]
+    for k, strength in enumerate(bodies.springs.strength):
+        x = np.random.default_rng(0).standard_normal((bodies.count, 3))
+        for _ in range(UPDATES if strength.any() else 0):
+            pulls = (strength * ((x[b] - x[a]) * ways).sum(axis=1))[:, None] * ways
+            newtons = np.zeros_like(x)
+            np.add.at(newtons, a, pulls)
+            np.add.at(newtons, b, -pulls)
+            give_way(newtons.ravel(), out, *room, y, floats, head)
+            length = np.linalg.norm(out)
+            if not 0.0 < length < np.inf:
+                break
+            rates[k] = float(length / np.linalg.norm(x))
+            x = -out.reshape(-1, 3) / length
+    return float(max(rates[0] ** 0.5, rates[1]))

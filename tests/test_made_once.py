@@ -1,0 +1,88 @@
+"""What does not change from frame to frame is made once."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import stage
+from renderers.trace import Trace
+from renderers.tracing.solids import bundles
+from sceneql import pipeline
+from sceneql.field.tape.builder import TapeBuilder
+from sceneql.field.tape.own_coordinates import in_own_coordinates
+from sceneql.frame import Implicit
+from sceneql.report.explain import explain, text
+from sceneql.words.objects.blobby import Blobby
+from stage import WHITE, frame, sun
+
+SCENE = """
+clock: {end: 0.1 s, fps: 20}
+models:
+  wheel: {motion: {rotation: {about: y, angle: 60 deg*time/(1 s)}}}
+  cloud: {particles: {positions: [0 0 0 m, 1 0 0 m], velocity: 0 1 0 m/s}}
+objects:
+  torus: {implicit: {field: "(x^2+y^2+z^2+0.2)^2-x^2-y^2", rotation: wheel.rotation}}
+  blobs: {blobby: {points: cloud.positions, radius: 0.6 m}}
+  ball: {sphere: {position: 3 0 0 m}}
+cameras: {eye: {orthographic: {look_along: 0 0 -1, look_at: 0 0 0 m, height: 4 m}}}
+outputs: {film: {images: {size: 16 16}}}
+"""
+
+
+def turned(angle):
+    """A cone in a ball, about z, in coordinates that are turned about y."""
+    matrix = np.array([[np.cos(angle), 0, np.sin(angle), 0.1], [0, 1, 0, 0.2], [-np.sin(angle), 0, np.cos(angle), 0.3]])
+    build = TapeBuilder()
+    x, y, z = build.affine(matrix, build.x, build.y, build.z)
+    square = build.op("add", build.op("square", x), build.op("square", y))
+    cone = build.op("sub", square, build.op("mul", build.op("square", z), build.constant(0.7)))
+    ball = build.op("sub", build.op("add", square, build.op("square", z)), build.constant(1.1))
+    return build.finish(build.op("max", cone, ball))
+
+
+def test_a_solid_that_turns_is_the_same_in_its_own_coordinates_number_by_number():
+    first, other = (in_own_coordinates(turned(angle)) for angle in (0.4, 1.1))
+    for name in ("code", "constants", "parts"):
+        np.testing.assert_array_equal(getattr(first[0], name), getattr(other[0], name))
+    assert abs(first[1] - other[1]).max() > 0.1
+
+
+def test_memory_of_packets_is_taken_over_from_frame_to_frame(monkeypatch):
+    monkeypatch.setenv("SCENEQL_THREADS", "1")
+    seen = []
+    for angle in (0.4, 1.1):
+        shape = Implicit("cone", WHITE, turned(angle), (-1.5,) * 3, (1.5,) * 3)
+        Trace(samples=1).draw(frame(shape, lights=[sun((1, 1, 1))], seen=stage.view(size=(32, 32))))
+        seen.append(bundles._of_thread.memories[0])
+    assert seen[0] is seen[1]
+    other = frame(stage.implicit_sphere(WHITE), lights=[sun((1, 1, 1))], seen=stage.view(size=(32, 32)))
+    Trace(samples=1).draw(other)
+    assert bundles._of_thread.memories[0] is not seen[0]
+
+
+@pytest.fixture
+def graph(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE, encoding="utf-8")
+    return pipeline.load(path)
+
+
+def test_points_that_move_are_packed_once_a_frame(graph, tmp_path, monkeypatch):
+    asked = []
+    packed = Blobby._parts
+
+    def counted(kind, moment):
+        asked.append(moment.time)
+        return packed(kind, moment)
+
+    monkeypatch.setattr(Blobby, "_parts", counted)
+    pipeline.render(graph, folder=tmp_path)
+    assert len(list(tmp_path.glob("*.png"))) == 2
+    assert asked == [0.0, 0.05]
+
+
+def test_explain_tells_what_is_made_once_and_what_each_frame(graph):
+    plan = explain(graph)
+    assert plan["changing"] == {"torus": ["rotation"], "blobs": ["points"], "ball": []}
+    assert "\nmade once: ball\neach frame anew: torus by its rotation; blobs by its points\n" in text(plan)
