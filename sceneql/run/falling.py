@@ -64,9 +64,9 @@ def _heights(name: str, places: Floats, moment: Instant) -> list[float]:
     kind = cast(Object, moment.run.graph.tasks[name].kind)
     low, high = kind.extent(np.eye(3, 4), moment)
     found = []
-    for place, near in zip(places, ((places >= low) & (places <= high)).all(axis=1), strict=True):
+    for place in places:
         value = None
-        if near:
+        if bool(((place >= low) & (place <= high)).all()):
             build = TapeBuilder()
             x, y, z = (build.constant(float(c)) for c in place)
             value = build.number(kind.implicit(build, x, y, z, moment))
