@@ -253,6 +253,16 @@ def test_an_outline_is_a_skin_with_even_sides():
     assert signed_area(points) == pytest.approx(1.0, abs=0.01)
 
 
+def test_a_skin_beyond_a_periodic_side_is_one_of_the_flow_that_comes_in_there(tmp_path):
+    speeds = []
+    for x in (0.5, 1.5, -2.5):
+        ball = f"objects: {{egg: {{sphere: {{position: {x} 0.5 0 m, radius: 0.2 m}}}}}}\n"
+        air = ballooned(tmp_path, objects=ball, initial='{velocity: "[0.1*sin(2*pi*y), 0.2*sin(2*pi*x)]"}')
+        speeds.append(air.at(0.02).read("speed"))
+    assert np.ptp(speeds[0]) > 0.1
+    assert speeds[1:] == [pytest.approx(speeds[0], rel=1e-9)] * 2
+
+
 @pytest.mark.parametrize(
     ("change", "text"),
     [

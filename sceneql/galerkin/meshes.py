@@ -17,7 +17,7 @@ from sceneql.galerkin.field_mesh import FieldMesh
 from sceneql.galerkin.plane_mesh import TooCoarse, flat_mesh, outlined
 from sceneql.galerkin.plane_quality import angles, outer_sides
 from sceneql.galerkin.simplex import Simplex
-from sceneql.grids.domain.cells import SIDES, counts
+from sceneql.grids.domain.cells import SIDES, counts, periodic_axes
 from sceneql.grids.domain.domain import inside
 from sceneql.island.memory import bounded
 from sceneql.island.start import Start
@@ -46,11 +46,6 @@ def mesh_of(model: Medium, degree: int, boundary: Boundary, assembly: Assembly) 
         return _object(model, degree, assembly)
     except Exceeds as error:
         raise LimitRefused(str(error), assembly.line(), "take a larger `cell`") from None
-
-
-def periodic_axes(boundary: Boundary) -> set[int]:
-    """The axes along which a box is periodic."""
-    return {SIDES.index(name) // 2 for name, part in boundary.items() if part.periodic and name in SIDES}
 
 
 def _object(model: Medium, degree: int, assembly: Assembly) -> FieldMesh:

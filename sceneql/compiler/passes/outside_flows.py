@@ -8,6 +8,7 @@ from typing import Any
 from sceneql.compiler.passes.fillings import Beginning
 from sceneql.compiler.passes.overlaps import UNKNOWN
 from sceneql.graph import Task
+from sceneql.grids.domain.cells import periodic_axes
 from sceneql.kinds import Force, Model
 from sceneql.quantities.diagnostic import Diagnostics
 
@@ -23,7 +24,7 @@ def report_outside_flows(tasks: Mapping[str, Task], found: Diagnostics) -> None:
             kind = tasks[name].kind
             for ref in kind.insides() if isinstance(kind, Model) else ():
                 try:
-                    side = _beyond(start.object(ref), size, flow.corner or (0.0,) * len(size), start)
+                    side = _beyond(start.object(ref), flow, start)
                 except UNKNOWN:
                     continue  # the run reports it
                 if side:
@@ -31,12 +32,15 @@ def report_outside_flows(tasks: Mapping[str, Task], found: Diagnostics) -> None:
                     found.error("invalid", text, ref.span, help="move it inside, or take a larger `size`")
 
 
-def _beyond(shape: Any, size: Any, corner: Any, start: Any) -> str:
-    """The side of a box that a shape is beyond; empty where it is beyond none."""
+def _beyond(shape: Any, flow: Any, start: Any) -> str:
+    """The side of a flow's box that a shape is beyond, but no periodic one; empty where it is beyond none."""
     import numpy as np
 
     low, high = shape.extent(np.eye(3, 4), start)
-    for axis, (first, length) in enumerate(zip(corner, size, strict=True)):
+    corner, endless = flow.corner or (0.0,) * len(flow.size), periodic_axes(flow.boundary)
+    for axis, (first, length) in enumerate(zip(corner, flow.size, strict=True)):
+        if axis in endless:
+            continue
         if high[axis] <= first or low[axis] >= first + length:
             return f"{'xyz'[axis]} = {first if high[axis] <= first else first + length:g} m"
     return ""

@@ -13,7 +13,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout as surfaces
-from sceneql.contacts.shape_kernels import acceleration
+from sceneql.contacts.shape_kernels import acceleration, clear
 from sceneql.flows import layout
 from sceneql.flows.advection_kernels import sides
 from sceneql.flows.obstacles import moving_layout as own
@@ -45,13 +45,21 @@ def growth(floats, ints, component, number, a, b, c, x, y, z):
     return (later - earlier) / (2.0 * time)
 
 
-@lean_inlined
-def passed_over(d, floats, ints, axes):
-    """How many places further on in a row a wall at a distance d does not come near: its normal is not asked for there,
-    and its distance is at least what is left of half of d."""
+@lean(N(A, I, N, F, F, F, F), inner=True)
+def passed_over(floats, ints, axes, d, x, y, z):
+    """How many places further on in a row from (x, y, z) are proved to be far from every wall: none within a solid. Its
+    normal is not asked for there, and its distance is at least what is left of half of d, of which proof is needed:
+    d is larger than the distance in the section of a slanted side, and in fields that are no distances."""
     at = ints[own.NUMBERS] + own.SPACING
     dx, dy, dz = floats[at], floats[at + 1], floats[at + 2] if axes == 3 else 0.0
-    return max(0, min(LONGEST, int((0.5 * abs(d) - NEAR * max(dx, dy, dz)) / dx)))
+    near = NEAR * max(dx, dy, dz)
+    if not 0.5 * d >= near + dx:
+        return 0
+    count = int(min((0.5 * d - near) / dx, LONGEST))
+    for k in range(ints[own.SOLIDS]):
+        if not clear(floats, ints, own.HEAD + surfaces.OBJECT * k, x, y, z, near + count * dx):
+            return 0
+    return count
 
 
 @lean(types.void(A, I, N), inner=True)
@@ -70,9 +78,9 @@ def open_faces(floats, ints, component):
                 x, y_, z = place(floats, ints, axes, component, i, j, k)
                 if i > last:
                     d, a, b, c, number = nearest(floats, ints, axes, x, y_, z)
-                    last = i + passed_over(d, floats, ints, axes)
+                    last = i + passed_over(floats, ints, axes, d, x, y_, z)
                 else:  # no wall has come near since
-                    d -= dx if d > 0.0 else -dx
+                    d -= dx
                 part, depth = 1.0 if d > 0.0 else 0.0, max(d, 0.0)
                 cx, cy, cz = x, y_, z
                 if abs(d) <= reach(floats, ints, axes, component, a, b, c):
@@ -145,9 +153,9 @@ def open_cells(floats, ints):
                 x, y, z = place(floats, ints, axes, 3, i, j, k)
                 if i > last:
                     d, a, b, c, number = nearest(floats, ints, axes, x, y, z)
-                    last = i + passed_over(d, floats, ints, axes)
+                    last = i + passed_over(floats, ints, axes, d, x, y, z)
                 else:
-                    d -= dx if d > 0.0 else -dx
+                    d -= dx
                 part = 1.0 if d > 0.0 else 0.0
                 if abs(d) <= reach(floats, ints, axes, 3, a, b, c):
                     part = cut(floats, ints, axes, 3, x, y, z)[0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,11 @@ SIDES = ("left", "right", "bottom", "top", "back", "front")
 MOST_CELLS = 50_000_000
 FARTHEST = 1e9
 """Most cells between a box and the origin: their sides are then right to a part in a million of a cell."""
+
+
+def periodic_axes(boundary: Mapping[str, Any]) -> set[int]:
+    """The axes along which a box is periodic."""
+    return {SIDES.index(name) // 2 for name, part in boundary.items() if part.periodic and name in SIDES}
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -58,7 +58,7 @@ def cells_of(model: Medium, assembly: Assembly) -> cells.Cells:
         raise LimitRefused(
             f"{count:.3g} cells: at most {cells.MOST_CELLS:,} are possible", assembly.line(), "take a larger `cell`"
         )
-    grid = _of_flow(model, assembly) or cut.frame(low, high, model.cell, model.depth, flat)
+    grid = _of_flow(model, flat, assembly) or cut.frame(low, high, model.cell, model.depth, flat)
     if model.edges == "cut_cell":
         found = cut.cut(level, grid, held_by(tuple(model.boundaries()), level.names))
     else:
@@ -69,8 +69,11 @@ def cells_of(model: Medium, assembly: Assembly) -> cells.Cells:
     return replace(found, around=(low, high))
 
 
-def _of_flow(model: Medium, assembly: Assembly) -> cut.Frame | None:
-    """The grid of the flow in the same domain that carries a model; None where there is none."""
+def _of_flow(model: Medium, flat: bool, assembly: Assembly) -> cut.Frame | None:
+    """The grid of the flow in the same domain that carries a model; None where there is none.
+
+    Raises ScriptError where the model says of its cells other than the flow.
+    """
     by = getattr(getattr(model, "drift", None), "by", None)
     if by is None or model.domain is None:
         return None
@@ -78,6 +81,16 @@ def _of_flow(model: Medium, assembly: Assembly) -> cut.Frame | None:
     if not getattr(carrier, "flows", False) or carrier.domain is None or carrier.domain.name != model.domain.name:
         return None
     box = carrier.box(assembly)
+    said = {
+        "cell": (model.cell, carrier.cell, f"{carrier.cell:.12g} m"),
+        "flat": (flat, box.flat, "yes" if box.flat else "no"),
+        "depth": (model.depth, carrier.depth, f"{carrier.depth:.12g} m"),
+    }
+    other = {name: its for name, (mine, flows, its) in said.items() if mine != flows and (box.flat or name != "depth")}
+    if other:
+        text = f"the field has another `{'`, `'.join(other)}` than the flow '{by.name}' in the same domain"
+        help = "give it the flow's " + ", ".join(f"`{name}: {its}`" for name, its in other.items())
+        raise ScriptError([Diagnostic("other-domain", text, by.span, help)])
     return cut.Frame(box.shape, box.low, box.spacing)
 
 
