@@ -11,7 +11,7 @@ import av
 import pytest
 from click.testing import CliRunner
 
-from sceneql import cli, interrupts, pipeline
+from sceneql import cli, exits, interrupts, pipeline
 from sceneql.failure import OutOfTime
 
 LONG = """\
@@ -73,7 +73,7 @@ def test_the_program_fails_at_its_limit_though_ctrl_c_is_switched_off(tmp_path):
         cwd=tmp_path, capture_output=True, text=True, timeout=300,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN),
     )  # fmt: skip
-    assert process.returncode == cli.RUN_FAILED, process.stderr
+    assert process.returncode == exits.RUN_FAILED, process.stderr
     assert process.stderr.startswith("error[out-of-time]: at ")
     assert "net: the limit of 1.5 s has passed, when " in process.stderr
     assert "--> s.yaml:3:3" in process.stderr
@@ -107,5 +107,5 @@ def test_a_limit_beyond_what_a_clock_counts_is_none(tmp_path, capfd):
 def test_what_is_no_time_is_refused(tmp_path, limit):
     path = written(tmp_path, FILM)
     told = CliRunner().invoke(cli.cli, ["render", str(path), "--limit", limit])
-    assert told.exit_code == cli.USAGE
+    assert told.exit_code == exits.USAGE
     assert f"'{limit}' is no time above 0, as 20s or 2min" in told.output

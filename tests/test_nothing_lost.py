@@ -21,7 +21,7 @@ from PIL import Image
 
 import test_program
 from renderers.encoders import mp4
-from sceneql import cli, files, interrupts, pipeline
+from sceneql import cli, exits, files, interrupts, pipeline
 from sceneql.compiled.kernels import MODE
 from sceneql.failure import OutOfMemory, RunFailure, Unsuitable, failing_as, starved
 
@@ -182,7 +182,7 @@ def test_a_file_that_ends_too_soon_is_no_ctrl_c(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["sceneql", "check", "s.yaml"])
     with pytest.raises(SystemExit) as end:
         cli.main()
-    assert end.value.code == cli.RUN_FAILED
+    assert end.value.code == exits.RUN_FAILED
     assert capsys.readouterr().err.strip() == "error: a file ends too soon: Ran out of input"
     with pytest.raises(RunFailure, match="at 1 s, ball: a file ends too soon"), failing_as("ball", 1.0, None):
         raise EOFError
@@ -205,7 +205,7 @@ def test_a_want_of_memory_tells_where_and_what_takes_less(tmp_path):
     (tmp_path / "s.yaml").write_text(STILL.replace("size: 32 18", "size: 16000 16000, renderer: normals"))
     process = started(tmp_path, "render", "s.yaml", preexec_fn=limited(resource.RLIMIT_AS, 2_000_000_000))
     said = process.communicate(timeout=300)[1]
-    assert process.returncode == cli.LIMIT_REFUSED, said
+    assert process.returncode == exits.LIMIT_REFUSED, said
     assert said.startswith("error[out-of-memory]: at 0 s, still.renderer: out of memory for 2.86 GiB")
     assert "when making the frame" in said
     assert "--> s.yaml:" in said
@@ -226,7 +226,7 @@ def test_a_want_of_memory_for_the_compiler_is_told_before_it_ends_the_process(tm
         env={**os.environ, "SCENEQL_CACHE": str(tmp_path / "cache"), "SCENEQL_THREADS": "1"},
     )  # fmt: skip
     said = process.communicate(timeout=300)[1]
-    assert process.returncode == cli.LIMIT_REFUSED, said
+    assert process.returncode == exits.LIMIT_REFUSED, said
     assert said.startswith("error[out-of-memory]: at 0 s, film: out of memory for 160 MiB to compile, when ")
     assert "--> f.yaml:" in said
 
@@ -235,7 +235,7 @@ def test_a_library_that_would_end_the_process_for_want_of_memory_is_not_loaded(t
     (tmp_path / "f.yaml").write_text(FILM)
     process = started(tmp_path, "render", "f.yaml", preexec_fn=limited(resource.RLIMIT_AS, 150 * 2**20))
     said = process.communicate(timeout=300)[1]
-    assert process.returncode == cli.LIMIT_REFUSED, said
+    assert process.returncode == exits.LIMIT_REFUSED, said
     assert said.startswith("error[out-of-memory]: at 0 s, f: out of memory for ")
     assert "MiB to load numpy, when starting the run" in said
 
@@ -273,7 +273,7 @@ def test_a_full_disk_is_told_in_a_line(tmp_path):
     (tmp_path / "f.yaml").write_text(FILM.replace("normals", "normals, quality: 0"))
     process = started(tmp_path, "render", "f.yaml", preexec_fn=limited(resource.RLIMIT_FSIZE, 4096))
     said = process.communicate(timeout=300)[1]
-    assert process.returncode == cli.RUN_FAILED
+    assert process.returncode == exits.RUN_FAILED
     assert said.splitlines() == [
         "error: [Errno 27] File too large",
         "kept f.data.partial.csv",

@@ -21,7 +21,7 @@ from sceneql.kinds import (
     quantity_type,
 )
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.diagnostic import Diagnostic
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -168,8 +168,6 @@ class Collision(Contact):
 
         must_be_free(bodies.model, assembly)
         if self.mode == "barrier":
-            from sceneql.quantities.diagnostic import Diagnostic, ScriptError
-
             message = f"mode `barrier` is that of elastic solids, and '{bodies.model}' is none"
             raise ScriptError([Diagnostic("no-collider", message, assembly.line(), "leave the mode out")])
         if not others:
@@ -299,14 +297,10 @@ class Collision(Contact):
         from sceneql.skins.touching import assemble
 
         if carried and self.mode in ("exact", "local", "barrier"):
-            from sceneql.quantities.diagnostic import ScriptError
-
             text = f"masses of '{carried[0].model}' move as their flow does, and have no impacts in mode `{self.mode}`"
             raise ScriptError([Diagnostic("no-collider", text, assembly.line(), "leave the mode out")])
         for what in ("restitution", "rolling") if carried and not everyone else ():
             if getattr(self, what).span is not None:
-                from sceneql.quantities.diagnostic import ScriptError
-
                 text = f"masses of '{carried[0].model}' move as their flow does, and have no {what}"
                 raise ScriptError([Diagnostic("no-restitution", text, getattr(self, what).span, "leave it out")])
         written = {ref.name: ref for ref in self.between or ()}
@@ -329,7 +323,6 @@ class Collision(Contact):
         from sceneql.contacts.distance.rigid_contact import assemble
         from sceneql.contacts.distance.rigid_masses import Masses, masses_of
         from sceneql.contacts.rigid_exact import group
-        from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
         if self.mode == "barrier":
             message = "mode `barrier` is that of elastic solids, and rigid bodies are none"
@@ -363,7 +356,6 @@ class Collision(Contact):
         """Add the contacts of few rigid bodies in mode `exact`, if that takes them; whether it does, and why."""
         from sceneql.contacts.distance.rigid_masses import Masses
         from sceneql.contacts.rigid_exact import group
-        from sceneql.quantities.diagnostic import ScriptError
 
         count = sum(bodies.count for bodies in (*rigid, *points))
         why = ""
