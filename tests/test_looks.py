@@ -55,6 +55,15 @@ def test_listed_particles_have_colors_of_their_own(tmp_path):
     assert colors == {1: linear([1, 0, 0]), 2: default_color(0), 3: linear([0, 1, 0]), 4: default_color(0)}
 
 
+@pytest.mark.parametrize("names", ["a", "ab"])
+def test_listed_particles_of_one_color_have_it(tmp_path, names):
+    listed = ", ".join(f"{name}: {{color: lime, position: {k} 0 0 m}}" for k, name in enumerate(names))
+    (tmp_path / "scene.yaml").write_text(f"models: {{them: {{particles: {{list: {{{listed}}}}}}}}}\n")
+    (moment,) = simulate(load(tmp_path / "scene.yaml"), [0.0])
+    (points,) = (shape for shape in moment.lower(["them"]) if isinstance(shape, Points))
+    assert [tuple(color) for color in points.colors] == [linear([0, 1, 0])] * len(names)
+
+
 @pytest.mark.parametrize(("more", "count"), [("", 3), ("color: red", 1), ("material: {matte: {}}", 1)])
 def test_listed_particles_that_have_no_color_are_told_apart(tmp_path, more, count):
     """A sun and its planets, of which a script says nothing, are not all red."""

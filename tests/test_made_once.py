@@ -25,6 +25,7 @@ objects:
   torus: {implicit: {field: "(x^2+y^2+z^2+0.2)^2-x^2-y^2", rotation: wheel.rotation}}
   blobs: {blobby: {points: cloud.positions, radius: 0.6 m}}
   ball: {sphere: {position: 3 0 0 m}}
+  both: {union: {of: [torus, ball]}}
 cameras: {eye: {orthographic: {look_along: 0 0 -1, look_at: 0 0 0 m, height: 4 m}}}
 outputs: {film: {images: {size: 16 16}}}
 """
@@ -84,5 +85,6 @@ def test_points_that_move_are_packed_once_a_frame(graph, tmp_path, monkeypatch):
 
 def test_explain_tells_what_is_made_once_and_what_each_frame(graph):
     plan = explain(graph)
-    assert plan["changing"] == {"torus": ["rotation"], "blobs": ["points"], "ball": []}
-    assert "\nmade once: ball\neach frame anew: torus by its rotation; blobs by its points\n" in text(plan)
+    assert plan["changing"] == {"torus": ["rotation"], "blobs": ["points"], "ball": [], "both": ["of"]}
+    anew = "blobs by its points; torus by its rotation; both by its of"
+    assert f"\nmade once: ball\neach frame anew: {anew}\n" in text(plan)

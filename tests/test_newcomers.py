@@ -60,6 +60,7 @@ def test_words_of_other_programs_lead_to_names_of_the_language():
     outputs = {name for of in ("temperature", "concentration") for name in field.outputs({"of": of})}
     known = {*FUNCTIONS, *CONSTANTS, *outputs, "time", *names_in(schema(Catalogue()))}
     assert {name for ours in OURS.values() for name in ours} <= known
+    assert all(len(set(ours)) == len(ours) for ours in OURS.values())
 
 
 def names_in(rule):

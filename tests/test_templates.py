@@ -128,6 +128,13 @@ def test_a_count_may_be_a_formula_of_defines() -> None:
     assert list(read.sections["objects"]) == [f"a.{k}" for k in range(5)]
 
 
+def test_a_count_by_a_long_chain_of_defines_is_worked_out_once() -> None:
+    chain = ", ".join(f"a{k}: a{k - 1}*a{k - 1}" for k in range(1, 41))
+    objects = "objects: {a: {repeat: {count: a40, as: i}, sphere: {}}}\n"
+    assert list(script(f"{objects}define: {{a0: 1, {chain}}}").sections["objects"]) == ["a.0"]
+    assert found(f"{objects}define: {{a0: a40, {chain}}}")[0][0] == "repeat-count"
+
+
 def test_copies_of_copies_are_refused_at_once() -> None:
     text = "templates:\n  t0: {objects: [sphere]}\n"
     text += "".join(f"  t{n}: {{parts: {{a: {{repeat: {{count: 9999}}, t{n - 1}: {{}}}}}}}}\n" for n in range(1, 70))

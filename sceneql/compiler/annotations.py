@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
+from sceneql.quantities.units import format_quantity
 
 
 def unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
@@ -48,3 +49,14 @@ def could_be(annotation: Any, node: Node) -> bool:
     if origin is Literal:
         return isinstance(node, Scalar) and node.text in [str(c) for c in get_args(base)]
     return isinstance(node, Scalar)
+
+
+def example_of(cls: type[BaseModel], name: str) -> str:
+    """What may stand behind a field of a record in a message: a quantity in its unit, or fields."""
+    (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
+    dimension = next((mark.dimension for mark in quantities(info) if not mark.shape), None)
+    if dimension is not None:
+        return format_quantity(1.0, dimension)
+    records = [arm for arm in get_args(info.annotation) if isinstance(arm, type) and issubclass(arm, BaseModel)]
+    needed = [one for record in records for one in record.model_fields.values() if one.is_required()]
+    return "{}" if records and not needed else "{...}"

@@ -334,7 +334,7 @@ class _Checker:
             return None
         message = f"a name, or one entry `{{word: {{fields}}}}`, stands here for a part of {mark}"
         if mark.bodies and isinstance(node, SequenceNode):
-            self._no_place(node)
+            self.found.error("entry-shape", "a place is no body", node.span, help=beside_world(node.span.text))
             return None
         together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
         help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
@@ -344,10 +344,6 @@ class _Checker:
             help = word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)
         return None
-
-    def _no_place(self, node: Node) -> None:
-        """Report a place where a body stands."""
-        self.found.error("entry-shape", "a place is no body", node.span, help=beside_world(node.span.text))
 
     def _body(self, node: Scalar, model: str, body: str) -> Ref | None:
         """One body of a model, or the only one, where there is such a one."""

@@ -17,7 +17,7 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler import limits, paint, values
-from sceneql.compiler.annotations import could_be, is_fixed, marks_of, quantities, unwrap
+from sceneql.compiler.annotations import could_be, example_of, is_fixed, marks_of, quantities, unwrap
 from sceneql.compiler.corners import by_corners
 from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.names import Names
@@ -34,7 +34,6 @@ from sceneql.language.tree import written as plainly
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.span import Span
-from sceneql.quantities.units import format_quantity
 
 TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
 
@@ -124,19 +123,13 @@ class Reader:
         name, _, rest = node.text.partition(" ")
         if name in map(kinds.written_name, cls.model_fields):
             rest = rest.strip().removeprefix("=").strip()
-            return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {self._example(cls, name)}}}`"
+            return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {example_of(cls, name)}}}`"
         if list(cls.model_fields) == [only := next(iter(cls.model_fields), "")]:
             return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
         found = list(self._fitting(node, cls.model_fields)) or list(self._formulas(node, cls))
         alone = required if len(required) == 1 else []
         likely = alone or [kinds.written_name(name) for name in found] or self._paints(node, cls)
         return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
-
-    def _example(self, cls: type[BaseModel], name: str) -> str:
-        """What may stand behind a field: a quantity in its unit, or fields."""
-        (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
-        dimension = next((mark.dimension for mark in quantities(info) if not mark.shape), None)
-        return "{...}" if dimension is None else format_quantity(1.0, dimension)
 
     def _paints(self, node: Node, cls: type[BaseModel]) -> list[str]:
         """The color, where a value can be one."""
@@ -355,8 +348,8 @@ class Reader:
         if not isinstance(node, MappingNode):
             first = node.items[0].span.text if isinstance(node, Sequence) and node.items else "name"
             first = first if first.isidentifier() else "name"
-            help = f"write `{{{first}: ...}}`, each entry under a name of its own"
-            raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, help)
+            better = f"write `{{{first}: ...}}`, each entry under a name of its own"
+            raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, better)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():
             if (other := numbered(name)) is not None:

@@ -18,6 +18,7 @@ from sceneql.quantities.span import Span
 
 MOST_COPIES: Final = 10_000
 _MOST_HOPS: Final = 64
+_Known = dict[int, float | None]
 _NUMBERED = re.compile(r"(\w*?)_?[{[(<$%]+(\w+)[}\])>]*\w*?((?:[{[(<$%]+\w+[}\])>]*\w*)*)")
 _LOOP = re.compile(r"for(?:each)?\s+\(?(?:int |let |var )?\s*(\w+)\b.*")
 
@@ -87,7 +88,7 @@ class _LostError(Exception):
 def _whole(node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics) -> int | None:
     """A count: a whole number, the name of a field or define that holds one, or a formula of these."""
     try:
-        number = _number(node, scope, define, lost, _MOST_HOPS)
+        number = _number(node, scope, define, lost, _MOST_HOPS, {})
     except _LostError:
         return None
     if number is None:
@@ -102,10 +103,12 @@ def _whole(node: Node, scope: Scope | None, define: Table[str, Node], lost: Brok
     return int(number)
 
 
-def _number(node: Node | None, scope: Scope | None, define: Table[str, Node], lost: Broken, hops: int) -> float | None:
+def _number(
+    node: Node | None, scope: Scope | None, define: Table[str, Node], lost: Broken, hops: int, known: _Known
+) -> float | None:
     """The whole number that a node stands for, None where it is none. Raises _LostError.
 
-    ``hops``: so many names may still lead to it.
+    ``hops``: so many names may still lead to it; ``known``: the numbers of nodes met before.
     """
     if node is not None and unsure(node):
         raise _LostError
@@ -121,7 +124,10 @@ def _number(node: Node | None, scope: Scope | None, define: Table[str, Node], lo
         if inner is None and name not in define and name in lost:
             raise _LostError
         value, outer = (define.get(name), None) if inner is None else (inner.fields[name], inner.outer)
-        return _number(value, outer, define, lost, hops - 1)
+        if id(value) not in known:
+            known[id(value)] = None  # of a name that leads back to itself
+            known[id(value)] = _number(value, outer, define, lost, hops - 1, known)
+        return known[id(value)]
 
     if node.text.isidentifier():
         return named(node.text)

@@ -19,7 +19,6 @@ _SENTENCES = (
         "zoom scale focal_length lens",
         "write `field_of_view: 40 deg`, or of an orthographic one its `height`",
     ),
-    ("field.cameras", "speed rpm", "write the time of a turn, `seconds: 8 s`"),
     ("cameras", "path dolly track", "a camera moves by its position: `{perspective: {position: {keys: {...}}}}`"),
     ("part", "all everything any", "leave the field out: then it is of all"),
     ("field.overlays", "font font_family typeface weight style bold", "letters have one font, and a `size`"),
@@ -39,6 +38,8 @@ _SENTENCES = (
     ),
     ("field.models", "feed kill", "what is fed and dies stands in the rates: `rate: -u*v^2 + 0.03*(1 - u)`"),
     ("section", "args arguments inputs", "what an instance may be given stands under `fields: {radius: 1 m}`"),
+    ("field.ties", "length distance", "a rod is as long as its ends are apart at the start: `from` and `to`"),
+    ("field.objects", "static fixed kinematic dynamic", "an object that no model moves stands still"),
     ("section", "seed", "write `clock: {seed: 5}`"),
     ("behind", "px pixel pixels pt", "letters are as high as a part of the picture: `size: 0.05`"),
     ("function", "if switch select", _IF),
@@ -249,4 +250,5 @@ def instead(what: str, word: str) -> str | None:
 
 def anywhere(word: str) -> str | None:
     """The help for a word of another program, whatever it was meant as."""
-    return next((help for (_, other), help in INSTEAD.items() if other == word.lower()), None)
+    found = [(what, help) for (what, other), help in INSTEAD.items() if other == word.lower()]
+    return min(found, key=lambda one: "." in one[0], default=("", None))[1]

@@ -13,14 +13,22 @@ ANY: Range = (-math.inf, math.inf)
 
 def range_of(expr: Expr, known: Mapping[str, Range]) -> Range:
     """The least and the largest that a scalar expression may be; infinite where its operations are not told here."""
+    return _range(expr, known, {})
+
+
+def _range(expr: Expr, known: Mapping[str, Range], found: dict[int, Range]) -> Range:
+    """As `range_of`; ``found``: the ranges of calls met before, by their identity, as parts of a tree are shared."""
+    if id(expr) in found:
+        return found[id(expr)]
     if isinstance(expr, Number) and isinstance(expr.value, int | float):
         return float(expr.value), float(expr.value)
     if isinstance(expr, Symbol):
         return known.get(expr.name, ANY)
     if not isinstance(expr, Call) or expr.op not in _OPERATIONS:
         return ANY
-    low, high = _OPERATIONS[expr.op](*(range_of(arg, known) for arg in expr.args))
-    return ANY if math.isnan(low) or math.isnan(high) else (low, high)
+    low, high = _OPERATIONS[expr.op](*(_range(arg, known, found) for arg in expr.args))
+    found[id(expr)] = ANY if math.isnan(low) or math.isnan(high) else (low, high)
+    return found[id(expr)]
 
 
 def _add(a: Range, b: Range) -> Range:

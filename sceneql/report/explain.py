@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, cast
 
 from sceneql.compiler.catalogue import ROOT, Catalogue
 from sceneql.compiler.passes.stable_steps import duration, later_bound
 from sceneql.failure import RunFailure
-from sceneql.graph import SimulationGraph
+from sceneql.graph import SimulationGraph, Task
 from sceneql.kinds import (
     Camera,
     Contact,
@@ -21,6 +22,7 @@ from sceneql.kinds import (
     Overlay,
     Picture,
     Record,
+    Ref,
     Tie,
     Value,
 )
@@ -82,19 +84,22 @@ def _objects_ahead(graph: SimulationGraph) -> dict[str, str]:
 
 def _changing(graph: SimulationGraph) -> dict[str, list[str]]:
     """The fields of each object that a frame may have other values of than the one before; empty: it is made once."""
-    objects = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Object)}
-    return {name: [field for field, value in kind if not _constant(value)] for name, kind in objects.items()}
+    tasks = graph.tasks
+    objects = {name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}
+    return {name: [field for field, value in kind if not _constant(value, tasks)] for name, kind in objects.items()}
 
 
-def _constant(value: Any) -> bool:
-    """Whether what stands in a field is the same at all times."""
+def _constant(value: Any, tasks: Mapping[str, Task]) -> bool:
+    """Whether what stands in a field is the same at all times, and so are the parts that it names."""
     if isinstance(value, Value | Formula):
         return value.constant
-    if isinstance(value, Record):
-        return all(_constant(part) for _, part in value)
+    if isinstance(value, Ref):
+        return isinstance(tasks[value.name].kind, Object) and _constant(tasks[value.name].kind, tasks)
+    if isinstance(value, Object | Record):
+        return all(_constant(part, tasks) for _, part in value)
     if isinstance(value, dict):
-        return all(map(_constant, value.values()))
-    return not isinstance(value, list | tuple) or all(map(_constant, value))
+        value = list(value.values())
+    return not isinstance(value, list | tuple) or all(_constant(part, tasks) for part in value)
 
 
 def _placed(graph: SimulationGraph) -> list[str]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
+from sceneql.failure import RunFailure
 from sceneql.kinds import Interaction, Model, Object
 from sceneql.quantities.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
+    from sceneql.frame import Floats
     from sceneql.graph import Task
     from sceneql.run.instant import Instant
     from sceneql.run.run import IslandRun
@@ -25,7 +27,7 @@ class Falling:
 
     model: str
     island: IslandRun
-    others: Sequence[str]
+    others: list[str]
     outside: dict[tuple[int, str], bool] = field(default_factory=dict)
     """Whether a mass began outside of an object."""
     found: Diagnostic | None = None
@@ -37,27 +39,39 @@ class Falling:
         bodies = self.island.bodies[self.model]
         if self.found is not None or bodies is None:
             return
-        places = positions(bodies, moment.state(self.model))
-        for k in range(0, len(places), -(-len(places) // MOST_MASSES) or 1):
-            for name in self.others:
-                out = _height(name, places[k], moment) > 0.0
-                began_outside = self.outside.setdefault((k, name), out)
-                if began_outside and not out:
+        places = positions(bodies, moment.state(self.model))[:: -(-bodies.count // MOST_MASSES) or 1]
+        for name in [*self.others]:
+            try:
+                heights = _heights(name, places, moment)
+            except (TypeError, ValueError, RunFailure):  # a part of it has no inside
+                self.others.remove(name)
+                continue
+            for k, height in enumerate(heights):
+                began_outside = self.outside.setdefault((k, name), height > 0.0)
+                if began_outside and height <= 0.0:
                     text = f"'{self.model}' has fallen into '{name}' by {moment.now:.3g} s: no contact acts on it"
                     span = self.island.graph.tasks[self.model].span
                     self.found = Diagnostic("falls-through", text, span, HELP, severity="warning")
                     return
 
 
-def _height(name: str, point: Any, moment: Instant) -> float:
-    """The field of an object at a point (3,): negative inside; where it has none there, as outside."""
+def _heights(name: str, places: Floats, moment: Instant) -> list[float]:
+    """The field of an object at points (n, 3): negative inside; 1 outside of its box, and where it has none."""
+    import numpy as np
+
     from sceneql.field.tape.builder import TapeBuilder
 
-    build = TapeBuilder()
     kind = cast(Object, moment.run.graph.tasks[name].kind)
-    x, y, z = (build.constant(float(p)) for p in point)
-    value = build.number(kind.implicit(build, x, y, z, moment))
-    return 1.0 if value is None else value
+    low, high = kind.extent(np.eye(3, 4), moment)
+    found = []
+    for place in places:
+        value = None
+        if bool(((place >= low) & (place <= high)).all()):
+            build = TapeBuilder()
+            x, y, z = (build.constant(float(c)) for c in place)
+            value = build.number(kind.implicit(build, x, y, z, moment))
+        found.append(1.0 if value is None else value)
+    return found
 
 
 def falling(island: IslandRun) -> list[Falling]:
@@ -67,7 +81,7 @@ def falling(island: IslandRun) -> list[Falling]:
     hit = {model for _, model, _ in island.island.contacts}
     alone = [model for model in dict.fromkeys(weighed) if model not in hit and island.bodies.get(model) is not None]
     others = _standing(tasks) if alone else []
-    return [Falling(model, island, others) for model in alone] if 0 < len(others) <= MOST_OBJECTS else []
+    return [Falling(model, island, [*others]) for model in alone] if 0 < len(others) <= MOST_OBJECTS else []
 
 
 def _standing(tasks: Mapping[str, Task]) -> list[str]:

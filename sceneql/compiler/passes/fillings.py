@@ -21,6 +21,7 @@ class Beginning:
     def __init__(self, tasks: Mapping[str, Task]) -> None:
         self._tasks = tasks
         self._known: dict[Link, Any] = {}
+        self._kept: dict[tuple[str, Hashable], Any] = {}
 
     def at(self, value: Value) -> Any:
         """A value at the start. Raises TypeError where it depends on the state of a run."""
@@ -33,8 +34,10 @@ class Beginning:
         return kind
 
     def kept(self, name: str, key: Hashable, make: Callable[[], Any]) -> Any:
-        """What is made for a part, for this start alone."""
-        return make()
+        """What is made for a part once."""
+        if (name, key) not in self._kept:
+            self._kept[name, key] = make()
+        return self._kept[name, key]
 
     def _look_up(self, node: Symbol | Link) -> Any:
         if isinstance(node, Symbol):

@@ -93,6 +93,6 @@ def _field(shape: Object, place: Floats, start: Any) -> float:
     from sceneql.field.tape.builder import TapeBuilder
 
     build = TapeBuilder()
-    x, y, z = (build.constant(float(part)) for part in place)
+    x, y, z = (build.constant(float(c)) for c in place)
     value = build.number(shape.implicit(build, x, y, z, start))
     return 1.0 if value is None else value

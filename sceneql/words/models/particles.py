@@ -244,7 +244,8 @@ class Particles(Model):
             colors = [surface.color if color is None else linear(moment.at(color)) for color in listed]
             if not any(listed) and self.material is None and self.color is None:
                 colors = [default_color(k) for k in range(len(listed))]
-            yield Spheres(name, surface, places, radii, np.array(colors) if len(set(colors)) > 1 else None)
+            own = any(listed) or len(set(colors)) > 1
+            yield Spheres(name, surface, places, radii, np.array(colors) if own else None)
             return
         for color, some, sizes in self.aging.classes(ages, radii):
             surface = moment.surface(name, self.material, self.color if color is None else color)
