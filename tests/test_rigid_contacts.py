@@ -177,7 +177,7 @@ def test_bodies_hand_momentum_on_and_rest_tells_its_forces(tmp_path):
 
 def test_what_is_not_covered_is_told_at_its_place(tmp_path):
     head = "models: {a: {rigid: {of: o}}}\nforces: [gravity]\noutputs: {t: {record: {of: [a.energy]}}}\n"
-    endless = "objects: {o: box, floor: {union: {of: [plane, sphere]}}}\ncontacts: [collision]\n"
+    endless = "objects: {o: {box: {position: 0 3 0 m}}, floor: {union: {of: [plane, sphere]}}}\ncontacts: [collision]\n"
     hollow = "{difference: {of: [sphere, {sphere: {radius: 0.4 m}}], position: 0 3 0 m}}"
     exact = f"objects: {{o: {hollow}, floor: plane}}\ncontacts: {{c: {{collision: {{mode: exact}}}}}}\n"
     for script, words in ((endless, "does not collide with rigid bodies"), (exact, "mode `local`")):
