@@ -165,7 +165,7 @@ def test_a_source_may_read_the_field(tmp_path):
             "one of `value`, `periodic`",
         ),
         ("size: 1 1 m, cell: 0.1 m, speed: 1 m/s, boundary: {front: {value: 0}}", "no side 'front'"),
-        ("cell: 0.1 m, speed: 1 m/s", "one of `domain` and `size`"),
+        ("cell: 0.1 m, speed: 1 m/s", "in one of the two: a box, `size: 1 1 m`, or an object, `domain: plate`"),
         ("size: 1 1 m, cell: 0.1 m, speed: 1 kg", "speed"),
     ],
 )
