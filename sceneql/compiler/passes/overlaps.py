@@ -45,7 +45,8 @@ def report_overlaps(tasks: Mapping[str, Task], groups: Sequence[Island], found: 
 
 def _pairs(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, str, bool]]:
     """The objects of bodies that start where they stand, each with an object that it collides with, and whether all of
-    its shape does: of a mass the center. What ties hold is left out, and the floor by default: the run may lower it."""
+    its shape does: of a mass the center. What ties hold is left out, and a default floor beside other objects, which the
+    run puts under them."""
     tied = {ref.name for task in tasks.values() if isinstance(task.kind, Tie) for ref in task.kind.between}
     turning: dict[str, list[str]] = {}
     for contact, model, others in island.contacts:
@@ -55,7 +56,7 @@ def _pairs(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, str
         bodies = (kind, *(getattr(kind, "bodies", None) or {}).values())
         if any(getattr(body, "position", None) is not None for body in bodies):
             continue  # they start elsewhere
-        others = tuple(other for other in others if tasks[other].span is not None)
+        others = tuple(other for other in others if tasks[other].span is not None) or others
         moved = [body for body in kind.drives() if body in tasks and tasks[body].original is not None]
         before = turning.setdefault(contact, [])
         for body in moved:
