@@ -45,8 +45,8 @@ def report_overlaps(tasks: Mapping[str, Task], groups: Sequence[Island], found: 
 
 def _pairs(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, str, bool]]:
     """The objects of bodies that start where they stand, each with an object that it collides with, and whether all of
-    its shape does: of a mass the center. What ties hold is left out, and a default floor beside other objects, which the
-    run puts under them."""
+    its shape does: of a mass the center. What ties hold is left out, and a default floor beside other objects: the
+    run puts it under them."""
     tied = {ref.name for task in tasks.values() if isinstance(task.kind, Tie) for ref in task.kind.between}
     turning: dict[str, list[str]] = {}
     for contact, model, others in island.contacts:
