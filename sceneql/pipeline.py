@@ -113,7 +113,7 @@ def render(
         try_folder(tool.target.parent)
     sinks: dict[str, Any] = {}
     models = [name for name, task in graph.tasks.items() if isinstance(task.kind, Model)]
-    now, busy = 0.0, _Busy("starting the run", models)
+    now, busy = 0.0, _Busy("starting the run", models or list(outputs))  # one of them has a place to tell
     run: Any = None
     ending = ExitStack()
     late = ending.enter_context(within(limit, lambda: doing.now(0.0)))

@@ -103,6 +103,14 @@ def test_a_limit_beyond_what_a_clock_counts_is_none(tmp_path, capfd):
     assert capfd.readouterr().err == ""
 
 
+def test_what_takes_too_long_to_start_is_told_at_an_output_where_nothing_is_solved(tmp_path):
+    path = written(tmp_path, FILM)
+    with pytest.raises(OutOfTime) as found:
+        pipeline.render(pipeline.load(path), folder=tmp_path, limit=1e-9)
+    assert (found.value.part, found.value.span.line) == ("film", 3)
+    assert found.value.message.endswith("when starting the run")
+
+
 @pytest.mark.parametrize("limit", ["3 kg", "0", "-1 s", "soon"])
 def test_what_is_no_time_is_refused(tmp_path, limit):
     path = written(tmp_path, FILM)
