@@ -30,7 +30,7 @@ cameras: {{plan: {{orthographic: {{height: 3 m, look_at: 1 0.5 0 m}}}}}}
 overlays: {overlays}
 outputs: {{film: {{image: {{size: 320 180, show: [map]}}}}}}
 """
-LEGEND = "{bar: {legend: {of: map, unit: mg/L, panel: 1}}}"
+LEGEND = "{bar: {legend: {of: map, unit: mg/L, panel: 1, title: ''}}}"
 
 
 def picture(folder, overlays):
@@ -55,6 +55,23 @@ def test_a_legends_bar_has_the_colors_of_the_map_from_the_high_end_down(tmp_path
     low = bar[len(bar) // 2 :]  # darker than where the tone curve begins
     place = (bar.max() + 0.5 - low) / len(bar)
     np.testing.assert_allclose(found[low], srgb(colored(place, (0.0, 1.0), "viridis")), atol=3.5)
+
+
+@pytest.mark.parametrize(
+    ("of", "title"),
+    [("plate.concentration", "concentration"), ("-plate.concentration", ""), ("hot.concentration", "temperature")],
+)
+def test_a_legend_says_what_it_shows(tmp_path, of, title):
+    hot = "hot: {diffusion: {size: 1 1 m, cell: 0.5 m, of: temperature, coefficient: 1e-3 m^2/s, initial: 300 K}}"
+    script = SCENE.replace("ball: sphere", f"shown: {{{{field_map: {{{{of: {of}}}}}}}}}")
+    said = script.format(overlays="{bar: {legend: {of: shown}}}").replace("models:", f"models:\n  {hot}")
+    (tmp_path / "scene.yaml").write_text(said.replace("[map]", "[map, shown]"), encoding="utf-8")
+    graph = load(tmp_path / "scene.yaml")
+    (moment,) = simulate(graph, [0.0])
+    legend = graph.tasks["bar"].kind
+    assert legend._told(moment).lines[: bool(title)] == [title][: bool(title)]
+    assert len(legend._told(moment).lines) == 1 + bool(title)
+    assert legend.model_copy(update={"title": ""})._told(moment).lines == legend._told(moment).lines[-1:]
 
 
 def test_what_is_not_covered_stays_as_it_is(tmp_path):

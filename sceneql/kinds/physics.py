@@ -204,6 +204,10 @@ class Model(Kind):
         """The field that a `field_map` draws where no object of the script shows any of it."""
         return None
 
+    def called(self, output: str) -> str:
+        """What pictures call an output."""
+        return output
+
     def shown_in_place_of(self) -> Iterable[Ref]:
         """Objects that would hide it, or that map: it is drawn in their place."""
         return ()

@@ -240,3 +240,7 @@ class Kind(Record):
     def formula_dimension(cls, written: Mapping[str, Any]) -> Dimension | None:
         """The dimension of the field to which formulas marked ``of_field`` belong; None: it is not known."""
         return None
+
+    def darkens(self) -> bool:
+        """Whether it is shown before the dark, where there is no ground: what shines, or moves in empty space."""
+        return False

@@ -24,6 +24,9 @@ COUNT = 96
 """Directions in which points are looked for."""
 AT_ONCE = 50_000
 """Vertices or spheres that are looked at together."""
+CLOUD, STRAYS = 200, 0.02
+"""Spheres from which on they are a cloud, and the share of it that may lie beyond its outline in any direction: a few
+stars that are thrown far out make the others no smaller."""
 
 
 def _directions() -> Floats:
@@ -42,8 +45,10 @@ def outline(shape: Shape) -> Floats:
     match shape:
         case Mesh(vertices=points):
             return outermost(points)
-        case Points(centers=points, radii=radii):
+        case Points(centers=points, radii=radii) if len(points) < CLOUD:
             return _around(points, radii)
+        case Points(centers=points, radii=radii):
+            return _cloud(points, radii)
         case Segments(ends=ends, radii=radii):
             return _around(ends.reshape(-1, 3), np.repeat(radii, 2))
         case Quadric(linear=linear) if not any(linear):
@@ -70,6 +75,17 @@ def _around(centers: Floats, radii: Floats) -> Floats:
         return centers.reshape(-1, 3)
     farthest = _farthest(centers, radii[:, None])
     found: Floats = centers[farthest] + radii[farthest, None] * DIRECTIONS
+    return found
+
+
+def _cloud(centers: Floats, radii: Floats) -> Floats:
+    """Points on the spheres that reach farthest but for strays; of very many every so many-th is looked at."""
+    every = -(-len(centers) // AT_ONCE)
+    some, reach = centers[::every], radii[::every]
+    along = some @ DIRECTIONS.T + reach[:, None]
+    last = len(some) - 1 - int(STRAYS * len(some))
+    farthest = np.argpartition(along, last, axis=0)[last]
+    found: Floats = some[farthest] + reach[farthest, None] * DIRECTIONS
     return found
 
 

@@ -30,7 +30,7 @@ class Legend(Overlay):
 
     of: ObjectRef = field("What shows the field in colors: a `field_map`.")
     unit: str | None = field("The unit of the numbers: `mg/L`; by default that of SI.", None)
-    title: str = field("What is said above the bar; the unit follows.", "")
+    title: str | None = field("What is said above the bar, by default the field's name; the unit follows.", None)
     place: Literal["left", "right"] | None = field(
         "The side of the picture where it stands; by default right, or where what is shown leaves more room.", None
     )
@@ -93,7 +93,8 @@ class Legend(Overlay):
             raise ValueError(f"the field is {describe(key.dimension)}, which {text} is no unit of")
         low, high = (key.low - offset) / scale, (key.high - offset) / scale
         ticks = [(value, (value - low) / (high - low)) for value in marked_numbers(low, high, self.numbers)]
-        lines = [line for line in (self.title, "" if text == "1" else shown_unit(text)) if line]
+        title = key.name if self.title is None else self.title
+        lines = [line for line in (title, "" if text == "1" else shown_unit(text)) if line]
         marks = [(mark - key.low) / (key.high - key.low) for mark in key.marks]
         return _Bar(key, lines, ticks, [mark for mark in marks if 0 < mark < 1])
 
