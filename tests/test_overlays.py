@@ -30,7 +30,7 @@ cameras: {{plan: {{orthographic: {{height: 3 m, look_at: 1 0.5 0 m}}}}}}
 overlays: {overlays}
 outputs: {{film: {{image: {{size: 320 180, show: [map]}}}}}}
 """
-LEGEND = "{bar: {legend: {of: map, unit: mg/L, panel: 1, title: ''}}}"
+LEGEND = "{bar: {legend: {of: map, unit: mg/L, panel: 1}}}"
 
 
 def picture(folder, overlays):
@@ -69,9 +69,12 @@ def test_a_legend_says_what_it_shows(tmp_path, of, title):
     graph = load(tmp_path / "scene.yaml")
     (moment,) = simulate(graph, [0.0])
     legend = graph.tasks["bar"].kind
-    assert legend._told(moment).lines[: bool(title)] == [title][: bool(title)]
-    assert len(legend._told(moment).lines) == 1 + bool(title)
-    assert legend.model_copy(update={"title": ""})._told(moment).lines == legend._told(moment).lines[-1:]
+    small, large = (Letterer(np.zeros((9 * k, 16 * k, 3), dtype=np.uint8), legend.text) for k in (20, 60))
+    unit = ["K"] if title == "temperature" else ["kg/m\u00b3"]
+    assert legend._told(moment, large).lines == [title] * bool(title) + unit
+    assert legend._told(moment, small).lines == unit
+    assert legend.model_copy(update={"title": ""})._told(moment, large).lines == unit
+    assert legend.model_copy(update={"title": "What there is"})._told(moment, small).lines == ["What there is", *unit]
 
 
 def test_what_is_not_covered_stays_as_it_is(tmp_path):
