@@ -141,7 +141,7 @@ class TapeBuilder:
         return None
 
     def _power(self, a: int, exponent: float | None) -> int | None:
-        """Register of a power by squares and products, and a square root for half-integers; None for other exponents."""
+        """Register of a power by squares and products, with a root for half-integers; None for other exponents."""
         if exponent is None or self.number(a) is not None or abs(exponent) > LARGEST_POWER:
             return None
         if exponent < 0.0:
