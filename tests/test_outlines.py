@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from sceneql.frame import Quadric, Surface
+from sceneql.frame import Points, Quadric, Surface
 from sceneql.pipeline import Report, Tools, load, simulate
 from sceneql.report.mesh import mesh
 from sceneql.shapes.outlines import COUNT, DIRECTIONS, outermost, outline
@@ -65,6 +65,17 @@ def test_of_very_many_points_the_farthest_is_among_the_outermost():
     points = np.random.default_rng(4).standard_normal((120_001, 3))
     points[60_001] = [0.0, 100.0, 0.0]
     assert outermost(points)[:, 1].max() == 100.0
+
+
+def test_a_few_strays_of_a_cloud_are_not_what_it_is_seen_by():
+    centers = np.random.default_rng(5).uniform(-1, 1, (1000, 3))
+    cloud = Points("stars", Surface(), centers, np.full(1000, 0.01))
+    strayed = centers.copy()
+    strayed[:5] *= 100
+    found = outline(Points("stars", Surface(), strayed, np.full(1000, 0.01)))
+    assert np.abs(found).max() < 1.02
+    assert np.abs(found).max() > 0.95 * np.abs(outline(cloud)).max()
+    assert np.abs(outline(Points("few", Surface(), strayed[:100], np.full(100, 0.01)))).max() > 20
 
 
 FLAT = {"x": "0.02 2 2 m", "y": "2 0.02 2 m", "z": "2 2 0.02 m"}

@@ -56,4 +56,4 @@ def _written(kind: Kind, name: str) -> str | None:
         return None
     if isinstance(value, Value) and value != type(kind).model_validate({}).__dict__.get(name) and value.constant:
         return f"{float(value.number())!r} m"
-    return default
+    return value if isinstance(value, str) else default

@@ -24,6 +24,9 @@ COUNT = 96
 """Directions in each of which the farthest point is searched."""
 AT_ONCE = 50_000
 """Vertices or spheres of one block of the search, which bounds its memory."""
+CLOUD, STRAYS = 200, 0.02
+"""Number of spheres from which on they count as a cloud; share of a cloud's spheres that may lie beyond its outline in a
+direction, so that the camera does not zoom out for a few stars far away."""
 
 
 def _directions() -> Floats:
@@ -42,8 +45,10 @@ def outline(shape: Shape) -> Floats:
     match shape:
         case Mesh(vertices=points):
             return outermost(points)
-        case Points(centers=points, radii=radii):
+        case Points(centers=points, radii=radii) if len(points) < CLOUD:
             return _around(points, radii)
+        case Points(centers=points, radii=radii):
+            return _cloud(points, radii)
         case Segments(ends=ends, radii=radii):
             return _around(ends.reshape(-1, 3), np.repeat(radii, 2))
         case Quadric(linear=linear) if not any(linear):
@@ -70,6 +75,20 @@ def _around(centers: Floats, radii: Floats) -> Floats:
         return centers.reshape(-1, 3)
     farthest = _farthest(centers, radii[:, None])
     found: Floats = centers[farthest] + radii[farthest, None] * DIRECTIONS
+    return found
+
+
+def _cloud(centers: Floats, radii: Floats) -> Floats:
+    """(COUNT, 3) as ``_around``, but in each direction without the share STRAYS of farthest spheres.
+
+    More than AT_ONCE spheres are sampled at equal steps.
+    """
+    every = -(-len(centers) // AT_ONCE)
+    some, reach = centers[::every], radii[::every]
+    along = some @ DIRECTIONS.T + reach[:, None]
+    last = len(some) - 1 - int(STRAYS * len(some))
+    farthest = np.argpartition(along, last, axis=0)[last]
+    found: Floats = some[farthest] + reach[farthest, None] * DIRECTIONS
     return found
 
 

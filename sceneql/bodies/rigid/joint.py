@@ -98,7 +98,7 @@ class Joint(Tie):
     def assemble_motion(
         self, first: Side, second: Side, holds: int, assembly: Assembly
     ) -> tuple[tuple[int, ...], Drive | None]:
-        """Add forces along the tie's degree of freedom; none by default. (Integers of drive_kernels, bounded forces.)"""
+        """Add forces along its degree of freedom, by default none: (integers of drive_kernels, bounded forces)."""
         return (), None
 
     def read(self, output: str, state: ModelState) -> Any:

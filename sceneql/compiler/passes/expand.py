@@ -48,13 +48,14 @@ def expand(
         add("film", "outputs", "video")
     if has(Picture) and not has(Camera):
         add("camera", "cameras", "auto")
-    if has(Picture) and not has(Light):
-        add("light", "lights", "studio")
+    unlit = has(Picture) and not has(Light)
     if "floor" not in without and not any(isinstance(t.kind, Object) and t.kind.grounds for t in result.values()):
         if any(isinstance(t.kind, Contact) and not t.kind.ties() for t in result.values()):
             add("floor", "objects", "plane", height=_level(result))
         elif not background and _staged(result):
             add("floor", "objects", "ground")
+    if unlit:
+        add("light", "lights", "studio", backdrop="dark" if not background and _in_the_dark(result) else "light")
     if any(isinstance(t.kind, Model) and not t.kind.kinematic for t in result.values()) and (
         not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
     ):
@@ -89,6 +90,13 @@ def _staged(tasks: Mapping[str, Task]) -> bool:
         return False
     solved = any(isinstance(kind, Model) and not kind.kinematic for kind in kinds)
     return any(isinstance(kind, Interaction) and kind.weighs for kind in kinds) or not solved
+
+
+def _in_the_dark(tasks: Mapping[str, Task]) -> bool:
+    """Whether the picture has no ground, and something that is seen before the dark."""
+    kinds = [task.kind for task in tasks.values()]
+    grounded = any(isinstance(kind, Object) and kind.grounds for kind in kinds)
+    return not grounded and any(kind.darkens() for kind in kinds)
 
 
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:

@@ -12,13 +12,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ColorKey:
-    """A map of colors, the values at its ends and those of its contours, in SI."""
+    """A map of colors, the values at its ends and those of its contours, in SI; what it shows, empty for a formula."""
 
     colors: str
     low: float
     high: float
     dimension: Dimension
     marks: tuple[float, ...]
+    name: str
 
     def ramp(self, places: Any) -> Floats:
         """Linear RGB (n, 3) at places (n,) from 0 to 1."""

@@ -110,6 +110,14 @@ def swings(of: Value, moment: Moment) -> bool:
     return of.expr.output in getattr(model, "swinging", ())
 
 
+def called(of: Value, moment: Moment) -> str:
+    """What a legend calls a part's output: `von mises`; nothing for a formula."""
+    if not isinstance(of.expr, Link):
+        return ""
+    model: Any = moment.object(Ref(of.expr.task, of.span))
+    return cast(str, model.called(of.expr.output)).replace("_", " ")
+
+
 class AtStart:
     """The part of kinds.Moment that an object's field and extent may read, at the start of the run.
 
