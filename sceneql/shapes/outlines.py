@@ -25,8 +25,8 @@ COUNT = 96
 AT_ONCE = 50_000
 """Vertices or spheres of one block of the search, which bounds its memory."""
 CLOUD, STRAYS = 200, 0.02
-"""Number of spheres from which on they count as a cloud; share of a cloud's spheres that may lie beyond its outline in a
-direction, so that the camera does not zoom out for a few stars far away."""
+"""Number of spheres from which on they count as a cloud; share of a cloud's spheres that may lie beyond its outline in
+each direction, so that the camera does not zoom out for a few stars far away."""
 
 
 def _directions() -> Floats:
