@@ -23,7 +23,10 @@ class ExactMarch(March):
     """Solves each mode by itself, c(t) = c0 exp(-k t) + f (1 - exp(-k t))/k, without steps."""
 
     def _engage(self, stepper: Stepper) -> None:
-        """Find the modes. Raises ScriptError where the island is no field, LimitRefused where it has no such modes."""
+        """Find the modes of the field.
+
+        Raises ScriptError where the island is no field, LimitRefused where the field has no such modes.
+        """
         grid = self.system.fields.single
         if grid is None:
             _, _, part, spans = self.system.ranges[0]

@@ -1,4 +1,4 @@
-"""What a flow carries moves as that flow: refused before anything runs where there is none, or what it cannot carry."""
+"""Check of models carried by flows: whether there is such a flow, only one, and it can carry them."""
 
 from __future__ import annotations
 
@@ -12,10 +12,9 @@ from sceneql.quantities.diagnostic import Diagnostics, Note
 def report_carried(
     models: Iterable[Task], forces: Mapping[str, Sequence[str]], tasks: Mapping[str, Task], found: Diagnostics
 ) -> None:
-    """Report skins that no force has a flow carry, what two have, such forces on other models, and ties on what they
-    carry.
+    """Report skins without a flow, models with two, models that no flow can carry, and ties on carried models.
 
-    ``forces``: by force and tie the models that it acts on.
+    ``forces``: the models that each force and tie acts on.
     """
     carriers: dict[str, list[Task]] = {}
     for name, targets in forces.items():
