@@ -73,7 +73,7 @@ def _towards(level: Any, size: float) -> Any:
 
 
 def even(line: Floats, spacing: float, polish: Any = None) -> Floats:
-    """Vertices (n, 2) on a closed line (k, 2), counterclockwise, all sides equal; ``polish`` projects points onto it."""
+    """Vertices (n, 2) on a closed line (k, 2), counterclockwise, sides equal; ``polish`` projects points onto it."""
     if signed_area(line) < 0.0:
         line = line[::-1]
     count = int(np.ceil(_chords(line).sum() / spacing))

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sceneql.system import ModelState
 
 OFF = 3
-"""Distance from the skin [cells] beyond which its pressure jump is measured; its forces are spread over nearer cells."""
+"""Distance from the skin [cells] beyond which its pressure jump is measured: its forces spread over nearer cells."""
 
 
 def positions(skin: Line | Sheet, state: ModelState) -> Floats:

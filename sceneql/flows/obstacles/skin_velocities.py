@@ -27,7 +27,7 @@ class SkinVelocities:
     """Wall velocities by the entries of a boundary that are named like solids."""
 
     def __init__(self, solids: Solids, boundary: Mapping[str, Side]) -> None:
-        """Raises ScriptError for velocities that vary in time, are not tangential or have wrong numbers of components."""
+        """Raises ScriptError for a velocity that varies in time, is not tangential or has too many components."""
         self.solids = solids
         named = ((number, boundary.get(ref.name)) for number, ref in enumerate(solids.refs))
         self.formulas = [(number, part.velocity) for number, part in named if part is not None and part.velocity]
