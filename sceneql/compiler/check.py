@@ -118,7 +118,7 @@ class _Checker:
             given=script.gives,
             broken=script.broken,
             mover=lambda name: mover_of(name, self.entries, self.family_of),
-            unsure=cache(self.unsure),  # which reads all of a part, and a part of many bodies is named by many
+            unsure=cache(self.unsure),  # cached: it reads a whole part, which many may name
             parsed=parsed,
         )
 

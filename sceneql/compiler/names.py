@@ -80,7 +80,7 @@ class Names:
             circle = " -> ".join([*self._open[self._open.index(name) :], name])
             self.found.error("circular-define", f"'{name}' is defined by itself: {circle}", span)
             return None
-        # All that a define needs is bound before it, but for what needs itself.
+        # The defines that a define needs are bound before it, except in a circle.
         if name not in self._bound and len(self._open) > DEEPEST:
             self.found.error("circular-define", f"'{name}' is defined by itself, over more than {DEEPEST} others", span)
             self._bound[name] = None
@@ -204,7 +204,7 @@ class Names:
                 link = Link(task, name, outputs[name].type, span, outputs[name].computed)
                 return self._component(link, parts, size, span)
             whole = size == len(parts) or set(parts[size:]) <= {"x", "y", "z"}
-            if f"{name}.position" in outputs and whole:  # a mass, or a point of a body, by its name alone is its place
+            if f"{name}.position" in outputs and whole:  # a mass's or point's bare name is its position
                 link = Link(task, f"{name}.position", outputs[f"{name}.position"].type, span)
                 return self._component(link, parts, size, span)
         if self.unsure(task):

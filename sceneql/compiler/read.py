@@ -253,7 +253,7 @@ class Reader:
         symbols, wanted = self.symbols if mark.names is None else mark.names, mark.dimension
         if mark.of_field and wanted is not None:
             wanted = None if self.solved is None else self.solved * wanted
-        # A plain field stands for anything, a number of rabbits or of moles: so do the defines in its formulas.
+        # A plain field may stand for any quantity, such as rabbits or moles; so may the defines in its formulas.
         of_any = mark.of_field and self.solved is not None and self.solved.plain
         by_of = mark.of_field and self.solved is not None and not self.solved.plain
         of = Wanted(wanted, of_any, mark.at_start, by_of)

@@ -21,7 +21,7 @@ def balanced(formula: Expr) -> Expr:
     The scaling is exact: values are the same up to the factor wherever neither overflows nor underflows. Parts of a
     union or an intersection (``min``, ``max``) each have a factor of their own.
     """
-    if isinstance(formula, Call) and formula.op in ("min", "max"):  # what is below zero stays so, each by its own
+    if isinstance(formula, Call) and formula.op in ("min", "max"):  # positive factors keep the sign, each part's own
         parts = tuple(map(balanced, formula.args))
         return formula if parts == formula.args else _call(formula, parts)
     known: dict[int, Scaled] = {}

@@ -80,7 +80,7 @@ class Rows:
             if isinstance(node, Link):
                 return link(node)
             left = [node.name]
-            while left:  # what a helper quantity needs is computed before it, in however long a row
+            while left:  # dependencies first; without recursion, as chains may be long
                 name = left[-1]
                 symbols = [] if name in known else [each for each in walk(self.where[name]) if isinstance(each, Symbol)]
                 needed = [each.name for each in symbols if each.name in self.where and each.name not in known]

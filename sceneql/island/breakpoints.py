@@ -144,7 +144,7 @@ class Breakpoints:
             yield from self._sampled(argument, _between(table))
         elif even[1] != 0.0 and math.isfinite(even[0] + even[1] * self.end):
             here, slope = even
-            for time in table.times:  # the next piece holds from its key on; past the key where the argument falls
+            for time in table.times:  # a key belongs to the later piece; if the argument falls, the break is past it
                 at = (time - here) / slope
                 yield (at if slope > 0.0 else after(at, 2)), table.cycle / abs(slope)
 
@@ -182,7 +182,7 @@ class Breakpoints:
             changes = _changes(self._cell(number, cells, pieces.ravel()).reshape(pieces.shape))
             low, high = pieces[:, :-1][changes], pieces[:, 1:][changes]
         last = math.inf
-        for time in high[: MOST + 1][::-1].tolist():  # of changes nearly at one instant the last, behind all of them
+        for time in high[: MOST + 1][::-1].tolist():  # backwards: of changes APART or closer only the last counts
             if last - time > APART * self.end:
                 yield after(time, 2), 0.0
                 last = time

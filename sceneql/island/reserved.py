@@ -139,6 +139,6 @@ class Reserved:
 
     def numbers(self) -> Floats:
         """The floats stored so far."""
-        if len(self._numbers) > 1:  # many words ask, each after it has stored a few
+        if len(self._numbers) > 1:  # joined here: many words ask, each after storing a few more
             self._numbers = [np.concatenate(self._numbers)]
         return self._numbers[0].copy()

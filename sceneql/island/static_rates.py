@@ -64,7 +64,7 @@ def by_formulas(
             found = evaluate(formulas, {Symbol(name): value for name, value in known.items()})
             matrices[tuple(tuple(told_slope(slope) / one.mass for slope in row) for row in found)] = None
     fastest: list[Oscillation] = []
-    for matrix in matrices:  # one for all masses that are alike
+    for matrix in matrices:  # equal masses share one matrix
         place, motion = ([row[part] for row in matrix] for part in (slice(3), slice(3, 6)))
         if any(map(any, motion)):
             fastest += oscillations(motion, what, (at,))

@@ -117,7 +117,7 @@ class Model(Kind):
         """Add the terms that read other models' reservations in the island; called once all models are assembled."""
 
     def items(self, output: str) -> int | None:
-        """How many items an output has, where its fields tell."""
+        """Number of items of an output, if its fields tell; else None."""
         return None
 
     def burdens(self, density: float) -> bool:
@@ -181,9 +181,9 @@ class Model(Kind):
         return ()
 
     def static_masses(self) -> Mapping[str, StaticMass]:
-        """Masses by name, as far as its fields alone determine them, for `check`.
+        """Masses by name that follow from its fields alone, for `check`.
 
-        A nameless one stands for the lightest.
+        The name "" stands for the lightest of nameless ones.
         """
         return {}
 
@@ -208,7 +208,7 @@ class Model(Kind):
         return None
 
     def called(self, output: str) -> str:
-        """What pictures call an output."""
+        """Name of an output in pictures."""
         return output
 
     def shown_in_place_of(self) -> Iterable[Ref]:
@@ -274,7 +274,7 @@ class Interaction(Kind):
         return False
 
     def at_a_distance(self) -> bool:
-        """Whether it is a smooth force at a distance, such as gravity, without friction, springs or a cutoff."""
+        """Whether it is a smooth force at a distance, such as gravity."""
         return False
 
     def remark(self, state: ModelState) -> str:
@@ -399,5 +399,5 @@ class Contact(Kind):
         return ""
 
     def trouble(self, state: ModelState) -> str:
-        """What a warning says of it at the end of a run; empty for nothing."""
+        """Text of a warning at the end of the run; empty for none."""
         return ""

@@ -43,8 +43,7 @@ class Solver(Kind):
 
     family: ClassVar[str] = "solvers"
     marches: ClassVar[Literal["anything", "a field", "a flow", "several fluids"]] = "anything"
-    """The islands that it is for: any, those that are one field on a grid, those with a flow, or with several
-    fluids."""
+    """Kind of island that it solves: any, one field on a grid, one with a flow, or one with several fluids."""
     static: ClassVar[bool] = False
     """Whether it finds static equilibria, without motion in time."""
     refuses_ties: ClassVar[str] = ""
@@ -53,7 +52,7 @@ class Solver(Kind):
     on: tuple[ModelRef, ...] | None = field("The models it marches; by default all.", None)
 
     def explanation(self) -> str:
-        """Its choice of a method and the reason, where it chooses by itself."""
+        """Text on the chosen method and the reason; empty if it makes no choice."""
         return ""
 
     def measure(self) -> str:

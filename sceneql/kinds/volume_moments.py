@@ -52,7 +52,7 @@ class VolumeMoments:
 
         volumes = np.array([part.volume for part in parts])
         centers = np.array([part.center for part in parts])
-        # From one of the centers, so that nothing is lost far from the origin.
+        # Relative to one of the centers, against cancellation far from the origin.
         center = centers[0] + volumes @ (centers - centers[0]) / volumes.sum()
         away = centers - center
         second = sum(part.second for part in parts) + np.einsum("k,ki,kj->ij", volumes, away, away)

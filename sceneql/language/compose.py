@@ -126,7 +126,7 @@ class _Composer:
         except yaml.YAMLError as error:
             flow, at = self.flow_start(), place(self.source, error)
             if "nesting depth" in str(getattr(error, "problem", "")):
-                # The parser reads ahead, and has a bound of its own, so it may stop before these levels are counted.
+                # The parser reads ahead and has its own depth limit, so it may stop before these levels are counted.
                 span = Span(self.source, at - 1, at)
                 self.found.error("too-deep", f"more than {MOST_DEPTH} levels of lists and mappings", span, help=_DEEP)
             else:
@@ -209,7 +209,7 @@ class _Composer:
                                 node = hole(node.span)  # no key is a list
                             text = node.text if type(node) is Scalar else text
                         elif faults and any(node.start < at < end for at in faults):
-                            node = hole(node.span)  # a part of it is told already
+                            node = hole(node.span)  # an error inside it was reported already
                         elif "(" in text and text.count("(") > text.count(")") and here is not None and here.flow:
                             self.halves.append(node)
                 elif kind is open_mapping:

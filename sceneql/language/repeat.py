@@ -125,7 +125,7 @@ def _number(
             raise _LostError
         value, outer = (define.get(name), None) if inner is None else (inner.fields[name], inner.outer)
         if id(value) not in known:
-            known[id(value)] = None  # of a name that leads back to itself
+            known[id(value)] = None  # for a name that leads back to itself
             known[id(value)] = _number(value, outer, define, lost, hops - 1, known)
         return known[id(value)]
 

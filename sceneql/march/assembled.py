@@ -118,7 +118,7 @@ class Assembled:
         """Add the forces and contacts."""
         tasks = self.graph.tasks
         forces = dict.fromkeys(force for force, _ in self.island.forces)
-        # Masses that a flow carries come first: its skins move by its inertia, and theirs is part of it.
+        # Masses that a flow carries come first: skins need the flow's inertia, which includes these masses.
         for force in [force for force in forces if cast(Interaction, tasks[force].kind).carrier()]:
             self._add_to_masses(force)
         for force in forces:

@@ -107,7 +107,7 @@ def engage(system: System, stepper: Stepper, driver: Driver) -> Engaged:
     method, control, needs = stepper.method, stepper.control, stepper.needs
     local = bool(system.structure.local)
     between = needs.jacobian and not needs.newton
-    # A step's own dense output does not have changes made after it, which local contacts may make in every step.
+    # A method's dense output lacks changes made after its step, as by local contacts in any step.
     mixed = between and (local or bool(system.structure.after))
     dense = None if local and not between else method.dense
     interpolant = kernels.hermite if dense is None else function(dense)
@@ -128,7 +128,7 @@ def engage(system: System, stepper: Stepper, driver: Driver) -> Engaged:
         (kernels.LAST_STAGE, -1 if local and between else method.last_stage),
         (kernels.CONTROLS, control.self_controlled),
         (kernels.HALVES, control.halves),
-        # The last stage of Newton's method is a state that it has reached without letting surfaces pass one another.
+        # Newton's method keeps surfaces from passing each other by itself, up to the state of its last stage.
         (kernels.WATCHED, keeps_apart is not None and not (needs.newton and method.last_stage >= 0)),
     )
     alone = np.zeros(len(system.y), dtype=bool) if prepared.alone is None else prepared.alone

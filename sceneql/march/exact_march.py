@@ -71,7 +71,7 @@ class ExactMarch(March):
         cells = slice(grid.at, grid.at + n)
         volume = float(self.floats[grid.volumes_at])
         if self._modes is None:
-            self.statistics.steps = 1  # one to any instant
+            self.statistics.steps = 1  # one step reaches any instant
             self._modes = (
                 self._weights(self._y1[cells]),
                 self._weights(self.floats[grid.fed_at : grid.fed_at + n] / volume),

@@ -231,7 +231,7 @@ class March:
             self._extend_step(t0, h)
             self._extended = t1
         y = np.empty_like(self._y1)
-        # What settles the end of a step takes errors away, which dense output has; what contacts change it has not.
+        # Dense output still has the errors that settling removes at the step's end, and lacks changes by contacts.
         settles, touched = bool(self._counts[kernels.SETTLES]) and not altered, bool(self._counts[kernels.LOCAL])
         y1 = self._sample if settles and not touched else self._y1
         steps = (self._y0, self._rate0, y1, self._rate1, self._work, self._settings, self._numbers)
@@ -291,7 +291,7 @@ class March:
         started = time.perf_counter() - compiled.seconds
         counts, clock = self._counts, self._clock
         if counts[kernels.HELD] and not math.isnan(self._floats_time):
-            # Frames have evaluated terms elsewhere: write again what contacts read of them at the step's end.
+            # Frames evaluated the terms at other states: restore their values at the step's end, which contacts read.
             self.rate(float(clock[kernels.T1]), self._y1)
         self._floats_time = math.nan
         left = 0
@@ -363,7 +363,7 @@ class March:
             clock[kernels.STEP] = switch.stable(t, self._y1, step)
             clock[kernels.ERROR] = 1e-4
         if self._counts[kernels.HELD]:
-            self.rate(t, self._y1)  # write again what contacts read of the terms at this state
+            self.rate(t, self._y1)  # restore the terms' values at this state, which contacts read
 
     def _goes_on(self, status: int) -> bool:
         """Whether another method continues where the present one finds no step."""

@@ -119,7 +119,7 @@ class ModalMarch(March):
         if not len(self._tallies):
             return forces
         m = len(forces)
-        if self._uncounted is not None:  # what no tally counts, as weight, is as a rule the same all the time
+        if self._uncounted is not None:  # loads outside all tallies, such as weight, are mostly constant
             way = np.cos(1.0 + np.arange(m))
             guess = self._uncounted - forces
             counted = self._power(t, way)

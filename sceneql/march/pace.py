@@ -1,4 +1,4 @@
-"""The pace of a march: told while it runs, and judged by whether the march can end at all."""
+"""Progress of a march: reports while it runs, and the judgment whether it can finish at all."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def dominant(values: Complexes) -> complex:
     """The eigenvalue of largest modulus, of a conjugate pair the upper one; 0 where there is none."""
     if not len(values):
         return 0j
-    found = complex(values[int(np.argmax(np.abs(values) + 1e-3 * np.abs(values.imag)))])  # of as fast ones, what swings
+    found = complex(values[int(np.argmax(np.abs(values) + 1e-3 * np.abs(values.imag)))])  # of equals, an oscillation
     return complex(found.real, abs(found.imag))
 
 
@@ -75,7 +75,7 @@ def _projected(rate_at: Rate, partner: Partners, rate: Floats, t: float, y: Floa
     size, largest = 0, 0.0
     for k in range(SMALL):
         product = (rate_at(t, y + units * basis[k]) - rate) / units
-        for _ in range(2):  # once leaves what rounding put back, which grows from vector to vector
+        for _ in range(2):  # twice: rounding errors of one pass would grow from vector to vector
             along = basis[: k + 1] @ product
             matrix[: k + 1, k] += along
             product -= along @ basis[: k + 1]
@@ -111,7 +111,7 @@ def units_of(rate_at: Rate, partner: Partners, t: float, y: Floats, scale: float
     if len(positions):
         velocities = partner[positions]
         moved = y.copy()
-        # Uneven moves: where all masses are moved alike, the springs between them do not pull.
+        # Random moves: a common translation would not stretch the springs between masses.
         moved[positions] += scale * np.random.Generator(np.random.Philox(2)).standard_normal(len(positions))
         pull = (rate_at(t, moved) - rate_at(t, y))[velocities] / scale
         square = float(np.sqrt(np.mean(pull * pull)))

@@ -147,7 +147,7 @@ class Switch:
         if self._proven and self._lost < self._kept:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
-        # A trial in vain must not cost more than the steps before the next one; it may soon be stiff again.
+        # Wait in proportion to a trial's cost, twice as long after each in vain; it may soon be stiff again.
         self._between = FIRST
         self.until_look = max(FIRST, int(TRIAL * self.cost)) << self._in_vain
         self._in_vain = min(self._in_vain + 1, 5)

@@ -73,12 +73,12 @@ def tangent(march: March, functions: Any, rest: Floats, times: Floats) -> Tangen
 
     found = matrices(float(times[0]))
     stiffness = abs(found[0])
-    # What is led: others feel its place, and it feels none.
+    # Led entries: others depend on their positions, they on none.
     led = (stiffness.sum(axis=0) > 0.0) & (stiffness.sum(axis=1) == 0.0)
     free = np.flatnonzero((inertia.diagonal() > 0.0) & ~led)
     found = [one[free][:, free] for one in found]
     sizes, changes = [_largest(one) for one in found], [0.0, 0.0]
-    for t in times[1:].tolist():  # one after the other: all at once would take the memory of as many
+    for t in times[1:].tolist():  # one at a time, to keep few matrices in memory
         for which, one in enumerate(matrices(t)):
             now = one[free][:, free]
             sizes[which] = max(sizes[which], _largest(now))

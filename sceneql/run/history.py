@@ -39,7 +39,7 @@ class History:
         wanted: dict[float, list[int]] = {}
         for key, (_, keep, every, _) in self._kept.items():
             first = max(self._seen[key] + 1, math.ceil((time - keep) / every - SLACK))
-            last = max(math.floor(time / every - SLACK), 0 if time > 0.0 else -1)  # the start, however long it is kept
+            last = max(math.floor(time / every - SLACK), 0 if time > 0.0 else -1)  # the start is due in any case
             for k in range(first, last + 1):
                 wanted.setdefault(k * every, []).append(key)
             self._seen[key] = max(last, self._seen[key])

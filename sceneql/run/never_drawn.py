@@ -63,7 +63,7 @@ def look(shapes: Sequence[Shape], asked: Iterable[str], tasks: Mapping[str, Task
 
 
 def look_at_rounding(shapes: Sequence[Shape], rounded: dict[str, float]) -> None:
-    """Record in ``rounded``, by name, the fraction of a solid's bounds in which rounding decides what is inside."""
+    """Record in ``rounded``, by name, the fraction of an implicit solid's bounds in which rounding decides its sign."""
     from sceneql.frame import Implicit
 
     for shape in shapes:

@@ -166,14 +166,14 @@ class IslandRun:
         self.bodies = made.bodies
         self.assembly = made.assembly
         self.assembly.places, self.assembly.points = self._places, self._points
-        if not self.assembly.fields and not island.contacts:  # the solver's step is known before what acts is made
+        if not self.assembly.fields and not island.contacts:  # the solver's step is known before forces are added
             compile_beside((solver.stepper().method.step.partition(":")[0],))
         made.act()
         made.found.raise_errors()
         self.methods = solver.choose(made.facts())
         self.solver = self.methods.solver
         system = self._compiled(self.methods.first)
-        compile_beside(lazy_kernels.modules())  # nobody waits for what may never be called
+        compile_beside(lazy_kernels.modules())  # in the background: kernels that may never be called
         blocks = blocks_of(made, system, self.methods.first)
         try:
             self.march = self._marched(system, blocks, before, kept)
@@ -224,7 +224,7 @@ class IslandRun:
         acting = compile_beside((*solving, *modules(system.structure), *events, *dense))
         acting(*solving)
         compile_beside(lazy_first(system.structure))
-        if needs.march is None:  # while the process beside compiles what solves
+        if needs.march is None:  # meanwhile the second process compiles the solver
             driver(system)
             if needs.jacobian:
                 jacobian(system)

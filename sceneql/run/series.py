@@ -65,7 +65,7 @@ def course(expr: Expr, series: Series, times: list[float]) -> Any:
         if not isinstance(node, Call) or not OPERATIONS[node.op].series:
             return node
         value = np.asarray(evaluate(node.args[0], look_up, arrays=True))
-        if value.ndim == len(node.args[0].type.shape):  # constant, it has one value for the whole run
+        if value.ndim == len(node.args[0].type.shape):  # a constant: one value for the whole run
             value = np.broadcast_to(value, (len(times), *value.shape))
         symbol = Symbol(f"series {len(known)}", node.type)
         known[symbol] = _SERIES[node.op].of(value, times, node)

@@ -321,7 +321,7 @@ def _singular(island: IslandRun) -> Iterator[Diagnostic]:
 
 
 def _troubled(island: IslandRun) -> Iterator[Diagnostic]:
-    """What models, contacts and ties say of the run at its end."""
+    """Warnings of models, contacts and ties at the end of the run."""
     tasks = island.graph.tasks
     for name in island.island.models:
         text, help = cast(Model, tasks[name].kind).trouble(island.state(name))

@@ -72,7 +72,7 @@ def _sparse(stiffness: Any, mass: Any, count: int, points: Floats, shift: float)
         found = solve(weighed[:, -width:])
         along = weighed.T @ found
         found -= basis @ along
-        again = weighed.T @ found  # once leaves what rounding put back
+        again = weighed.T @ found  # second pass, against rounding errors of the first
         found -= basis @ again
         along += again
         larger = np.zeros((whole, whole))

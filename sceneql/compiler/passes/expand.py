@@ -106,7 +106,7 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
     carriers = [task.kind.carrier() for task in tasks.values() if isinstance(task.kind, Interaction)]
     shown = [tasks[name] for name in read if name in tasks and isinstance(tasks[name].kind, Model)]
     carried = {need for task in shown for need in task.needs} | {flow.name for flow in carriers if flow is not None}
-    for name in sorted(carried & set(tasks)):  # a map of a deep flow's box would hide skins in it, and what it carries
+    for name in sorted(carried & set(tasks)):  # a map of a 3D flow's box would hide skins and masses in it
         kind = tasks[name].kind
         if getattr(kind, "flows", False) and len(getattr(kind, "size", None) or ()) == 3:
             read.add(name)

@@ -44,7 +44,7 @@ def _outside(place: Any, ref: Ref, tasks: Mapping[str, Task], start: Any) -> Ite
     model: Any = tasks[ref.name].kind if ref.name else None
     for name, fields in model.drives().items() if isinstance(model, Model) else ():
         body = (getattr(model, "bodies", None) or {}).get(ref.within, model)
-        placed = getattr(body, "position", None) is not None  # elsewhere than its object stands
+        placed = getattr(body, "position", None) is not None  # not where its object stands
         if placed or fields.get("position", "").rpartition(".")[0] != ref.within:
             continue
         kind: Any = tasks[name].original or tasks[name].kind

@@ -39,7 +39,7 @@ def _solved_values(part: Any) -> Iterator[Value]:
         for name, info in type(part).model_fields.items():
             mark = grammar_of(info)[0]
             of_cells = isinstance(mark, Quantity) and mark.shape == (None,) and mark.dimension is None
-            if not isinstance(mark, Paint) and not of_cells:  # of a field on a grid the part tells itself what fits
+            if not isinstance(mark, Paint) and not of_cells:  # values by cell are checked by the part itself
                 yield from _solved_values(getattr(part, name))
     elif isinstance(part, dict):
         for item in part.values():
@@ -62,7 +62,7 @@ def _read(value: Value, tasks: Mapping[str, Task]) -> Iterator[Link]:
         yield link
         kind = tasks[link.task].kind
         if isinstance(kind, Model):
-            with suppress(ScriptError):  # a velocity that the run will tell of
+            with suppress(ScriptError):  # a velocity; the run reports it
                 stack += Value(kind.formula(link.output)).links if kind.kinematic else ()
         elif isinstance(made := getattr(kind, link.output, None), Value):
             stack += made.links

@@ -42,7 +42,7 @@ def report_carried(
     for task in models:
         by = carriers.get(task.name, [])
         skin = isinstance(task.kind, Model) and task.kind.carried
-        if skin and not by and not found.errors:  # a force that is refused is not among these
+        if skin and not by and not found.errors:  # refused forces are missing in `by`
             text = f"no flow carries '{task.name}', and by itself it does not move"
             help = f"write `forces: [{{immersion: {{on: [{task.name}], in: ...}}}}]` with the name of a flow"
             found.error("not-carried", text, task.span, help=help)
