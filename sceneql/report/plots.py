@@ -176,7 +176,7 @@ def logarithmic(axes: Any) -> None:
 
         def __call__(self, x: float, pos: Any = None) -> str:
             text: str = super().__call__(x, pos)
-            low, high = self.axis.get_view_interval()
+            low, high = axes.xaxis.get_view_interval()
             return f"{x:g}" if text and PLAIN[0] <= low and high <= PLAIN[1] else text
 
     axes.set(xscale="log", yscale="log")
