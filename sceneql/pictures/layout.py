@@ -51,9 +51,7 @@ def boxes(rows: Sequence[Row], variants: Sequence[str], size: tuple[int, int]) -
         top, bottom = (round(room * part / total) + k * gap for part in (done, done + share))
         done += share
         across = size[0] - gap * (columns - 1)
-        start = round(
-            (columns - len(line)) * (across / columns + gap) / 2
-        )  # the last line of a grid is centered
+        start = round((columns - len(line)) * (across / columns + gap) / 2)  # the last line of a grid is centered
         for j, item in enumerate(line):
             left, right = (round(across * part / columns) + j * gap for part in (j, j + 1))
             wide, high = right - left, bottom - top

@@ -59,7 +59,7 @@ def fault(tex: str) -> Fault | None:
 
 @cache
 def printed(tex: str, em: int) -> NDArray[uint8]:
-    """Picture (h, w) uint8 of a formula, 255 for ink, letters ``em`` pixels high. Raises UnsetError for a faulty one."""
+    """Picture (h, w) uint8 of a formula, 255 for ink, letters ``em`` pixels high. Raises UnsetError for a fault."""
     import numpy as np
     from matplotlib.mathtext import MathTextParser
 
