@@ -7,7 +7,7 @@ allows, or where only a run knows shapes, is left to that.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import islice, product
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from sceneql.compiler.passes.fillings import Beginning
@@ -82,19 +82,23 @@ def _overlap(body: str, other: str, whole: bool, tasks: Mapping[str, Task], star
         return 0.0
     sizes = [float((box[1] - box[0]).max()) for box in boxes[0 if whole else 1 :]]
     least = DEEP * min(size for size in [*sizes, 1.0] if np.isfinite(size))
-    deepest = 0.0
-    for place in product(*(np.linspace(a, b, SIDE) for a, b in zip(low, high, strict=True))):
-        depth = -_field(shapes[0], np.array(place), start)
-        if depth > deepest:
-            deepest = max(deepest, min(depth, -_field(shapes[1], np.array(place), start)))
+    sides = (np.linspace(a, b, SIDE if b > a else 1) for a, b in zip(low, high, strict=True))
+    places = np.stack([side.ravel() for side in np.meshgrid(*sides, indexing="ij")])
+    inside = -_field(shapes[0], places, start)
+    places, inside = places[:, inside > least], inside[inside > least]
+    if not len(inside):
+        return 0.0
+    deepest = float(np.minimum(inside, -_field(shapes[1], places, start)).max())
     return deepest if deepest > least else 0.0
 
 
-def _field(shape: Object, place: Floats, start: Any) -> float:
-    """An object's field at a place (3,): at most its distance from the surface, where it is negative."""
+def _field(shape: Object, places: Floats, start: Any) -> Floats:
+    """An object's field at places (3, n): at most the distance from its surface, where it is negative; else 1."""
+    import numpy as np
+
     from sceneql.field.tape.builder import TapeBuilder
+    from sceneql.field.tape.plainly import values
 
     build = TapeBuilder()
-    x, y, z = (build.constant(float(c)) for c in place)
-    value = build.number(shape.implicit(build, x, y, z, start))
-    return 1.0 if value is None else value
+    found = values(build.finish(shape.implicit(build, build.x, build.y, build.z, start)), places)
+    return np.where(np.isfinite(found), found, 1.0)
