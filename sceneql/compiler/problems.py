@@ -13,6 +13,10 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
 
+class Unreadable(Exception):
+    """The value was reported as wrong; the reader of the value around it goes on with the next."""
+
+
 def validated(cls: type[BaseModel], got: dict[str, Any], node: Node | None, span: Span, found: Diagnostics) -> Any:
     """The record of fields that were read from ``node``; None after a report where they do not go together.
 
