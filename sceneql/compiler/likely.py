@@ -1,11 +1,14 @@
-"""Fields that a value of the wrong shape was likely meant for: what to write in its place."""
+"""Fields that a value of the wrong shape was likely meant for: what to write in its place.
+
+``reader`` is the `Reader` (`sceneql.compiler.read`) that met the value.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import BaseModel
 
@@ -17,13 +20,10 @@ from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, whole
 from sceneql.quantities.diagnostic import Diagnostics
 
-if TYPE_CHECKING:
-    from sceneql.compiler.read import Reader
-
 TRUE = ("true", "yes", "on")
 
 
-def field_meant(reader: Reader, node: Node, cls: type[BaseModel]) -> str | None:
+def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     """The help for a field without its colon, or for a value in place of all fields that suits one of them."""
     required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
     if not isinstance(node, Scalar):
@@ -43,7 +43,7 @@ def field_meant(reader: Reader, node: Node, cls: type[BaseModel]) -> str | None:
     return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
 
 
-def elsewhere(reader: Reader, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
+def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
     """The help for several numbers where another count is wanted: the one other field that takes them."""
     found = {name: mark for name, mark in _fitting(reader, node, others).items() if mark.shape}
     if len(found) > 1:
@@ -73,7 +73,7 @@ def _inside(node: Node) -> str:
     return ", ".join(f"{name}: {value.span.text}" for name, value in fields.items())
 
 
-def _taking(reader: Reader, node: Node, cls: type[BaseModel]) -> Iterator[str]:
+def _taking(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
     """The fields that take a list, of values alone."""
     nothing = Diagnostics()
     names = replace(reader.names, found=nothing)
@@ -86,14 +86,14 @@ def _taking(reader: Reader, node: Node, cls: type[BaseModel]) -> Iterator[str]:
         nothing.found.clear()
 
 
-def _paints(reader: Reader, node: Node, cls: type[BaseModel]) -> list[str]:
+def _paints(reader: Any, node: Node, cls: type[BaseModel]) -> list[str]:
     """The color, where a value can be one."""
     nothing = Diagnostics()
     fits = paint.read_color(node, replace(reader.names, found=nothing), nothing) is not None
     return ["color"] if fits and "color" in cls.model_fields else []
 
 
-def _fitting(reader: Reader, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
+def _fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
     """The fields of quantities that take a value."""
     nothing = Diagnostics()
     names = replace(reader.names, found=nothing)
@@ -101,7 +101,7 @@ def _fitting(reader: Reader, node: Node, fields: Mapping[str, Any]) -> dict[str,
     return {name: mark for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None}
 
 
-def _formulas(reader: Reader, node: Node, cls: type[BaseModel]) -> Iterator[str]:
+def _formulas(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
     """The fields of formulas that take a value."""
     nothing = Diagnostics()
     trial = replace(reader, found=nothing, names=replace(reader.names, found=nothing))

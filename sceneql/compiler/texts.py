@@ -17,6 +17,8 @@ from sceneql.quantities.span import Span
 from sceneql.quantities.units import Unit, describe, parse_unit, unit_of
 
 _WORD = re.compile(r"\s?([^\W\d]\w*(?:[/*^]\w+)*)")
+_PRINTED = re.compile(r"%(\.\d+[efg])")
+_SIGN = re.compile(r"\$(\{[^{}]*\})")
 PIECE = re.compile(r"\{\{|\}\}|\{(?P<inside>[^{}]*)\}|(?P<odd>[{}])")
 
 
@@ -52,6 +54,14 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
             ok = ok and told is not None
             pieces += [] if told is None else [told]
     pieces.append(text[at:])
+    if (form := _PRINTED.search(text)) is not None:
+        help = f"a text has its values in braces, and behind a colon their form: `{{ball.position.y:{form[1]}}}`"
+        found.error("syntax", f"'{form[0]}' would be drawn as it stands", node.span, help=help)
+        return None
+    if (sign := _SIGN.search(text)) is not None:
+        help = f"values stand in braces alone: write `{sign[1]}`"
+        found.error("syntax", "a '$' before braces would be drawn as it stands", node.span, help=help)
+        return None
     ok = ok and not _twice(pieces, node.span, found)
     return Text(tuple(one for one in pieces if one)) if ok else None
 
