@@ -24,7 +24,7 @@ TRUE = ("true", "yes", "on")
 
 
 def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
-    """The help for a field without its colon, or for a value in place of all fields that suits one of them."""
+    """The help for a field without its colon, or for a value that suits one field of a record."""
     required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
     if not isinstance(node, Scalar):
         found = required if len(required) == 1 else list(_taking(reader, node, cls))
@@ -44,7 +44,7 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
 
 
 def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
-    """The help for several numbers where another count is wanted: the one other field that takes them."""
+    """The help for a wrong count of numbers: the one other field that takes them."""
     found = {name: mark for name, mark in _fitting(reader, node, others).items() if mark.shape}
     if len(found) > 1:
         own = [mark.dimension for mark in quantities(info)]
@@ -74,7 +74,7 @@ def _inside(node: Node) -> str:
 
 
 def _taking(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
-    """The fields that take a list, of values alone."""
+    """The names of fields that accept a list of values."""
     nothing = Diagnostics()
     names = replace(reader.names, found=nothing)
     trial = replace(reader, found=nothing, names=names, refer=lambda node, mark, name: None)
@@ -87,14 +87,14 @@ def _taking(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
 
 
 def _paints(reader: Any, node: Node, cls: type[BaseModel]) -> list[str]:
-    """The color, where a value can be one."""
+    """The field `color`, if there is one and the value is a color."""
     nothing = Diagnostics()
     fits = paint.read_color(node, replace(reader.names, found=nothing), nothing) is not None
     return ["color"] if fits and "color" in cls.model_fields else []
 
 
 def _fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
-    """The fields of quantities that take a value."""
+    """The fields of quantities that accept a value."""
     nothing = Diagnostics()
     names = replace(reader.names, found=nothing)
     marked = [(name, mark) for name, info in fields.items() for mark in quantities(info)]
@@ -102,7 +102,7 @@ def _fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> dict[str, ki
 
 
 def _formulas(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
-    """The fields of formulas that take a value."""
+    """The names of formula fields that accept a value."""
     nothing = Diagnostics()
     trial = replace(reader, found=nothing, names=replace(reader.names, found=nothing))
     for name, info in cls.model_fields.items():

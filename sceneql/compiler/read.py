@@ -1,4 +1,4 @@
-"""Nodes to field values, by the field's own type: a word's annotation defines what a script may write.
+"""Reading of field values by the field's own type: a word's annotations define what a script may write.
 
 One reader for every word: quantities, colors, rotations, keyframes, formulas, references, choices, records and lists of
 these. An error is reported where it stands, and reading goes on, so that all errors come in one run.
@@ -42,7 +42,7 @@ FALSE = ("false", "no", "off")
 
 @dataclass(frozen=True, slots=True)
 class Reader:
-    """Reads the fields of one entry. ``refer`` resolves a reference (or an entry written in place) to a part's name."""
+    """Reads the fields of one entry. ``refer`` resolves a reference, or an entry written in place, to a part."""
 
     names: Names
     found: Diagnostics
@@ -55,11 +55,11 @@ class Reader:
     files: list[str]
     """Paths of the files that fields have named so far; it grows."""
     symbols: tuple[str, ...] = ()
-    """Symbols that the formulas of this word may use besides defines."""
+    """Free symbols of formulas of this word (Kind.formula_symbols)."""
     solved: Dimension | None = None
     """Dimension of the field that this word solves (Kind.formula_dimension)."""
     copies: Callable[[Scalar, kinds.Refers], list[str]] = lambda node, mark: []
-    """The parts that a name of many stands for (a repeated part, an instance of a template); none for other names."""
+    """Resolves a collective name (of a repeated part, or a template's instance) to its parts; empty for other names."""
 
     def record(self, node: Node | None, cls: type[BaseModel], span: Span, title: str) -> Any:
         """An instance of a record or kind from a mapping (None: no fields are written). Raises Unreadable."""
@@ -202,7 +202,7 @@ class Reader:
         symbols, wanted = self.symbols if mark.names is None else mark.names, mark.dimension
         if mark.of_field and wanted is not None:
             wanted = None if self.solved is None else self.solved * wanted
-        # A plain field stands for anything, a number of rabbits or of moles: so do the defines in its formulas.
+        # A plain field may stand for any quantity, such as rabbits or moles; so may the defines in its formulas.
         of_any = mark.of_field and self.solved is not None and self.solved.plain
         by_of = mark.of_field and self.solved is not None and not self.solved.plain
         of = Wanted(wanted, of_any, mark.at_start, by_of)
@@ -275,7 +275,7 @@ class Reader:
         return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
 
     def _copies(self, node: Node, annotation: Any) -> list[Node]:
-        """In a list of parts the name of a repeated part, or of an instance, means each part that it stands for."""
+        """The nodes that an item of a list stands for: one for each part of a collective name, else the item itself."""
         marks = [mark for mark in unwrap(annotation)[1] if isinstance(mark, kinds.Refers)]
         if not marks or not isinstance(node, Scalar):
             return [node]
@@ -283,7 +283,7 @@ class Reader:
         return [Scalar(name, "text", False, node.source, node.start, node.end) for name in copies] or [node]
 
     def _spread(self, node: Scalar, arms: tuple[Any, ...], what: str) -> list[Any]:
-        """Values of a tuple that are written in one text: ``960 540`` for a pair of whole numbers."""
+        """The values of a tuple written in one text: ``960 540`` for a pair of whole numbers."""
         words = node.text.replace(",", " ").split()
         if len(words) != len(arms):
             raise self._miscounted(node, arms, what, len(words))

@@ -1,4 +1,4 @@
-"""The manual of words, from their classes (there is no second list), and of topics, from their pages."""
+"""The manual of words, made from their classes, and of topics, from their pages."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from sceneql.report.topics import page, topics
 def listing(catalogue: Catalogue) -> str:
     """All words by family, and the topics of the language, each with the first line of its manual.
 
-    Behind them stands what is wrong with words of a folder that cannot be used.
+    Errors in words of a folder that cannot be used follow.
     """
     lines: list[str] = []
     wrong: list[str] = []
@@ -39,7 +39,7 @@ def listing(catalogue: Catalogue) -> str:
 
 
 def manual(catalogue: Catalogue, word: str) -> str:
-    """The manual of a word (of every family that has it), of a topic, or of functions where it is one of these.
+    """The manual of a word (in every family that has it), of a topic, or of functions if it is one.
 
     Raises Unsuitable if there is none.
     """

@@ -17,6 +17,8 @@ ALONG = ((1.0, 0.1, 0.0), (0.0, 1.0, 0.12), (0.0, 0.1, 1.0))
 FLAT, EVEN = 0.2, 0.005
 """What is shallower along an axis than this part of its size along both others is seen along it, nearly, so that bodies
 and their ground are told apart; what is EVEN is seen exactly so, and keeps its right angles."""
+LONG, ACROSS = 0.3, {0: ALONG[2], 2: ALONG[0]}
+"""What is smaller along both other axes than this part of its length, and lies, is seen across: a swing on a spring."""
 HEADROOM = 0.86
 """Part of the height between the margins that is filled at most: pictures are wider than what stands in them."""
 
@@ -24,8 +26,8 @@ HEADROOM = 0.86
 class Auto(Camera):
     """A three-quarter view of all that is drawn, from the right front and above, that holds still over the whole film.
 
-    A scene that is flat along an axis is seen along it. The few of many things that leave for good are let go. Panels
-    of variants share one view, and overlays are left room.
+    A scene that is flat along an axis is seen along it, one that is long and lies across. The few of many things that
+    leave for good are let go. Panels of variants share one view, and overlays are left room.
     """
 
     yields: ClassVar[bool] = True
@@ -51,4 +53,7 @@ def _towards(points: Floats) -> tuple[float, float, float]:
     if sides[thin] < EVEN * min(others):
         x, y, z = (float(k == thin) for k in range(3))
         return x, y, z
-    return ALONG[thin] if sides[thin] < FLAT * min(others) else THREE_QUARTER
+    if sides[thin] < FLAT * min(others):
+        return ALONG[thin]
+    long = int(sides.argmax())
+    return ACROSS.get(long, THREE_QUARTER) if min(others) < LONG * sides[long] else THREE_QUARTER

@@ -28,6 +28,10 @@ class Attractor(Force):
     exponent: FixedScalar = field("Power of the distance that it falls with.", "2", at_least=-10, at_most=10)
     softening: FixedLength = field("Length below which the pull no longer grows.", "0 m", at_least=0)
 
+    def darkens(self) -> bool:
+        """The gravity of a body; another power is none."""
+        return self.exponent == 2
+
     def at_a_distance(self) -> bool:
         """Smooth wherever no two masses meet."""
         return True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from sceneql.kinds import Light, Moment, Scalar, field
 
@@ -27,12 +27,18 @@ direction, width and height [deg], radiance. Their light on matte surfaces is a 
 BACKGROUND, BELOW, SWEEP = (0.325, 0.345, 0.37), (0.655, 0.655, 0.655), 0.16
 """A cove: what is seen straight ahead, and what below, as bright as the floor of a plane without material
 (words/objects/plane.py); sine of the angle below which the floor bends up, so that no horizon shows."""
+DARK, DARK_BELOW = (0.006, 0.007, 0.012), (0.016, 0.018, 0.026)
+DARK_DOME = ((0.30, 0.31, 0.34), (0.10, 0.105, 0.12), (0.04, 0.042, 0.05))
+"""The same, and the dome, of a dark room: bodies are as bright to the key light, darker away from it, and mirror
+boxes before the dark."""
 
 
 class Studio(Light):
     """A picture of a product: a soft key light from the upper left front, a bright dome, a light floor, gray behind.
 
     Metal, glass and gloss mirror soft boxes, that stand outside of the picture; they change nothing on matte surfaces.
+    Without ground, things that shine by themselves, and bodies that pull at each other from afar, stand before the dark
+    where no light is written.
     """
 
     stages: ClassVar[bool] = True
@@ -40,6 +46,7 @@ class Studio(Light):
     key: Scalar = field("Factor of the key light.", "1", at_least=0)
     fill: Scalar = field("Factor of the dome's light.", "1", at_least=0)
     boxes: Scalar = field("Factor of the soft boxes that metal and glass mirror.", "1", at_least=0)
+    backdrop: Literal["light", "dark"] = field("What is behind all.", "light")
 
     def lower(self, moment: Moment) -> Iterable[frame.LightSource]:
         """The key light and the dome."""
@@ -48,11 +55,13 @@ class Studio(Light):
         for power, (x, y, z), angle in ((KEY, KEY_FROM, KEY_ANGLE), (RIM, RIM_FROM, RIM_ANGLE)):
             far, given = math.hypot(x, y, z), math.pi * power * float(moment.at(self.key))
             yield frame.Sun((x / far, y / far, z / far), (given, 0.99 * given, 0.97 * given), angle)
+        dark = self.backdrop == "dark"
+        ahead, below, dome = (DARK, DARK_BELOW, DARK_DOME) if dark else (BACKGROUND, BELOW, DOME)
         fill = float(moment.at(self.fill))
-        zenith, horizon, ground = ((fill * r, fill * g, fill * b) for r, g, b in DOME)
+        zenith, horizon, ground = ((fill * r, fill * g, fill * b) for r, g, b in dome)
         shine = float(moment.at(self.boxes))
         boxes = tuple(
             frame.SoftBox(toward, (math.radians(wide), math.radians(high)), (shine * radiance,) * 3)
             for toward, (wide, high), radiance in BOXES
         )
-        yield frame.Sky(zenith, horizon, ground, visible=BACKGROUND, below=BELOW, fade=SWEEP, boxes=boxes)
+        yield frame.Sky(zenith, horizon, ground, visible=ahead, below=below, fade=SWEEP, boxes=boxes)

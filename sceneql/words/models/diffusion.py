@@ -223,6 +223,10 @@ class Diffusion(SpreadingMedium):
         """The field."""
         return Value(Link(name, _names(self.of)[0], Type((None,), UNITS[self.of])))
 
+    def called(self, output: str) -> str:
+        """Its field by what spreads."""
+        return _names(self.of)[0] if output in _names(self.of) else output
+
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells of the domain,), (cells, 3) or float."""
         what = "field" if output in _names(self.of) else output

@@ -53,10 +53,18 @@ class Galaxy(Model):
     softening: kinds.FixedLength = field("That of the force.", "0 m", at_least=0)
     dispersion: kinds.FixedScalar = field("Random part of the velocities.", "0", at_least=0, at_most=1)
     seed: int = field("Seed of the stars.", 0, at_least=0, at_most=WORDS - 1)
-    size: kinds.FixedLength = field("Radius of a star in the picture.", "5 mm", above=0)
-    core: kinds.FixedLength = field("Radius of the center in the picture.", "30 mm", above=0)
+    size: kinds.FixedLength | None = field(
+        "Radius of a star in the picture; by default a hundredth of the disk's.", None, above=0
+    )
+    core: kinds.FixedLength | None = field(
+        "Radius of the center in the picture; by default three times a star's.", None, above=0
+    )
     material: kinds.MaterialRef | None = field("How the stars look.", None)
     color: kinds.Color | None = field("Color in place of the material's.", None)
+
+    def darkens(self) -> bool:
+        """Stars."""
+        return True
 
     def static_masses(self) -> Mapping[str, StaticMass]:
         """A star."""
@@ -80,6 +88,7 @@ class Galaxy(Model):
         shaken = np.stack([_normal(chance(4 + 2 * c), chance(5 + 2 * c)) for c in range(3)], axis=1)
         places = r[:, None] * outward + height[:, None] * up
         velocities = speed[:, None] * (onward + self.dispersion * shaken)
+        star = 0.01 * self.radius if self.size is None else self.size
         center = np.zeros((1, 3))
         m = np.concatenate([[self.heart], np.full(n, self.disk / n)])
         velocities = np.concatenate([center, velocities])
@@ -90,7 +99,7 @@ class Galaxy(Model):
             positions=np.concatenate([center, places]) + self.position,
             velocities=velocities + self.velocity,
             masses=m,
-            radii=np.concatenate([[self.core], np.full(n, self.size)]),
+            radii=np.concatenate([[3.0 * star if self.core is None else self.core], np.full(n, star)]),
             fixed=np.zeros(n + 1, dtype=bool),
         )
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from sceneql import kinds
 from sceneql.failure import RunFailure
 from sceneql.grids.maps.map_names import ColorMap
-from sceneql.grids.maps.seen import Bounds, Field, Levels, seen, swings, unfit
+from sceneql.grids.maps.seen import Bounds, Field, Levels, called, seen, swings, unfit
 from sceneql.kinds import Moment, Object, Problem, Quantity, Ref, Value, field
 from sceneql.quantities.dimension import LENGTH, PLAIN
 from sceneql.quantities.expression import Call, Type
@@ -121,7 +121,9 @@ class FieldMap(Object):
         from sceneql.grids.maps.key import ColorKey
 
         dimension = self.of.expr.type.dimension or PLAIN
-        return ColorKey(self._map(moment) or "gray", *self.scale(moment), dimension, self._levels(moment))
+        return ColorKey(
+            self._map(moment) or "gray", *self.scale(moment), dimension, self._levels(moment), called(self.of, moment)
+        )
 
     def _map(self, moment: Moment) -> str | None:
         """The name of its map of colors; None: its material's color alone."""

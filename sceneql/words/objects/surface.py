@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.formulas.texture import Texture
 from sceneql.grids.maps.map_names import ColorMap
-from sceneql.grids.maps.seen import Bounds, Field, unfit
+from sceneql.grids.maps.seen import Bounds, Field, called, unfit
 from sceneql.kinds import Length, ModelRef, Moment, Object, Problem, Value, field
 from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.expression import Call, Type
@@ -85,7 +85,8 @@ class Surface(Object):
 
         if self.shows is None:
             raise ValueError("this surface has one color; say what it `shows`")
-        return ColorKey(self.colors, *self.scale(moment), self.shows.expr.type.dimension or PLAIN, ())
+        dimension, name = self.shows.expr.type.dimension or PLAIN, called(self.shows, moment)
+        return ColorKey(self.colors, *self.scale(moment), dimension, (), name)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """A smooth mesh. Raises ValueError for a model that has no surface, or for numbers that are none of it."""

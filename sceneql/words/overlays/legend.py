@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 LONG = 0.62
 """Length of the bar in parts of the picture's height."""
+WIDEST = 0.2
+"""Width of a title that the script does not write, in parts of the picture's, from which on there is none."""
 SIDES = ("right", "left")
 
 
@@ -30,7 +32,9 @@ class Legend(Overlay):
 
     of: ObjectRef = field("What shows the field in colors: a `field_map`.")
     unit: str | None = field("The unit of the numbers: `mg/L`; by default that of SI.", None)
-    title: str = field("What is said above the bar; the unit follows.", "")
+    title: str | None = field(
+        "What is said above the bar, by default the field's name where there is room; the unit follows.", None
+    )
     place: Literal["left", "right"] | None = field(
         "The side of the picture where it stands; by default right, or where what is shown leaves more room.", None
     )
@@ -57,7 +61,8 @@ class Legend(Overlay):
         from sceneql.pictures.layout import page
         from sceneql.pictures.lettering import Letterer
 
-        return self._told(moment).box(place, Letterer(page(size), self.text, scale=scale))
+        letters = Letterer(page(size), self.text, scale=scale)
+        return self._told(moment, letters).box(place, letters)
 
     def draw(
         self,
@@ -71,13 +76,13 @@ class Legend(Overlay):
         from sceneql.pictures.lettering import DARK, LIGHT, Letterer
 
         letters = Letterer(pixels, self.text, DARK if self.dark else LIGHT, scale)
-        told = self._told(moment)
+        told = self._told(moment, letters)
         box = told.box(self.place or SIDES[0], letters)
         letters.panel(box, self.panel)
         told.draw(letters, box, develop)
         letters.done()
 
-    def _told(self, moment: Moment) -> _Bar:
+    def _told(self, moment: Moment, letters: Letterer) -> _Bar:
         """What it shows now. Raises ValueError for what shows no field, and for a unit of another dimension."""
         from sceneql.kinds.texts import shown_unit
         from sceneql.pictures.lettering import marked_numbers
@@ -93,7 +98,9 @@ class Legend(Overlay):
             raise ValueError(f"the field is {describe(key.dimension)}, which {text} is no unit of")
         low, high = (key.low - offset) / scale, (key.high - offset) / scale
         ticks = [(value, (value - low) / (high - low)) for value in marked_numbers(low, high, self.numbers)]
-        lines = [line for line in (self.title, "" if text == "1" else shown_unit(text)) if line]
+        fits = letters.extent(key.name)[0] <= WIDEST * letters.width
+        title = self.title if self.title is not None else key.name if fits else ""
+        lines = [line for line in (title, "" if text == "1" else shown_unit(text)) if line]
         marks = [(mark - key.low) / (key.high - key.low) for mark in key.marks]
         return _Bar(key, lines, ticks, [mark for mark in marks if 0 < mark < 1])
 
