@@ -1,4 +1,4 @@
-"""Nodes to keyframes: ``{keys: {time: value, ...}, curve: smooth, cycle: 2 s, delay: 1 s}``."""
+"""Reading of keyframes: ``{keys: {time: value, ...}, curve: smooth, cycle: 2 s, delay: 1 s}``."""
 
 from __future__ import annotations
 
@@ -19,15 +19,18 @@ CURVES = ("step", "linear", "smooth", "cubic")
 KEY_FIELDS = ("value", "slope", "slope_in", "slope_out")
 
 Read = Callable[[Node], Expr | None]
-"""Reads the value, or the slope, of one key; None after reporting."""
+"""Function that reads the value or the slope of one key; None after reporting an error."""
 ReadTime = Callable[[Node, str], Value | None]
-"""Reads a time that the messages call by the given name."""
+"""Function that reads a time, which messages call by the given name."""
 
 
 def read_keys(
     node: MappingNode, what: str, value: Read, slope: Read | None, time: ReadTime, type_: Type, found: Diagnostics
 ) -> Expr | None:
-    """Keyframes; ``value`` and ``slope`` read one key's, ``time`` a time. Key times are constant and increase."""
+    """The keyframe expression of a node; None after reporting errors. Key times must be constant and increase.
+
+    ``value`` and ``slope`` read those of one key, ``time`` a time.
+    """
     ok = True
     for key in node.entries:
         if key not in ("keys", "curve", "cycle", "delay"):

@@ -1,4 +1,4 @@
-"""Nodes to colors and rotations: fields whose grammar is more than a quantity's."""
+"""Reading of colors and rotations, whose grammar is more than a quantity's."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _HEX = re.compile(r"0[xX]([0-9a-fA-F]{6})")
 _DIGITS = re.compile(r"\d+\.?\d*|\.\d+")
 DARK = 16
-"""Numbers that are all up to this are no bytes, of which a color of these would be black to the eye."""
+"""A color whose numbers are all at most this is not taken as bytes: as such it would be nearly black."""
 BRIGHTER = "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
 ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
 UNTURNED = "`1 0 0 0` turns nothing, and `{about: z, angle: 30 deg}` by an angle"
@@ -60,14 +60,14 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
 
 
 def _is_name(text: str) -> bool:
-    """Whether a text stands for a color by a name, or by digits or a call as in CSS and other languages."""
+    """Whether a text gives a color by name, by digits, or by a call as in CSS and other languages."""
     called = text.startswith(("rgb(", "rgba(", "hsl(", "hsla("))
     words = all(word.isalpha() for word in text.split())
     return called or words or text.isidentifier() or text.startswith("#") or _HEX.fullmatch(text) is not None
 
 
 def _meant(text: str) -> str:
-    """The help for what is no color."""
+    """The help for a text that is no color."""
     *_, last = text.split() or [""]
     if (digits := _HEX.fullmatch(text)) is not None:
         return f'write `"#{digits[1].lower()}"`'

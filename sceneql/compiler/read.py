@@ -1,4 +1,4 @@
-"""Nodes to field values, by the field's own type: a word's annotation defines what a script may write.
+"""Reading of field values by the field's own type: a word's annotations define what a script may write.
 
 One reader for every word: quantities, colors, rotations, keyframes, formulas, references, choices, records and lists of
 these. An error is reported where it stands, and reading goes on, so that all errors come in one run.
@@ -39,12 +39,12 @@ TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
 
 
 class Unreadable(Exception):
-    """The value was reported as wrong; the reader of the value around it goes on with the next."""
+    """A value was wrong and has been reported; the reader of the surrounding value goes on with the next."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reader:
-    """Reads the fields of one entry. ``refer`` resolves a reference (or an entry written in place) to a part's name."""
+    """Reads the fields of one entry. ``refer`` resolves a reference, or an entry written in place, to a part."""
 
     names: Names
     found: Diagnostics
@@ -57,11 +57,11 @@ class Reader:
     files: list[str]
     """Paths of the files that fields have named so far; it grows."""
     symbols: tuple[str, ...] = ()
-    """Symbols that the formulas of this word may use besides defines."""
+    """Free symbols of formulas of this word (Kind.formula_symbols)."""
     solved: Dimension | None = None
     """Dimension of the field that this word solves (Kind.formula_dimension)."""
     copies: Callable[[Scalar, kinds.Refers], list[str]] = lambda node, mark: []
-    """The parts that a name of many stands for (a repeated part, an instance of a template); none for other names."""
+    """Resolves a collective name (of a repeated part, or a template's instance) to its parts; empty for other names."""
 
     def record(self, node: Node | None, cls: type[BaseModel], span: Span, title: str) -> Any:
         """An instance of a record or kind from a mapping (None: no fields are written). Raises Unreadable."""
@@ -114,7 +114,7 @@ class Reader:
         return self._some(validated(cls, got, node, span, self.found))
 
     def _meant(self, node: Node, cls: type[BaseModel]) -> str | None:
-        """The help for a field without its colon, or for a quantity in place of all fields that suits one of them."""
+        """The help for a field without its colon, or for a single quantity that suits one field of a record."""
         required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
         if not isinstance(node, Scalar):
             return f"write `{{{required[0]}: {node.span.text}}}`" if len(required) == 1 else None
@@ -132,13 +132,13 @@ class Reader:
         return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
 
     def _paints(self, node: Node, cls: type[BaseModel]) -> list[str]:
-        """The color, where a value can be one."""
+        """The field `color`, if there is one and the value is a color."""
         nothing = Diagnostics()
         fits = paint.read_color(node, replace(self.names, found=nothing), nothing) is not None
         return ["color"] if fits and "color" in cls.model_fields else []
 
     def _elsewhere(self, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
-        """The help for several numbers where another count is wanted: the one other field that takes them."""
+        """The help for a wrong count of numbers: the one other field that takes them."""
         found = {name: mark for name, mark in self._fitting(node, others).items() if mark.shape}
         if len(found) > 1:
             own = [mark.dimension for mark in quantities(info)]
@@ -148,14 +148,14 @@ class Reader:
         return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
 
     def _fitting(self, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
-        """The fields of quantities that take a value."""
+        """The fields of quantities that accept a value."""
         nothing = Diagnostics()
         names = replace(self.names, found=nothing)
         marked = [(name, mark) for name, info in fields.items() for mark in quantities(info)]
         return {name: mark for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None}
 
     def _formulas(self, node: Node, cls: type[BaseModel]) -> Iterator[str]:
-        """The fields of formulas that take a value."""
+        """The names of formula fields that accept a value."""
         nothing = Diagnostics()
         trial = replace(self, found=nothing, names=replace(self.names, found=nothing))
         for name, info in cls.model_fields.items():
@@ -253,7 +253,7 @@ class Reader:
         symbols, wanted = self.symbols if mark.names is None else mark.names, mark.dimension
         if mark.of_field and wanted is not None:
             wanted = None if self.solved is None else self.solved * wanted
-        # A plain field stands for anything, a number of rabbits or of moles: so do the defines in its formulas.
+        # A plain field may stand for any quantity, such as rabbits or moles; so may the defines in its formulas.
         of_any = mark.of_field and self.solved is not None and self.solved.plain
         by_of = mark.of_field and self.solved is not None and not self.solved.plain
         of = Wanted(wanted, of_any, mark.at_start, by_of)
@@ -324,7 +324,7 @@ class Reader:
         return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
 
     def _copies(self, node: Node, annotation: Any) -> list[Node]:
-        """In a list of parts the name of a repeated part, or of an instance, means each part that it stands for."""
+        """The nodes that an item of a list stands for: one for each part of a collective name, else the item itself."""
         marks = [mark for mark in unwrap(annotation)[1] if isinstance(mark, kinds.Refers)]
         if not marks or not isinstance(node, Scalar):
             return [node]
@@ -332,7 +332,7 @@ class Reader:
         return [Scalar(name, "text", False, node.source, node.start, node.end) for name in copies] or [node]
 
     def _spread(self, node: Scalar, arms: tuple[Any, ...], what: str) -> list[Any]:
-        """Values of a tuple that are written in one text: ``960 540`` for a pair of whole numbers."""
+        """The values of a tuple written in one text: ``960 540`` for a pair of whole numbers."""
         words = node.text.replace(",", " ").split()
         if len(words) != len(arms):
             raise self._miscounted(node, arms, what, len(words))

@@ -1,4 +1,4 @@
-"""Texts with values in braces, ``E = {cage.energy:.2f J}``; two braces stand for one."""
+"""Reading of texts with values in braces, ``E = {cage.energy:.2f J}``; doubled braces are literal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ PIECE = re.compile(r"\{\{|\}\}|\{(?P<inside>[^{}]*)\}|(?P<odd>[{}])")
 
 
 def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Diagnostics) -> Text | None:
-    """The text of a scalar, or None after reporting what is wrong with it."""
+    """The text of a scalar; None after reporting errors."""
     if not isinstance(node, Scalar):
         found.error("wrong-shape", f"{what} is a text", node.span)
         return None
@@ -50,7 +50,10 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
 def _told(
     node: Scalar, inside: str, start: int | None, mark: Interpolated, names: Names, found: Diagnostics
 ) -> TextValue | None:
-    """The value between two braces; ``start`` is its offset in the source, None where that is not known."""
+    """The value between two braces; None after reporting errors.
+
+    ``start``: its offset in the source; None where that is not known.
+    """
     expression, _, rest = inside.partition(":")
     begin, end = node.start, node.end
     if start is not None:

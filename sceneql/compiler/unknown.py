@@ -1,4 +1,4 @@
-"""Words that a family, and fields that a word does not have: what was meant, or what is written in their place."""
+"""Help for unknown words and fields: what was meant, or what is written in their place."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from sceneql.quantities.instead import instead
 from sceneql.quantities.other_words import OURS
 
 MANY = 6
-"""Words up to which all that have a field are told."""
+"""Largest number of words of which all that have a field are listed."""
 
 _UNPARTED = re.compile(r"(\w+)(?:(:)| )(.*)")
 
@@ -30,9 +30,9 @@ def report_unknown(
     said_by: Naming[str, str] | None = None,
     family: str = "",
 ) -> bool:
-    """Report the fields of a mapping that are not among the known ones; True if there are none.
+    """Report the fields of a mapping that are not among the known ones; returns whether there are none.
 
-    ``said_by``: what says it instead, for names that are likely to be tried; ``family``: that of the word, if any.
+    ``said_by``: help texts for names that are likely to be tried; ``family``: that of the word, if any.
     """
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
@@ -49,13 +49,13 @@ def report_unknown(
 
 
 def meant_field(name: str, known: Collection[str]) -> str | None:
-    """The field meant by an unknown name: its first word, if colon or space is missing there, or the nearest one."""
+    """The field most likely meant by an unknown name: its first word, if a colon or space is missing; the nearest."""
     written = _UNPARTED.fullmatch(name)
     return written[1] if written is not None and written[1] in known else nearest(name, known)
 
 
 def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
-    """The help for an entry whose word its family does not have."""
+    """The help for an entry with a word that is not in its family."""
     words, fields = catalogue.choices(family), entry.fields
     inner = next(iter(fields.entries)) if isinstance(fields, Mapping) and len(fields.entries) == 1 else ""
     if fields is not None and entry.name == entry.word and catalogue.load(family, inner) is not None:
@@ -75,7 +75,7 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
 
 
 def mover_of(name: str, entries: Naming[str, Entry], family_of: Naming[str, str]) -> str:
-    """The model that moves an object, or the body of it that does, ``stones.first``; empty where none does."""
+    """The model that moves an object, or its body that does, as ``stones.first``; empty where none does."""
     for part, entry in entries.items():
         if family_of[part] != "models" or not isinstance(entry.fields, Mapping):
             continue
@@ -90,7 +90,7 @@ def mover_of(name: str, entries: Naming[str, Entry], family_of: Naming[str, str]
 
 
 def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
-    """The help for fields without the word around them."""
+    """The help for fields that stand without a word around them."""
     having, text = _having(list(node.entries), family, catalogue), node.span.text
     for name, value in () if having else node.entries.items():
         having = _having([name], family, catalogue)
@@ -103,19 +103,19 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
 
 
 def those_of(family: str, names: Sequence[str]) -> str:
-    """The help where a part of another family is named."""
+    """The help where a part of a wrong family is named."""
     return f"those of {family} are {', '.join(names[:8])}" if names else f"write one under `{family}:`"
 
 
 def beside_world(place: str) -> str:
-    """The help for a place where a tie names a body."""
+    """The help where a tie has a position in place of a body."""
     plain = " ".join(place.strip("[]").replace(",", " ").split())
     plain += "" if plain[-1:].isalpha() else " m"
     return f"write `world`, and the place in another field of the tie, `to: {plain}` of a rod, `at` of others"
 
 
 def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, catalogue: Catalogue) -> str | None:
-    """The help for a name that no part of the families of ``mark`` has; ``choices``: the names of those there are."""
+    """The help for a name of no part of the mark's families; ``choices``: the names of their parts."""
     if mark.bodies and name[:1] in "-[0123456789":
         return f"a place is no body: {beside_world(name)}"
     if "models" in (mark.family, mark.also) and (model := names.model_of(name)):
@@ -138,7 +138,7 @@ def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, ca
 
 
 def _having(fields: Collection[str], family: str, catalogue: Catalogue) -> list[str]:
-    """The words of a family that have these fields, that with the fewest first."""
+    """The words of a family with all these fields, those with the fewest fields first."""
     found: list[tuple[int, str]] = []
     for word in catalogue.choices(family):
         cls = catalogue.load(family, word)

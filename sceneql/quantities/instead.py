@@ -1,4 +1,7 @@
-"""What a script writes in place of words of other programs that no name of the language means: for messages alone."""
+"""Sentences that say what to write instead of words of other programs without a counterpart in the language.
+
+For messages alone.
+"""
 
 from __future__ import annotations
 
@@ -228,7 +231,7 @@ _SENTENCES = (
     ),
     ("entry", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
 )
-"""What a word is taken for, the words, and the sentence."""
+"""(what the words were taken for, the words, the sentence)."""
 
 INSTEAD = {(what, word): text for kinds, words, text in _SENTENCES for what in kinds.split() for word in words.split()}
 """The sentence of what to write in place of a called `function`, a `sign` or `name` of a formula or `behind` a number
@@ -239,12 +242,12 @@ _TON = re.compile(r"\d\s*[^\s()\[\],]*[*/]t(?!\w)")
 
 
 def time_meant(text: str) -> str | None:
-    """The help for a quantity in which ``t`` is read as a unit, though most likely the time was meant: ``2 m/s*t``."""
+    """The help for a quantity in which ``t`` is read as a tonne though most likely the time was meant: ``2 m/s*t``."""
     return "the time is `time`: `t` behind a unit is 1000 kg" if _TON.search(text) is not None else None
 
 
 def instead(what: str, word: str) -> str | None:
-    """The help for a word of another program that is taken for ``what`` (see `INSTEAD`), if it is known."""
+    """The help for a word of another program that is taken for ``what`` (a key of `INSTEAD`), if known."""
     return INSTEAD.get((what, word)) or INSTEAD.get((what, word.lower()))
 
 

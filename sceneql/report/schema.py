@@ -129,7 +129,7 @@ def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
 
 
 def _copied(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
-    """A value of a map or list: a group of fields there may be repeated."""
+    """The schema of a value of a map or list, where a group of fields may be repeated."""
     rule = _type(annotation, catalogue)
     if "properties" not in rule:
         return rule

@@ -1,4 +1,4 @@
-"""Names of parts of the boundary that an object has not, in which a field spreads: refused before anything runs."""
+"""Check of boundary names: a field's conditions must name parts of the boundary of the object in which it spreads."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ HELP = "a part of it says where it is: `near: 0 0.3 m` with `within: 6 cm`, or `
 
 
 def report_boundary_names(script: Script, tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report each; those of a box are reported by their models."""
+    """Report each unknown name; those of a box are reported by their models."""
     for task in tasks.values():
         kind: Any = task.kind
         domain = getattr(kind, "domain", None)
@@ -40,7 +40,7 @@ def report_boundary_names(script: Script, tasks: Mapping[str, Task], found: Diag
 
 
 def _key(fields: Node, name: str) -> Any:
-    """Where a name stands below a key `boundary`; None where it does not."""
+    """The span of a name below a key `boundary`; None where there is none."""
     if not isinstance(fields, MappingNode):
         return None
     inside = fields.entries.get("boundary")

@@ -1,4 +1,4 @@
-"""Keys whose times go far beyond the clock: a warning, since they are seconds, and most likely frames were meant."""
+"""Warnings of keyframes far beyond the clock: their times are seconds, and most likely frames were meant."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Expr, Keys, Number, each_once
 
 FEWEST = 10.0
-"""Times that the clock lasts, from which on a second key is far beyond it."""
+"""Time of the second key, relative to the clock's end, from which on it is far beyond."""
 
 
 def warn_of_keys(tasks: Mapping[str, Task], clock: Clock, found: Diagnostics) -> None:
-    """Warn of keyframes of which all but the first key, whole numbers without unit, are far beyond the clock's end."""
+    """Warn of keyframes whose second time is a whole number without unit far beyond the clock's end."""
     known: set[int] = set()
     for task in tasks.values():
         for value in values_of(task.kind):
