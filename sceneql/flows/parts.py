@@ -96,7 +96,7 @@ class Side(Record):
 
     @property
     def span(self) -> Span | None:
-        """Its place in the script, known from its formulas; None without any."""
+        """Place of the side in the script, known from its formulas; None without any."""
         return next((one.span for one in (self.velocity, self.where) if one is not None), None)
 
 

@@ -41,7 +41,7 @@ def grid_or_general(solver: Solver, linear: str, island: IslandFacts) -> Methods
 
 
 def _on_grid(general: Stepper, linear: str, grid: Grid) -> Stepper:
-    """The same method, with stages solved by the grid's linear solvers."""
+    """Stepper of the method ``general`` with stages solved by the grid's linear solvers."""
     from sceneql.grids.prepare_stages import likely_kernels
 
     dense = None if general.control.adaptive else f"{KERNELS}:linear"

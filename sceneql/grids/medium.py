@@ -101,7 +101,7 @@ class Between(Protocol):
 
     @property
     def what(self) -> str:
-        """What has values: cells, nodes."""
+        """Name of the places with values: `cells` or `nodes`."""
 
     @property
     def count(self) -> int:
@@ -165,7 +165,7 @@ class Part(Record):
 
     @property
     def span(self) -> Span | None:
-        """Its place in the script, known from its formulas; None without any."""
+        """Place of the part in the script, known from its formulas; None without any."""
         outside = None if self.robin is None else self.robin.outside
         formulas = (self.value, self.flux, self.where, outside)
         return next((one.span for one in formulas if one is not None), None)
@@ -264,7 +264,7 @@ class Medium(Model):
         raise NotImplementedError
 
     def probed(self) -> Iterable[Probed]:
-        """Its probes in an object's domain; they may be outside by a cell, since cut cells have values."""
+        """Probes in an object's domain; they may lie outside by a cell, since cut cells have values."""
         if self.domain is not None:
             for name, place in self.probes.items():
                 yield Probed(("probes", name), place, self.domain, self.cell)

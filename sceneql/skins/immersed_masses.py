@@ -52,9 +52,9 @@ def immerse_masses(flow: Flow, bodies: Bodies, peskin: bool, assembly: Assembly)
 
 
 def fastest(flow: Flow, bodies: Bodies, ints: Sequence[int], assembly: Assembly) -> float:
-    """Bound of the rate at which springs swing or damp masses in the flow [1/s].
+    """Largest rate [1/s] at which springs swing or damp masses, in the flow as if its fluid were compressible.
 
-    Power iteration (von Mises & Pollaczek-Geiringer 1929) without the pressure, which makes no mode faster.
+    Power iteration (von Mises & Pollaczek-Geiringer 1929). The pressure, left out here, makes no mode faster.
     """
     from sceneql.skins.swing_kernels import give_way
 

@@ -102,7 +102,7 @@ class Part(Protocol):
 
     @property
     def span(self) -> Span | None:
-        """Its line in the script."""
+        """Line of the part in the script."""
 
 
 Said = TypeVar("Said", bound=Part)

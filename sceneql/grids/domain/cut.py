@@ -40,7 +40,7 @@ larger constant would dominate the maximum error."""
 NEAREST = 0.2
 """Least distance of a cell's center from the boundary used in fluxes, relative to the cell's size."""
 NEAREST_HELD = 0.05
-"""The same where the boundary's value is given (Dirichlet)."""
+"""Value of NEAREST for a boundary with a given value (Dirichlet)."""
 
 
 class Level(Protocol):

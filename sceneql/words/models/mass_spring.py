@@ -319,8 +319,8 @@ class MassSpring(SpringModel):
         return f"'{spring.name}'" if spring.name else f"'{spring.between[0]}'-'{spring.between[1]}'"
 
     def _rows(self, weights: Sequence[float]) -> list[dict[int, float]]:
-        """For each spring, the sums over its ends of weight |cos(angle between both)|/mass, by number of each spring
-        there."""
+        """For each spring a row: by number of a spring that shares an end with it, the sum over shared ends of the
+        weight times |cos(angle between them)|/mass."""
         masses = self.masses or {}
         inverse = {name: one.inverse for name, one in self.static_masses().items()}
         directions: list[tuple[float, ...]] = []

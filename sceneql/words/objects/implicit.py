@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import cos, inf, isfinite, pi, sin, sqrt
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -31,6 +31,11 @@ ROUNDING = 1e-9
 
 class Within(Record):
     """Where the formula is looked at: a ball about the origin or a box, in units of the formula."""
+
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("x", "y", "z", "min", "max", "low", "high", "from", "to", "size"),
+        "a box has a low and a high corner: write `bounds: {box: [-2 -2 -2, 2 2 2]}`",
+    )
 
     ball: FixedScalar | None = described("Radius of a ball about the origin.", None, above=0)
     box: tuple[Axis, Axis] | None = described("Low and high corner of a box.", None)
