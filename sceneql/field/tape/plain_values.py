@@ -1,4 +1,4 @@
-"""The field of a tape at few points by numpy alone, for what must not wait for numba, as `check`.
+"""Values of a tape's field by numpy alone, for callers that must not wait for numba, as the command `check`.
 
 Imports numpy. The last bits may differ from those of the kernels, and from machine to machine.
 """
@@ -41,7 +41,7 @@ UNARY: dict[int, Callable[..., Any]] = {
 
 
 def plain_values(tape: Tape, points: Floats) -> Floats | None:
-    """f at points (n, 3) [m]: (n,), NaN where it is undefined; None for a tape with parts, whose sums are kernels'."""
+    """Values (n,) of f at points (n, 3) [m], NaN where undefined; None for a tape with parts, which need kernels."""
     if len(tape.parts):
         return None
     registers: list[Floats] = []
