@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
     from sceneql.island.system import Structure, System
 
-RATE, CONTACTS, LOCAL, ACTS = (f"sceneql.march.driver_{part}kernels" for part in ("", "contacts_", "local_", "acts_"))
+RATE = "sceneql.march.driver_kernels"
+CONTACTS = "sceneql.march.driver_contacts_kernels"
+LOCAL = "sceneql.march.driver_local_kernels"
+ACTS = "sceneql.march.driver_acts_kernels"
 """The modules of its kernels: of rates, of contacts in mode exact, in mode local, and of what acts beside steps."""
 
 
