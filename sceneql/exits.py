@@ -1,7 +1,7 @@
-"""How a command ends: exceptions become messages and exit codes.
+"""Ends of commands: exceptions become messages and exit codes.
 
-Exit codes: 0 ok, 1 run failed, 2 usage, 3 script invalid, 4 gallery differs, 5 limit refused or out of memory,
-130 interrupted (Ctrl-C), 143 ended by SIGTERM, 129 by the end of its terminal (SIGHUP).
+Exit codes: 0 ok, 1 run failed, 2 usage, 3 script invalid, 4 gallery differs, 5 limit refused or out of memory, 130
+interrupted (Ctrl-C), 143 ended by SIGTERM, 129 by the end of its terminal (SIGHUP).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ OK, RUN_FAILED, USAGE, SCRIPT_INVALID, GALLERY_DIFFERS, LIMIT_REFUSED = 0, 1, 2,
 
 
 def stopped(error: BaseException | None) -> int:
-    """Say what a signal has left; returns the exit code of this signal."""
+    """Tell which files are kept after a signal; returns the signal's exit code."""
     code = interrupts.exit_code()
     interrupts.end_at_once(code)
     _say_kept(error)

@@ -1,7 +1,7 @@
-"""Files that are whole under their final name, or not there: written under a hidden name first, then renamed.
+"""Writing of files that are complete under their final name, or not there: written under a hidden name, then renamed.
 
-The hidden name is this process's own (machine, number of the process, chance), so that of several which make one file
-each makes a whole one, and the last to finish stays. What a process that was killed has left is removed by the next.
+The hidden name is unique to the process (machine, process number, random part), so that of several processes that make
+one file each makes a complete one, and the last to finish wins. Remains of a killed process are removed by the next.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from typing import BinaryIO
 from sceneql.failure import Unsuitable
 
 HIDDEN = re.compile(r"\..*\.part-([0-9a-f]{8})-([0-9]+)-[0-9a-f]{8}(\.[^.]*)?", re.DOTALL)
-"""Hidden names: machine, number of the process there, chance."""
+"""Pattern of hidden names: machine, process number on it, random part."""
 LONGEST_STEM = 80
-"""Bytes of a file's name that its hidden name tells."""
+"""Largest number of bytes of a file's name in its hidden name."""
 NUMBERS = r"\.[0-9]{4,}"
-"""What stands before the extension of files in a row."""
+"""Pattern before the extension of files in a numbered row."""
 ABANDONED = 7 * 86400.0
-"""Seconds after its last change when a hidden file of another machine is no longer taken to be in the making."""
+"""Age [s] at which a hidden file of another machine counts as abandoned."""
 _in_the_making: set[str] = set()
-"""Hidden names that this process has given out and not yet renamed or removed."""
+"""Hidden names that this process has handed out and not yet renamed or removed."""
 
 
 def beside(path: Path, mark: str) -> Path:
@@ -38,7 +38,7 @@ def beside(path: Path, mark: str) -> Path:
 
 
 def hidden(path: Path) -> Path:
-    """The hidden name, with the same extension, of a file in the making; end it by `finish` or `discard`."""
+    """A hidden name, with the same extension, for a file in the making; end it by `finish` or `discard`."""
     stem = os.fsencode(path.stem)[:LONGEST_STEM].decode(errors="ignore")
     name = f".{stem}.part-{_machine()}-{os.getpid()}-{os.urandom(4).hex()}{path.suffix}"
     _in_the_making.add(name)
@@ -46,7 +46,7 @@ def hidden(path: Path) -> Path:
 
 
 def finish(made: Path, path: Path) -> None:
-    """Give a file in the making its final name, when the disk has all of it. Raises OSError."""
+    """Give a file in the making its final name, after the disk has all of it. Raises OSError."""
     try:
         with made.open("rb") as stream:
             os.fsync(stream.fileno())
@@ -63,7 +63,7 @@ def discard(made: Path) -> None:
 
 @contextmanager
 def whole(path: Path) -> Iterator[BinaryIO]:
-    """A binary file that appears as ``path`` when the block ends without an exception, and else not at all."""
+    """Context manager: a binary file that appears as ``path`` if the block ends without exception, else not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     made = hidden(path)
     try:
@@ -76,7 +76,10 @@ def whole(path: Path) -> Iterator[BinaryIO]:
 
 
 def try_folder(folder: Path) -> None:
-    """Make a folder if it is not there, and remove what killed processes left in it; OSError where none can write."""
+    """Make a folder if it is missing, and remove remains of killed processes.
+
+    Raises OSError where nothing can be written.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     made = hidden(folder / "try")
     try:
@@ -87,7 +90,7 @@ def try_folder(folder: Path) -> None:
 
 
 def sweep(folder: Path) -> None:
-    """Remove hidden files whose process is no more; of other machines', that nobody can ask, those that are old."""
+    """Remove hidden files of ended processes, and old ones of other machines, whose processes are unknown."""
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
             with suppress(OSError):
@@ -116,7 +119,7 @@ def _lives(process: int) -> bool:
 
 @cache
 def _machine() -> str:
-    """Within what numbers of processes are unique: a machine, or a container on it."""
+    """Identifier of the machine, or container, within which process numbers are unique."""
     host, space = platform.node(), ""
     with suppress(OSError):
         space = os.readlink("/proc/self/ns/pid")
@@ -124,10 +127,10 @@ def _machine() -> str:
 
 
 def refuse_unwritable(path: Path, inputs: Iterable[str | Path] = (), marks: str = "") -> None:
-    """Raise Unsuitable where a file cannot be made as ``path``, or must not: it is one of the ``inputs``.
+    """Raise Unsuitable where a file cannot be made as ``path``, or must not, as it is one of the ``inputs``.
 
-    This holds for its partial name too, and for files of a row, which have ``marks`` (a regular expression) before the
-    extension, as `NUMBERS`.
+    This holds for its partial name too, and for files of a row, which have ``marks`` (a regular expression, as
+    `NUMBERS`) before the extension.
     """
     unseen = hidden(path)
     for name in (path, beside(path, "partial"), unseen):
@@ -154,7 +157,7 @@ def _entries(folder: Path) -> list[os.DirEntry[str]]:
 
 
 def _same(one: Path, other: Path) -> bool:
-    """Whether two paths lead to one file, by links of any kind."""
+    """Whether two paths are the same file, by links of any kind."""
     with suppress(OSError):
         return one.samefile(other)
     return False

@@ -1,4 +1,4 @@
-"""The simulation graph: what the compiler makes of a script and the run marches. Immutable values."""
+"""The simulation graph that the compiler makes of a script and the run marches. Immutable values."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """A part of the script: its word's class with checked fields."""
+    """A part of the script: an instance of its word's class, with checked fields."""
 
     name: str
     word: str
     kind: Kind
     span: Span | None
     needs: tuple[str, ...] = ()
-    """Names of the parts that it links or refers to."""
+    """Names of the parts to which it links or refers."""
     original: Kind | None = None
-    """The kind as the script has it, of a part that a model drives: where the model starts."""
+    """For a part that a model drives, the kind as the script has it: where the model starts. None for other parts."""
 
     @property
     def family(self) -> str:
@@ -62,14 +62,14 @@ class Variants:
 
     names: tuple[str, ...] = ()
     may_fail: bool = False
-    """Whether the script says that the run of this one may fail."""
+    """Whether the script says that the run of this variant may fail."""
     load: Callable[[str], SimulationGraph] | None = field(default=None, compare=False)
-    """The graph of a variant by its name."""
+    """Function that loads the graph of a variant by its name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """What a graph was made of."""
+    """The sources of a graph."""
 
     hash: str = ""
     """SHA-256 of the script's texts and patches."""
@@ -79,22 +79,22 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class SimulationGraph:
-    """Everything the run needs, and an account of the rest."""
+    """Everything the run needs, and the parts that were left out."""
 
     name: str
-    """The script's name without its extension: default name of what is made."""
+    """The script's name without its extension: the default name of output files."""
     settings: Settings
     tasks: Mapping[str, Task]
     """In topological order: every part stands behind those it needs."""
     needed_by: Mapping[str, tuple[str, ...]]
-    """For each task the outputs that need it."""
+    """For each task, the outputs that need it."""
     islands: tuple[Island, ...]
     drawn: Mapping[str, tuple[str, ...]]
-    """For each output that draws, the objects and models it draws."""
+    """For each output that draws, the objects and models that it draws."""
     cameras: Mapping[str, str]
     """For each output with pictures, its camera's task."""
     palette: tuple[str, ...] = ()
-    """Objects and models in the order that gives them their default colors."""
+    """Objects and models in the order that determines their default colors."""
     left_out: tuple[LeftOut, ...] = ()
     warnings: tuple[Diagnostic, ...] = ()
     origin: Origin = Origin()

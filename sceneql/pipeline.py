@@ -87,9 +87,9 @@ def render(
 ) -> Report:
     """Run a graph and make its outputs, in one pass over the union of their times.
 
-    ``output`` overrides the file of a single output; with ``account`` energies are looked at in every frame, with
-    ``draft`` pictures are drawn coarsely; after ``limit`` seconds it fails. On a failure what was made is kept beside
-    the final names, in ``error.kept`` of the exception that goes on. Raises RunFailure, LimitRefused, OSError, and
+    ``output`` overrides the file of a single output; with ``account`` energies are observed in every frame; with
+    ``draft`` pictures are drawn coarsely; after ``limit`` seconds the run fails. After a failure, what was made is kept
+    beside the final names, listed in ``error.kept`` of the exception. Raises RunFailure, LimitRefused, OSError, and
     Unsuitable for one file with several outputs and for drafts of a renderer that has none.
     """
     started, compiled = time.perf_counter(), _compiled()
@@ -112,8 +112,8 @@ def render(
     for tool in tools.values():
         try_folder(tool.target.parent)
     sinks: dict[str, Any] = {}
-    models = [name for name, task in graph.tasks.items() if isinstance(task.kind, Model)]
-    now, busy = 0.0, _Busy("starting the run", models)
+    parts = [name for name, task in graph.tasks.items() if isinstance(task.kind, Model)] or [*outputs]
+    now, busy = 0.0, _Busy("starting the run", parts)
     run: Any = None
     ending = ExitStack()
     late = ending.enter_context(within(limit, lambda: doing.now(0.0)))
@@ -134,7 +134,7 @@ def render(
         watch = Watch(run, always=account)
         if run.islands and instants and instants[0] > 0.0:
             watch.look(run.at(0.0))  # what is gained is gained over the start
-        busy = solving = _Busy("solving", models)
+        busy = solving = _Busy("solving", parts)
         for done, moment in enumerate(run.moments(instants)):
             progress(done, len(instants))
             if late.passed:  # told where it was lost, as signals are in callbacks of a C library
@@ -179,18 +179,18 @@ def render(
 
 
 class _Busy(NamedTuple):
-    """What a run is at, and with which parts."""
+    """The present activity of a run, and the parts concerned."""
 
     doing: str
     parts: Sequence[str]
 
 
 LESS = {"size": "smaller", "count": "smaller", "samples": "smaller", "cell": "larger", "spacing": "larger"}
-"""Fields that say how much memory a part takes, and which way less."""
+"""Fields that determine how much memory a part takes, and in which direction it takes less."""
 
 
 def _out_of_memory(error: BaseException, graph: SimulationGraph, now: float, busy: _Busy) -> OutOfMemory:
-    """A want of memory as one of what the run was busy with, and which fields would take less."""
+    """A lack of memory as a failure of the present activity, with the fields that would take less as help."""
     part, span, message = ", ".join(busy.parts) or graph.name, None, want_of_memory(error)
     if isinstance(error, RunFailure):
         part, span, now, message = error.part, error.span, error.time, error.message
@@ -206,7 +206,7 @@ def _out_of_memory(error: BaseException, graph: SimulationGraph, now: float, bus
 def _out_of_time(
     graph: SimulationGraph, run: Run | None, now: float, busy: _Busy, message: str, doing: str
 ) -> OutOfTime:
-    """The end of a run at its limit: of the island that has come least far, else what the run was busy with."""
+    """The failure at the time limit: of the island that is farthest behind, else of the present activity."""
     part = busy.parts[0] if busy.parts else graph.name
     if run is not None and run.islands and busy.doing == "solving":
         behind = min(run.islands, key=lambda island: island.march.time)
@@ -219,7 +219,7 @@ def _out_of_time(
 
 
 def _large(record: BaseModel) -> Iterator[str]:
-    """The fields of a word, or of a record in it, that say how much memory it takes."""
+    """The fields of a word, or of a record in it, that determine how much memory it takes."""
     for name in type(record).model_fields:
         value = getattr(record, name)
         if name in LESS and value is not None:
@@ -229,14 +229,17 @@ def _large(record: BaseModel) -> Iterator[str]:
 
 
 def _shows_script(graph: SimulationGraph, output: Output) -> bool:
-    """Whether an output shows the script as it stands, and not its variants alone."""
+    """Whether an output shows the script itself, and not only its variants."""
     if not isinstance(output, Picture) or not output.layout:
         return True
     return any(isinstance(graph.tasks[ref.name].kind, Camera) for ref in output.laid_out)
 
 
 def _kept(sinks: dict[str, Any], error: BaseException) -> list[Path]:
-    """What is kept of open outputs. What fails here too is noted: the error that stopped the run is the one to tell."""
+    """Abort open outputs and return the files kept.
+
+    Errors here are noted: the error that stopped the run is the one to tell.
+    """
     kept: list[Path] = []
     for name, sink in sinks.items():
         try:

@@ -177,21 +177,25 @@ def video_levels(codes):
     return [16 + 219 / 255 * luma, *(128 + 112 / 255 * one for one in chroma)]
 
 
-def test_flat_tones_of_a_film_are_true_to_a_tenth_of_a_level_in_the_mean(tmp_path):
-    """What develop's dither says between two levels goes through the conversion to a film's planes and its coding."""
-    side, tones = 32, np.random.default_rng(1).uniform(5, 200, (9, 16))
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_flat_tones_of_a_film_are_true_to_a_tenth_of_a_level_in_the_mean(tmp_path, seed):
+    """What develop's dither says between two levels goes through the conversion to a film's planes and its coding.
+
+    Chroma has the neighbors of another tone in its means.
+    """
+    side, tones = 32, np.random.default_rng(seed).uniform(5, 200, (9, 16))
     codes = np.repeat(np.repeat(tones, side, 0), side, 1)[..., None] * [1.0, 0.9, 0.8]
     writer = mp4.Writer(tmp_path / "film.mp4", size=(512, 288), rate=30, quality=17, comment="")
     for _ in range(4):
         writer.write(develop(linear(codes).astype(np.float32)))
     writer.close()
     *_, last = decoded(tmp_path / "film.mp4")
-    for plane, wanted in zip(last, video_levels(codes), strict=True):
+    for plane, wanted, most in zip(last, video_levels(codes), (0.04, 0.1, 0.1), strict=True):
         size = plane.shape[0] // 9
         off = (plane - wanted[:: codes.shape[0] // plane.shape[0], :: codes.shape[1] // plane.shape[1]]).reshape(
             9, size, 16, size
         )
-        assert np.sqrt((off.mean((1, 3)) ** 2).mean()) < 0.1
+        assert np.sqrt((off.mean((1, 3)) ** 2).mean()) < most
 
 
 def test_planes_are_those_of_bt709_and_whole_levels_stay_as_they_are():

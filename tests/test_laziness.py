@@ -46,6 +46,16 @@ def test_check_imports_neither_numpy_nor_numba(tmp_path):
     assert "importlib.metadata" not in names  # an eighth of the time that a check takes
 
 
+def test_check_compares_starting_places_of_formulas_without_numba(tmp_path):
+    script = (
+        "objects: {floor: plane, blob: {implicit: {field: x^4 + y^4 + z^4 - 0.1, position: 0 0.9 0 m}}}\n"
+        "models: {fall: {rigid: {of: blob, mass: 1 kg}}}\nforces: [gravity]\ncontacts: [collision]\n"
+    )
+    names = modules_after(tmp_path, script, "check")
+    assert "sceneql.field.tape.plain_values" in names
+    assert not names & {"numba", "scipy"}
+
+
 def test_check_imports_three_libraries_and_what_these_import(tmp_path):
     theirs = {"annotated_types", "pydantic_core", "typing_extensions", "typing_inspection"}
     installed = {name for name in packages_distributions() if not name.startswith("_")} - {"sceneql", "renderers"}

@@ -8,8 +8,10 @@ from PIL import Image
 
 from meshes import tape_of
 from moment import IDENTITY, FakeMoment, formula
+from random_tapes import NAMES, of_one
 from sceneql import pipeline
 from sceneql.field.tape.magnitude import ORDINARY, leveling
+from sceneql.field.tape.plain_values import plain_values
 from sceneql.field.tape.tape_solid import field_gradients, field_values
 from sceneql.mesh.cubes.polygonise import polygonise
 from sceneql.mesh.measures import volume
@@ -120,3 +122,14 @@ def test_fields_of_any_magnitude_are_leveled_and_ordinary_ones_stay(power):
     assert 2.0**-ORDINARY / 4 < factor * 10.0**power < 2.0**ORDINARY * 4
     if abs(power) < 5:
         assert factor == 1.0
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in ("density", "skeleton")])
+def test_plain_values_are_those_of_the_kernels(name):
+    points = np.random.default_rng(3).normal(size=(200, 3)).round(1) + 0.0
+    tape = of_one(name)
+    plain, kernels = plain_values(tape, points), field_values(tape, points)
+    assert plain is not None
+    defined = np.isfinite(kernels)
+    assert np.array_equal(np.isfinite(plain), defined)
+    assert np.allclose(plain[defined], kernels[defined], rtol=1e-12, atol=1e-12)

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from sceneql.frame import Quadric, Surface
+from sceneql.frame import Points, Quadric, Surface
 from sceneql.pipeline import Report, Tools, load, simulate
 from sceneql.report.mesh import mesh
 from sceneql.shapes.outlines import COUNT, DIRECTIONS, outermost, outline
+from sceneql.words.cameras.auto import ACROSS, THREE_QUARTER
 
 SHAPES = {
     "sphere: {radius: 0.5 m, position: 1 2 0 m}": 0.5,
@@ -67,6 +68,17 @@ def test_of_very_many_points_the_farthest_is_among_the_outermost():
     assert outermost(points)[:, 1].max() == 100.0
 
 
+def test_a_few_strays_of_a_cloud_are_not_what_it_is_seen_by():
+    centers = np.random.default_rng(5).uniform(-1, 1, (1000, 3))
+    cloud = Points("stars", Surface(), centers, np.full(1000, 0.01))
+    strayed = centers.copy()
+    strayed[:5] *= 100
+    found = outline(Points("stars", Surface(), strayed, np.full(1000, 0.01)))
+    assert np.abs(found).max() < 1.02
+    assert np.abs(found).max() > 0.95 * np.abs(outline(cloud)).max()
+    assert np.abs(outline(Points("few", Surface(), strayed[:100], np.full(100, 0.01)))).max() > 20
+
+
 FLAT = {"x": "0.02 2 2 m", "y": "2 0.02 2 m", "z": "2 2 0.02 m"}
 
 
@@ -75,6 +87,21 @@ def test_what_is_flat_is_seen_along_its_normal(tmp_path, axis, size):
     view = default_view(tmp_path, f"box: {{size: {size}}}")
     normal = np.eye(3)["xyz".index(axis)]
     assert view.axes[2] @ normal > 0.98
+
+
+@pytest.mark.parametrize(
+    ("size", "back"),
+    [
+        ("5 0.5 0.5 m", ACROSS[0]),
+        ("0.5 0.5 5 m", ACROSS[2]),
+        ("1 5 1 m", THREE_QUARTER),
+        ("2 2 2 m", THREE_QUARTER),
+        ("5 1 1 m", THREE_QUARTER),
+    ],
+)
+def test_what_is_long_and_lies_is_seen_across(tmp_path, size, back):
+    seen = default_view(tmp_path, f"box: {{size: {size}}}").axes[2]
+    assert seen == pytest.approx(np.array(back) / np.linalg.norm(back), abs=0.01)
 
 
 @pytest.mark.parametrize("thing", ["sphere: {}", "box: {size: 1 2 1 m}", "sphere: {radius: 20 m, position: 0 9 0 m}"])

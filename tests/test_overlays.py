@@ -57,6 +57,26 @@ def test_a_legends_bar_has_the_colors_of_the_map_from_the_high_end_down(tmp_path
     np.testing.assert_allclose(found[low], srgb(colored(place, (0.0, 1.0), "viridis")), atol=3.5)
 
 
+@pytest.mark.parametrize(
+    ("of", "title"),
+    [("plate.concentration", "concentration"), ("-plate.concentration", ""), ("hot.concentration", "temperature")],
+)
+def test_a_legend_says_what_it_shows(tmp_path, of, title):
+    hot = "hot: {diffusion: {size: 1 1 m, cell: 0.5 m, of: temperature, coefficient: 1e-3 m^2/s, initial: 300 K}}"
+    script = SCENE.replace("ball: sphere", f"shown: {{{{field_map: {{{{of: {of}}}}}}}}}")
+    said = script.format(overlays="{bar: {legend: {of: shown}}}").replace("models:", f"models:\n  {hot}")
+    (tmp_path / "scene.yaml").write_text(said.replace("[map]", "[map, shown]"), encoding="utf-8")
+    graph = load(tmp_path / "scene.yaml")
+    (moment,) = simulate(graph, [0.0])
+    legend = graph.tasks["bar"].kind
+    small, large = (Letterer(np.zeros((9 * k, 16 * k, 3), dtype=np.uint8), legend.text) for k in (20, 60))
+    unit = ["K"] if title == "temperature" else ["kg/m\u00b3"]
+    assert legend._told(moment, large).lines == [title] * bool(title) + unit
+    assert legend._told(moment, small).lines == unit
+    assert legend.model_copy(update={"title": ""})._told(moment, large).lines == unit
+    assert legend.model_copy(update={"title": "What there is"})._told(moment, small).lines == ["What there is", *unit]
+
+
 def test_what_is_not_covered_stays_as_it_is(tmp_path):
     plain, told = picture(tmp_path, "{}"), picture(tmp_path, "{say: {caption: {text: Hi, place: bottom right}}}")
     changed = (plain != told).any(axis=2)

@@ -77,4 +77,4 @@ def test_the_background_is_that_of_a_floor_that_bends_up():
 
 def test_they_are_told_as_words_to_paste(tmp_path):
     (tmp_path / "scene.yaml").write_text("objects: {a: sphere}\n")
-    assert "studio: {key: 1, fill: 1, boxes: 1}" in unsaid(load(tmp_path / "scene.yaml"))
+    assert "studio: {key: 1, fill: 1, boxes: 1, backdrop: light}" in unsaid(load(tmp_path / "scene.yaml"))

@@ -51,6 +51,42 @@ def test_there_is_a_ground_where_things_fall_or_nothing_is_simulated(tmp_path, t
     assert (None if floor is None else floor.word) == word
 
 
+PAIR = "models: {a: {particles: {positions: [0 0 0 m, 1 0 0 m]}}}"
+
+
+@pytest.mark.parametrize(
+    ("text", "dark"),
+    [
+        (f"{PAIR}\nforces: [mutual_gravity]", True),
+        (f"{PAIR}\nforces: [attractor]", True),
+        (f"{PAIR}\nforces: [{{attractor: {{exponent: -1}}}}]", False),
+        (f"{PAIR}\nforces: [{{electrostatic: {{charge: 1 C}}}}]", True),
+        ("models: {stars: {galaxy: {stars: 10}}}", True),
+        (f"{PAIR}\nobjects: {{puffs: {{sprites: {{at: a.positions}}}}}}", True),
+        (f"{PAIR}\nobjects: {{puffs: {{sprites: {{at: a.positions, blend: covers, color: gray}}}}}}", True),
+        (f"{PAIR}\nobjects: {{puffs: {{sprites: {{at: a.positions, blend: covers, color: black}}}}}}", False),
+        ("objects: {lamp: {sphere: {material: glow}}, floor: none}", True),
+        ("objects: {lamp: {sphere: {material: glow}}}", False),
+        (f"{PAIR}\nforces: [mutual_gravity]\nobjects: [plane]", False),
+        (f"{PAIR}\nforces: [mutual_gravity]\nbackground: gray", False),
+        (f"{PAIR}\nforces: [{{force: {{components: [1 N, 0 N, 0 N]}}}}]", False),
+    ],
+)
+def test_what_shines_or_moves_in_empty_space_is_before_the_dark(tmp_path, text, dark):
+    graph = graph_of(tmp_path, text)
+    assert graph.tasks["light"].kind.backdrop == ("dark" if dark else "light")
+    assert ("backdrop: dark" in unsaid(graph)) == dark
+
+
+def test_the_picture_before_the_dark_is_dark_and_its_bodies_are_not(tmp_path):
+    text = "{a: {particles: {list: {sun: {radius: 0.5 m}}, color: white}}}\nforces: [mutual_gravity]"
+    graph = graph_of(tmp_path, f"models: {text}")
+    (moment,) = simulate(graph, [0.0])
+    pixels = Tools(graph, "still", Report(), tmp_path / "it").pixels(graph.tasks["still"].kind, moment)
+    assert pixels[:, [0, -1]].max() < 50
+    assert pixels[18, 32].min() > 150
+
+
 def test_a_scene_with_a_ground_of_its_own_gets_no_other(tmp_path):
     graph = graph_of(tmp_path, f"objects: {{{BALL}, meadow: {{plane: {{height: -1 m}}}}}}\n{FALL}\nforces: [collision]")
     assert "floor" not in graph.tasks
@@ -155,6 +191,7 @@ def test_only_a_default_may_be_none(tmp_path):
         f"objects: {{{BALL}}}",
         f"objects: {{{BALL}, ring: {{torus: {{position: 1 0 0 m}}}}}}\n{FALL}\nforces: [gravity, collision]",
         f"objects: {{{BALL}}}\n{FALL}\nforces: [gravity]\ncameras: [orthographic]\nbackground: black",
+        f"objects: {{{BALL}}}\n{FALL}\nforces: [attractor]",
     ],
 )
 def test_the_defaults_that_explain_prints_make_the_same_picture_when_pasted(tmp_path, text):

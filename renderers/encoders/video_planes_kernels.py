@@ -16,8 +16,12 @@ TRUSTED = 1e-9
 
 @inlined
 def other_threshold(x, y):
-    """The picture's own dither is in its levels already: this one is turned and shifted, so that they do not meet."""
-    return threshold(y + 3, 12 - x % 8)
+    """The picture's own dither is in its levels already: this one is turned and shifted, so that they do not meet.
+
+    From tile to tile of 8 x 8 it begins elsewhere: what is left of meetings is another in each, and none in the mean.
+    """
+    place = threshold(y + 3, 12 - x % 8) + threshold(x >> 3, y >> 3)
+    return place - int(place)
 
 
 @inlined

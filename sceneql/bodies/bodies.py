@@ -1,4 +1,4 @@
-"""Masses in an island: reserving their state, and the outputs of every model of masses, rigid bodies too."""
+"""Point masses in an island: allocation of their state, and the outputs common to all models of masses and bodies."""
 
 from __future__ import annotations
 
@@ -61,10 +61,10 @@ def reserve(
     spans: Sequence[Span | None] | None = None,
     inertia: Any = None,
 ) -> Bodies:
-    """Put n masses into the state, with the closing term that turns newtons into accelerations.
+    """Put n masses into the state, with the closing term that divides forces [N] by masses.
 
-    ``inertia``: a sparse matrix (3 n, 3 n) in place of ``masses``, which then are lumped ones (consistent.py).
     ``positions`` and ``velocities`` (n, 3) [m], [m/s]; ``masses`` (n,) [kg]; ``radii`` (n,) [m]; ``fixed`` (n,) bool.
+    ``inertia``: a sparse mass matrix (3 n, 3 n) [kg] to solve with instead; ``masses`` are then the lumped ones.
     """
     import numpy as np
 
@@ -99,7 +99,7 @@ def reserve(
 
 
 def reserve_part(assembly: Assembly, whole: Bodies, state: ModelState, first: int, last: int) -> Bodies:
-    """Put the masses first..last-1 of others into the state of a block (kinds.Model.assemble_part)."""
+    """Put the masses first..last-1 of ``whole`` into the state of a block of the island (kinds.Model.assemble_part)."""
     here = slice(first, last)
     inverse = state.floats[whole.inverse_at : whole.inverse_at + whole.count]
     return reserve(
@@ -114,9 +114,9 @@ def reserve_part(assembly: Assembly, whole: Bodies, state: ModelState, first: in
 
 
 def own_blocks(bodies: Bodies, column_at: int) -> tuple[Any, Any]:
-    """First rows and columns (n,) of the 3x3 blocks of each body's force by its own entries at ``column_at``.
+    """First rows and first columns (n,) of the 3x3 Jacobian blocks of each body's force by its own state.
 
-    For Slopes of a force that depends on each body alone; ``column_at``: position_at or velocity_at.
+    For Slopes of a force on each body that depends on this body alone; ``column_at``: position_at or velocity_at.
     """
     import numpy as np
 
@@ -125,47 +125,50 @@ def own_blocks(bodies: Bodies, column_at: int) -> tuple[Any, Any]:
 
 
 def positions(bodies: Bodies, state: ModelState) -> Floats:
-    """(n, 3) [m], a view of the state."""
+    """Positions (n, 3) [m], a view of the state."""
     at = bodies.position_at
     return state.y[at : at + 3 * bodies.count].reshape(-1, 3)
 
 
 def velocities(bodies: Bodies, state: ModelState) -> Floats:
-    """(n, 3) [m/s], a view of the state."""
+    """Velocities (n, 3) [m/s], a view of the state."""
     at = bodies.velocity_at
     return state.y[at : at + 3 * bodies.count].reshape(-1, 3)
 
 
 def accelerations(bodies: Bodies, state: ModelState) -> Floats:
-    """(n, 3) [m/s^2], a view of the rate."""
+    """Accelerations (n, 3) [m/s^2], a view of the state's rate."""
     at = bodies.velocity_at
     return state.rate[at : at + 3 * bodies.count].reshape(-1, 3)
 
 
 def masses(bodies: Bodies, state: ModelState) -> Floats:
-    """(n,) [kg]."""
+    """Masses (n,) [kg]."""
     return state.floats[bodies.mass_at : bodies.mass_at + bodies.count]
 
 
 def moving_masses(bodies: Bodies, state: ModelState) -> Floats:
-    """(n,) [kg], 0 for a fixed one: its place in a field of force is no store of energy."""
+    """Masses (n,) [kg], 0 for a fixed one, whose potential energy is not counted."""
     inverse = state.floats[bodies.inverse_at : bodies.inverse_at + bodies.count]
     return masses(bodies, state) * (inverse > 0)
 
 
 def weighed(bodies: Bodies, state: ModelState) -> Floats:
-    """(n,) what gravity acts on [kg], 0 for a fixed one."""
+    """Gravitational masses (n,) [kg], 0 for a fixed one."""
     at, inverse = bodies.weighed_at, state.floats[bodies.inverse_at : bodies.inverse_at + bodies.count]
     return state.floats[at : at + bodies.count] * (inverse > 0)
 
 
 def radii(bodies: Bodies, state: ModelState) -> Floats:
-    """(n,) [m]."""
+    """Contact radii (n,) [m]."""
     return state.floats[bodies.radius_at : bodies.radius_at + bodies.count]
 
 
 def read(output: str, bodies: Bodies, state: ModelState, own_potential: float = 0.0) -> Any:
-    """An output of BODY_OUTPUTS; ``own_potential`` [J] is the model's own beside that of the forces."""
+    """Value of an output of BODY_OUTPUTS; ``own_potential`` [J]: the model's own, added to that of the forces.
+
+    Raises KeyError for another output.
+    """
     import numpy as np
 
     x, v, m = positions(bodies, state), velocities(bodies, state), masses(bodies, state)
@@ -199,7 +202,7 @@ def read(output: str, bodies: Bodies, state: ModelState, own_potential: float = 
 
 
 def _of_turning(what: str, bodies: Bodies, state: ModelState) -> Any:
-    """What the rotation of rigid bodies adds to a sum; 0 of masses."""
+    """The contribution of the rotation of rigid bodies, a function of rigid.turning; 0 for point masses."""
     if bodies.turning is None:
         return 0.0
     from sceneql.bodies.rigid import turning
@@ -208,12 +211,12 @@ def _of_turning(what: str, bodies: Bodies, state: ModelState) -> Any:
 
 
 def numbered(names: Iterable[str]) -> dict[str, int]:
-    """The numbers of masses by name, where they are in this order."""
+    """Numbers from 0 by name, for names in the order of their masses."""
     return {name: k for k, name in enumerate(names)}
 
 
 def read_named(output: str, names: Mapping[str, int], bodies: Bodies, state: ModelState) -> Any:
-    """An output ``name.position``, ``name.velocity`` or ``name.acceleration``: (3,). Raises KeyError."""
+    """Value (3,) of ``name.position``, ``name.velocity`` or ``name.acceleration``. Raises KeyError for another."""
     name, _, what = output.rpartition(".")
     if name not in names or what not in MASS_OUTPUTS:
         raise KeyError(output)
@@ -222,7 +225,7 @@ def read_named(output: str, names: Mapping[str, int], bodies: Bodies, state: Mod
 
 
 def places(output: str, bodies: Bodies) -> NDArray[int64] | None:
-    """Where in y an output of BODY_OUTPUTS stands (kinds.Model.places)."""
+    """Indices in y of an output of BODY_OUTPUTS; None for one that is no part of the state (kinds.Model.places)."""
     import numpy as np
 
     rows: NDArray[int64] = np.arange(3 * bodies.count).reshape(-1, 3)
@@ -239,7 +242,7 @@ def places(output: str, bodies: Bodies) -> NDArray[int64] | None:
 
 
 def places_named(output: str, names: Mapping[str, int], bodies: Bodies) -> NDArray[int64] | None:
-    """Where in y an output ``name.position`` or ``name.velocity`` stands."""
+    """Indices (3,) in y of an output ``name.position`` or ``name.velocity``; None for another."""
     name, _, what = output.rpartition(".")
     found = places({"position": "positions", "velocity": "velocities"}.get(what, ""), bodies)
     return None if found is None or name not in names else found[names[name]]

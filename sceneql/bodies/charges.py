@@ -1,4 +1,4 @@
-"""Numbers of single masses in the fields of forces: one for all, or a list with one for each."""
+"""Values of a force's field for each mass, as its charge: one number for all masses, or a list with one for each."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def each(assembly: Assembly, value: Value, count: int, what: str) -> tuple[int, 
 
 
 def of_moving(bodies: Bodies, state: ModelState, at: int, step: int) -> Floats:
-    """(n,) numbers of the masses, stored by `each`; 0 for a fixed mass."""
+    """Numbers (n,) of the masses, stored by `each` at offset ``at`` with stride ``step``; 0 for a fixed mass."""
     import numpy as np
 
     inverse = state.floats[bodies.inverse_at : bodies.inverse_at + bodies.count]

@@ -1,4 +1,4 @@
-"""Masses whose inertia is a sparse matrix, as the consistent mass of finite elements (Archer 1963)."""
+"""Masses with a sparse mass matrix, as the consistent mass matrix of finite elements (Archer 1963)."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ KERNELS = "sceneql.bodies.consistent"
 
 
 def close(assembly: Assembly, bodies: Bodies, matrix: Any) -> None:
-    """Add the closing term of masses with this inertia, factored once: M dv/dt = F, and dx/dt = v.
+    """Add the closing term of masses with a mass matrix M, factored once: M dv/dt = F, dx/dt = v.
 
-    ``matrix``: scipy sparse, symmetric, positive definite but for rows and columns of zeros of entries that are held,
-    (3 count, 3 count) [kg]; ``bodies.inverse_at`` tells lumped masses, to contacts.
+    ``matrix``: M, scipy sparse (3 count, 3 count) [kg], symmetric; zero in rows and columns of held components, else
+    positive definite. ``bodies.inverse_at`` holds the inverses of lumped masses, for contacts.
     """
     import numpy as np
     from scipy.sparse import csr_array, diags_array
@@ -34,9 +34,10 @@ def close(assembly: Assembly, bodies: Bodies, matrix: Any) -> None:
 
 
 def factored(matrix: Any, assembly: Assembly) -> tuple[int, int, int, int, Any]:
-    """Offsets and counts of the factors of a matrix and of room to solve with them, then their plan, int64.
+    """Factor a matrix: (offset and count of the factors, offset and count of working memory, plan as int64).
 
-    ``matrix``: scipy sparse, symmetric, positive definite. Read by multifrontal.solve_kernels.solve_symmetric.
+    ``matrix``: scipy sparse, symmetric, positive definite. The results are the arguments of
+    multifrontal.solve_kernels.solve_symmetric. Raises ValueError for a singular matrix.
     """
     import numpy as np
     from scipy.sparse import csr_array

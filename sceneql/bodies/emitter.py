@@ -1,4 +1,4 @@
-"""Emitters: particles that are born and die while the scene runs."""
+"""Emitters: births and deaths of particles during a run."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
 
 SAMPLES, COLORS = 257, 32
-"""Ages at which radii are evaluated, and classes of age with a color each."""
+"""Number of ages at which radii are evaluated, and of age classes with one color each."""
 
 STEPS = 50
-"""Least number of adaptive steps in a particle's life: a birth within a step has an error of third order in it."""
+"""Least number of steps in a particle's lifetime: the error of a birth within a step is of third order in the step."""
 
 POOL = 4096
-"""Number of random points in an object from which places of birth are drawn."""
+"""Random points in an object, from which the positions of births are drawn."""
 
 
 def _aged(value: Value, age: float) -> Any:
-    """A value whose `time` is an age [s]."""
+    """The value of a field whose `time` is an age [s]."""
     return evaluate(value.expr, lambda node: age, arrays=True)
 
 
@@ -42,16 +42,16 @@ class Aging(Record):
     radius: kinds.Length | None = field("Its radius in the picture, in place of the model's.", None)
 
     def problems(self) -> Iterator[Problem]:
-        """Values that depend on more than the age."""
+        """Problems: values that depend on more than the age."""
         for name in ("color", "radius"):
             value = getattr(self, name)
             if value is not None and any(isinstance(node, Link) for node in walk(value.expr)):
                 yield Problem(f"the {name} of an age reads no other part", (name,))
 
     def classes(self, ages: Floats, radii: Floats) -> Iterable[tuple[Value | None, Any, Floats]]:
-        """The particles by classes of like color: the color, the indices of its particles, and their radii.
+        """Particles grouped by age into classes of one color: (color or None, indices, radii [m]) of each class.
 
-        ``ages`` [s] and ``radii`` [m], each (n,).
+        ``ages`` [s] and ``radii`` [m], each (n,); the radii are replaced if the age has one.
         """
         import numpy as np
 
@@ -100,7 +100,7 @@ class Emit(Record):
     seed: int = field("Another number, another shower.", 0, at_least=0)
 
     def problems(self) -> Iterator[Problem]:
-        """An end before the start, and more particles than memory is allowed for."""
+        """Problems: `until` not after `start`; more particles than memory allows."""
         if self.until is not None and self.until <= self.start:
             yield Problem("`until` must be after `start`", ("until",))
         try:
@@ -109,26 +109,26 @@ class Emit(Record):
             yield Problem(str(error), code="limit-refused")
 
     def total(self) -> float:
-        """Number of births in all; may be infinite."""
+        """Total number of births; may be infinite."""
         births = math.inf if self.until is None else (self.until - self.start) * self.rate * (1 + 1e-12)
         births = math.floor(births) + 1 if math.isfinite(births) else births
         return min(births, math.inf if self.count is None else self.count)
 
     def capacity(self) -> float:
-        """Largest number of particles that live at once."""
+        """Largest number of particles alive at once, which is the number of slots."""
         alive = self.rate * self.lifetime * (1 + self.variation)
         alive = math.ceil(alive) + 1 if math.isfinite(alive) else alive
         return min(alive, self.total(), math.inf if self.most is None else self.most)
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, mass: float, radius: float) -> None:
-        """Add births and deaths; the bodies are the slots of the particles."""
+        """Add births and deaths to an island; ``bodies`` are the particles' slots, ``mass`` [kg], ``radius`` [m]."""
         import numpy as np
 
         pool = np.zeros((1, 3))
         if self.within is not None:
             pool = filled(Fill(object=self.within, count=POOL, seed=self.seed), name, assembly)
         spec = [self.rate, self.start, self.total(), self.lifetime, self.variation, 1 - math.cos(self.spread)]
-        # The place at time 0 of a source with a state is unknown here: in the first step its place at the end serves.
+        # The position at time 0 of a source that is solved is unknown here: the first step uses that at its end.
         solved = [
             link for value in (self.from_, self.velocity) for link in value.links if assembly.formula(link) is None
         ]
@@ -136,7 +136,7 @@ class Emit(Record):
         self._act(name, assembly, bodies, [*spec, mass, radius], pool, before, 0, bodies.count)
 
     def assemble_part(self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int) -> None:
-        """The same for a block of an island, whose bodies are the slots from ``first`` on of all: ``start``."""
+        """As ``assemble``, for a block of an island whose bodies are the slots from ``first`` on of ``start``."""
         from sceneql.bodies.emitter_kernels import BEFORE, MEMORY, MEMORY_AT, POOL, POOL_AT, SPEC, SPEC_AT
 
         assert start.bodies is not None
@@ -185,7 +185,7 @@ class Emit(Record):
         assembly.remember(*ints)
 
     def living(self, bodies: Bodies, state: ModelState) -> tuple[Bodies, ModelState, Floats]:
-        """The particles that live at the state's time as bodies of a state of their own, and their ages (n,) [s]."""
+        """The particles alive at the state's time: (bodies, state with these bodies alone, ages (n,) [s])."""
         import numpy as np
 
         from sceneql.bodies.emitter_kernels import AGE, BORN, FIRST, KEY, MEMORY_AT
@@ -200,7 +200,7 @@ class Emit(Record):
         slots = births % n
         x, v = (state.y[at : at + 3 * n].reshape(-1, 3)[slots] for at in (bodies.position_at, bodies.velocity_at))
         a = state.rate[bodies.velocity_at : bodies.velocity_at + 3 * n].reshape(-1, 3)[slots]
-        # Particles born in the last step still lack the acceleration since their births (emitter_kernels.emit).
+        # Particles born in the last step have not been accelerated since their births yet (emitter_kernels.emit).
         owed = np.where(births >= first, ages, 0.0)[:, None]
         x, v = x + 0.5 * a * owed**2, v + a * owed
         m = len(births)

@@ -8,9 +8,10 @@ LEAST = 256
 
 
 def table(count: int) -> tuple[int, int, int]:
-    """Size M (a power of two) and factors P, Q: cell (i, j, k) stands at (i + P j + Q k) mod M.
+    """Size M (a power of two) and factors P, Q of the hash (i + P j + Q k) mod M of cell (i, j, k).
 
-    Cells at most two apart along each axis never share an entry, so no pair of neighbors is counted twice.
+    M is at least twice ``count``. Cells at most two apart along each axis never share an entry, so no pair of neighbors
+    is counted twice.
     """
     size = LEAST
     while size < 2 * count:

@@ -1,4 +1,4 @@
-"""Nets of springs: the fields of a lattice, a cloth, a rope or single masses, and the graph made from them."""
+"""Mass-spring networks: script fields of a lattice, cloth, rope or single masses, and the network made from them."""
 
 from __future__ import annotations
 
@@ -27,47 +27,50 @@ EDGES = ("left", "right", "bottom", "top")
 STEPS = tuple(step for step in product((-1, 0, 1), repeat=3) if step > (0, 0, 0))
 """Offsets from a grid point to its neighbors, each pair once."""
 THINNEST = 1e6
-"""Length over width of a cloth's cell above which the rounding of the long side moves masses along the short one."""
+"""Largest ratio of a cloth cell's sides; beyond it rounding along the long side disturbs the short one."""
 CORNERS = ("bottom_left", "bottom_right", "top_left", "top_right")
 ROPE_ENDS = ("start", "end")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Net:
-    """Masses and the springs between them."""
+    """A network of masses and springs at the start of a run."""
 
     points: Floats
-    """(n, 3) [m] at the start."""
+    """(n, 3) [m] positions."""
     pairs: NDArray[int64]
-    """(m, 2) indices of the masses at a spring's ends."""
+    """(m, 2) numbers of the masses at each spring's ends."""
     stiffness: Floats
-    """(m,) stiffness of each spring as a part of the model's."""
+    """(m,) stiffness of each spring relative to the model's."""
     places: dict[str, Any] = member(default_factory=dict)
-    """Names for pins: indices or masks of points."""
+    """By name for pins: indices or masks of masses."""
     triangles: Ints | None = None
-    """(k, 3) of a surface, counterclockwise seen from where it faces."""
+    """(k, 3) masses at the corners of the surface's triangles, counterclockwise seen from its front or outside."""
     toughness: Floats | None = None
-    """(m,) strain at which each spring tears, as a part of the model's; None: all alike."""
+    """(m,) strain at which each spring tears relative to the model's; None: all 1."""
     line: bool = False
     """Whether it is a rope."""
     tetrahedra: Ints | None = None
-    """(t, 4) of a solid, of positive volume at the start."""
+    """(t, 4) corners of a solid's tetrahedra, of positive volume at the start."""
     masses: Floats | None = None
-    """(n,) [kg]; None: the model's, all alike."""
+    """(n,) [kg]; None: the model's mass for all."""
     springs: Floats | None = None
-    """(m,) [N/m] in place of the model's stiffness."""
+    """(m,) [N/m] absolute stiffness in place of the model's."""
     dampers: Floats | None = None
-    """(m,) [N s/m] in place of the model's damping."""
+    """(m,) [N s/m] absolute damping in place of the model's."""
     fills: Floats | None = None
-    """(n,) the volume that each mass stands for [m^3], of a single layer the area [m^2]; None: it fills none."""
+    """(n,) [m^3] volume of each mass's share of the solid, for a single layer area [m^2]; None: it fills no volume."""
     layer: bool = False
-    """Whether it is a single layer of cells."""
+    """Whether it is a single layer of masses across z."""
     apart: float = 0.0
-    """Distance of neighbors that nothing passes between [m]; 0 where there is none."""
+    """[m] distance of neighboring masses, between which a fluid does not pass; 0: unknown."""
 
 
 def alike(net: Net) -> Floats:
-    """(m, 5) blocks (springs.SpringModel.make) of springs at rest as they stand, all with the model's numbers."""
+    """Blocks (m, 5) of the springs (springs.SpringModel.make), unstretched at the start.
+
+    Stiffness and damping are the net's absolute ones where it has them, else relative to the model's.
+    """
     import numpy as np
 
     blocks = np.zeros((len(net.pairs), 5))
@@ -81,7 +84,7 @@ def alike(net: Net) -> Floats:
 
 
 def turned(points: Floats, center: Sequence[float], quaternion: Sequence[float]) -> Floats:
-    """Points (n, 3) turned about a center by a unit quaternion [w, x, y, z]."""
+    """Points (n, 3) [m] rotated about a center by a unit quaternion [w, x, y, z]."""
     import numpy as np
 
     w, axis, away = quaternion[0], np.asarray(quaternion[1:]), points - np.asarray(center)
@@ -98,7 +101,7 @@ class MassPoint(Record):
     fixed: bool = field("It never moves.", False)
 
     def problems(self) -> Iterator[Problem]:
-        """A mass that is held and moves."""
+        """A problem for a fixed mass with a velocity."""
         if self.fixed and self.velocity is not None and any(self.velocity):
             yield Problem("a fixed mass has no velocity", ("velocity",))
 
@@ -117,7 +120,7 @@ class Spring(Record):
     name: str | None = field("Its name, for `name.length` and `name.tension`.", None)
 
     def problems(self) -> Iterator[Problem]:
-        """A spring with one end."""
+        """A problem for a spring from a mass to itself."""
         if self.between[0] == self.between[1]:
             yield Problem(f"a spring from '{self.between[0]}' to itself", ("between",))
 
@@ -130,9 +133,10 @@ def _too_many(masses: float, springs: float, field: str) -> Iterator[Problem]:
 
 
 def neighbors(cells: Any, shear: float) -> tuple[NDArray[int64], Floats]:
-    """Springs (m, 2) between points of whole coordinates (n, 3) that differ by at most 1, and their parts (m,).
+    """Springs (m, 2) between neighboring grid points, and their relative stiffness (m,).
 
-    A part is 1 along an axis and ``shear`` along diagonals, which are left out for 0.
+    ``cells`` (n, 3): integer coordinates; neighbors differ by at most 1 along each axis. The stiffness is 1 along an
+    axis and ``shear`` along diagonals, which have no springs if it is 0.
     """
     import numpy as np
 
@@ -153,7 +157,7 @@ def neighbors(cells: Any, shear: float) -> tuple[NDArray[int64], Floats]:
 
 
 def side_masks(cells: Any) -> dict[str, Any]:
-    """Masks by the names of SIDES, of points with whole coordinates (n, 3)."""
+    """By the names of SIDES, masks (n,) of the points on each side; ``cells`` (n, 3): integer coordinates."""
     low, high = cells.min(axis=0), cells.max(axis=0)
     masks = [mask for axis in range(3) for mask in (cells[:, axis] == low[axis], cells[:, axis] == high[axis])]
     return dict(zip(SIDES, masks, strict=True))
@@ -171,7 +175,7 @@ class Lattice(Record):
     )
 
     def lowest(self) -> float:
-        """Height [m] of its lowest masses at the start."""
+        """Height y [m] of its lowest masses at the start."""
         sides = [(count - 1) * self.spacing / 2 for count in self.count]
         w, x, y, z = (1.0, 0.0, 0.0, 0.0) if self.rotation is None else self.rotation.number()
         upwards = (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x))  # of its own axes
@@ -197,7 +201,7 @@ class Lattice(Record):
         return stiffest((step, 1.0 if sum(map(abs, step)) == 1 else self.shear) for step in steps)
 
     def net(self) -> Net:
-        """Masses in order of x, then y, then z (z fastest); without its rotation."""
+        """The network before its rotation; masses ordered by x, then y, then z (z fastest)."""
         import numpy as np
 
         count = np.array(self.count)
@@ -215,7 +219,10 @@ class Lattice(Record):
         )
 
     def _fills(self, grid: Any) -> Floats | None:
-        """(n,) [m^3], of one layer across z [m^2]: masses on sides have half a cell; None of a line."""
+        """Volumes (n,) [m^3] of the masses' shares, areas [m^2] for one layer across z; halved on each side.
+
+        None where it is a single line or column of masses.
+        """
         import numpy as np
 
         if min(self.count[:2]) < 2:
@@ -240,13 +247,13 @@ class Cloth(Record):
     bend: kinds.FixedScalar = field("Stiffness over two cells as a part of the sides'.", "0.1", at_least=0)
 
     def lowest(self) -> float:
-        """Height [m] of its lowest masses at the start; of one that is tilted a bound of that."""
+        """Height y [m] of its lowest masses at the start; a lower bound for a tilted cloth."""
         upright = math.sqrt(max(1 - (self.facing[1] / math.hypot(*self.facing)) ** 2, 0.0))
         reach = self.size[1] if upright == 1 else math.hypot(*self.size)
         return self.center[1] - 0.5 * reach * upright
 
     def problems(self) -> Iterator[Problem]:
-        """More masses than are possible, cells like hairs, or no side that faces anywhere."""
+        """Problems: too many masses; cells too long for their width."""
         sorts = 1 + (self.shear > 0) + (self.bend > 0)
         yield from _too_many(self.mass_count(), 2 * sorts * self.mass_count(), "cells")
         narrow, long = sorted(side / cells for side, cells in zip(self.size, self.cells, strict=True))
@@ -269,7 +276,7 @@ class Cloth(Record):
         return stiffest([*sides, *((step, self.bend) for step in far)])
 
     def net(self) -> Net:
-        """Masses by columns from the left, each from bottom to top."""
+        """The network; masses ordered by columns from the left, each from bottom to top."""
         import numpy as np
 
         normal = unit_vector(self.facing)
@@ -321,7 +328,7 @@ class Rope(Record):
         return min(self.from_[1], self.to[1])
 
     def problems(self) -> Iterator[Problem]:
-        """More masses than are possible, or no length."""
+        """Problems: too many masses; a rope without length."""
         yield from _too_many(self.mass_count(), self.mass_count(), "count")
         if self.from_ == self.to:
             yield Problem("a rope that ends where it starts", ("to",))
@@ -335,7 +342,7 @@ class Rope(Record):
         return stiffest(((float(step), 0.0, 0.0), 1.0) for step in _sides(self.count) if step)
 
     def net(self) -> Net:
-        """Masses from the start to the end."""
+        """The network; masses ordered from the start to the end."""
         import numpy as np
 
         index = np.arange(self.count)
@@ -350,11 +357,11 @@ class Rope(Record):
 
 
 def stiffest(offsets: Iterable[tuple[Sequence[float], float]]) -> float:
-    """Bound on (angular frequency)^2 mass / stiffness of a net whose masses have springs to these neighbors.
+    """Upper bound on (angular frequency)^2 mass / stiffness of a net whose masses all have springs to these neighbors.
 
-    ``offsets`` are (vector, stiffness as a part of the model's). As (n (x - y))^2 <= 2 (n x)^2 + 2 (n y)^2, it is twice
-    the largest eigenvalue of the sum of n n^T at a mass, here bounded by its rows (Gershgorin 1931). Sharp for large
-    nets of edges and diagonals.
+    ``offsets``: (vector to the neighbor, stiffness relative to the model's). Since (n (x - y))^2 <= 2 (n x)^2 +
+    2 (n y)^2, the bound is twice the largest eigenvalue of the sum of n n^T over a mass's springs of direction n, here
+    bounded by row sums (Gershgorin 1931). It is sharp for large nets of edges and diagonals.
     """
     rows = [[0.0] * 3 for _ in range(3)]
     for vector, part in offsets:

@@ -1,4 +1,4 @@
-"""Pins: masses of a net that are held, led along, and let go."""
+"""Pins: masses of a net that are held, moved in a prescribed way, and released."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Pin(Record):
 
 
 def start_velocity(pin: Pin, assembly: Assembly) -> Floats:
-    """(3,) [m/s] velocity of a pin's masses at the start."""
+    """Velocity (3,) [m/s] of a pin's masses at the start."""
     import numpy as np
 
     ends = [np.asarray(assembly.initial(Value(_at(pin.shift, by, assembly)))) for by in (-APART, APART)]
@@ -41,7 +41,7 @@ def start_velocity(pin: Pin, assembly: Assembly) -> Floats:
 
 
 def pinned(name: str, net: Net, pin: Pin | None = None) -> Any:
-    """(k,) indices of a pin's masses. Raises ScriptError where its formula holds for none."""
+    """Indices (k,) of a pin's masses. Raises ScriptError where its formula is true for none."""
     import numpy as np
 
     if pin is not None and pin.where is not None:
@@ -55,9 +55,10 @@ def pinned(name: str, net: Net, pin: Pin | None = None) -> Any:
 
 
 def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies) -> None:
-    """Add the motion of pins. The work done on them is counted, with negative sign, among the dissipated energy.
+    """Add the prescribed motion of pins to an island; the work done by them is subtracted from the dissipated energy.
 
-    Velocity and acceleration are central differences. Raises ScriptError for a shift that is no function of time.
+    Velocities and accelerations are central differences of the shift. Raises ScriptError for a shift that is no
+    function of time.
     """
     import numpy as np
 
@@ -72,7 +73,7 @@ def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies)
         shifts = [assembly.value(Value(_at(pin.shift, by, assembly), pin.shift.span)) for by in (-APART, 0.0, APART)]
         places = (bodies.position_at, bodies.velocity_at, bodies.work_at, bodies.mass_at, bodies.inverse_at)
         if pin.until is not None:
-            assembly.stop_at(pin.until - APART)  # frames within a step see the rates at both ends: the last is short
+            assembly.stop_at(pin.until - APART)  # dense output uses the rates at both ends of a step: a short last one
             assembly.stop_at(after(pin.until))
         until = assembly.floats([float("inf") if pin.until is None else pin.until])
         ints = (*places, *shifts, assembly.floats([APART]), starts, until, len(masses), *masses.tolist())
@@ -83,7 +84,7 @@ def guide(pins: Mapping[str, Pin], net: Net, assembly: Assembly, bodies: Bodies)
 
 
 def _at(shift: Value, by: float, assembly: Assembly) -> Expr:
-    """The shift a little later."""
+    """The shift at time t + ``by`` [s]. Raises ScriptError where it is no function of time."""
     try:
         return later(shift.expr, by, assembly.formula)
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""The field of a word that says where on a mass or a rigid body something acts."""
+"""The field `at` of a word: the mass, or the point of a rigid body, on which it acts."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ HELP = "name a mass, `net.bob`, or a point of a rigid body, `crate.hook`"
 
 
 def model_of(at: Value) -> tuple[str, ...]:
-    """The model of a place; none where it is not the output of a part."""
+    """The model that a value links to, as a tuple of one; empty where the value is no link."""
     return (at.expr.task,) if isinstance(at.expr, Link) else ()
 
 
 def place_problems(at: Value | None, models: bool) -> Iterator[Problem]:
-    """A place that is no mass's, and one that is named besides models."""
+    """Problems: `at` that is no link to a mass; `at` besides `on` (``models``: whether models are named)."""
     if at is not None and not isinstance(at.expr, Link):
         yield Problem(f"this is a place, but no mass to act on: {HELP}", ("at",))
     if at is not None and models:
@@ -29,7 +29,7 @@ def place_problems(at: Value | None, models: bool) -> Iterator[Problem]:
 
 
 def place_of(at: Value, assembly: Assembly) -> Place:
-    """The mass or point of a body that a value names. Raises ScriptError where it is none."""
+    """The mass or point of a body that a value links to. Raises ScriptError for any other value."""
     place = assembly.place(at.expr) if isinstance(at.expr, Link) else None
     if place is None:
         raise ScriptError([Diagnostic("no-mass", "there is no mass here to act on", at.span, HELP)])

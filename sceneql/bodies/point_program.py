@@ -1,8 +1,8 @@
-"""Forces on a mass by formulas of its place, velocity, mass and charge, printed as a compiled kernel.
+"""Forces given by formulas of a mass's position, velocity, mass and charge, printed as compiled kernels.
 
-Kernels have the signature of a term; ints: constants_at, position_at, velocity_at, count, mass_at, inverse_at,
-work_at, charge_at, charge_step (0: one charge for all), then the offset of every value read from other parts. Those of
-a force or torque at a place on a body: constants_at, mass_at, the place's, then such offsets.
+The kernels are terms. Integers of a force on all masses: constants_at, position_at, velocity_at, count, mass_at,
+inverse_at, work_at, charge_at, charge_step (0: one charge for all), then the offset of each value read from other
+parts. Integers of a force or torque at a place on a body: constants_at, mass_at, Place.ints, then such offsets.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ MOTION = (*PLACE, "vx", "vy", "vz")
 CHARGE = Symbol("q")
 HEAD = 9
 AT, PLACE_INTS = 2, 8
-"""First of the integers of a place on a body, and how many these are."""
+"""Index of the first integer of a place on a body, and the number of its integers."""
 ZERO = Number(0.0)
 NAMES = {name: f"own_{name}" for name in (*MOTION, "m", "q")} | {TIME_SYMBOL: "t"}
-"""The kernel's names of a mass's own numbers: `y` is the state."""
+"""Names in the kernel of a mass's own quantities, prefixed because `y` is the state."""
 
 
 def problem(formula: Formula, count: int) -> str | None:
-    """Why a formula is not ``count`` numbers computed from numbers, or None."""
+    """The message on a formula that is not ``count`` scalars which a kernel can compute; None for a valid one."""
     try:
         parts = components(formula.expr)
     except TypeError as error:
@@ -43,20 +43,23 @@ def problem(formula: Formula, count: int) -> str | None:
 
 
 def downhill(potential: Formula) -> tuple[Expr, ...]:
-    """Minus the gradient of a potential: three scalars."""
+    """The three scalar components of minus the gradient of a potential."""
     (phi,) = components(potential.expr)
     return tuple(Call("neg", (differentiate(phi, Symbol(name)),)) for name in PLACE)
 
 
 def scaled(rows: Sequence[Expr], factor: Expr) -> tuple[Expr, ...]:
-    """Every row times a factor."""
+    """Each expression times a factor."""
     return tuple(Call("mul", (factor, row)) for row in rows)
 
 
 def add_force(
     assembly: Assembly, bodies: Bodies, rows: Sequence[Expr], charge: tuple[int, int] = (0, 0), *, counted: bool
 ) -> None:
-    """Add the force [N] of three scalar rows to every mass; ``counted``: its power is added to the work."""
+    """Add a force [N] on every mass, with components ``rows`` (3); ``counted``: its power is counted as work.
+
+    ``charge``: offset of the charges, and stride, 0 for one charge for all.
+    """
     from sceneql.system import Slopes
 
     for row in rows:
@@ -74,7 +77,7 @@ def add_force(
         inputs = [assembly.value(Value(expr)) for expr in constants.inputs]
         return (assembly.floats(constants.values), *head, *charge, *inputs)
 
-    # Constants of the derivatives are stored with the force's: no floats can be added once a solver asks for them.
+    # The derivatives' constants are stored now, since no floats can be added when a solver asks for the Jacobian.
     entries, kernel, more = _slopes(rows)
     ints = store(more)
 
@@ -95,9 +98,9 @@ def add_force(
 def add_force_at(
     assembly: Assembly, place: Place, rows: Sequence[Expr], *, counted: bool, torque: bool = False
 ) -> None:
-    """Add the force [N], or torque [N m], of three scalar rows at a place on a body.
+    """Add a force [N], or torque [N m], with components ``rows`` (3) at a place on a body.
 
-    The formulas' place and velocity are the place's own; ``counted``: its power is added to the work.
+    Position and velocity in the formulas are those of the place; ``counted``: its power is counted as work.
     """
     from sceneql.system import Slopes
 
@@ -118,7 +121,7 @@ def add_force_at(
     kernel = write_term("force_at", constants, AT + PLACE_INTS, lines, imports)
     inputs = [assembly.value(Value(expr)) for expr in constants.inputs]
     head = (assembly.floats(constants.values), place.bodies.mass_at + place.body)
-    # As in `add_force`, the derivatives' constants are stored now.
+    # As in `add_force`, the derivatives' constants are stored before a solver asks for the Jacobian.
     more, slopes_kernel = _slopes_at(rows, torque)
     values = [assembly.value(Value(expr)) for expr in more.inputs]
     ints = (assembly.floats(more.values), head[1], *place.ints, *values)
@@ -133,7 +136,7 @@ def add_force_at(
 
 
 def _slopes_at(rows: Sequence[Expr], torque: bool) -> tuple[Constants, Callable[[], str]]:
-    """The constants of the derivatives of a force, or torque, at a place on a body; and their kernel."""
+    """Constants of the Jacobian of a force, or torque, at a place on a body, and a function that writes its kernel."""
     constants = Constants()
     printer = Printer(NAMES, {}, constants)
     forces = ", ".join(printer.name(constants.lift(row)) for row in rows)
@@ -160,7 +163,7 @@ def _slopes_at(rows: Sequence[Expr], torque: bool) -> tuple[Constants, Callable[
 
 
 def _motion_at() -> list[str]:
-    """Lines that read the motion of a place on a body."""
+    """Lines of a kernel that read position and velocity of a place on a body, and the body's mass."""
     return [
         f"    {', '.join(NAMES[name] for name in MOTION[:3])} = position(y, floats, ints, {AT})",
         f"    {', '.join(NAMES[name] for name in MOTION[3:])} = velocity(y, floats, ints, {AT})",
@@ -169,7 +172,7 @@ def _motion_at() -> list[str]:
 
 
 def _slopes(rows: Sequence[Expr]) -> tuple[list[tuple[int, int]], Callable[[], str], Constants]:
-    """Which (component, number of MOTION) have a derivative other than zero, the kernel for them, and its constants."""
+    """(pairs (component, index in MOTION) with a nonzero derivative, function that writes their kernel, constants)."""
     constants = Constants()
     printer = Printer(NAMES, {}, constants)
     found = [(c, n, differentiate(row, Symbol(name))) for c, row in enumerate(rows) for n, name in enumerate(MOTION)]
@@ -180,19 +183,22 @@ def _slopes(rows: Sequence[Expr]) -> tuple[list[tuple[int, int]], Callable[[], s
 
 
 def links_of(formula: Formula) -> list[Link]:
-    """The outputs of other parts that a formula reads."""
+    """The links of a formula to outputs of other parts, each once."""
     return list(dict.fromkeys(node for node in walk(formula.expr) if isinstance(node, Link)))
 
 
 def store_links(assembly: Assembly, formula: Formula) -> list[int]:
-    """Store what a formula reads of other parts: the offset of each of `links_of`."""
+    """Store the outputs of other parts that a formula reads; returns the offset of each of `links_of`."""
     return [assembly.value(Value(link)) for link in links_of(formula)]
 
 
 def potential_at(
     formula: Formula, places: Floats, state: ModelState, linked: Sequence[int], known: Mapping[str, Any] | None = None
 ) -> Floats:
-    """A potential at points (n, 3), as an array (n,); ``linked``: offsets from `store_links`."""
+    """Values (n,) of a potential at points (n, 3) [m].
+
+    ``linked``: offsets from `store_links`; ``known``: values of further symbols.
+    """
     import numpy as np
 
     offsets = dict(zip(links_of(formula), linked, strict=True))

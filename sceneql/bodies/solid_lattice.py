@@ -1,4 +1,4 @@
-"""Solids of masses and springs: the fields of a solid that fills an object, and the net made from them."""
+"""Mass-spring solids that fill an object: script fields, and the network made from them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 SHORT, LONG = 0.9, 1.2
-"""Weights of the two kinds of edges, by which the lattice is isotropic."""
+"""Weights of the springs on the lattice's short and long edges, for which it is elastically isotropic."""
 LEAST_MASS = 1e-200
 """[kg] Lighter masses are taken for mistakes: their inverses overflow."""
 SPRINGS_A_MASS = 7
@@ -60,7 +60,7 @@ class Filling(Record):
     )
 
     def problems(self) -> Iterator[Problem]:
-        """Fields of the other cells, and viscosity without a modulus."""
+        """Problems: fields of the other kind of cells; masses too light; viscosity without a modulus."""
         others = ("shear",) if self.cells == "tetrahedra" else ("density", "modulus", "retardation")
         for name in others:
             if getattr(self, name) is not None:
@@ -71,10 +71,10 @@ class Filling(Record):
             yield Problem("a retardation needs a `modulus`", ("retardation",), at_key=True)
 
     def fastest(self, stiffness: float, damping: float, mass: float) -> tuple[float, float]:
-        """Bounds on (angular frequency)^2 and decay of an endless one, from the model's numbers.
+        """Bounds on (angular frequency)^2 [1/s^2] and decay rate [1/s] of an infinite lattice.
 
-        Of tetrahedra a mass has springs to 8 middles and along the 6 sides of cubes: nets.stiffest by hand. One near
-        the surface may oscillate faster.
+        From the model's stiffness [N/m], damping [N s/m] and mass [kg]. Of tetrahedra a mass has springs to 8 cubes'
+        centers and along 6 sides: nets.stiffest evaluated by hand. Masses near the surface may oscillate faster.
         """
         if self.cells == "cubes":
             factor = self._lattice().stiffest() / mass
@@ -89,7 +89,7 @@ class Filling(Record):
         return square, factor * damping if self.retardation is None else self.retardation * square
 
     def bounded(self, low: Floats, high: Floats) -> None:
-        """Raise Exceeds where a box has too many places to test."""
+        """Raise Exceeds where a box low..high [m] has too many lattice points to test."""
         import numpy as np
 
         from sceneql.bodies.filling.fill import grid_counts
@@ -101,7 +101,10 @@ class Filling(Record):
             bounded(2.0 * float(np.prod(lattice_counts(low, high, self.spacing))), "places of a lattice", PLACE)
 
     def net(self, assembly: Assembly) -> Net:
-        """Raises ScriptError for an object that holds no neighbors, LimitRefused for too many masses."""
+        """The network that fills the object.
+
+        Raises ScriptError for an object that contains no two neighbors, LimitRefused for too many masses.
+        """
         from sceneql.bodies.filling.fill import Inside
 
         with doing(f"filling {self.object.name}"):
@@ -179,7 +182,7 @@ class Filling(Record):
 
 
 def _sides(points: Floats, depth: float) -> dict[str, Any]:
-    """Masks by the names of SIDES, of points (n, 3) within a depth [m] of the ends along each axis."""
+    """By the names of SIDES, masks (n,) of points (n, 3) within a depth [m] of the bounding box's sides."""
     low, high = points.min(axis=0) + depth, points.max(axis=0) - depth
     masks = [mask for axis in range(3) for mask in (points[:, axis] <= low[axis], points[:, axis] >= high[axis])]
     return dict(zip(SIDES, masks, strict=True))

@@ -1,4 +1,4 @@
-"""The modes of a solid of elements: small free oscillations about rest."""
+"""Normal modes of a solid of elements: small free oscillations about its rest state."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ class Bent(Record):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SolidModes:
-    """Modes of a solid at rest."""
+    """Normal modes of a solid at rest."""
 
     frequencies: Floats
-    """(k,) ascending [Hz]."""
+    """(k,) [Hz], ascending."""
     shapes: Floats
-    """(k, n, 3) the largest displacement of each is 1."""
+    """(k, n, 3) displacements of the nodes, scaled so that the largest of each mode is 1."""
 
     def read(self, output: str) -> Floats:
-        """An output of OUTPUTS."""
+        """Value of an output of OUTPUTS."""
         return self.frequencies if output == "frequencies" else self.shapes
 
     def start(self, bent: Bent, line: Span | None) -> Floats:
-        """(n, 3) displacements [m]. Raises ScriptError where there is no such mode."""
+        """Initial displacements (n, 3) [m] of a start in a mode. Raises ScriptError where there is no such mode."""
         if bent.mode > len(self.shapes):
             message = f"there is no mode {bent.mode}: this solid has {len(self.shapes)}"
             raise ScriptError([Diagnostic("out-of-range", message, line)])
@@ -59,20 +59,20 @@ class SolidModes:
 
 @dataclass(slots=True, eq=False)
 class Resting:
-    """A solid at rest, whose modes are found when they are first asked for.
+    """A solid at rest, whose modes are computed on first use.
 
-    Its own strain alone resists; damping and loads are left out. Several modes of one frequency are any such of these.
+    Only its elastic forces count, without damping and loads. Modes of a multiple frequency are an arbitrary basis.
     """
 
     strain: Strain
     places: Floats
-    """(n, 3) of its nodes at rest [m]."""
+    """(n, 3) [m] rest positions of the nodes."""
     held: Any
-    """(n, 3) bool: components that do not move."""
+    """(n, 3) bool: components of nodes that are held."""
     _found: SolidModes | None = None
 
     def modes(self, floats: Floats, count: int) -> SolidModes:
-        """So many of its modes, the lowest; ``floats`` those of its island."""
+        """The ``count`` lowest modes; ``floats``: those of its island."""
         if self._found is None or len(self._found.frequencies) < min(count, self._free().size):
             self._found = self._sought(floats, count)
         return SolidModes(self._found.frequencies[:count], self._found.shapes[:count])
@@ -102,7 +102,7 @@ class Resting:
 
 
 def stiffness_at(strain: Strain, places: Floats, floats: Floats) -> Any:
-    """(3 n, 3 n) sparse symmetric [N/m]: minus the derivative of the forces of strain by the places (n, 3)."""
+    """Stiffness matrix (3 n, 3 n), sparse symmetric [N/m]: minus the Jacobian of elastic forces at places (n, 3)."""
     import numpy as np
     from scipy.sparse import coo_array, csr_array
 
@@ -117,7 +117,7 @@ def stiffness_at(strain: Strain, places: Floats, floats: Floats) -> Any:
         slopes_tile(tile, 0.0, y, entries, numbers, slopes.ints)
     across = np.arange(3)
     rows, columns = np.asarray(slopes.rows) - int(strain.ints[1]), np.asarray(slopes.columns) - position_at
-    own = (columns >= 0) & (columns < places.size)  # not the derivatives by velocities
+    own = (columns >= 0) & (columns < places.size)  # without the derivatives by velocities
     at = np.broadcast_arrays(rows[own][:, None, None] + across[:, None], columns[own][:, None, None] + across)
     values = -entries.reshape(-1, 9)[own]
     found = coo_array((values.ravel(), tuple(one.ravel() for one in at)), (places.size, places.size)).tocsr()

@@ -13,25 +13,28 @@ if TYPE_CHECKING:
 
 TURNS, PIECES = 9, 12
 LEAD = 0.12
-"""Part of a coil's length that is straight at either end."""
+"""Share of a coil's length that is straight at each end."""
 
 
 def spheres(name: str, surface: Surface, places: Floats, radius: float) -> Points:
-    """Masses (n, 3) as spheres of one radius [m]."""
+    """Spheres of one radius [m] at masses (n, 3) [m]."""
     import numpy as np
 
     return Points(name, surface, places, np.full(len(places), radius))
 
 
 def lines(name: str, surface: Surface, ends: Floats, radius: float) -> Segments:
-    """Springs (m, 2, 3) as straight rods."""
+    """Straight rods of a radius [m] for springs with ends (m, 2, 3) [m]."""
     import numpy as np
 
     return Segments(f"{name}.springs", surface, ends, np.full(len(ends), radius))
 
 
 def coils(name: str, surface: Surface, ends: Floats, rest: Floats, radius: float) -> Segments:
-    """Springs (m, 2, 3) as coils whose wire keeps its number of turns; ``radius`` [m] is that of the masses."""
+    """Coils with a fixed number of turns for springs with ends (m, 2, 3) [m] and rest lengths (m,) [m].
+
+    ``radius`` [m]: of the masses, by which coil and wire are scaled.
+    """
     import numpy as np
 
     pieces = [
@@ -43,7 +46,7 @@ def coils(name: str, surface: Surface, ends: Floats, rest: Floats, radius: float
 
 
 def coil(start: Floats, end: Floats, radius: float) -> Floats:
-    """A helix with straight leads from ``start`` to ``end`` (3,) as pieces (k, 2, 3)."""
+    """A helix with straight leads from ``start`` to ``end`` (3,) [m], as segments (k, 2, 3)."""
     import numpy as np
 
     along = end - start
@@ -54,7 +57,7 @@ def coil(start: Floats, end: Floats, radius: float) -> Floats:
     other = np.cross(along, across)
     s = np.linspace(0.0, 1.0, TURNS * PIECES + 1)
     angle = 2 * np.pi * TURNS * s
-    # The coil opens from the axis within half a turn and closes in the same way.
+    # The radius grows from 0 within the first half turn and shrinks to 0 within the last.
     wide = radius * np.minimum(1.0, np.minimum(s, 1 - s) * TURNS * 2)
     height = length * (LEAD + (1 - 2 * LEAD) * s)
     helix = start + height[:, None] * along
@@ -64,14 +67,14 @@ def coil(start: Floats, end: Floats, radius: float) -> Floats:
 
 
 def skin(name: str, surface: Surface, places: Floats, triangles: Ints, half: float) -> Mesh:
-    """Triangles of masses (n, 3): closed ones as they are, smooth, others as a sheet of thickness 2 ``half`` [m]."""
+    """The smooth mesh of triangles of masses (n, 3) [m] if closed; otherwise a sheet of thickness 2 ``half`` [m]."""
     if len(rim_edges(triangles)):
         return sheet(name, surface, places, triangles, half)
     return Mesh(name, surface, places, triangles, vertex_normals(places, triangles))
 
 
 def sheet(name: str, surface: Surface, places: Floats, triangles: Ints, half: float) -> Mesh:
-    """A surface of masses (n, 3) as a closed slab of thickness 2 ``half`` [m], smooth on both sides."""
+    """An open surface of masses (n, 3) [m] as a closed slab of thickness 2 ``half`` [m], smooth on both sides."""
     import numpy as np
 
     normals = vertex_normals(places, triangles)
@@ -90,7 +93,7 @@ def sheet(name: str, surface: Surface, places: Floats, triangles: Ints, half: fl
 
 
 def vertex_normals(places: Floats, triangles: Ints) -> Floats:
-    """(n, 3) unit normals, the mean over the triangles around weighted by their areas."""
+    """Unit vertex normals (n, 3): area-weighted means of the adjacent triangles' normals; 0 without any triangle."""
     import numpy as np
 
     a, b, c = (places[triangles[:, k]] for k in range(3))
@@ -108,7 +111,7 @@ def vertex_normals(places: Floats, triangles: Ints) -> Floats:
 
 
 def rim_edges(triangles: Ints) -> NDArray[Any]:
-    """(r, 2) directed edges that belong to one triangle alone."""
+    """Directed boundary edges (r, 2), those of only one triangle."""
     import numpy as np
 
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])

@@ -1,4 +1,4 @@
-"""The base of all models of masses and springs: pins, tears, forces, outputs, shapes in pictures."""
+"""Base class of all mass-spring models: pins, tearing, forces, outputs, shapes in pictures."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
 SPRINGS_A_TILE = 10_000
-"""Springs in a tile: a thread evaluates the derivatives of one tile at a time."""
+"""Springs of a tile, a task of one thread in the evaluation of the Jacobian."""
 MOST_COILS = 40
 
 
@@ -40,7 +40,7 @@ class Tear(Record):
 
 
 def pin_problems(pins: Iterable[str] | Mapping[str, Pin], known: Sequence[str], count: int | None) -> Iterator[Problem]:
-    """The pins that are neither one of the names nor the number of one of ``count`` masses (None: not known yet)."""
+    """Problems: pins that are neither a known name nor the number of one of ``count`` masses (None: not known yet)."""
     for pin in pins:
         if isinstance(pins, Mapping) and pins[pin].where is not None:
             continue
@@ -93,9 +93,10 @@ class SpringModel(Model):
     _made: tuple[Net, Floats] | None = PrivateAttr(None)
 
     def make(self, assembly: Assembly) -> tuple[Net, Floats, Floats]:
-        """The net as it stands at the start, the masses (n,) [kg], and the springs' blocks (m, 5).
+        """The net at the start, the masses (n,) [kg], and the blocks (m, 5) of the springs.
 
-        A block is rest length [m], stiffness [N/m], its part of the model's, damping [N s/m], its part of the model's.
+        A block: rest length [m]; stiffness [N/m], plus a multiple of the model's; damping [N s/m], plus a multiple of
+        the model's.
         """
         raise NotImplementedError
 
@@ -104,7 +105,7 @@ class SpringModel(Model):
         return None
 
     def items(self, output: str) -> int | None:
-        """How many there are."""
+        """Number of items of an output that has one a mass, where it is known; else None."""
         several = point_masses.BODY_OUTPUTS.get(output)
         return None if several is None or several.type.shape[:1] != (None,) else self.mass_count()
 
@@ -117,13 +118,13 @@ class SpringModel(Model):
         return bool(blocks[:, 3].any())
 
     def start_velocities(self, count: int) -> Floats:
-        """(n, 3) [m/s], before the spin."""
+        """Initial velocities (n, 3) [m/s], without the spin."""
         import numpy as np
 
         return np.tile(self.velocity, (count, 1)).astype(float)
 
     def held(self, net: Net) -> Any:
-        """(n,) bool: the masses that are held at the start."""
+        """Mask (n,) of the masses that are pinned at the start."""
         import numpy as np
 
         fixed = np.zeros(len(net.points), dtype=bool)
@@ -133,13 +134,13 @@ class SpringModel(Model):
 
     @property
     def net(self) -> Net:
-        """Masses and springs; there is none before the island is assembled."""
+        """The network; available once the island is assembled."""
         assert self._made is not None
         return self._made[0]
 
     @property
     def single(self) -> dict[str, int]:
-        """The numbers of masses with names of their own: listed ones, a rope's ends, a cloth's corners."""
+        """Numbers of the single masses by name: listed masses, a rope's ends, a cloth's corners."""
         import numpy as np
 
         found = {name: np.arange(len(self.net.points))[of].ravel() for name, of in self.net.places.items()}
@@ -147,20 +148,20 @@ class SpringModel(Model):
 
     @property
     def rest(self) -> Floats:
-        """(m,) lengths of the springs without force [m]."""
+        """Rest lengths (m,) [m] of the springs."""
         assert self._made is not None
         return self._made[1]
 
     def burdens(self, density: float) -> bool:
-        """Unless it is known to weigh what it displaces."""
+        """Whether its weight may differ from that of displaced fluid of a density [kg/m^3]; true unless overridden."""
         return True
 
     def static_net(self) -> tuple[float, int] | None:
-        """How far its masses are apart [m], and along how many axes they are, as its fields alone tell it."""
+        """(spacing of the masses [m], number of axes along which they extend) if the fields determine it, else None."""
         return None
 
     def mass_radius(self) -> float:
-        """Radius of the masses [m]."""
+        """Radius of the masses [m]: the given one, else a tenth of the shortest spring."""
         if self.radius is not None:
             return self.radius
         some = self.rest[self.rest > 0]
@@ -221,7 +222,7 @@ class SpringModel(Model):
         return replace(bodies, springs=Springs(net.pairs, np.stack([stiffnesses, dampings]), period))
 
     def holding(self, state: ModelState) -> Any:
-        """(m,) bool: the springs that have not torn."""
+        """Mask (m,) of the springs that have not torn."""
         import numpy as np
 
         from sceneql.bodies.mass_spring_kernels import BLOCK
@@ -232,7 +233,7 @@ class SpringModel(Model):
         return state.floats[at : at + BLOCK * m].reshape(m, BLOCK)[:, 1:3].any(axis=1)
 
     def read(self, output: str, state: ModelState) -> Any:
-        """Any output of the manual."""
+        """Value of an output of ``gives`` or of a single mass."""
         import numpy as np
 
         assert state.bodies is not None
@@ -270,7 +271,7 @@ class SpringModel(Model):
         return None if found is None or self.tear is not None else found[self.net.pairs]
 
     def triangles(self, state: ModelState) -> Any:
-        """(k, 3) triangles of its surface that have no torn side; None where it has no surface."""
+        """Triangles (k, 3) of its surface without a torn side; None where it has no surface."""
         import numpy as np
 
         net = self.net
@@ -286,7 +287,7 @@ class SpringModel(Model):
         return net.triangles[~np.isin(sides, torn).any(axis=1)]
 
     def tetrahedra(self, state: ModelState) -> Any:
-        """(t, 4) those of a solid that have no torn edge; none of other models."""
+        """Tetrahedra (t, 4) of a solid without a torn edge; none for other models."""
         import numpy as np
 
         from sceneql.bodies.filling.tetrahedra import edges
@@ -299,11 +300,11 @@ class SpringModel(Model):
         return net.tetrahedra[self.holding(state)[edges(net.tetrahedra)[1]].all(axis=1)]
 
     def asked_to_draw(self) -> bool:
-        """Where its look is written."""
+        """Whether the script sets its look."""
         return self.look != "auto"
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
-        """A cloth as a sheet, a solid as its skin, else masses as spheres and springs as coils or lines."""
+        """Its shapes: a cloth as a sheet, a solid as its skin, else masses as spheres and springs as coils or lines."""
         from sceneql.bodies import spring_look
 
         assert state.bodies is not None
@@ -324,9 +325,9 @@ class SpringModel(Model):
 
 
 def _shortest_period(pairs: Any, stiffnesses: Floats, weights: Floats) -> float:
-    """Lower bound [s] of all periods: no squared frequency exceeds the largest 2 (sum of stiffnesses) / mass.
+    """Lower bound [s] of the periods of small oscillations, from w^2 <= max 2 (sum of a mass's stiffnesses) / mass.
 
-    Gershgorin's theorem for K v = w^2 M v: a mass's row has that sum in its diagonal block and once more beside it.
+    Gershgorin's theorem for K v = w^2 M v: a mass's row has this sum in its diagonal block and again off it.
     """
     import numpy as np
 
@@ -336,7 +337,10 @@ def _shortest_period(pairs: Any, stiffnesses: Floats, weights: Floats) -> float:
 
 
 def _slopes(net: Net, bodies: Bodies, damped: bool, floats_at: Sequence[int]) -> Slopes:
-    """Slopes with each spring's 3x3 block by positions, at four pairs of masses; if damped, also by velocities."""
+    """Jacobian of the springs: for each spring one 3x3 block by positions, at the four pairs of its ends.
+
+    If ``damped``, another block by velocities.
+    """
     import numpy as np
 
     from sceneql.bodies.mass_spring_slopes_kernels import tile

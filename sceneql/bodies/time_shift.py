@@ -1,4 +1,4 @@
-"""Expressions of time, shifted a little, for rates of change of any motion by differences."""
+"""Expressions of time: shifted in time, and their rates of change, exact or by central differences."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ APART = 1e-4
 """Seconds to either side for a central difference: its error is APART^2/6 times the third derivative."""
 
 MOST_KEYS = 64
-"""Keys of a value above which its derivative would be too large a formula."""
+"""Most keys of a value whose derivative is formed exactly: it would be too large a formula."""
 
 
 def later(expr: Expr, by: float, follow: Callable[[Link], Expr | None] = lambda link: None) -> Expr:
-    """The value ``by`` [s] later. ``follow`` gives a linked output as an expression of time.
+    """The expression at time t + ``by`` [s]. ``follow`` returns a linked output as an expression of time, or None.
 
-    Raises ValueError for a link to something that is not a function of time.
+    Raises ValueError for a link to an output that is no function of time.
     """
 
     meanings: dict[Link, Expr] = {}

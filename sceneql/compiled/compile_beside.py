@@ -1,4 +1,4 @@
-"""Compiling on a second core: a second process compiles modules of kernels, and this one loads them from the cache.
+"""Compilation on a second core: a second process compiles modules of kernels, and this one loads them from the cache.
 
 Compiling holds the interpreter's lock, so a second core can only help from a second process.
 """
@@ -27,9 +27,9 @@ from sceneql.interrupts import SIGNALS
 
 
 def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
-    """Start compiling modules not compiled yet in a second process, in this order; call the result to load them.
+    """Start compiling modules in a second process, in this order, if not compiled yet; call the result to load them.
 
-    The call imports these modules, last one first and without those that it names, and counts as
+    The call imports these modules, the last one first, except those whose names are its arguments; it counts as
     compilation time. Generated modules are left out.
     """
     ours = [module for module in modules if module.partition(".")[0] in OURS[:2]]
@@ -56,11 +56,11 @@ def compile_beside(modules: Iterable[str]) -> Callable[..., None]:
 
 
 def compile_named(names: Iterable[str]) -> NoReturn:
-    """The second process's work: import the module that each line names, and leave the mark named behind it.
+    """The second process's loop: import the module named by each line, then set the mark named behind it.
 
-    It ends, in the middle of a module too, when the lines do: with the first process, however that has ended. Ctrl-C is
-    for the first one, which reports what it has kept and then ends this one. So are errors, as trouble with the cache,
-    at which this one ends: what it leaves undone meets the first one, too.
+    It ends, even in the middle of a module, when the lines end: with the first process, however that ended. Ctrl-C is
+    left to the first process, which reports what it has kept and then ends this one. Errors, as trouble with the cache,
+    end this process silently: the first one meets them, too.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     CACHE.second = True
@@ -82,7 +82,7 @@ def compile_named(names: Iterable[str]) -> NoReturn:
 
 
 class _Told(Listener):
-    """Says while a function is compiled that it is."""
+    """Listener that shows the progress text "compiling" while a function is compiled."""
 
     def __init__(self) -> None:
         self._open: list[AbstractContextManager[object]] = []
@@ -117,7 +117,7 @@ def _beside() -> IO[str]:
 
 @contextmanager
 def _no_signals() -> Iterator[None]:
-    """A process that is started inside the block does not see signals that end this one, where the system has masks."""
+    """Context manager: a process started inside ignores the signals that end this one, if there are signal masks."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -147,7 +147,7 @@ def _copied() -> IO[str]:
 
 
 def _work_and_end(reading: int) -> NoReturn:
-    """Compile what a pipe names without the first process's exit handlers; its open files are closed at once."""
+    """Compile the modules named in a pipe, without the first process's exit handlers and open files; never returns."""
     try:
         os.closerange(3, reading)
         os.closerange(reading + 1, os.sysconf("SC_OPEN_MAX"))

@@ -19,7 +19,7 @@ from sceneql.doing import doing
 
 PACKAGE = "sceneql_generated"
 _texts: dict[str, bytes] = {}
-"""By the full name of a module."""
+"""Texts of generated modules, by full name."""
 
 
 def write(prefix: str, source: str) -> str:
@@ -50,7 +50,7 @@ def function(name: str) -> Any:
 
 
 def _file(name: str) -> str:
-    """Where the cache has the text of a module."""
+    """Name in the cache of the text of a module."""
     return f"generated/{name.rpartition('.')[2]}.py"
 
 

@@ -1,8 +1,8 @@
-"""Scalar expressions printed as lines of a compiled kernel: shared parts once, generated names, no numbers.
+"""Printing of scalar expressions as lines of a compiled kernel: shared parts once, generated names, no numbers.
 
 Every constant becomes an entry of the kernel's floats, so that the text depends on the form of a formula alone and a
-changed number finds its compiled code. The one exception is an exponent 2, 3 or 4: it is form (a product), since a
-general power costs some twenty multiplications.
+changed number finds its compiled code. The one exception is an exponent of 2, 3 or 4, which is part of the form (a
+product), since a general power costs some twenty multiplications.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from sceneql.quantities.expression import (
 )
 
 PRODUCTS = {2.0: "{0} * {0}", 3.0: "{0} * {0} * {0}", 4.0: "({0} * {0}) * ({0} * {0})"}
-"""A power by its exponent."""
+"""Products for powers, by the exponent."""
 
 TERM_HEAD = (
     "import math",
@@ -43,7 +43,7 @@ OWN_HEADS = {
     "noise_": "from sceneql.compiled.noise_kernels import noise_line, noise_space",
     "uniform(": "from sceneql.compiled.chance_kernels import uniform",
 }
-"""Of kernels with noise or chance alone: others need not have it compiled."""
+"""Imports of kernels with noise or random numbers, by the text that needs them: others need not compile these."""
 
 TEXTS: Mapping[str, str] = {
     "add": "{0} + {1}",
@@ -79,13 +79,16 @@ TEXTS: Mapping[str, str] = {
     "noise_line": "noise_line({0}, {1})",
     "noise_space": "noise_space({0}, {1}, {2}, {3})",
 }
-"""The operations that a kernel may use, by the names of the one table; {0}, ... are names of floats, 0 if not given."""
+"""The text of each operation that a kernel may use; {0}, ... are names of floats, 0 where not given."""
 NOT_GIVEN = ("0.0", "0.0")
 
 
 @dataclass
 class Constants:
-    """Inputs of formulas as symbols: ``#0``, ``#1``, ... numbers, ``@0``, ... outputs of other parts."""
+    """Inputs of formulas as symbols: ``#0``, ``#1``, ... constants, ``@0``, ``@1``, ...
+
+    values that read other parts.
+    """
 
     values: list[float] = field(default_factory=list)
     inputs: list[Expr] = field(default_factory=list)
@@ -94,7 +97,8 @@ class Constants:
     def lift(self, expr: Expr) -> Expr:
         """The scalar formula with each largest subexpression without a free symbol replaced by a new symbol.
 
-        Two constants never share a symbol, even where their values are equal: then a new value would change the form.
+        Two constants never share a symbol, even where their values are equal: otherwise a new value would change the
+        form.
         """
         expr = rebuilt(expr, lambda node, new: _in_pairs(new))
         varying = holders(lambda node: isinstance(node, Symbol), expr)
@@ -142,7 +146,7 @@ class Printer:
     _names_of_texts: dict[str, str] = field(default_factory=dict)
 
     def name(self, expr: Expr) -> str:
-        """The name that holds the expression's value, after the lines that compute it."""
+        """The name of the variable that holds the expression's value after ``lines``."""
         name: str = recursive(self._named, expr)
         return name
 
@@ -175,7 +179,10 @@ class Printer:
 
 
 def printable(expr: Expr) -> bool:
-    """Whether a kernel can compute an expression: constants and links apart, scalars and operations of TEXTS alone."""
+    """Whether a kernel can compute an expression.
+
+    Apart from constants and links it must consist of scalars and operations of TEXTS alone.
+    """
     varying = holders(lambda node: isinstance(node, Symbol), expr)
 
     def operands(node: Expr) -> tuple[Expr, ...]:
@@ -186,7 +193,7 @@ def printable(expr: Expr) -> bool:
 
 
 def _in_pairs(expr: Expr) -> Expr:
-    """`min` and `max` of many as such of two, from the left: as kernels compute them."""
+    """`min` and `max` of many arguments as nested calls of two, from the left, as kernels compute them."""
     if isinstance(expr, Call) and expr.op in ("min", "max") and len(expr.args) > 2:
         return reduce(lambda before, arg: Call(expr.op, (before, arg)), expr.args)
     return expr
@@ -204,8 +211,8 @@ def write_term(
 ) -> str:
     """Write a kernel with the signature of a term; returns its ``"module:function"``.
 
-    ``lines``: its body; ``imports``: of what it calls besides. The constants stand in floats from ints[0] on, each
-    value read from other parts at one of ints[first:].
+    ``lines``: its body; ``imports``: import lines for what the body calls. The constants stand in floats from ints[0]
+    on, each value read from other parts at one of ints[first:].
     """
     text = [
         *TERM_HEAD,

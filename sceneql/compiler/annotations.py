@@ -1,4 +1,4 @@
-"""What the type of a field tells of the nodes that it is read from."""
+"""Inspection of field types: marks, quantities, and which nodes of a script suit a type."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from sceneql.quantities.units import format_quantity
 
 
 def unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
-    """The type under its marks, and these."""
+    """A type without its ``Annotated`` marks, and the marks."""
     if get_origin(annotation) is Annotated:
         base, *marks = get_args(annotation)
         inner, more = unwrap(base)
@@ -27,12 +27,12 @@ def marks_of(info: Any) -> list[Any]:
 
 
 def quantities(info: Any) -> list[kinds.Quantity]:
-    """The quantities that a field's type tells of."""
+    """The Quantity marks of a field's type."""
     return [mark for mark in marks_of(info) if isinstance(mark, kinds.Quantity)]
 
 
 def is_fixed(annotation: Any) -> bool:
-    """Whether a type is a tuple of a certain length."""
+    """Whether a type is a tuple of fixed length."""
     return get_origin(annotation) is tuple and get_args(annotation)[-1] is not Ellipsis
 
 
@@ -52,7 +52,7 @@ def could_be(annotation: Any, node: Node) -> bool:
 
 
 def example_of(cls: type[BaseModel], name: str) -> str:
-    """What may stand behind a field of a record in a message: a quantity in its unit, or fields."""
+    """An example of what may stand behind a field of a record, for messages: a quantity in its unit, or fields."""
     (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
     dimension = next((mark.dimension for mark in quantities(info) if not mark.shape), None)
     if dimension is not None:

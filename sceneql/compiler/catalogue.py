@@ -1,8 +1,8 @@
-"""Word to file: listing the words of a family is listing its folder; naming a word imports its file alone.
+"""The catalogue of words. Listing the words of a family lists its folder; naming a word imports its file alone.
 
-Words come from the package's own folders, then from folders of the user's (``--words DIR`` with one subfolder a
-family, as ``DIR/solvers/heun.py``), then from installed packages through the entry point group ``sceneql.words``
-(entry ``solvers.heun = "package.module"``), which is read only when a word is in none of the folders.
+Words come from the package's own folders, then from folders of the user's (``--words DIR`` with one subfolder a family,
+as ``DIR/solvers/heun.py``), then from installed packages through the entry point group ``sceneql.words`` (entry
+``solvers.heun = "package.module"``), which is read only when a word is in none of the folders.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from sceneql.kinds import FAMILIES, Kind
 
 ROOT = Path(__file__).parent.parent
 LONGEST = 60
-"""Most characters of a word: names of files are limited."""
+"""Largest number of characters of a word: file names are limited."""
 USER_PACKAGE = "sceneql_words"
 
 
@@ -70,9 +70,9 @@ class Catalogue:
         return sorted(word for name in (family, *also) for word in self.words(name))
 
     def load(self, family: str, word: str) -> type[Kind] | None:
-        """The class of a word that may stand in a family's section, or None if there is none.
+        """The class of a word that may stand in a family's section; None if there is none.
 
-        Raises ScriptError where a default in the word's file is none.
+        Raises ScriptError where the word's file has a default that no script could write.
         """
         key = (family, word)
         if key not in self._loaded and _may_be_word(word):

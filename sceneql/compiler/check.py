@@ -1,4 +1,4 @@
-"""Script to checked parts: every entry is read by its own word's class, and all errors are found in one run.
+"""Check of a script: every entry is read by its word's class, and all errors are found in one run.
 
 Unused parts are checked too, since an error in an unused part is still an error; nothing is pruned here.
 """
@@ -15,7 +15,8 @@ from typing import Any
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
-from sceneql.compiler.read import Reader, Unreadable
+from sceneql.compiler.problems import Unreadable
+from sceneql.compiler.read import Reader
 from sceneql.compiler.unknown import (
     beside_world,
     mover_of,
@@ -51,17 +52,20 @@ class Checked:
     tasks: Mapping[str, Task]
     """In the order of the script; parts written in place stand before the part that holds them."""
     timed: bool
-    """Whether its clock can be read."""
+    """Whether the clock is valid or absent."""
     files: tuple[str, ...]
     """Paths of the files that its parts name, used or not."""
     without: frozenset[str] = frozenset()
-    """Names of defaults that it says it has none of: `floor: none`."""
+    """Names of default parts that the script declines: `floor: none`."""
     implied: frozenset[str] = frozenset()
-    """Names of defaults that it names and does not write."""
+    """Names of default parts that the script refers to without writing them."""
 
 
 def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Parsed | None = None) -> Checked:
-    """Read every entry of a script; wrong ones are recorded and left out. ``parsed``: known from other variants."""
+    """Read every entry of a script; errors are recorded in ``found`` and wrong entries left out.
+
+    ``parsed``: cache of texts parsed for other variants.
+    """
     checker = _Checker(script, catalogue, found, parsed or Parsed())
     for family, entries in script.sections.items():
         for name in entries:
@@ -80,9 +84,10 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Pars
 
 
 NONE, OPTIONAL = "none", {"floor": "plane"}
-"""In place of a word: a default of this name that the script does without; which these are, and what by word."""
+"""NONE stands in place of a word, for a default part that the script does without. OPTIONAL: the names of such parts,
+and their words."""
 WORLD = "world"
-"""What does not move, where a field may name it."""
+"""The name of the world, where a field may refer to it."""
 
 
 class _Checker:
@@ -114,7 +119,7 @@ class _Checker:
             given=script.gives,
             broken=script.broken,
             mover=lambda name: mover_of(name, self.entries, self.family_of),
-            unsure=cache(self.unsure),  # which reads all of a part, and a part of many bodies is named by many
+            unsure=cache(self.unsure),  # cached: it reads a whole part, which many may name
             parsed=parsed,
         )
 
@@ -136,7 +141,7 @@ class _Checker:
         return kept
 
     def gives(self) -> None:
-        """Read every value that an instance gives, whether or not another part reads it."""
+        """Read every output that a template instance gives, whether or not another part reads it."""
         for given in self.script.gives.values():
             self.names.read(given.node, replace(self.names, scope=given.scope))
 
@@ -161,7 +166,7 @@ class _Checker:
                 self.found.error("unknown-word", f"'{word}' is no word", section.keys[word].span, help=help)
 
     def unused_defaults(self, word: str, fields: MappingNode, kinds: list[type[Kind]]) -> None:
-        """Read the defaults of a word that no part has; entries written in place there make no parts."""
+        """Read the ``defaults`` of a word that no part uses; entries written in place there make no parts."""
         before = dict(self.tasks), dict(self.family_of), dict(self.entries)
         part = Entry(f"defaults.{word}", word, None, fields.span, fields.span, None)
         for cls in kinds:
@@ -205,7 +210,7 @@ class _Checker:
         return settings
 
     def kind(self, family: str, entry: Entry) -> type[Kind] | None:
-        """The class of an entry's word, or None after reporting that there is none."""
+        """The class of an entry's word; None after reporting that there is none."""
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
             words = self.catalogue.choices(family)
@@ -222,12 +227,15 @@ class _Checker:
         return cls
 
     def family(self, name: str) -> str:
-        """The family of an entry's word (of the section, where the word is unknown)."""
+        """The family of an entry's word; that of its section where the word is unknown."""
         cls = self.catalogue.load(self.family_of[name], self.entries[name].word)
         return self.family_of[name] if cls is None else cls.family
 
     def outputs_of(self, name: str) -> Mapping[str, Gives] | None:
-        """The outputs of a part, without reading its fields; None if nothing is called so, or they cannot be known."""
+        """The outputs of a part, found without reading its fields.
+
+        None if there is no such part or they cannot be known.
+        """
         if name not in self.entries:
             return None
         entry = self.entries[name]
@@ -288,7 +296,7 @@ class _Checker:
         self.tasks[name] = Task(name, entry.word, kind, entry.span, tuple(dict.fromkeys(needs)))
 
     def meant(self, family: str, entry: Entry) -> type[Kind] | None:
-        """The class of the word nearest to an unknown one, where the entry's fields are such as that word takes."""
+        """The class of the word nearest to an unknown one, if the entry's fields suit it; else None."""
         near, fields = nearest(entry.word, self.catalogue.choices(family)), entry.fields
         cls = None if near is None else self.catalogue.load(family, near)
         if cls is None or not isinstance(fields, MappingNode):
@@ -299,7 +307,10 @@ class _Checker:
         return cls if fits else None
 
     def refer(self, node: Node, mark: Refers, anonymous: str, entry: Entry) -> Ref | None:
-        """The part that a field names; an entry written in place becomes a part of its own first."""
+        """The part that a field refers to; an entry written in place becomes a part of its own first.
+
+        None after an error.
+        """
         if isinstance(node, Scalar):
             name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
             if mark.bodies and name == WORLD:
@@ -346,7 +357,10 @@ class _Checker:
         return None
 
     def _body(self, node: Scalar, model: str, body: str) -> Ref | None:
-        """One body of a model, or the only one, where there is such a one."""
+        """A reference to a body of a model, or to the only one (``body`` empty).
+
+        None after reporting that there is none.
+        """
         outputs = self.names.outputs_of(model)
         if outputs is None or self.names.unsure(model):
             return None  # it is reported there
@@ -362,7 +376,7 @@ class _Checker:
         return None
 
     def copies(self, node: Scalar, mark: Refers, entry: Entry) -> list[str]:
-        """The parts of these families that a name of many stands for."""
+        """The parts of the mark's families that a collective name stands for."""
         name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
         several = self.script.groups.get(name, ())
         return [part for part in several if self.family(part) in (mark.family, mark.also)]

@@ -1,4 +1,4 @@
-"""Script to simulation graph: check, then the passes in order."""
+"""Compilation of a script to a simulation graph: the check, then the passes in order."""
 
 from __future__ import annotations
 
@@ -44,7 +44,9 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
 LONG = 10_000
-"""Frames from which on it is told, before they are drawn, how many there are."""
+"""Number of frames of a film from which on there is a warning."""
+FILM, ROWS = 10.0, 1000
+"""Seconds of a film, and rows of a table, that are told in place of too many."""
 SHORTER = "a larger `speed` of the `clock`, or an `end` that is sooner, makes fewer; `render --draft` draws them sooner"
 
 
@@ -53,9 +55,8 @@ def compile_script(
 ) -> SimulationGraph:
     """The graph of a script. ``pruned=False`` keeps every part (its pictures must be the same).
 
-    ``parsed``: what of the script's texts is known from other variants.
-
-    Raises ScriptError with all errors, those that are in ``found`` already included.
+    ``parsed``: cache of texts parsed for other variants. Raises ScriptError with all errors, including those already in
+    ``found``.
     """
     checked = check(script, catalogue, found, parsed)
     check_studies(checked.settings.studies, script.root, catalogue, KEYS, found)
@@ -115,10 +116,10 @@ def compile_script(
 
 
 def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
-    """What each output draws: objects that are not hidden and no child of another, and models that no object shows.
+    """By output, what it draws: objects neither hidden nor members of others, and models that no object shows.
 
-    An object that decorates (a trail, an arrow) does not show the model that it reads, nor one at a single mass of a
-    net. Models are drawn in any case where the script says how they look.
+    An object that decorates (a trail, an arrow) does not show the model that it reads; neither does an object at a
+    single mass of a net. Models are drawn in any case where the script says how they look.
     """
     inner = {ref.name for t in tasks.values() if isinstance(t.kind, Object) for ref in t.kind.members()}
     objects = [
@@ -148,7 +149,7 @@ def _drawn(tasks: Mapping[str, Task]) -> dict[str, tuple[str, ...]]:
 
 
 def _shows(task: Task, read: Task) -> bool:
-    """Whether a part shows what it reads: an object that stands at one mass of a net shows none of its springs."""
+    """Whether a part shows the part that it reads: an object at one mass of a net shows none of its springs."""
     if not (isinstance(task.kind, Object) and isinstance(read.kind, Model)):
         return True
     placed = values_of(getattr(task.kind, "position", None))
@@ -164,7 +165,7 @@ def _check_outputs(
     place: Span | None,
     found: Diagnostics,
 ) -> None:
-    """Refuse outputs of more instants than a run can have; warn of long films, and of pictures of nothing."""
+    """Report outputs with more instants than a run can have; warn of long films, and of pictures of nothing."""
     for task in tasks.values():
         if isinstance(task.kind, Output):
             try:
@@ -173,19 +174,21 @@ def _check_outputs(
                     text = f"'{task.name}' is of {frames:,} frames: a second for each would be {duration(frames)}"
                     found.warning("long-film", text, task.span or place, help=SHORTER)
             except Exceeds as error:
-                found.error("limit-refused", f"{task.name}: {error}", task.span or place)
+                help = f"the clock makes it a film of {FILM:g} s with `speed: {clock.end / FILM:.3g}`"
+                help = help if isinstance(task.kind, Picture) else f"take fewer: `every: {clock.end / ROWS:.3g} s`"
+                found.error("limit-refused", f"{task.name}: {error}", task.span or place, help=help)
             if not drawn.get(task.name, (task.name,)):
                 found.warning("nothing-drawn", f"there is nothing to draw in '{task.name}'", task.span)
 
 
 def _palette(tasks: Mapping[str, Task]) -> tuple[str, ...]:
-    """Parts without a material in the script's order: colors by order do not change with what is pruned."""
+    """Parts without a material in the script's order, so that default colors do not depend on pruning."""
     kinds = (Object, Model)
     return tuple(t.name for t in tasks.values() if isinstance(t.kind, kinds) and getattr(t.kind, "material", 0) is None)
 
 
 def _cameras(tasks: Mapping[str, Task]) -> dict[str, str]:
-    """The camera of each picture: the one it names, else the first of the script."""
+    """The camera of each picture: the one that it names, else the script's first."""
     first = next((t.name for t in tasks.values() if isinstance(t.kind, Camera)), "")
     return {
         t.name: t.kind.camera.name if t.kind.camera is not None else first

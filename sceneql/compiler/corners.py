@@ -1,4 +1,4 @@
-"""The line that a box by its corners should have been, where its numbers stand otherwise."""
+"""Suggested text for a box that should be given by its corners and is written otherwise."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ from sceneql.language.tree import Node
 
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 MOST = 200
-"""Letters of a value beyond which no numbers are looked for."""
+"""Largest length of a value in which numbers are looked for."""
 
 
 def by_corners(node: Node, field: str, length: int) -> str | None:
-    """What to write for a field of a low and a high corner of ``length`` components, or None.
+    """The help for a field that takes a low and a high corner of ``length`` components each; None if unknown.
 
-    Six numbers of space are the corners as they stand, three the size of a box about the origin; others are neither.
+    With twice as many numbers, these are the corners as they stand; with ``length`` numbers, they are the size of a box
+    about the origin.
     """
     text = node.span.source.text[node.span.start : node.span.end]
     numbers = NUMBER.findall(text) if len(text) <= MOST else []

@@ -1,6 +1,6 @@
-"""Defaults of a word's fields, checked when the word is loaded: a default that no script could write is an error.
+"""Check of the defaults of a word's fields, when the word is loaded: a script must be able to write each of them.
 
-The error points into the word's own file, as errors of scripts point into the script.
+Errors point into the word's own file, as errors of scripts point into the script.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from sceneql.quantities.span import Source, Span
 
 @cache
 def check_defaults(cls: type[BaseModel]) -> None:
-    """Read the defaults of a word and of the records in its fields. Raises ScriptError with all that are wrong."""
+    """Read the defaults of a word and of the records in its fields. Raises ScriptError with all errors."""
     found = Diagnostics()
     for record in _with_records(cls):
         for name, info in record.model_fields.items():
@@ -37,7 +37,10 @@ def check_defaults(cls: type[BaseModel]) -> None:
 def _mistakes(
     name: str, info: Any, place: Callable[[tuple[int, ...]], Span] | None, path: tuple[int, ...] = ()
 ) -> tuple[Any, ...]:
-    """The errors of a field's default, or of an item of it, at its place in a file; ``place`` None: in its text."""
+    """The errors of a field's default, or of an item at ``path`` in it.
+
+    ``place`` gives the span in the word's file by the path; None: spans are in the default's own text.
+    """
     default, what, found = info.default, written_name(name), Diagnostics()
     mark, kind = grammar_of(info)
     span = Span(Source("default", str(default)), 0, len(str(default))) if place is None else place(path)
@@ -67,8 +70,10 @@ def _mistakes(
 
 
 def _place(record: type[BaseModel], name: str, steps: tuple[int, ...]) -> Span:
-    """The default of a field, or the item at a path in it, in its class's file, quotes left out; the whole class where
-    the file has no text there."""
+    """The span, in the file of its class, of a field's default or of an item in it, without quotes.
+
+    The span of the whole class where the file has no text for the field.
+    """
     owner = next(one for one in record.__mro__ if name in vars(one).get("__annotations__", {}))
     path = Path(sys.modules[owner.__module__].__file__ or "")
     text = path.read_text(encoding="utf-8")
@@ -83,7 +88,7 @@ def _place(record: type[BaseModel], name: str, steps: tuple[int, ...]) -> Span:
 
 
 def _default_of(node: ast.AnnAssign, source: Source, steps: tuple[int, ...]) -> Span:
-    """The second argument of ``field(...)``, or the item at a path in it."""
+    """The span of the second argument of ``field(...)``, or of the item at a path in it."""
     call = node.value
     if isinstance(call, ast.Call):
         named = [keyword.value for keyword in call.keywords if keyword.arg == "default"]
@@ -97,7 +102,7 @@ def _default_of(node: ast.AnnAssign, source: Source, steps: tuple[int, ...]) -> 
 
 
 def _span(node: ast.stmt | ast.expr, source: Source) -> Span:
-    """The characters of a node; Python's columns count the bytes of a line."""
+    """The span of a syntax node; Python's columns count bytes of a line."""
 
     def offset(line: int, column: int) -> int:
         return source.line_starts[line - 1] + len(source.line(line).encode()[:column].decode())

@@ -1,4 +1,4 @@
-"""Nodes to textbook formulas, as `implicit` and `equations` take them."""
+"""Reading of formulas in plain numbers, as `implicit` and `equations` take them."""
 
 from __future__ import annotations
 
@@ -22,8 +22,11 @@ from sceneql.quantities.units import describe, in_words
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """The dimension of a formula's values. ``of_any``: what a define or an output was is not asked; ``at_start``: it is
-    evaluated before the run, when no part has a value; ``by_of``: the model's `of` gives the dimension."""
+    """The dimension that a formula's values must have.
+
+    ``of_any``: any former dimension of defines and outputs is accepted; ``at_start``: the formula is evaluated before
+    the run, when no part has a value; ``by_of``: the model's `of` gives the dimension.
+    """
 
     dimension: Dimension | None
     of_any: bool = False
@@ -31,9 +34,10 @@ class Wanted:
     by_of: bool = False
 
     def suits(self, has: Dimension | None) -> bool:
-        """Whether a formula may be of a dimension: of this one, or a plain number in SI.
+        """Whether a formula of dimension ``has`` is accepted: one of the wanted dimension, or of a plain number in SI.
 
-        What a define or an output was stays known while it is alone or in a sum of its like (Dimension.kind).
+        The former dimension of a define or an output stays known while it is alone or in a sum of its like
+        (Dimension.kind).
         """
         wanted = self.dimension
         if wanted is None or has is None or has == wanted:
@@ -46,7 +50,7 @@ class Wanted:
 def read_formula(
     node: Node, symbols: Iterable[str], wanted: Wanted, what: str, names: Names, found: Diagnostics
 ) -> Expr | None:
-    """A textbook formula over plain numbers: the symbols are free, defines come in as plain numbers."""
+    """A formula over plain numbers, with ``symbols`` free and defines as plain numbers; None after reporting errors."""
     if isinstance(node, Sequence):
         items = [read_formula(item, symbols, wanted, what, names, found) for item in node.items]
         known = [item for item in items if item is not None]
@@ -101,7 +105,7 @@ def read_formula(
 
 
 def _without_units(parsed: Expr, node: Scalar, free: set[str], lookup: Lookup, found: Diagnostics) -> str | None:
-    """The help where units alone are wrong, because the free symbols are plain numbers: the formula without units."""
+    """The help where only units are wrong, because the free symbols are plain numbers: the formula without units."""
     symbols = {n.parts[0] for n in walk(parsed) if isinstance(n, Name) and n.parts[0] in free}
     if not symbols or any(one.code != "dimension-mismatch" or one.help == SECONDS for one in found.found):
         return None

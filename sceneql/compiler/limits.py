@@ -1,4 +1,4 @@
-"""Numbers within a field's range: finite, and inside the limits that the field gives."""
+"""Checks of numbers against a field's range: finite, and within its limits."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sceneql.quantities.span import Span
 from sceneql.quantities.units import unit_of
 
 LARGEST_WHOLE = 2**53
-"""Beyond it doubles skip whole numbers; products of a few below it are doubles."""
+"""Largest whole number below which doubles skip none; products of a few such numbers are finite doubles."""
 
 
 def finite(number: Any) -> bool:
@@ -43,12 +43,14 @@ def check_limits(
             if not holds(number, bound):
                 asked, given = (_told(one, annotation) for one in (bound, number))
                 help = instead("zero", what.rpartition(".")[2]) if number == 0.0 else None
+                if limit == "at_most" and bound == 1 and 1 < number <= 100 and given == f"{number:g}":
+                    help = f"write `{number:g} %` for a percentage"
                 found.error("out-of-range", f"{what} must be {word} {asked}, not {given}", span, help=help)
                 return
 
 
 def numbers(value: Any) -> list[float]:
-    """The numbers of a number or of nested tuples, in order; anything else has none."""
+    """The numbers in a number or in nested tuples, in order; empty for anything else."""
     if isinstance(value, tuple | list):
         return [number for item in value for number in numbers(item)]
     return [float(value)] if isinstance(value, int | float) and not isinstance(value, bool) else []
@@ -65,7 +67,7 @@ def _told(number: float, annotation: Any) -> str:
 
 
 def _quantity(annotation: Any) -> Quantity | None:
-    """The first quantity that a type names."""
+    """The first Quantity mark in a type; None if there is none."""
     parts = get_args(annotation)
     marks = [part for part in parts if isinstance(part, Quantity)]
     inner = (_quantity(part) for part in parts if not isinstance(part, str | Quantity))

@@ -1,4 +1,4 @@
-"""What the names of a script mean: defines, `time`, a template's fields, and the outputs of other parts."""
+"""Resolution of the names of a script: defines, `time`, a template's fields, and outputs of other parts."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from sceneql.quantities.units import continues_unit, in_words, unit_hint
 
 WORDS = re.compile(WORD)
 DEEPEST = 40
-"""Defines that may be read within one another; what a define needs is read before it."""
+"""Largest depth of defines that are read within one another; what a define needs is read before it."""
 
 
 class Parsed:
-    """The trees of texts, by their nodes: the variants of a script share the nodes that none of them replaces."""
+    """Cache of parsed texts by node: the variants of a script share the nodes that none of them replaces."""
 
     def __init__(self) -> None:
         self._trees: dict[int, tuple[Node, Expr, bool, Expr | None]] = {}
 
     def tree(self, node: Scalar, text: str, lookup: Lookup, found: Diagnostics) -> Expr | None:
-        """The bound tree of a text, or None after reporting what is wrong with it. Raises ScriptError."""
+        """The bound tree of a text; None after reporting errors. Raises ScriptError."""
         known = self._trees.get(id(node))
         if known is None:
             expr = parse_value(text, node.content)
@@ -51,7 +51,7 @@ class Parsed:
 
 @dataclass
 class Names:
-    """The names of a script. ``outputs_of`` gives a part's outputs; ``read`` turns a define's node into a tree."""
+    """The names of a script. ``outputs_of`` returns a part's outputs; ``read`` turns a define's node into a tree."""
 
     defines: Mapping[str, Node]
     parts: Iterable[str]
@@ -61,9 +61,9 @@ class Names:
     given: Mapping[str, Given]
     """Outputs of template instances, by dotted name."""
     broken: Broken = field(default_factory=Broken)
-    """Names whose definitions were reported as unreadable, about which no further error is reported."""
+    """Names whose definitions were reported as unreadable; no further error is reported about them."""
     unsure: Callable[[str], bool] = lambda name: False
-    """Whether a part may have more outputs than are known, since its fields have errors."""
+    """Whether a part may have more outputs than are known, because its fields have errors."""
     mover: Callable[[str], str] = lambda name: ""
     """The model, or the body of it, that moves an object; empty where none does."""
     parsed: Parsed = field(default_factory=lambda: Parsed())
@@ -78,9 +78,10 @@ class Names:
         """The value of a define; a define that needs itself is an error."""
         if name in self._open:
             circle = " -> ".join([*self._open[self._open.index(name) :], name])
-            self.found.error("circular-define", f"'{name}' is defined by itself: {circle}", span)
+            help = f"write one of these without the others: `{name}: 1 m`"
+            self.found.error("circular-define", f"'{name}' is defined by itself: {circle}", span, help=help)
             return None
-        # All that a define needs is bound before it, but for what needs itself.
+        # The defines that a define needs are bound before it, except in a circle.
         if name not in self._bound and len(self._open) > DEEPEST:
             self.found.error("circular-define", f"'{name}' is defined by itself, over more than {DEEPEST} others", span)
             self._bound[name] = None
@@ -91,7 +92,7 @@ class Names:
         return self._bound[name]
 
     def _needed(self, name: str) -> Iterator[str]:
-        """The defines to bind before one and the define itself, each behind what it needs; none of a circle."""
+        """The defines to bind before a define, and the define itself, each after what it needs; none of a circle."""
         stack, known = [(name, False)], set[str]()
         while stack:
             each, ready = stack.pop()
@@ -106,7 +107,10 @@ class Names:
                 stack.extend((word, False) for word in reversed(self._named[each]))
 
     def field(self, name: str) -> tuple[Node, Names] | None:
-        """The node that a template's instance was given for a field, and the names that hold at that node."""
+        """The node that an instance of a template has for a field, and the names valid at that node.
+
+        None if there is none.
+        """
         scope = self.scope
         while scope is not None:
             if name in scope.fields:
@@ -115,7 +119,7 @@ class Names:
         return None
 
     def lookup(self, parts: tuple[str, ...], span: Span) -> Expr | Diagnostic | None:
-        """What a dotted name means, why it means nothing, or None after reporting what is wrong with it."""
+        """The expression of a dotted name, the Diagnostic that says why it has none, or None after reporting errors."""
         head = parts[0]
         if parts == ("time",):
             return Symbol("time", Type((), TIME), span)
@@ -143,16 +147,16 @@ class Names:
         return self._unknown(parts, span)
 
     def _once(self, node: Node, names: Names) -> Expr | None:
-        """The tree of a node in a scope, read where it is first asked for: all that use it share one tree."""
+        """The tree of a node in a scope, read at its first use and shared by all others."""
         place = id(node), id(names.scope)
         if place not in self._read:
             self._read[place] = node, names.scope, self.read(node, names)
         return self._read[place][2]
 
     def plain(self, expr: Expr) -> Expr:
-        """The same tree over plain numbers in SI: textbook formulas are not homogeneous, so dimensions are dropped.
+        """The tree with plain numbers in SI: formulas in plain numbers are not homogeneous, so dimensions are dropped.
 
-        What the whole was in words stays at its root (Dimension.kind).
+        The former dimension of the whole stays at its root, in words (Dimension.kind).
         """
         if id(expr) not in self._plain:
             tree = rebuilt(expr, lambda node, new: replace(new, type=Type(node.type.shape, PLAIN)))
@@ -163,21 +167,27 @@ class Names:
         return self._plain[id(expr)][1]
 
     def part_of(self, name: str) -> tuple[str, str]:
-        """The longest part whose name this begins with, and the rest, ``deck`` and ``plank.0``; all, where none is."""
+        """Split a name into the longest part's name that it begins with, and the rest: ``deck`` and ``plank.0``.
+
+        (name, "") where there is no such part.
+        """
         part = name
         while part and part not in self.parts:
             part = part.rpartition(".")[0]
         return (part, name[len(part) + 1 :]) if part else (name, "")
 
     def model_of(self, body: str) -> str | None:
-        """The model that has a body or mass of this name, written with or without the model's own before it."""
+        """The model with a body or mass of this name, written with or without the model's name.
+
+        None if there is none.
+        """
         for part in self.parts:
             if f"{body.removeprefix(f'{part}.')}.position" in (self.outputs_of(part) or ()):
                 return part
         return None
 
     def _is_reported(self, parts: tuple[str, ...]) -> bool:
-        """Whether the definition of the name, or of the part that would have it, was reported as unreadable."""
+        """Whether the definition of the name, or of the part that would give it, was reported as unreadable."""
         wanted = ".".join(parts)
         inside = wanted if self.scope is None else self.scope.resolve(wanted)
         return wanted in self.broken or inside in self.broken
@@ -185,14 +195,17 @@ class Names:
     def _output(
         self, task: str, outputs: Mapping[str, Gives], parts: tuple[str, ...], first: int, span: Span
     ) -> Expr | None:
-        """The output, or a component of it, that the name's pieces from number ``first`` on say."""
+        """The output, or a component of it, named by the pieces of the name from number ``first`` on.
+
+        None after an error.
+        """
         for size in range(len(parts), first, -1):
             name = ".".join(parts[first:size])
             if name in outputs:
                 link = Link(task, name, outputs[name].type, span, outputs[name].computed)
                 return self._component(link, parts, size, span)
             whole = size == len(parts) or set(parts[size:]) <= {"x", "y", "z"}
-            if f"{name}.position" in outputs and whole:  # a mass, or a point of a body, by its name alone is its place
+            if f"{name}.position" in outputs and whole:  # a mass's or point's bare name is its position
                 link = Link(task, f"{name}.position", outputs[f"{name}.position"].type, span)
                 return self._component(link, parts, size, span)
         if self.unsure(task):
@@ -204,7 +217,7 @@ class Names:
         return None
 
     def _of_mover(self, task: str, wanted: tuple[str, ...]) -> str | None:
-        """The help for an output of an object that the model which moves it gives."""
+        """The help for an output that an object lacks and the model that moves it gives."""
         mover = self.mover(task)
         model, body = self.part_of(mover) if mover else ("", "")
         known = self.outputs_of(model) or {}
@@ -212,7 +225,7 @@ class Names:
         return f"'{model}' moves it: write `{'.'.join((mover, *wanted))}`" if gives else None
 
     def _component(self, whole: Expr, parts: tuple[str, ...], size: int, span: Span) -> Expr | None:
-        """The component that the name's pieces behind the first ``size`` say, if any."""
+        """The component named by the pieces behind the first ``size``, if any; None after an error."""
         for at in range(size, len(parts)):
             part = component(whole, ".".join(parts[:at]), parts[at], span)
             if isinstance(part, Diagnostic):
@@ -246,12 +259,15 @@ class Names:
                 hint = f"a color by its name stands alone, `color: {wanted}`; in a formula it is `[1, 0.5, 0]`"
             if hint is None and wanted in UNITS:
                 hint = f"a unit stands behind a number: write `(1 {wanted})`"
+            giving = next((part for part in parts_known if wanted in (self.outputs_of(part) or ())), None)
+            if hint is None and giving is not None:
+                hint = f"a value is named with its part: write `{giving}.{wanted}`"
             if hint is None and len(parts) == 1:
                 hint = f"names stand under `define`, `define: {{{wanted}: 1 m}}`: `sceneql words define`"
         return Diagnostic("unknown-name", message, span, hint)
 
     def _meant(self, parts: tuple[str, ...], known: list[str]) -> str:
-        """The help for a dotted name whose part is not known: its nearest part, or the part without its section."""
+        """The help for a dotted name of an unknown part: the nearest part, or the part without its section."""
         if parts[0] == "define":
             return f"what is defined is named by itself: write `{'.'.join(parts[1:])}`"
         if parts[1] in known:
@@ -262,7 +278,7 @@ class Names:
         return f"did you mean '{'.'.join((part, *parts[1:]))}'?"
 
     def _inside(self) -> list[str]:
-        """The names that a template or a copy has of its own."""
+        """The names defined by the templates and copies around."""
         names: list[str] = []
         scope = self.scope
         while scope is not None:
@@ -273,11 +289,12 @@ class Names:
     def _some_output(self, task: str) -> str:
         outputs = self.outputs_of(task) or {}
         fields = [name for name, gives in outputs.items() if gives.type.shape == (None,)]
-        return f"{task}.{'position' if 'position' in outputs else next(iter([*fields, *outputs]), 'position')}"
+        places = [name for name in ("position", "positions") if name in outputs]
+        return f"{task}.{next(iter([*places, *fields, *outputs]), 'position')}"
 
 
 def _words(node: Node) -> list[str]:
-    """The first pieces of all that may be names in a value, in the order of the text."""
+    """The first pieces of all words in a value that may be names, in the order of the text."""
     match node:
         case Scalar(text=text):
             return [word.partition(".")[0] for word in WORDS.findall(text)]

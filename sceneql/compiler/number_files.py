@@ -1,4 +1,4 @@
-"""Nodes to lists of numbers that stand in files: ``{file: cloud.csv, columns: x y z, unit: mm}``."""
+"""Reading of lists of numbers from files: ``{file: cloud.csv, columns: x y z, unit: mm}``."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from sceneql.quantities.units import in_words, parse_unit
 FIELDS = ("file", "columns", "unit")
 TEXTS, ARRAYS = (".csv", ".tsv", ".txt"), (".npz", ".npy")
 LARGEST = 64 << 20
-"""Bytes of a file, unpacked."""
+"""Largest size of a file, unpacked [bytes]."""
 MOST = 200_000
-"""Rows of a file: as many as a skeleton may have parts."""
+"""Largest number of rows of a file: as many as a skeleton may have parts."""
 SHOWN = 24
-"""Characters of a cell that a message quotes."""
+"""Number of characters of a cell that a message quotes."""
 Rows = list[list[float]]
 
 
 class Wrong(Exception):
-    """What is wrong with a file, and what to do about it."""
+    """An error in a file, and its remedy."""
 
     def __init__(self, message: str, help: str | None = None) -> None:
         super().__init__(message)
@@ -39,7 +39,7 @@ class Wrong(Exception):
 
 
 def names_a_file(node: Node, quantity: Quantity) -> bool:
-    """Whether a node stands for a list of numbers in a file: it has the field `file`, and a list may stand there."""
+    """Whether a node stands for a list of numbers in a file: a list may stand there, and it has the field `file`."""
     if quantity.shape is None:
         listed = quantity.dimension is not None
     else:
@@ -50,9 +50,9 @@ def names_a_file(node: Node, quantity: Quantity) -> bool:
 def read_numbers(
     node: Node, quantity: Quantity, what: str, folder: Path, files: list[str], found: Diagnostics
 ) -> Value | None:
-    """The list that a file holds, a row for each item, or None after reporting what is wrong.
+    """The list in a file, a row for each item; None after reporting errors.
 
-    Its numbers are in SI where no unit is given. The path joins ``files``.
+    Numbers are in SI where no unit is given. The path is appended to ``files``.
     """
     assert isinstance(node, MappingNode)
     ok = True
@@ -100,7 +100,7 @@ def _unit(
 
 
 def _columns(node: Node | None, found: Diagnostics) -> list[str] | None:
-    """Names or numbers of columns, as written; none for the first ones."""
+    """Names or numbers of columns as written; empty: the first ones; None after reporting an error."""
     items = node.items if isinstance(node, SequenceNode) else [] if node is None else [node]
     if not all(isinstance(item, Scalar) for item in items):
         found.error("wrong-shape", "columns are names, or numbers from 1 on: `columns: x y z`", items[0].span)
@@ -112,7 +112,7 @@ def _columns(node: Node | None, found: Diagnostics) -> list[str] | None:
 
 
 def _rows(path: Path, shape: Sequence[int | None] | None, wanted: list[str]) -> Rows:
-    """The chosen columns of a file. Raises Wrong; caused by a LookupError where the chosen columns are not there."""
+    """The chosen columns of a file. Raises Wrong, caused by a LookupError where the chosen columns are missing."""
     ending = path.suffix.lower()
     if ending not in (*TEXTS, *ARRAYS):
         raise Wrong(f"a list of numbers is in a file that ends in {', '.join((*TEXTS, *ARRAYS))}")
@@ -129,7 +129,10 @@ def _rows(path: Path, shape: Sequence[int | None] | None, wanted: list[str]) -> 
 
 
 def _of_text(path: Path, width: int | None, wanted: list[str]) -> Rows:
-    """Of a table: commas, semicolons, tabs or blanks between its cells; a first row of names; `#` begins a comment."""
+    """Rows of a text table.
+
+    Cells are separated by commas, semicolons, tabs or blanks; a first row may hold names; `#` begins a comment.
+    """
     with path.open(encoding="utf-8-sig", newline="") as stream:
         lines = ((k, line.strip()) for k, line in enumerate(stream, 1))
         cells = _cells((k, line) for k, line in lines if line and not line.startswith("#"))
@@ -180,7 +183,7 @@ def _finite(row: list[str], column: int, line: int) -> float:
 
 
 def _chosen(wanted: list[str], heads: list[str], count: int, width: int | None) -> list[int]:
-    """The columns that names or numbers choose among ``count``; by default the first ``width``, or all."""
+    """Indices of the columns chosen by names or numbers among ``count``; by default the first ``width``, or all."""
     if not wanted:
         if width is not None and count < width:
             raise Wrong(f"it has too few columns: {count}, where {width} are needed")
@@ -200,7 +203,7 @@ def _chosen(wanted: list[str], heads: list[str], count: int, width: int | None) 
 
 
 def _of_arrays(path: Path, width: int | None, wanted: list[str]) -> Rows:
-    """Of the one array of a file, or of that which ``wanted`` names in an archive: a row for each item."""
+    """Rows of the only array of a file, or of the array named by ``wanted`` in an archive."""
     import numpy as np
 
     try:
@@ -230,7 +233,7 @@ def _of_arrays(path: Path, width: int | None, wanted: list[str]) -> Rows:
 
 
 def _member(names: list[str], wanted: list[str]) -> str:
-    """The array of an archive that is meant."""
+    """The name of the chosen array of an archive. Raises Wrong."""
     every = ", ".join(names)
     if len(wanted) > 1:
         raise Wrong("one array is needed: `columns` names it", f"it has {every}") from LookupError()
@@ -243,7 +246,7 @@ def _member(names: list[str], wanted: list[str]) -> str:
 
 
 def _vector(rows: Rows, shape: Sequence[int | None] | None, scale: float, dimension: Dimension, span: Span) -> Expr:
-    """The list of rows: of numbers, of vectors, or of pairs of points."""
+    """The Vector of all rows: of numbers, of vectors, or of pairs of points."""
     inner = (len(rows[0]),) if shape is None else tuple(size or 1 for size in shape[1:])
     if shape is None and inner == (1,):
         inner = ()

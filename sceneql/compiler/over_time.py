@@ -1,4 +1,4 @@
-"""Instants beyond the run, and operations over all of it (`final`, `at`, ...): only `expect` has the run before it."""
+"""Checks of instants against the run's end, and of operations over the run (`final`, `at`), for `expect` alone."""
 
 from __future__ import annotations
 

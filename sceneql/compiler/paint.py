@@ -1,4 +1,4 @@
-"""Nodes to colors and rotations: fields whose grammar is more than a quantity's."""
+"""Reading of colors and rotations, whose grammar is more than a quantity's."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from sceneql.compiler.values import parsed_text, read_expr, read_value, time_rea
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure
+from sceneql.language.tree import Sequence as SequenceNode
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import ANGLE, PLAIN
 from sceneql.quantities.evaluate import evaluate
@@ -24,7 +25,7 @@ AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _HEX = re.compile(r"0[xX]([0-9a-fA-F]{6})")
 _DIGITS = re.compile(r"\d+\.?\d*|\.\d+")
 DARK = 16
-"""Numbers that are all up to this are no bytes, of which a color of these would be black to the eye."""
+"""A color whose numbers are all at most this is not taken as bytes: as such it would be nearly black."""
 BRIGHTER = "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
 ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
 UNTURNED = "`1 0 0 0` turns nothing, and `{about: z, angle: 30 deg}` by an angle"
@@ -60,14 +61,14 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
 
 
 def _is_name(text: str) -> bool:
-    """Whether a text stands for a color by a name, or by digits or a call as in CSS and other languages."""
+    """Whether a text gives a color by name, by digits, or by a call as in CSS and other languages."""
     called = text.startswith(("rgb(", "rgba(", "hsl(", "hsla("))
     words = all(word.isalpha() for word in text.split())
     return called or words or text.isidentifier() or text.startswith("#") or _HEX.fullmatch(text) is not None
 
 
 def _meant(text: str) -> str:
-    """The help for what is no color."""
+    """The help for a text that is no color."""
     *_, last = text.split() or [""]
     if (digits := _HEX.fullmatch(text)) is not None:
         return f'write `"#{digits[1].lower()}"`'
@@ -150,6 +151,16 @@ def _turned(node: Node, expr: Expr | None) -> str:
         written = node.text.strip()
         angle = f"{written} deg" if all(isinstance(one, Number) and one.bare for one in literal) else written
         return f"write `{{xyz: {angle}}}`" if len(literal) == 3 else f"write `{{about: y, angle: {angle}}}`"
+    if isinstance(node, SequenceNode) and len(literal) == 3 and all(isinstance(one, Number) for one in literal):
+        return f"write `{{xyz: [{', '.join(item.span.text for item in node.items)}]}}`"
+    if isinstance(node, MappingNode) and node.entries:
+        given = {name: item.span.text for name, item in node.entries.items()}
+        if given.keys() == {"axis", "angle"}:
+            return f"write `{{about: {given['axis']}, angle: {given['angle']}}}`"
+        if len(given) == 1 and given.keys() <= AXES.keys():
+            return f"write `{{about: {next(iter(given))}, angle: {next(iter(given.values()))}}}`"
+        if given.keys() <= AXES.keys():
+            return f"write `{{xyz: [{', '.join(given.get(axis, '0 deg') for axis in AXES)}]}}`"
     return "write `{about: z, angle: 30 deg}`, `{xyz: 10 20 30 deg}` or a quaternion `[w, x, y, z]`"
 
 

@@ -1,4 +1,4 @@
-"""Paths of files that a script names: below the scene's folder, and existing."""
+"""Paths of files named by a script: they must exist, below the scene's folder."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sceneql.quantities.diagnostic import Diagnostics
 
 
 def read_path(node: Node, folder: Path, what: str, found: Diagnostics) -> str | None:
-    """The path of a file below the scene's folder, links followed, or None after reporting what is wrong."""
+    """The path of an existing file below the scene's folder, links followed; None after reporting an error."""
     if not isinstance(node, Scalar) or not node.text.strip():
         found.error("wrong-shape", f"{what} is the path of a file", node.span)
         return None

@@ -1,4 +1,4 @@
-"""What is wrong with fields that each are right: the problems of a record, reported where they stand."""
+"""Errors in combinations of fields: the problems of a record, reported where they stand."""
 
 from __future__ import annotations
 
@@ -13,10 +13,15 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
 
-def validated(cls: type[BaseModel], got: dict[str, Any], node: Node | None, span: Span, found: Diagnostics) -> Any:
-    """The record of fields that were read from ``node``; None after a report where they do not go together.
+class Unreadable(Exception):
+    """A value was wrong and has been reported; the reader of the surrounding value goes on with the next."""
 
-    A record that is no word is returned with its problems: the record or word around it may have some of its own.
+
+def validated(cls: type[BaseModel], got: dict[str, Any], node: Node | None, span: Span, found: Diagnostics) -> Any:
+    """The record made of fields read from ``node``; None after reporting that they do not go together.
+
+    A record that is no word is returned in spite of its problems, so that those of the record or word around it are
+    found.
     """
     context: list[tuple[BaseModel, kinds.Problem]] = []
     try:

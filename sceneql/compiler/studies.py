@@ -1,4 +1,4 @@
-"""Studies: the values by which their sweeps and references replace the script's."""
+"""Studies: the patches by which sweeps and references replace values of the script."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ HELP = "write `1e0 .. 1e12 N/m, 13 points`, or a list of values"
 
 @dataclass(frozen=True, slots=True)
 class Tried:
-    """One value of a path: its label, its number in ``unit`` if it is one of a range, and the patch."""
+    """One value of a sweep: its label, its number in ``unit`` if it is from a range, and the patch."""
 
     label: str
     number: float
@@ -69,7 +69,7 @@ def _label(node: Node) -> str:
 
 
 def spaced(low: float, high: float, points: int, *, log: bool = True) -> tuple[float, ...]:
-    """Values from ``low`` to ``high``, both exact, evenly spaced: with ``log`` and one sign, in the logarithm."""
+    """Evenly spaced values from ``low`` to ``high``, both exact; with ``log`` and one sign, spaced in the logarithm."""
     parts = [k / (points - 1) for k in range(points)]
     if log and _alike(low, high):
         middle = [math.copysign(abs(low) ** (1 - part) * abs(high) ** part, low) for part in parts[1:-1]]
@@ -84,19 +84,22 @@ def spaced(low: float, high: float, points: int, *, log: bool = True) -> tuple[f
 
 
 def _alike(low: float, high: float) -> bool:
-    """Whether both are of one sign."""
+    """Whether both numbers have the same sign and none is 0."""
     return (low > 0 and high > 0) or (low < 0 and high < 0)
 
 
 def instead(study: Study) -> list[Patch]:
-    """The patches that make a study's reference."""
+    """The patches of a study's reference run."""
     return [(path, node, node.span) for path, node in (study.reference or {}).items()]
 
 
 def check_studies(
     studies: Naming[str, Study], root: Mapping, catalogue: Catalogue, keys: Collection[str], found: Diagnostics
 ) -> None:
-    """Report sweeps that are neither ranges nor lists, and paths that lead nowhere; ``keys``: all but the families."""
+    """Report sweeps that are neither ranges nor lists, and paths that lead nowhere.
+
+    ``keys``: the top-level keys except the families.
+    """
     for name, study in studies.items():
         patches = instead(study)
         for path, node in study.sweep.items():
@@ -111,7 +114,7 @@ def check_studies(
 
 
 def _paths(root: Mapping, name: str) -> dict[str, Span]:
-    """Where the paths of a study are written."""
+    """The spans of the paths in a study."""
     section = root.entries.get("studies")
     study = section.entries.get(name) if isinstance(section, Mapping) else None
     fields = [study.entries.get(key) for key in ("sweep", "reference")] if isinstance(study, Mapping) else []
@@ -120,6 +123,6 @@ def _paths(root: Mapping, name: str) -> dict[str, Span]:
 
 
 def alone(study: Study) -> list[list[Patch]]:
-    """Patches that are checked for the whole study: each value alone, and the reference."""
+    """The patches of each run that is checked: each value of the sweeps alone, and the reference."""
     values = [[value.patch] for path, node in study.sweep.items() for value in tried(path, node)]
     return [*values, *([instead(study)] if study.reference else [])]

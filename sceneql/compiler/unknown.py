@@ -1,4 +1,4 @@
-"""Words that a family, and fields that a word does not have: what was meant, or what is written in their place."""
+"""Help for unknown words and fields: what was meant, or what is written in their place."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ from sceneql.compiler.css_colors import NAMED
 from sceneql.compiler.names import Names
 from sceneql.kinds import Refers, written_name
 from sceneql.language.scope import Entry
-from sceneql.language.tree import Mapping, Scalar
+from sceneql.language.tree import Mapping, Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
 from sceneql.quantities.instead import instead
 from sceneql.quantities.other_words import OURS
 
+DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere"}
+"""The word of a family that is shown where several have a field."""
 MANY = 6
-"""Words up to which all that have a field are told."""
+"""Largest number of words of which all that have a field are listed."""
 
 _UNPARTED = re.compile(r"(\w+)(?:(:)| )(.*)")
 
@@ -30,13 +32,14 @@ def report_unknown(
     said_by: Naming[str, str] | None = None,
     family: str = "",
 ) -> bool:
-    """Report the fields of a mapping that are not among the known ones; True if there are none.
+    """Report the fields of a mapping that are not among the known ones; returns whether there are none.
 
-    ``said_by``: what says it instead, for names that are likely to be tried; ``family``: that of the word, if any.
+    ``said_by``: help texts for names that are likely to be tried; ``family``: that of the word, if any.
     """
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        help = (said_by or {}).get(name) or (suggestion(name, known) if same_as(name, known) else None)
+        help = (said_by or {}).get(name) or _together(name, unknown, node, known)
+        help = help or (suggestion(name, known) if same_as(name, known) else None)
         help = help or instead(f"field.{family}", name) or instead("field", name) or suggestion(name, known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
@@ -49,13 +52,33 @@ def report_unknown(
 
 
 def meant_field(name: str, known: Collection[str]) -> str | None:
-    """The field meant by an unknown name: its first word, if colon or space is missing there, or the nearest one."""
+    """The field most likely meant by an unknown name: its first word, if a colon or space is missing; the nearest."""
     written = _UNPARTED.fullmatch(name)
     return written[1] if written is not None and written[1] in known else nearest(name, known)
 
 
+def _together(name: str, unknown: Sequence[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for fields that are one here: ``from: a, to: b``, and items of a list without brackets."""
+    ours = same_as(name, known)
+    same = [other for other in unknown if same_as(other, known) == ours]
+    if ours == "between" and len(same) == 2 and ours not in node.entries:
+        return f"write `{ours}: [{', '.join(node.entries[other].span.text for other in same)}]`"
+    names = list(node.entries)
+    first = names.index(name)
+    while first and names[first] not in known and _empty(node.entries[names[first]]):
+        first -= 1
+    items = [node.entries[names[first]].span.text, *names[first + 1 : names.index(name) + 1]]
+    if len(items) > 1 and names[first] in known and isinstance(node.entries[names[first]], Scalar):
+        return f"a list stands in brackets: write `{names[first]}: [{', '.join(items)}]`"
+    return None
+
+
+def _empty(node: Node) -> bool:
+    return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
+
+
 def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
-    """The help for an entry whose word its family does not have."""
+    """The help for an entry with a word that is not in its family."""
     words, fields = catalogue.choices(family), entry.fields
     inner = next(iter(fields.entries)) if isinstance(fields, Mapping) and len(fields.entries) == 1 else ""
     if fields is not None and entry.name == entry.word and catalogue.load(family, inner) is not None:
@@ -64,6 +87,10 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
         return f"did you mean '{same}'?"
     if others := catalogue.families_of(entry.word):
         return f"it belongs under '{others[0]}:'"
+    if fields is None and not entry.word.isidentifier() and (having := _having([entry.name], family, catalogue)):
+        word = DEFAULT.get(family) if DEFAULT.get(family) in having else having[0]
+        text = f"main: {{{word}: {{{entry.name}: {entry.word}}}}}"
+        return f"a part has a name, and a word around its fields: write `{text}`"
     if catalogue.load(family, entry.name) is not None:
         return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
     having = [] if fields is None or entry.word in OURS else _having([entry.word], family, catalogue)
@@ -75,7 +102,7 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
 
 
 def mover_of(name: str, entries: Naming[str, Entry], family_of: Naming[str, str]) -> str:
-    """The model that moves an object, or the body of it that does, ``stones.first``; empty where none does."""
+    """The model that moves an object, or its body that does, as ``stones.first``; empty where none does."""
     for part, entry in entries.items():
         if family_of[part] != "models" or not isinstance(entry.fields, Mapping):
             continue
@@ -90,7 +117,7 @@ def mover_of(name: str, entries: Naming[str, Entry], family_of: Naming[str, str]
 
 
 def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
-    """The help for fields without the word around them."""
+    """The help for fields that stand without a word around them."""
     having, text = _having(list(node.entries), family, catalogue), node.span.text
     for name, value in () if having else node.entries.items():
         having = _having([name], family, catalogue)
@@ -103,19 +130,19 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
 
 
 def those_of(family: str, names: Sequence[str]) -> str:
-    """The help where a part of another family is named."""
+    """The help where a part of a wrong family is named."""
     return f"those of {family} are {', '.join(names[:8])}" if names else f"write one under `{family}:`"
 
 
 def beside_world(place: str) -> str:
-    """The help for a place where a tie names a body."""
+    """The help where a tie has a position in place of a body."""
     plain = " ".join(place.strip("[]").replace(",", " ").split())
     plain += "" if plain[-1:].isalpha() else " m"
     return f"write `world`, and the place in another field of the tie, `to: {plain}` of a rod, `at` of others"
 
 
 def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, catalogue: Catalogue) -> str | None:
-    """The help for a name that no part of the families of ``mark`` has; ``choices``: the names of those there are."""
+    """The help for a name of no part of the mark's families; ``choices``: the names of their parts."""
     if mark.bodies and name[:1] in "-[0123456789":
         return f"a place is no body: {beside_world(name)}"
     if "models" in (mark.family, mark.also) and (model := names.model_of(name)):
@@ -138,7 +165,7 @@ def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, ca
 
 
 def _having(fields: Collection[str], family: str, catalogue: Catalogue) -> list[str]:
-    """The words of a family that have these fields, that with the fewest first."""
+    """The words of a family with all these fields, those with the fewest fields first."""
     found: list[tuple[int, str]] = []
     for word in catalogue.choices(family):
         cls = catalogue.load(family, word)

@@ -1,4 +1,4 @@
-"""Nodes to quantities in time: constants, expressions, links, vectors and keyframes, with their dimensions checked."""
+"""Reading of time-varying quantities: constants, expressions, links, vectors and keyframes, with dimensions checked."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from sceneql.quantities.units import describe, in_words, unit_of
 PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
 SHORTEST, LONGEST = 1e-100, 1e100
-"""Lengths of directions between which no product of a few of them vanishes or overflows."""
+"""Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
 
 
 def read_value(node: Node, quantity: Quantity, what: str, names: Names, found: Diagnostics) -> Value | None:
-    """A value of the quantity's type, or None after reporting what is wrong."""
+    """A value of the quantity's type; None after reporting errors."""
     return _checked(
         read_expr(node, quantity.shape, quantity.dimension, what, names, found), node, quantity, what, found
     )
@@ -44,7 +44,7 @@ def _checked(expr: Expr | None, node: Node, quantity: Quantity, what: str, found
 
 
 def _scaled(expr: Expr) -> Expr:
-    """A direction; one of numbers whose squares overflow or vanish is scaled by a power of two, which turns nothing."""
+    """A direction; a constant one of extreme length is scaled by a power of two, which keeps the direction exactly."""
     if not Value(expr).constant:
         return expr
     given = [float(x) for x in numbers(evaluate(expr, {}))]
@@ -101,7 +101,7 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
 
 
 def parsed_text(node: Scalar) -> str:
-    """The text to parse: the source's own characters where both say the same, so that carets point into them."""
+    """The text to parse: the source's own characters where they are equivalent, so that carets point into them."""
     raw = node.content.text
     return raw if " ".join(raw.split()) == " ".join(node.text.split()) else node.text
 
@@ -151,7 +151,7 @@ def _by_component(
 
 
 def _timed(node: MappingNode) -> str | None:
-    """The help where the keys of keyframes stand without `keys`."""
+    """The help where times and values stand without `keys` around them."""
     if not all(key[:1].isdigit() for key in node.entries):
         return None
     first = next(iter(node.entries))
@@ -188,7 +188,7 @@ def time_reader(names: Names, found: Diagnostics) -> ReadTime:
 
 
 def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnostics) -> bool:
-    """Whether a bound tree is of a quantity's shape and dimension; what is wrong is reported at the span."""
+    """Whether a bound tree has a quantity's shape and dimension; errors are reported at the span."""
     if quantity.shape is not None and not _shape_fits(expr.type.shape, quantity.shape):
         found.error(
             "wrong-shape",
@@ -218,7 +218,7 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
 
 
 def _repeated(expr: Expr, wanted: Quantity) -> str | None:
-    """The help where one value stands for a vector."""
+    """The help where one value is given for a vector."""
     size = (wanted.shape or (None,))[0]
     if expr.type.shape or expr.span is None or len(wanted.shape or ()) != 1 or size is None:
         return None
@@ -234,7 +234,7 @@ def _repeated(expr: Expr, wanted: Quantity) -> str | None:
 
 
 def _sized(expr: Expr, wanted: Quantity) -> str | None:
-    """The help where vectors stand for numbers: their size, or a component."""
+    """The help where vectors are given for numbers: their length, or a component."""
     if not isinstance(expr, Link) or expr.type.shape != (*(wanted.shape or ()), 3):
         return None
     name = f"{expr.task}.{expr.output}"
@@ -242,7 +242,7 @@ def _sized(expr: Expr, wanted: Quantity) -> str | None:
 
 
 def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
-    """The help where an angle or a percentage stands for another quantity."""
+    """The help where an angle or a percentage is given for another quantity."""
     kind = "" if expr.type.dimension is None else expr.type.dimension.kind
     if wanted is None or kind not in (ANGLE.kind, PERCENTAGE.kind):
         return None
@@ -253,7 +253,7 @@ def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
 
 
 def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
-    """The help where a formula of names lacks a time or a length as a factor: of the length `1 m*time`, 1/(1 s)."""
+    """The help where a formula of names lacks a factor of time or length: for the length `1 m*time`, 1/(1 s)."""
     has = expr.type.dimension
     if has is None or wanted is None or expr.span is None or not any(isinstance(n, Symbol | Link) for n in walk(expr)):
         return None
@@ -266,7 +266,7 @@ def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
 
 
 def origin(expr: Expr, span: Span) -> list[Note]:
-    """A note where a value is defined, if elsewhere than it is used; of a vector, by its first nonzero item."""
+    """A note on where a value is defined, if elsewhere than used; for a vector, its first nonzero item."""
     one = expr
     if isinstance(expr, Vector):
         one = next((item for item in expr.items if not _zero(item)), expr)

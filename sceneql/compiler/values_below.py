@@ -1,4 +1,4 @@
-"""The values in time that a part is made of."""
+"""Search for the time-varying values in a part."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sceneql.quantities.expression import Link, walk
 
 
 def values_of(part: Any) -> list[Value]:
-    """All values in time below a kind, record, list or dict."""
+    """All Values in a kind, record, list or dict, at any depth; formulas with links count as Values."""
     if isinstance(part, Value):
         return [part]
     if isinstance(part, Text):

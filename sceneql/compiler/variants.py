@@ -1,4 +1,4 @@
-"""Every variant and study of a script checked: the script is read once, and what no variant changes is parsed once."""
+"""Check of all variants and studies of a script: it is read once, and what no variant changes is parsed once."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, 
 def check_variants(
     graph: SimulationGraph, path: Path, variant: str | None, sets: Sequence[str], words: Path | None
 ) -> list[Diagnostic]:
-    """What is wrong with the variants of a good script (only with the chosen one, if any) and with its studies."""
+    """The errors of the variants (only of the chosen one, if any) and studies of a script without errors."""
     tries: list[tuple[str | None, Sequence[str | Patch]]] = []
     tries += [(name, sets) for name in graph.variants.names if variant is None]
     tries += [(variant, (*sets, *more)) for study in graph.settings.studies.values() for more in alone(study)]

@@ -1,4 +1,4 @@
-"""Formulas with the powers of two of their largest and least numbers taken out, so that they do not overflow."""
+"""Scaling of formulas by powers of two, so that their largest and least numbers do not overflow or underflow."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from collections.abc import Callable
 from sceneql.quantities.expression import Call, Expr, Number, each_once
 
 ORDINARY = 64
-"""Powers of two up to which a number stays as it is written."""
+"""Largest binary exponent of a number that stays as it is written."""
 MOST = 1000
-"""Of powers of two that are multiplied by at once: numbers hold little more."""
+"""Largest binary exponent of a single factor: floats hold little more."""
 
 Scaled = tuple[Expr, int]
 
 
 def balanced(formula: Expr) -> Expr:
-    """A formula over a power of two; the formula itself where its numbers are ordinary.
+    """A formula divided by a power of two; the formula itself where its numbers are ordinary.
 
-    Powers of two are exact: it has the same values up to the factor wherever neither overflows nor underflows. Parts of
-    a union or an intersection have a factor each.
+    The scaling is exact: values are the same up to the factor wherever neither overflows nor underflows. Parts of a
+    union or an intersection (``min``, ``max``) each have a factor of their own.
     """
-    if isinstance(formula, Call) and formula.op in ("min", "max"):  # what is below zero stays so, each by its own
+    if isinstance(formula, Call) and formula.op in ("min", "max"):  # positive factors keep the sign, each part's own
         parts = tuple(map(balanced, formula.args))
         return formula if parts == formula.args else _call(formula, parts)
     known: dict[int, Scaled] = {}
@@ -32,7 +32,7 @@ def balanced(formula: Expr) -> Expr:
 
 
 def _scaled(node: Expr, of: Callable[[Expr], Scaled]) -> Scaled:
-    """A node by what its arguments are."""
+    """A scaled node and its binary exponent, from those of its arguments."""
     if isinstance(node, Number) and math.isfinite(node.value):
         mantissa, power = math.frexp(node.value)
         return (Number(mantissa, node.type), power) if abs(power) > ORDINARY else (node, 0)
@@ -59,7 +59,7 @@ def _call(node: Call, args: tuple[Expr, ...]) -> Expr:
 
 
 def _times(expr: Expr, power: int) -> Expr:
-    """The expression times 2^power, power <= 0."""
+    """The expression times 2^power, for power <= 0."""
     if power == 0:
         return expr
     if isinstance(expr, Number):

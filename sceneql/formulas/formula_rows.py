@@ -1,4 +1,4 @@
-"""The rows of a script's system of differential equations: its states, and what is wrong with it."""
+"""The rows of a script's system of differential equations: its states, and errors in it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def states(rows: Iterable[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class Rows:
-    """Bound formulas of one system; ``index`` is the symbol of a copy's number."""
+    """Bound formulas of one system; ``index``: the symbol of a copy's number, if any."""
 
     start: Mapping[str, Expr]
     rate: Mapping[str, Expr]
@@ -71,13 +71,16 @@ class Rows:
     def look_up(
         self, known: dict[str, Any], link: Callable[[Link], Any], *, arrays: bool = False
     ) -> Callable[[Symbol | Link], Any]:
-        """Values for `evaluate`; ``known`` has the states, times and index, and gets the helper quantities used."""
+        """Look-up function for `evaluate`.
+
+        ``known`` has the states, times and index, and caches helper quantities; ``link`` evaluates links.
+        """
 
         def find(node: Symbol | Link) -> Any:
             if isinstance(node, Link):
                 return link(node)
             left = [node.name]
-            while left:  # what a helper quantity needs is computed before it, in however long a row
+            while left:  # dependencies first; without recursion, as chains may be long
                 name = left[-1]
                 symbols = [] if name in known else [each for each in walk(self.where[name]) if isinstance(each, Symbol)]
                 needed = [each.name for each in symbols if each.name in self.where and each.name not in known]
@@ -89,7 +92,7 @@ class Rows:
         return find
 
     def problems(self) -> list[Problem]:
-        """All that is wrong with the system, or an empty list."""
+        """Errors of the system."""
         found = [*self._row_problems(), *self._name_problems(), *self._scalar_problems()]
         return found or [*self._use_problems(), *self._circle_problems()]
 

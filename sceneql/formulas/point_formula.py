@@ -1,4 +1,4 @@
-"""Formulas of x, y and z at an instant: subexpressions that do not depend on the point become numbers."""
+"""Formulas of x, y and z at an instant: subexpressions that do not depend on the point become constants."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COORDINATES = ("x", "y", "z")
 
 
 def depends_on_place(expr: Expr) -> bool:
-    """Whether an expression has a coordinate in it."""
+    """Whether an expression depends on a coordinate."""
     return any(map(_is_coordinate, walk(expr)))
 
 
@@ -52,18 +52,18 @@ def not_on_tapes(expr: Expr, count: int = 1) -> str:
 
 
 def written_out(expr: Expr, moment: Moment) -> Expr:
-    """The formula with time, links and keyframes replaced by their numbers now."""
+    """The formula with time, links and keyframes replaced by their present values."""
     (found,) = all_written_out(expr, moment, 1)
     return found
 
 
 def all_written_out(expr: Expr, moment: Moment, count: int) -> list[Expr]:
-    """The same for each of the ``count`` components of a formula."""
+    """`written_out` for each of the ``count`` components of a formula."""
     return _scalars(expr, lambda part: Number(float(moment.at(Value(part))), part.type), count)
 
 
 def _scalars(expr: Expr, number: Callable[[Expr], Number], count: int) -> list[Expr]:
-    """The trees of the components, with vectors split, and numbers in place of subexpressions without coordinates."""
+    """The scalar trees of the components, with numbers in place of subexpressions without coordinates."""
     try:
         whole = components(expr)
     except TypeError as error:

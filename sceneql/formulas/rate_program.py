@@ -34,14 +34,14 @@ class RateSystem:
 
 @dataclass(frozen=True)
 class Kernel:
-    """A generated kernel: its name ``"package.module:function"``, and what it reads of ``floats``."""
+    """A generated kernel: its name ``"package.module:function"``, and the numbers that it reads from ``floats``."""
 
     name: str
     constants: tuple[float, ...]
     inputs: tuple[Expr, ...]
     """Values read from other parts; the offset of each follows in ``ints``."""
     places: tuple[int, ...] = ()
-    """Of a Jacobian with m rows: m * row + column of each entry, ascending."""
+    """For a Jacobian with m columns: m * row + column of each entry, ascending."""
 
 
 def rate_kernel(system: RateSystem) -> Kernel:
@@ -54,10 +54,10 @@ def rate_kernel(system: RateSystem) -> Kernel:
 
 
 def jacobian_kernel(system: RateSystem) -> Kernel:
-    """Kernel that adds each copy's d(dy/dt)/dy to ``out`` (copies * k,): the k entries that are not zero by form.
+    """Kernel that adds each copy's d(dy/dt)/dy to ``out`` (copies * k,): the k entries that are not structurally zero.
 
-    By the chain rule over the helper quantities w, df/dy = ∂f/∂y + Σ ∂f/∂w · dw/dy, each dw/dy is derived and
-    evaluated once however often w is used. Raises TypeError for an operation without a derivative.
+    By the chain rule over the helper quantities w, df/dy = ∂f/∂y + Σ ∂f/∂w · dw/dy; each dw/dy is derived and evaluated
+    once however often w is used. Raises TypeError for an operation without a derivative.
     """
     return _jacobian_kernel(system.states, system.rows, tuple(system.where.items()), system.index)
 
@@ -66,7 +66,7 @@ def jacobian_kernel(system: RateSystem) -> Kernel:
 def _jacobian_kernel(
     states: tuple[str, ...], rows: tuple[Expr, ...], where: tuple[tuple[str, Expr], ...], index: str | None
 ) -> Kernel:
-    """Of a system by what it is made of: `auto` asks anew in each run that becomes stiff."""
+    """The Jacobian kernel by the contents of a system, cached: `auto` asks anew in each run that becomes stiff."""
     system = RateSystem(states, rows, dict(where), index)
     constants = Constants()
     meanings, lifted_rows = lifted(system, constants)
@@ -80,10 +80,7 @@ def _jacobian_kernel(
 def derivatives(
     states: Sequence[str], meanings: Mapping[str, Expr], rows: Sequence[Expr]
 ) -> tuple[list[Expr], dict[str, Expr]]:
-    """The entries of the Jacobian, row by row, and the meanings of the symbols that stand in them for dw/dy.
-
-    Raises TypeError for an operation without a derivative.
-    """
+    """The entries of the Jacobian, row by row, and the expressions of the symbols in them that stand for dw/dy."""
     slopes: dict[tuple[str, str], Expr] = {}
     derived: dict[str, Expr] = {}
 
@@ -100,7 +97,7 @@ def derivatives(
         return result
 
     def slope(name: str, state: str) -> Expr:
-        """A symbol for dw/dy, or zero; those that it needs are derived before it, in however long a row."""
+        """A symbol for dw/dy, or zero; iterative, so that chains of helper quantities may be long."""
         left = [name]
         while left:
             each = left[-1]
@@ -119,7 +116,7 @@ def derivatives(
 
 
 def lifted(system: RateSystem, constants: Constants) -> tuple[dict[str, Expr], list[Expr]]:
-    """Helper quantities and rows without vectors, numbers and links."""
+    """Helper quantities and rows as scalar trees with constants and links lifted out."""
     meanings = {name: constants.lift(components(expr)[0]) for name, expr in system.where.items()}
     return meanings, [constants.lift(components(row)[0]) for row in system.rows]
 

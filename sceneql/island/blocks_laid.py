@@ -1,4 +1,4 @@
-"""The blocks of an island, the integers of each term and contact, and their layout in the array that kernels read."""
+"""The blocks of an island (the integers of each term and contact), and their layout in the array that kernels read."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Block:
 
     kernels: tuple[str, ...]
     ints: Ints
-    """(k,) int64; tables of plans and elements are long."""
+    """(k,) int64; may be long where it holds tables of plans or elements."""
     pairs: int = 0
     slopes: Slopes | Callable[[], Slopes | None] | None = None
     part: str = ""
@@ -34,17 +34,20 @@ class Block:
     model: str | None = None
     """The model that a force acts on."""
     energy: str | None = None
-    """The kernel of its potential energy, as of Assembly.term."""
+    """The kernel of the term's potential energy, as in Assembly.term."""
     damped: bool = False
     help: str = ""
-    """What is said where its events have no end."""
+    """The advice in the failure message of impacts that accumulate without end (Assembly.contact)."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "ints", np.array(self.ints, dtype=np.int64))
 
 
 def grouped(blocks: list[Block], laid: list[Block]) -> list[tuple[tuple[str, ...], int]]:
-    """Kernels in order of first use with their numbers of blocks; appends the blocks in that order to ``laid``."""
+    """Distinct kernels in order of first use, each with its number of blocks.
+
+    Appends the blocks in that order to ``laid``.
+    """
     by_kernels: dict[tuple[str, ...], list[Block]] = {}
     for block in blocks:
         by_kernels.setdefault(block.kernels, []).append(block)
@@ -61,7 +64,10 @@ def lay_out(
     stages: list[list[int]],
     pairs: list[int],
 ) -> NDArray[int64]:
-    """The island's array of integers: see layout.py. ``stages``: the number of blocks of each group of each stage."""
+    """The island's array of integers, as layout.py describes.
+
+    ``stages``: the number of blocks of each group, stage by stage.
+    """
     first_blocks = list(accumulate((count for stage in stages for count in stage), initial=1))
     first_groups = list(accumulate((len(stage) for stage in stages), initial=0))
     calls_at = layout.GROUPS_AT + len(first_blocks)

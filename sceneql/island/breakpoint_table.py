@@ -1,6 +1,7 @@
-"""The table of breakpoints (breakpoints.py): instants at which values of a script are not smooth; adaptive steps end
-there, for a long step would pass over a keyframe, a pulse or a switch between two of its stages without a sign of it
-in its error estimate.
+"""The table of breakpoints (found by breakpoints.py): instants at which values of a script are not smooth.
+
+Adaptive steps end there: a long step would pass over a keyframe, a pulse or a switch between two of its stages without
+a sign of it in its error estimate.
 """
 
 from __future__ import annotations
@@ -11,14 +12,14 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 Breakpoint = tuple[float, float]
-"""(instant from which the new value holds, period of its repetition or 0 for none) [s]."""
+"""(first instant of the new value, period of its repetition or 0 for none) [s]."""
 
 APART = 1e-12
-"""Breakpoints nearer to each other than this part of the run count as one."""
+"""Breakpoints closer together than this fraction of the run count as one."""
 
 
 def after(time: float, steps: int = 4) -> float:
-    """The instant [s] so many ulps later, past the rounding error of ``time``."""
+    """The instant [s] ``steps`` ulps later, past the rounding error of ``time``."""
     return time + steps * math.ulp(time)
 
 
@@ -28,7 +29,7 @@ def before(time: float) -> float:
 
 
 class BreakpointTable(NamedTuple):
-    """Breakpoints in the order in which they are looked up."""
+    """Breakpoints sorted for look-up."""
 
     once: tuple[float, ...] = ()
     """Instants without a period, ascending [s]."""

@@ -1,9 +1,9 @@
 """Breakpoints of expressions of time: keyframes, jumps, kinks and narrow pulses, which no step should cross.
 
-Arguments linear in time are solved in closed form. Others are sampled over the run, and each change is bracketed and
-refined. The breakpoints of subexpressions are found first, and the whole is sampled at both sides of them, so that a
-pulse is seen however short it is. Smooth pulses (bells) are found too, where the argument of an exponential is largest
-or a divisor least, and poles.
+Where the argument of an operation is linear in time, its breakpoints are solved for in closed form. Other arguments are
+sampled over the run; each change is bracketed and refined. The breakpoints of subexpressions are found first, and the
+whole is sampled at both sides of them, so that a pulse is seen however short it is. Smooth pulses (bells) and poles are
+found too, at maxima of an exponential's argument and minima of a divisor.
 """
 
 from __future__ import annotations
@@ -25,27 +25,28 @@ from sceneql.quantities.key_tables import known_table
 from sceneql.quantities.span import Span
 
 MOST = 10_000
-"""Most breakpoints of an operation in a run; where there are more, none is kept."""
+"""Largest number of breakpoints of an operation in a run; where there are more, none is kept."""
 SAMPLES = (8192, 65536)
-"""Intervals of the sampling grid over the run; the second where half the samples of the first show fewer changes."""
+"""Numbers of intervals of the sampling grid; the finer grid is used where every second sample of the coarse one shows
+fewer changes than all of them."""
 FALLEN = (1.0, 4.0, 12.0, 30.0)
-"""Decreases of a pulse's logarithm from its maximum at which breakpoints are set, so that steps resolve its flanks."""
+"""Drops of a pulse's logarithm below its maximum at which breakpoints are set, so that steps resolve its flanks."""
 MOST_BELLS = 1000
-"""Most bells of a formula that become breakpoints: the error estimate sees an oscillation of more."""
+"""Largest number of bells of a formula that become breakpoints: the error estimate sees an oscillation with more."""
 PARTS = 32
-"""Parts into which an interval with a change is divided, recursively."""
+"""Number of subintervals into which an interval with a change is divided, recursively."""
 
 Cells = Callable[[Any], Any]
 """Maps an argument to a piece number (its floor or sign, say): the operation has a breakpoint where that changes."""
 Even = tuple[float, float]
-"""An expression linear in time: (value at 0, rate [1/s])."""
+"""A function linear in time, as (value at 0, rate [1/s])."""
 
 
 @dataclass
 class Breakpoints:
-    """The breakpoints of expressions in a run from 0 to ``end`` [s].
+    """Collects the breakpoints of expressions in a run from 0 to ``end`` [s].
 
-    ``formula`` gives a linked output as an expression of time; None for one that is solved.
+    ``formula`` returns a linked output as an expression of time; None where it is solved for.
     """
 
     formula: Callable[[Link], Expr | None]
@@ -57,11 +58,11 @@ class Breakpoints:
     _followed: dict[int, Expr] = field(default_factory=dict)
     _formulas: dict[Link, Expr | None] = field(default_factory=dict)
     _even: dict[int, Even | None] = field(default_factory=dict)
-    """By the identity of a node that depends on time alone; None: it is not linear."""
+    """By id of a node that depends on time alone, its linear function; None: it is not linear."""
 
     @np.errstate(all="ignore")
     def follow(self, expr: Expr, span: Span | None = None) -> None:
-        """Find the breakpoints of a new expression; ``span``: the place in the script of parts without their own."""
+        """Add the breakpoints of an expression; ``span``: the place in the script of nodes without their own."""
         for node in each_once(expr, below=self._below) if id(expr) not in self._followed else ():
             if id(node) in self._followed:
                 continue
@@ -120,7 +121,7 @@ class Breakpoints:
         return None
 
     def _values(self, expr: Expr, times: Floats) -> Floats | None:
-        """Values (n,) of a scalar at instants (n,) [s]; None where it has none."""
+        """Values (n,) of a scalar expression at instants (n,) [s]; None where it cannot be evaluated."""
 
         linked: dict[Link, Any] = {}
 
@@ -143,12 +144,12 @@ class Breakpoints:
             yield from self._sampled(argument, _between(table))
         elif even[1] != 0.0 and math.isfinite(even[0] + even[1] * self.end):
             here, slope = even
-            for time in table.times:  # the next piece holds from its key on; past the key where the argument falls
+            for time in table.times:  # a key belongs to the later piece; if the argument falls, the break is past it
                 at = (time - here) / slope
                 yield (at if slope > 0.0 else after(at, 2)), table.cycle / abs(slope)
 
     def _instants(self, number: Expr, cells: Cells) -> Iterator[Breakpoint]:
-        """The breakpoints where the piece number of an argument changes."""
+        """The breakpoints at which the piece number of an argument changes."""
         even = self._evenly(number)
         if even is None:
             yield from self._sampled(number, cells)
@@ -163,7 +164,7 @@ class Breakpoints:
                 yield after((whole - here) / slope, 2), 0.0
 
     def _sampled(self, number: Expr, cells: Cells) -> Iterator[Breakpoint]:
-        """These breakpoints by sampling, on a grid refined where the argument has extrema."""
+        """The breakpoints at changes of the piece number, by sampling on a grid refined at extrema of the argument."""
         grid = np.linspace(0.0, self.end, SAMPLES[0] + 1)
         where = self._cell(number, cells, grid)
         if where is None:
@@ -181,18 +182,18 @@ class Breakpoints:
             changes = _changes(self._cell(number, cells, pieces.ravel()).reshape(pieces.shape))
             low, high = pieces[:, :-1][changes], pieces[:, 1:][changes]
         last = math.inf
-        for time in high[: MOST + 1][::-1].tolist():  # of changes nearly at one instant the last, behind all of them
+        for time in high[: MOST + 1][::-1].tolist():  # backwards: of changes APART or closer only the last counts
             if last - time > APART * self.end:
                 yield after(time, 2), 0.0
                 last = time
 
     def _cell(self, number: Expr, cells: Cells, times: Floats) -> Any:
-        """Piece numbers (n,) at instants (n,) [s]; None where the argument has no values."""
+        """Piece numbers (n,) at instants (n,) [s]; None where the argument cannot be evaluated."""
         found = self._values(number, times)
         return None if found is None else np.nan_to_num(cells(found), nan=1e300)
 
     def _turned_round(self, number: Expr, cells: Cells, grid: Floats) -> Floats:
-        """The instants near the argument's local extrema, where these may reach another piece between samples."""
+        """The instants of the argument's local extrema, where it may reach another piece between samples."""
         values = self._values(number, grid)
         assert values is not None
         rise = np.sign(np.diff(values))
@@ -205,7 +206,7 @@ class Breakpoints:
         return self._closed_in(number, grid[at - 1], grid[at + 1], way)
 
     def _bell(self, number: Expr) -> list[Breakpoint]:
-        """Breakpoints at the local maxima of a pulse's logarithm and where it has decreased by FALLEN on each side."""
+        """Breakpoints of a pulse, given its logarithm: local maxima, and drops by FALLEN on both sides of these."""
         if self._evenly(number) is not None:
             return []
         grid = np.linspace(0.0, self.end, SAMPLES[0] + 1)
@@ -234,7 +235,7 @@ class Breakpoints:
         return [(after(time, 2), 0.0) for time in stops]
 
     def _closed_in(self, number: Expr, low: Floats, high: Floats, way: Any) -> Floats:
-        """The instants (k,) between low and high (k,) at which a number is minimal (way 1) or maximal (-1)."""
+        """The instants (k,) between low and high (k,) at which an expression is minimal (way 1) or maximal (way -1)."""
         way, rows = np.broadcast_to(way, low.shape), np.arange(len(low))
         for _ in range(9):  # to 2^-27 of a step: beyond, a smooth number is flat
             pieces = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, 17)
@@ -246,7 +247,10 @@ class Breakpoints:
 
 
 def _turning(node: Expr) -> list[tuple[Expr, Cells]]:
-    """The arguments, each with its pieces, between which an operation is smooth. (`where`: those of its condition.)"""
+    """The arguments of an operation that switch between smooth pieces, each with its piece function.
+
+    A `where` switches by its condition, which is an operation itself.
+    """
     if not isinstance(node, Call) or any(arg.type.shape for arg in node.args):
         return []
     args = node.args
@@ -282,7 +286,7 @@ def _turning(node: Expr) -> list[tuple[Expr, Cells]]:
 
 
 def _bells(node: Expr) -> list[Expr]:
-    """Logarithms of an operation's value, where that may be an arbitrarily narrow pulse."""
+    """Expressions for the logarithm of an operation's value, where that may be an arbitrarily narrow pulse."""
     if not isinstance(node, Call) or any(arg.type.shape for arg in node.args):
         return []
     match node:
@@ -294,7 +298,7 @@ def _bells(node: Expr) -> list[Expr]:
 
 
 def _between(table: Table) -> Cells:
-    """The pieces of a keyframe curve: between which keys an argument lies, and in which cycle."""
+    """Piece function of a keyframe curve: the keys between which an argument lies, and the cycle."""
     times = np.array(table.times)
 
     def cells(number: Floats) -> Any:

@@ -1,4 +1,4 @@
-"""Values of a script that vary in time, lowered to programs for the interpreter of inputs_kernels.
+"""Lowering of time-varying values of a script to programs for the interpreter of inputs_kernels.
 
 A value may use the time, keyframes, outputs of kinematic models (formulas of time) and outputs of models that are
 solved in the same island (entries of y).
@@ -48,13 +48,13 @@ Lowered = Any
 
 
 Word = tuple[str, str | None]
-"""A part of the scene, and the model where the part is a force on one."""
+"""(part of the scene, the model on which it acts if it is a force)."""
 Stored = tuple[int, Value, Word]
-"""A value that varies: offset of its first float, the value, the word that reads it."""
+"""A varying value: (offset of its first float, the value, the word that reads it)."""
 
 
 class WithoutSlopes(Exception):
-    """A part or value whose derivatives are not known; the text is its name."""
+    """The derivatives of a part or value are not known; the text is its name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,10 +68,10 @@ class ValueSlopes:
 
 
 class Inputs:
-    """Lowers the values of one island.
+    """Lowers the values of one island to programs.
 
-    ``formula``: a linked output as an expression, None for one that is solved; ``places``: its indices in y then;
-    ``start``: y at the start; ``store``: puts numbers into the floats and gives their offset.
+    ``formula`` returns a linked output as an expression, None where it is solved for; ``places``: the indices in y of
+    such an output; ``start``: y at the start; ``store`` appends numbers to the floats and returns their offset.
     """
 
     def __init__(
@@ -84,12 +84,15 @@ class Inputs:
         self._formula, self._places, self._start, self._store = formula, places, start, store
         self._known: dict[int, tuple[Expr, Lowered]] = {}
         self._varying: set[int] = set()
-        """Ids of the nodes of what is lowered that read the time or other parts."""
+        """Ids of nodes of the expression being lowered that read the time or other parts."""
         self._at_start: dict[Link, Any] = {}
         self._rows: list[int] = []
 
     def at_start(self, value: Value) -> Any:
-        """The value at time 0: float or float64 array. Raises ScriptError where it reads an output not stored in y."""
+        """The value at time 0: float or float64 array.
+
+        Raises ScriptError where it reads an output that is not stored in y.
+        """
         self._at_start = {}
         return evaluate(value.expr, self._look_up, arrays=True)
 
@@ -107,7 +110,10 @@ class Inputs:
         return False
 
     def program(self, value: Value, first: int) -> list[int]:
-        """The rows that evaluate a value into floats[first:]. Raises ScriptError for operations that cannot vary."""
+        """The rows of a program that evaluates a value into floats[first:].
+
+        Raises ScriptError for unsupported operations.
+        """
         from sceneql.island.inputs_kernels import COPY
 
         self._rows = []
@@ -117,11 +123,11 @@ class Inputs:
         return self._rows
 
     def reading(self, values: Sequence[Stored]) -> list[Stored]:
-        """The values that read the state."""
+        """Those of ``values`` that read the state."""
         return [one for one in values if self.reads_state(one[1].expr)]
 
     def slopes(self, value: Value) -> ValueSlopes:
-        """The derivatives of a value that reads the state. Raises WithoutSlopes."""
+        """The derivatives of a value that reads the state, with respect to it. Raises WithoutSlopes."""
         self._rows = []
         self._known, self._varying = {}, set()
         readings = []
@@ -140,7 +146,7 @@ class Inputs:
         return ValueSlopes(self._rows, readings)
 
     def _meaning(self, link: Link) -> Any:
-        """The tree that a link stands for: a formula, or symbols named by indices into y."""
+        """The expression that a link stands for: a formula, or nested lists of symbols named by indices into y."""
         formula = self._formula(link)
         return _mapped(lambda place: Symbol(str(place)), self._found(link).tolist()) if formula is None else formula
 
@@ -228,7 +234,7 @@ class Inputs:
         raise ScriptError([Diagnostic("unsupported-operation", text, expr.span)])
 
     def _do(self, op: str, *operands: Any) -> Lowered:
-        """A scalar operation, component by component; floats among the operands are constants."""
+        """Emit a scalar operation, component by component; floats among the operands are constants."""
         from sceneql.island.inputs_kernels import CODES
 
         depth = max(_depth(operand) for operand in operands)
@@ -248,7 +254,7 @@ class Inputs:
 
 
 def _each(parts: Iterable[Expr]) -> Generator[Expr, Lowered, list[Lowered]]:
-    """What several expressions are lowered to."""
+    """The results of lowering several expressions."""
     found = []
     for part in parts:
         found.append((yield part))
@@ -260,7 +266,7 @@ def _varies(node: Expr) -> bool:
 
 
 def _place(symbol: Symbol) -> int:
-    """The entry of y that a symbol stands for; -1: the time."""
+    """The index into y that a symbol stands for; -1 for the time."""
     return int(symbol.name) if symbol.name.isdecimal() else -1
 
 
@@ -278,5 +284,5 @@ def _depth(value: Lowered) -> int:
 
 
 def _component(value: Lowered, k: int) -> Lowered:
-    """Component k of a vector or of every vector of a list."""
+    """Component k of a vector, or of every vector of a list."""
     return [_component(item, k) for item in value] if _depth(value) > 1 else value[k]

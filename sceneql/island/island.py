@@ -1,7 +1,7 @@
 """An island under construction: words reserve state, store numbers and add terms; `finish` lays it out as arrays.
 
-It knows no word. It makes a `System`: the state at the start, the arrays of floats and integers, and a `Structure`,
-which alone decides which code is compiled.
+The module knows no word. The result is a `System`: the state at the start, the arrays of floats and integers, and a
+`Structure`, which alone decides which code is compiled.
 """
 
 from __future__ import annotations
@@ -40,24 +40,27 @@ if TYPE_CHECKING:
 
 STAGES: tuple[Stage, ...] = ("velocity", "internal", "force", "tie", "close", "constrain")
 TIED = 150
-"""Entries of y up to which the Jacobian of an island with ties is found by differences, which are as fast."""
+"""Largest number of entries of y at which the Jacobian of an island with ties is found by differences, which are as
+fast."""
 
 
 @dataclass
 class IslandAssembly(Offered):
     """The Assembly (system/assembly.py) of one island.
 
-    ``places`` gives the indices into y of a solved model's output (None: it is computed); settable until `finish`.
+    ``places`` returns the indices into y of a solved model's output (None: it is computed); it may be set until
+    `finish`.
     """
 
     setting: Setting
     whole: int = 0
-    """In a block: the number of bodies of the whole island."""
+    """Number of bodies of the whole island, where this is the assembly of a block of it; else 0."""
     places: Callable[[Link], NDArray[int64] | None] = lambda link: None
     points: Callable[[Link], tuple[Bodies, int, tuple[float, float, float]] | None] = lambda link: None
-    """The masses of a link to a position, which of them, and where on it (Model.point); settable as ``places``."""
+    """Resolves a link to a position: its masses, the index of one, and the point on it (Model.point); set as
+    ``places``."""
     ties: list[Tied] = field(default_factory=list)
-    """What its ties hold, for the term that finds all their forces."""
+    """The island's ties, for the term that solves for all their forces."""
     tie_ints: tuple[int, ...] = ()
     driven: bool = False
     contact_why: str = ""
@@ -112,24 +115,24 @@ class IslandAssembly(Offered):
         self._terms[stage].append(Block((kernel,), ints, 0, jacobian, *self._word, energy, damped))
 
     def tied_drift(self, kernel: str, ints: Ints) -> None:
-        """Add what lets drifts end where ties hold (system.Assembly)."""
+        """Add a correction of drifts by ties (system.Assembly)."""
         self._tied.append(Block((kernel,), ints))
 
     def limit(self, kernel: str, ints: Ints) -> None:
-        """Add what keeps surfaces apart (system.Assembly)."""
+        """Add a limit on changes of the state (system.Assembly)."""
         self._apart = False
         self._limits.append(Block((kernel,), ints))
 
     def grows(self, grow: Callable[[Floats], bool]) -> None:
-        """Say that slopes may have more places later (system.Assembly)."""
+        """Let the slopes' pattern grow (system.Assembly)."""
         self._growing.append(grow)
 
     def alike(self, at: int, count: int) -> None:
-        """Say that entries share a scale of errors (system.Assembly)."""
+        """Declare entries with a common error scale (system.Assembly)."""
         self._alike.append((at, count))
 
     def inertia(self, velocity_at: int, inverse_at: int, count: int, matrix: Any = None) -> None:
-        """Say which rows of the Jacobian inverse masses multiply (system.Assembly)."""
+        """Declare which rows of the Jacobian are multiplied by inverse masses (system.Assembly)."""
         self._masses.append((velocity_at, inverse_at, count))
         if matrix is not None:
             self._matrices[velocity_at] = matrix
@@ -143,17 +146,17 @@ class IslandAssembly(Offered):
         (self._exact if mode == "exact" else self._local).append(block)
 
     def after_step(self, kernel: str, ints: Ints, apart: bool = False, samples: bool = False) -> None:
-        """Add what happens at the end of each step (system.Assembly)."""
+        """Add a kernel for the end of each step (system.Assembly)."""
         self._apart = self._apart and apart
         (self._settling if samples else self._after).append(Block((kernel,), ints))
 
     def free_motion(self, kernel: str, ints: Ints, at: int, count: int) -> None:
-        """Add a motion without forces (system.Assembly)."""
+        """Add a force-free motion (system.Assembly)."""
         self._free.append(Block((kernel,), ints))
         self._frees.append((at, count))
 
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
-        """Those that skins in it hold (system.Assembly)."""
+        """Density and viscosity of the other fluids in a flow (system.Assembly)."""
         return self.setting.fluids(flow)
 
     def carrier(self, model: str) -> Flow | None:
@@ -162,12 +165,12 @@ class IslandAssembly(Offered):
         return None if name is None else self._flows.get(name)
 
     def laden(self, flow: str) -> bool:
-        """Whether masses add to its inertia (system.Assembly)."""
+        """Whether masses change a flow's inertia (system.Assembly)."""
         return self.setting.laden(flow)
 
     @property
     def on_grids(self) -> Fields:
-        """The fields and the flow, and whether there is anything else."""
+        """The fields and the flow of the island, and whether it consists of these alone."""
         alone = bool(self._ranges) and len(self._ranges) == len(self._grids) + len(self._flows)
         alone = alone and not self._pairs and not self.changed_between_steps
         elements = 0 if self.changed_between_steps else self.on_elements
@@ -180,7 +183,7 @@ class IslandAssembly(Offered):
 
     @property
     def moved_by_forces_alone(self) -> bool:
-        """Whether it is masses without springs, pins or contacts of their own, which nothing changes between steps."""
+        """Whether it consists of masses without springs, pins or contacts, and nothing changes it between steps."""
         others = self._terms["internal"] or self._terms["constrain"] or self.changed_between_steps
         paired = 2 * sum(n for *_, n in self._pairs) + len(self._masses)
         return bool(self._masses) and paired == self._size and not others
@@ -238,7 +241,7 @@ class IslandAssembly(Offered):
         return tuple(np.asarray(terms[0].ints).tolist()) if terms else ()
 
     def body_count(self) -> int:
-        """Number of bodies of the island so far; in a block that of the whole."""
+        """Number of bodies of the island so far; in a block, of the whole island."""
         return max(self._bodies, self.whole)
 
     def changing(self, at: int, count: int) -> None:
@@ -246,28 +249,28 @@ class IslandAssembly(Offered):
         self.changes.append((at, count))
 
     def remember(self, *ints: int) -> None:
-        """Keep integers for the word's own reading (ModelState.ints)."""
+        """Keep integers for the word's outputs (ModelState.ints)."""
         name, _, model = self._word
         self._remembered[name, model] = self._remembered.get((name, model), ()) + ints
 
     def remembered(self, name: str, model: str | None = None) -> tuple[int, ...]:
-        """The integers that a word has stored by `remember` (a force: for this model)."""
+        """The integers that a word has stored by `remember`; those of a force: for one model."""
         return self._remembered.get((name, model), ())
 
     @property
     def apart(self) -> bool:
-        """Whether bodies do not interact, by the ``apart`` of the island's terms and contacts."""
+        """Whether bodies do not interact: all terms and contacts are ``apart``, and no value reads the state."""
         return self._apart and not self._inputs().reading(self._varying)
 
     @property
     def contact_mode(self) -> str:
-        """The modes of its contacts: exact, local, barrier, several or none."""
+        """The modes of its contacts ("exact", "local", "barrier", joined by "and"), or "none"."""
         kinds = (("exact", self._exact), ("local", self._local), ("barrier", self._limits))
         modes = [mode for mode, blocks in kinds if blocks]
         return " and ".join(modes) or "none"
 
     def finish(self, jacobian: bool = False, newton: bool = False) -> System:
-        """The island as arrays, with its Jacobian if asked for, ``newton``: for Newton's method alone.
+        """The island as arrays; ``jacobian``: with its Jacobian; ``newton``: as Newton's method alone needs it.
 
         Raises ScriptError for values without a program.
         """
@@ -315,7 +318,7 @@ class IslandAssembly(Offered):
         if slopes is not None and (self._local or self._limits):
             floats[channels.STAGE] = channels.OUTSIDE if newton else channels.BETWEEN
         else:
-            self._numbers = [floats[: self._stored]]  # nobody writes into either: each march has its own
+            self._numbers = [floats[: self._stored]]  # shared, not copied: each march writes to its own copy
 
         def grown(floats: Floats) -> System | None:
             more = [grow(floats) for grow in self._growing]
@@ -350,7 +353,7 @@ class IslandAssembly(Offered):
         )
 
     def _energies(self, groups: list[tuple[tuple[str, ...], int]], terms: list[Block]) -> tuple[str, ...] | None:
-        """The energies of groups of terms; None where one has none, or forces follow the state through values."""
+        """The energy kernel of each group of terms; None where a term has no potential or a value reads the state."""
         energies = [block.energy for block in terms]
         if None in energies or self._inputs().reading(self._varying):
             return None
@@ -358,7 +361,7 @@ class IslandAssembly(Offered):
         return tuple(energies[end - 1] or "" for end in ends)
 
     def _program(self, inputs: Inputs) -> list[int]:
-        """The program that evaluates the values that vary."""
+        """The program that evaluates all varying values. Raises ScriptError."""
         program: list[int] = []
         found = Diagnostics()
         for first, value, _ in self._varying:
@@ -372,7 +375,7 @@ class IslandAssembly(Offered):
         return program
 
     def _slopes(self, newton: bool) -> list[tuple[Slopes, Ints]] | None:
-        """The slopes of all terms with their integers; None where those of one are not known."""
+        """The slopes of all terms with their integers; None where some are unknown or differences are as fast."""
         inputs = self._inputs()
         layout = Layout(self._size, self._ranges, self._pairs, self._masses, [*self._grids, *self.fields.values()])
         try:

@@ -1,4 +1,4 @@
-"""The layout of an island's Jacobian: its sparsity pattern, and the section of integers for its kernel."""
+"""The layout of an island's Jacobian: its sparsity pattern, and the section of integers that its kernel reads."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     Triples = Sequence[tuple[int, int, int]]
 
 BY_DIFFERENCES = 400
-"""Entries of y up to which the Jacobian is found by differences where a term gives no derivatives."""
+"""Largest number of entries of y at which the Jacobian is found by differences where a term gives no derivatives."""
 TILE = 20_000
-"""Values in a thread's tile; fewer are not worth threads."""
+"""Number of values in a thread's tile; fewer are not worth threads."""
 _NONE = np.zeros(0, dtype=np.int64)
 
 
 def full(size: int) -> Pattern | None:
-    """The pattern of a Jacobian by differences; None where there are too many entries."""
+    """The pattern of a dense Jacobian found by differences; None where there are more than BY_DIFFERENCES entries."""
     if size > BY_DIFFERENCES:
         return None
     rows, columns = np.divmod(np.arange(size * size, dtype=np.int64), max(size, 1))
@@ -49,11 +49,9 @@ def section(
 ) -> tuple[Pattern, tuple[str, ...], Numbers]:
     """The pattern of ``size`` rows, the kernels in order, and the section of integers that begins at ints[at].
 
-    With a border there are twice as many rows and columns more (Slopes.border), and room for a rate.
-
-    ``slopes`` with the integers of each; ``masses``: (velocity_at, inverse_at, count) of each model of masses, -1 where
-    their inertia is a matrix, which multiplies no rows;
-    ``pairs``: (position_at, velocity_at, count of entries).
+    A border of m unknowns adds 2 m rows and columns (Slopes.border), and scratch for a rate. ``slopes``: each with its
+    integers; ``masses``: (velocity_at, inverse_at, count) of each model of masses, with inverse_at -1 where the inertia
+    is a matrix, which multiplies no rows; ``pairs``: (position_at, velocity_at, count of entries).
     """
     by_kernel: dict[str, list[tuple[Slopes, Ints]]] = {}
     for one in slopes:
@@ -89,7 +87,10 @@ def section(
 def _pattern(
     size: int, slopes: Sequence[Slopes], masses: Triples, pairs: Triples
 ) -> tuple[Pattern, tuple[Numbers, Numbers, Numbers, Numbers]]:
-    """The pattern; the table and parts of blocks; those of single values (whose table includes its end)."""
+    """The pattern, and four lists of integers: the blocks' table and parts, then those of single values.
+
+    The layout of the lists is that of layout.py; the table of single values includes its end.
+    """
     top, inverse, in_masses = _masses_of(size, masses, pairs)
     first = list(accumulate((one.entries for one in slopes), initial=0))
     blocks, singles = ([one for one in zip(slopes, first, strict=False) if one[0].blocks == kind] for kind in (1, 0))
@@ -137,8 +138,11 @@ def _pattern(
 
 
 def _masses_of(size: int, masses: Triples, pairs: Triples) -> tuple[Numbers, Numbers, NDArray[np.bool_]]:
-    """For each entry of y the first entry of its mass's position or velocity, for velocities the offset of the inverse
-    mass, -1 where there is none; and whether it is the velocity of a mass."""
+    """Three arrays (size,) over the entries of y, by which entries are grouped into masses.
+
+    First entry of the mass's position or velocity, -1 for other entries; offset of the inverse mass for velocities,
+    else -1; whether the entry is the velocity of a mass.
+    """
     top, inverse = np.full(size, -1, dtype=np.int64), np.full(size, -1, dtype=np.int64)
     moving = np.zeros(size, dtype=bool)
     for velocity_at, inverse_at, count in masses:
@@ -153,7 +157,7 @@ def _masses_of(size: int, masses: Triples, pairs: Triples) -> tuple[Numbers, Num
 
 
 def _joined(slopes: Sequence[tuple[Slopes, int]]) -> tuple[Numbers, Numbers, Numbers]:
-    """Rows, columns and parts of slopes, each given with the index of its first entry."""
+    """Concatenated rows, columns and parts (layout.py) of slopes, each given with the index of its first entry."""
     rows, columns, parts = [_NONE], [_NONE], [_NONE]
     for one, at in slopes:
         size = 9 if one.blocks else 1
@@ -165,7 +169,7 @@ def _joined(slopes: Sequence[tuple[Slopes, int]]) -> tuple[Numbers, Numbers, Num
 
 
 def _distinct(keys: Numbers, more: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """All keys, ascending, each once; the starts (and end) of each key's run in sorted ``keys``; that order."""
+    """Distinct keys of both arrays, ascending; starts (and end) of each one's run in sorted ``keys``; that order."""
     order = np.argsort(keys, kind="stable")
     ordered = keys[order]
     kept = rising(np.concatenate([ordered, more]))

@@ -1,4 +1,4 @@
-"""Operations on vectors and rotations, and the derived ones on numbers, written as scalar operations.
+"""Operations on vectors and rotations, and derived ones on numbers, expressed by scalar operations.
 
 ``do(op, *operands)`` applies a scalar operation (component by component); an operand is a result of ``do``, a list of
 such results, or a float.
@@ -60,7 +60,7 @@ def step(do: Do, edge: Any, x: Any) -> Any:
 
 
 def clamp(do: Do, x: Any, low: Any, high: Any) -> Any:
-    """Kept within low and high."""
+    """x limited to [low, high]."""
     return do("min", do("max", x, low), high)
 
 
@@ -113,4 +113,4 @@ LOWERINGS: Mapping[str, Callable[..., Any]] = {
     **{f.__name__: f for f in (step, clamp, mix, smoothstep, ease, noise)},
     **{f"euler_{order}": partial(euler, order) for order in ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")},
 }
-"""By the operations' names in quantities.operations."""
+"""The lowering of each operation, by its name in quantities.operations."""

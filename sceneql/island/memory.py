@@ -1,16 +1,16 @@
-"""Estimates of the memory that bodies and springs take, so that too many are refused before they are made."""
+"""Estimates of the memory of bodies and springs, so that too many are refused before they are made."""
 
 from __future__ import annotations
 
 from sceneql.kinds import Exceeds
 
 LARGEST_MEMORY = 8 * 2**30
-"""[bytes] Most memory of a model."""
+"""Largest memory of a model [bytes]."""
 BODY, SPRING, PLACE = 900, 350, 100
-"""[bytes] of a mass with its parts of the state, of an explicit solver's stages and of the picture; of a spring; of a
-candidate place on a grid. Measured as the growth of the peak memory of runs by `rk4` with the count."""
+"""Memory [bytes] of a mass (with its entries of the state, an explicit solver's stages and its picture), of a spring,
+and of a candidate position on a grid. Measured as the growth of the peak memory of runs by `rk4` with the count."""
 MOST = 1e300
-"""Items from which on all are as many: a whole number may be larger than the largest float."""
+"""Counts are clipped to this: a whole number may be larger than the largest float."""
 
 
 def bounded(count: float, what: str = "particles", each: int = BODY) -> None:

@@ -1,4 +1,4 @@
-"""What models of an island offer one another: fields on grids, the flow, and skins that it carries."""
+"""The fields on grids, the flow and its skins that models of an island offer to one another."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Offered(Reserved):
-    """Fields, flow and skins, each with the model that offers it."""
+    """Registry of fields, flow and skins by the model that offers them."""
 
     fields: dict[tuple[str, str], Grid] = field(init=False, default_factory=dict)
     """The grids by model and output."""
@@ -25,19 +25,19 @@ class Offered(Reserved):
     _following: list[tuple[int, int]] = field(init=False, default_factory=list)
 
     def grid(self, grid: Grid) -> None:
-        """Say that part of the state is a field (system.Assembly)."""
+        """Declare part of the state as a field (system.Assembly)."""
         self._grids.append(grid)
 
     def offer(self, output: str, grid: Grid) -> None:
-        """Say where a field lies (system.Assembly)."""
+        """Name the grid of a field output (system.Assembly)."""
         self.fields[self._word[0], output] = grid
 
     def field_of(self, link: Link) -> Grid | None:
-        """Where the field of a link lies (system.Assembly)."""
+        """The grid of a linked field (system.Assembly)."""
         return self.fields.get((link.task, link.output))
 
     def flow(self, flow: Flow) -> None:
-        """Say that part of the state is a flow (system.Assembly). Raises ScriptError for a second one."""
+        """Declare part of the state as a flow (system.Assembly). Raises ScriptError for a second one."""
         if self._flows:
             text = f"'{next(iter(self._flows))}' is solved together with it, and an island has one flow"
             raise ScriptError([Diagnostic("two-flows", text, self.line(), "let them not read one another")])
@@ -48,7 +48,7 @@ class Offered(Reserved):
         return next(iter(self._flows.values()), None) if model is None else self._flows.get(model)
 
     def membrane(self, membrane: Membrane) -> None:
-        """Say that entries are those of a skin (system.Assembly)."""
+        """Declare entries as a skin's vertices (system.Assembly)."""
         self._membranes[self._word[0]] = membrane
 
     def membrane_of(self, model: str) -> Membrane | None:
@@ -56,5 +56,5 @@ class Offered(Reserved):
         return self._membranes.get(model)
 
     def follows(self, at: int, count: int) -> None:
-        """Say that entries are functions of others (system.Assembly)."""
+        """Declare entries as functions of others (system.Assembly)."""
         self._following.append((at, count))

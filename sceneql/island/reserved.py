@@ -1,4 +1,4 @@
-"""What words reserve of an island: entries of its state with their values at the start, and numbers."""
+"""The entries of an island's state with their initial values, and the numbers, as words reserve them."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ if TYPE_CHECKING:
     from sceneql.system import ModelState
 
 VECTORS = 12
-"""Arrays of the state's size that a run keeps: states and rates at a step's ends, and the stages of a solver."""
+"""Number of arrays of the state's size that a run keeps: states and rates at a step's ends, and a solver's stages."""
 
 
 @dataclass
 class Reserved:
-    """The state at the start and the numbers, each with the word that reserved it."""
+    """The state at the start and the numbers, with the word that reserved each."""
 
     went_on: Mapping[str, ModelState] = field(init=False, default_factory=dict)
-    """By contact that has given way (Assembly.gives_way) its state at that instant, from which the island goes on."""
+    """The state, by contact, at the instant at which the contact gave way (Assembly.gives_way)."""
     before_contacts: int = field(init=False, default=0)
-    """How many numbers there are of models, forces and ties."""
+    """Number of floats stored by models, forces and ties, before those of contacts."""
     gives_way: bool = field(init=False, default=False)
-    """Whether a contact has another way for what is left, where its events have none."""
+    """Whether a contact can go on in another mode where it finds no solution (Assembly.gives_way)."""
     by_tolerance: bool = field(init=False, default=False)
-    """Whether the solver is explicit, and a tolerance chooses its steps."""
+    """Whether the solver is explicit with adaptive steps."""
     _starts: list[Floats] = field(init=False, default_factory=list)
     _size: int = field(init=False, default=0)
     _bodies: int = field(init=False, default=0)
@@ -44,13 +44,13 @@ class Reserved:
     _stored: int = field(init=False, default=channels.HEAD)
     _rests: list[tuple[int, Floats]] = field(init=False, default_factory=list)
     _matrices: dict[int, Any] = field(init=False, default_factory=dict)
-    """Inertia that is a matrix, by the offset of the velocities, and other capacities, by that of the entries."""
+    """Mass matrices by the offset of the velocities, and matrices of `capacity` by that of their entries."""
     _capacities: list[int] = field(init=False, default_factory=list)
     _word: tuple[str, Span | None, str | None] = field(init=False, default=("island", None, None))
 
     @contextmanager
     def word(self, name: str, span: Span | None, model: str | None = None) -> Iterator[None]:
-        """Mark what is added inside the context as the part ``name``'s (a force's on ``model``)."""
+        """Context manager: what is added inside belongs to the part ``name`` (for a force: as it acts on ``model``)."""
         before = self._word
         self._word = (name, span, model)
         try:
@@ -59,19 +59,19 @@ class Reserved:
             self._word = before
 
     def capacity(self, at: int, matrix: Any) -> None:
-        """Say that rates of entries are solved for by a matrix (system.Assembly)."""
+        """Declare a matrix by which rates are solved for (system.Assembly)."""
         self._matrices[at] = matrix
         self._capacities.append(at)
 
     @property
     def on_elements(self) -> int:
-        """Unknowns with such rates, where there are no others."""
+        """Number of entries with a `capacity` matrix, where the state has no others; else 0."""
         if len(self._ranges) != len(self._capacities):
             return 0
         return sum(self._matrices[at].shape[0] for at in self._capacities)
 
     def begin_contacts(self) -> None:
-        """Say that all that comes now belongs to contacts."""
+        """Mark the beginning of contacts: all floats stored from now on are theirs."""
         self.before_contacts = self._stored
 
     def state(
@@ -90,14 +90,17 @@ class Reserved:
         return first
 
     def displaced(self, at: int, values: Any) -> None:
-        """Let entries start elsewhere than at rest (system.Assembly)."""
+        """Set initial values other than those at rest (system.Assembly)."""
         y = self.start()
         self._rests.append((at, y[at : at + len(values)].copy()))
         y[at : at + len(values)] = values
         self._starts = [y]
 
     def room(self, entries: float, span: Span | None) -> None:
-        """Raise LimitRefused where a state of so many entries exceeds memory; call it before making large arrays."""
+        """Raise LimitRefused where a state of that many entries needs too much memory.
+
+        Call it before making large arrays.
+        """
         memory = 8.0 * entries * VECTORS
         if memory > LARGEST_MEMORY:
             raise LimitRefused(
@@ -108,12 +111,12 @@ class Reserved:
             )
 
     def pair(self, position_at: int, velocity_at: int, count: int) -> None:
-        """Say which entries are velocities of which (system.Assembly)."""
+        """Declare pairs of positions and velocities (system.Assembly)."""
         self._pairs.append((position_at, velocity_at, count))
         self._bodies += count // 3
 
     def floats(self, values: Any) -> int:
-        """Store numbers; the offset of the first."""
+        """Store numbers; returns the offset of the first."""
         numbers = np.array(values, dtype=np.float64).ravel()
         first = self._stored
         self._numbers.append(numbers)
@@ -121,7 +124,7 @@ class Reserved:
         return first
 
     def write(self, at: int, values: Any) -> None:
-        """Replace numbers (system.Assembly)."""
+        """Overwrite stored numbers (system.Assembly)."""
         numbers = self.numbers()
         numbers[at : at + len(values)] = values
         self._numbers = [numbers]
@@ -136,6 +139,6 @@ class Reserved:
 
     def numbers(self) -> Floats:
         """The floats stored so far."""
-        if len(self._numbers) > 1:  # many words ask, each after it has stored a few
+        if len(self._numbers) > 1:  # joined here: many words ask, each after storing a few more
             self._numbers = [np.concatenate(self._numbers)]
         return self._numbers[0].copy()

@@ -1,4 +1,4 @@
-"""Sets of places in a sparsity pattern: ascending integers, each once."""
+"""Sets of nonnegative integers, as places in a sparsity pattern, by sorting."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ if TYPE_CHECKING:
 
 
 def rising(keys: NDArray[int64]) -> NDArray[int64]:
-    """Nonnegative integers, ascending, each once; numpy's `unique` hashes them and takes many times as long."""
+    """The distinct values of nonnegative integers, ascending.
+
+    Numpy's `unique` hashes them and takes many times as long.
+    """
     import numpy as np
 
     ordered = np.sort(keys)

@@ -22,13 +22,13 @@ class Setting(Protocol):
         """The group that an object of the script is a member of, and its kind; None where it is in none."""
 
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
-        """Density and viscosity of each other fluid that skins in a flow hold (Model.fluid)."""
+        """Density [kg/m^3] and viscosity [Pa s] of each other fluid that skins in a flow enclose (Model.fluid)."""
 
     def carrier(self, model: str) -> str | None:
         """The name of the flow that carries a model by a force; None where none does."""
 
     def laden(self, flow: str) -> bool:
-        """Whether masses that a flow carries add to its inertia, or take some away (Model.burdens)."""
+        """Whether masses carried by a flow add to its inertia or reduce it (Model.burdens)."""
 
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""

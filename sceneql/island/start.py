@@ -27,7 +27,7 @@ class Start:
         return self._assembly.initial(value)
 
     def kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:
-        """What is made for a part, for this start alone."""
+        """The result of ``make``: nothing is cached at this start."""
         return make()
 
     def object(self, ref: Ref) -> Shaped:

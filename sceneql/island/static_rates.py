@@ -1,4 +1,4 @@
-"""Frequencies and decay rates that forces give to masses, estimated from constants of the script: for `check`."""
+"""Frequencies and decay rates of masses under forces, estimated from constants of the script for `check`."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import TIME_SYMBOL, Expr, Link, Symbol, Type, Vector, walk
 
 On = Mapping[str, Mapping[str, StaticMass]]
-"""Masses by model and name."""
+"""Known masses, by model and by name."""
 MOST = 200
-"""Most masses that are examined one by one, or in pairs."""
+"""Largest number of masses that are examined one by one, or in pairs."""
 MOTION = ("x", "y", "z", "vx", "vy", "vz")
 
 
 def number(value: Value) -> Any:
-    """The number or array of a constant value; None for one that varies."""
+    """The number, or nested tuple of numbers, of a constant value; None for one that varies."""
     return value.number() if value.constant else None
 
 
 def each(on: On) -> list[StaticMass]:
-    """The first MOST of all masses that move."""
+    """The first MOST of the masses that are not fixed."""
     return [one for masses in on.values() for one in masses.values() if not one.fixed][:MOST]
 
 
@@ -38,7 +38,7 @@ def slowed(coefficient: float | None, on: On, what: str, at: str) -> Iterator[Os
 
 
 def pulled(square: Callable[[StaticMass, StaticMass], float], on: On, what: str, at: str) -> Iterator[Oscillation]:
-    """The fastest oscillation of two masses at known places; ``square``: its (angular frequency)^2 [1/s^2]."""
+    """The fastest oscillation of two masses at known positions; ``square``: (angular frequency)^2 [1/s^2] of a pair."""
     placed = [one for masses in on.values() for one in masses.values() if one.position is not None][:MOST]
     squares = [square(a, b) for a, b in combinations(placed, 2) if math.dist(a.position or (), b.position or ()) > 0.0]
     if squares and max(squares) > 0.0:
@@ -48,7 +48,10 @@ def pulled(square: Callable[[StaticMass, StaticMass], float], on: On, what: str,
 def by_formulas(
     rows: Sequence[Expr], on: On, what: str, at: str, others: Mapping[str, float] | None = None
 ) -> Iterator[Oscillation]:
-    """The modes of masses at known places under a force [N] of three formulas; none where these read other parts."""
+    """The modes of masses at known positions under a force [N], given as three formulas.
+
+    None where these read other parts.
+    """
     if any(isinstance(node, Link) for row in rows for node in walk(row)):
         return
     slopes = [[differentiate(row, Symbol(name)) for name in MOTION] for row in rows]
@@ -61,7 +64,7 @@ def by_formulas(
             found = evaluate(formulas, {Symbol(name): value for name, value in known.items()})
             matrices[tuple(tuple(told_slope(slope) / one.mass for slope in row) for row in found)] = None
     fastest: list[Oscillation] = []
-    for matrix in matrices:  # one for all masses that are alike
+    for matrix in matrices:  # equal masses share one matrix
         place, motion = ([row[part] for row in matrix] for part in (slice(3), slice(3, 6)))
         if any(map(any, motion)):
             fastest += oscillations(motion, what, (at,))
@@ -71,5 +74,5 @@ def by_formulas(
 
 
 def told_slope(value: float) -> float:
-    """A derivative at the start; 0 where it is not finite, as that of a square root at 0: the run reports such."""
+    """A derivative at the start; 0 where it is not finite, as that of a square root at 0, which the run reports."""
     return value if math.isfinite(value) else 0.0

@@ -22,35 +22,35 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Structure:
-    """The kernels of an island by name, each once for each stage, without text or numbers of the script."""
+    """The names of an island's kernels, each once for each stage; it holds no text or numbers of the script."""
 
     terms: tuple[str, ...]
     exact: tuple[tuple[str, str], ...]
-    """(gap, impact)."""
+    """(gap, impact) of each."""
     local: tuple[str, ...]
     after: tuple[str, ...]
-    """Kernels that act at the end of steps."""
+    """Kernels that act at the end of steps (Assembly.after_step)."""
     settling: tuple[str, ...]
-    """Those that act on samples, too."""
+    """Those that also act on interpolated states (``samples`` of Assembly.after_step)."""
     free: tuple[str, ...]
-    """Free motions."""
+    """Force-free motions (Assembly.free_motion)."""
     tied: tuple[str, ...]
-    """What lets drifts end where ties hold."""
+    """Corrections of drifts by ties (Assembly.tied_drift)."""
     varying: bool
-    """Whether values vary in time."""
+    """Whether any value varies in time."""
     limits: tuple[str, ...] = ()
-    """What keeps surfaces apart (Assembly.limit)."""
+    """Limits on changes of the state (Assembly.limit)."""
     slopes: tuple[str, ...] | None = None
-    """The kernels of the Jacobian, of positive slopes too where those are others ("kernel|positive"); None: there is
-    none, or it is found by differences."""
+    """The slopes kernels of the Jacobian; "kernel|positive" where positive slopes have a kernel of their own. None:
+    there is no Jacobian, or it is found by differences."""
     energies: tuple[str, ...] | None = None
-    """For each of ``terms`` the kernel of its energy, empty where it moves nothing; None: the island has no potential,
-    or no slopes."""
+    """The energy kernel of each of ``terms``, empty where the term moves nothing; None: the island has no potential, or
+    no slopes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """The part and lines of the script that entries of the state come from."""
+    """The part and line of the script that entries of the state come from."""
 
     part: str
     span: Span | None
@@ -62,56 +62,57 @@ class System:
 
     structure: Structure
     y: Floats
-    """(n,) the start."""
+    """(n,) the state at the start."""
     floats: Floats
     ints: NDArray[int64]
     """Offsets, then the integers of every block (layout.py)."""
     grown: Callable[[Floats], System | None]
-    """Lays the island out again with more places for slopes (Assembly.grows), from its present floats; None: there are
-    no more."""
+    """Lays the island out again with a larger Jacobian pattern (Assembly.grows), given its present floats; None: the
+    pattern has not grown."""
     pairs: int
     """Number of pairs of exact contacts."""
     partner: NDArray[int64]
-    """(n,) for a position its velocity's index, else -1."""
+    """(n,) for a position entry of y the index of its velocity, else -1."""
     ranges: tuple[tuple[int, int, str, tuple[Span | None, ...]], ...]
     largest_step: float = float("inf")
     """Largest adaptive step [s]."""
     stops: BreakpointTable = field(default_factory=BreakpointTable)
     """Breakpoints, where adaptive steps end."""
     pattern: Pattern | None = None
-    """Sparsity pattern of its Jacobian; None: there is none, or it is too large to be found by differences."""
+    """Sparsity pattern of its Jacobian; None: there is none, or it is too large for differences."""
     fields: Fields = field(default_factory=Fields)
     unsloped: str = ""
-    """Name of the first part without slopes; empty where all have them."""
+    """Name of the first part without slopes; empty where all parts have them."""
     grids: tuple[Grid, ...] = ()
     """The grids of all its fields."""
     masses: tuple[tuple[int, int, int], ...] = ()
     """For each model of masses: offset of velocities in y, offset of inverse masses in floats, number of masses."""
     inertia: tuple[tuple[int, Any], ...] = ()
-    """Offset and sparse matrix of velocities whose inertia is one (Assembly.inertia), and of other entries whose rates
-    are solved for by one (Assembly.capacity)."""
+    """(offset in y, sparse matrix): mass matrices of velocities (Assembly.inertia), and matrices by which other rates
+    are solved for (Assembly.capacity)."""
     border: int = 0
     """Unknowns that border the linear systems of implicit stages (Slopes.border)."""
     alike: tuple[tuple[int, int], ...] = ()
-    """Offset and number of further entries of y that are of one size."""
+    """(offset, count) of further entries of y with a common error scale (Assembly.alike)."""
     following: tuple[tuple[int, int], ...] = ()
-    """Offset and number of entries of y that are functions of others (Assembly.follows)."""
+    """(offset, count) of entries of y that are functions of others (Assembly.follows)."""
     rests: tuple[tuple[int, Floats], ...] = ()
-    """Offset and values at rest of entries of y that start elsewhere."""
+    """(offset, values at rest) of entries of y that start elsewhere (Assembly.displaced)."""
     terms: tuple[Origin, ...] = ()
     """The origins of the terms of the rate, in the order in which they act."""
     events: tuple[tuple[int, Origin, str], ...] = ()
-    """Of each exact contact the number of its pairs, its origin, and what is said where they have no end."""
+    """For each exact contact: the number of its pairs, its origin, and its advice where impacts accumulate without
+    end."""
     gives_way: bool = False
-    """Whether a word of such contacts has another way for what is left then."""
+    """Whether a contact can go on in another mode then (Assembly.gives_way)."""
     damped: bool = False
-    """Whether forces depend on velocities besides: then the energies are those of forces at rest."""
+    """Whether forces also depend on velocities; the energies are then those of the forces at zero velocities."""
 
     names: tuple[tuple[int, int, Callable[[int], str]], ...] = ()
-    """Offset, count and names by number of entries that have names of their own."""
+    """(offset, count, name of an entry by its number) of entries that have names of their own."""
 
     def after(self, floats: Floats) -> Floats:
-        """The floats with which it goes on from those of the same island before it had more places for slopes."""
+        """The floats with which this system continues from ``floats`` of the same island before its pattern grew."""
         import numpy as np
 
         arrays = len(ARRAYS) * len(self.y)
@@ -119,14 +120,14 @@ class System:
         return np.concatenate([floats[:kept], self.floats[kept : len(self.floats) - arrays], floats[kept:]])
 
     def name(self, index: int) -> str:
-        """The name of an entry of y, as a state of equations has one; else empty."""
+        """The own name of an entry of y, as that of an `equations` state; empty where it has none."""
         for first, count, name in self.names:
             if first <= index < first + count:
                 return name(index - first)
         return ""
 
     def origin(self, index: int) -> Origin:
-        """Part and line of the script of an entry of y."""
+        """The part and line of the script that an entry of y comes from."""
         for first, last, part, spans in self.ranges:
             if first <= index < last:
                 return Origin(part, spans[(index - first) * len(spans) // (last - first)])

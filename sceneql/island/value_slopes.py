@@ -1,8 +1,9 @@
 """Slopes of terms with respect to the state: their own, and through values that they read (an attractor's place).
 
 By the chain rule d rate/dy = (partial d term/dy) + (d term/d value) (d value/dy). Terms give the first part
-(system.Slopes). Of the second, d value/dy is exact, from the value's formula (Inputs.slopes), and d term/d value is a
-difference of the term's own kernel by the few floats of the value: so every word has it without code of its own.
+(system.Slopes). In the second, d value/dy is exact, from the value's formula (Inputs.slopes), and d term/d value is a
+finite difference of the term's own kernel with respect to the few floats of the value. So words need no code of their
+own for it.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ KERNEL = "sceneql.island.value_slopes_kernels:by_values"
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """The parts that own the entries of y."""
+    """The owners of the entries of y, by model, mass and field."""
 
     size: int
     ranges: Sequence[tuple[int, int, str, Any]]
@@ -61,15 +62,20 @@ class Layout:
         return any(first <= at < end for first, end in own for at, _ in self.masses)
 
     def rows(self, word: Word) -> Numbers:
-        """Entries of the rate that a word's terms may add to, without sums over the state such as the energy lost:
-        velocities for a model of masses and forces on it, all entries of other models."""
+        """(k,) entries of the rate that a word's terms may add to, without tallies such as the dissipated energy.
+
+        These are velocities for a model of masses and for forces on it, and all entries for other models.
+        """
         acted = word[0] if word[1] is None else word[1]
         ranges = [(first, end) for first, end, part, _ in self.ranges if part == acted] or [(0, self.size)]
         inside = [own for own in self.masses if any(first <= own[0] < end for first, end in ranges)]
         return np.concatenate([np.arange(first, end) for first, end in inside or ranges])
 
     def sums(self) -> NDArray[bool_]:
-        """(size,) bool: entries of models that belong to no mass and no cell (tallies), whose rows have no slopes."""
+        """(size,) bool: tallies, the entries of models of masses or fields that belong to no mass and no cell.
+
+        Their rows have no slopes.
+        """
         found = np.zeros(self.size, dtype=bool)
         for first, end, *_ in self.ranges:
             found[first:end] = any(first <= at < end for at, _ in (*self.masses, *self.cells))
@@ -81,7 +87,7 @@ class Layout:
 
 
 def own_slopes(terms: Mapping[Stage, Sequence[Block]], in_stages: bool) -> list[tuple[Slopes, Ints]]:
-    """The slopes that terms give, with their integers; ``in_stages``: including those with `Slopes.in_stages`.
+    """The terms' own slopes, with their integers; ``in_stages``: including those that hold in stages alone (`Slopes`).
 
     Raises WithoutSlopes.
     """
@@ -101,7 +107,7 @@ def value_slopes(
     layout: Layout,
     inputs: Inputs,
 ) -> list[tuple[Slopes, Ints]]:
-    """The slopes through values, with their integers. ``known``: the terms' own slopes.
+    """The slopes of terms through values, with their integers; ``known``: the terms' own slopes.
 
     Raises WithoutSlopes. Derivatives of contact constraints through values are left out.
     """
@@ -133,7 +139,7 @@ def value_slopes(
 
 
 def _slopes(rows: Numbers, acting: Sequence[Block], values: Sequence[tuple[int, ValueSlopes]]) -> tuple[Slopes, Ints]:
-    """The slopes of one word's terms, with the kernel's integers: see value_slopes_kernels."""
+    """The slopes of one word's terms through values, with the integers of value_slopes_kernels.by_values."""
     from sceneql.compiled.generated import load
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.island.value_slopes_kernels import END

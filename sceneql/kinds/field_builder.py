@@ -1,4 +1,4 @@
-"""How an object writes its implicit field: straight-line code on registers."""
+"""The interface by which an object writes its implicit field as straight-line code on registers."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ if TYPE_CHECKING:
 
 
 class FieldBuilder(Protocol):
-    """What an object writes its implicit field with (sceneql.field.tape.builder.TapeBuilder)."""
+    """Builder of an implicit field's straight-line code (implemented by sceneql.field.tape.builder.TapeBuilder)."""
 
     def constant(self, value: float) -> int:
-        """Register of a number."""
+        """Register that holds a constant."""
 
     def op(self, name: str, *registers: int) -> int:
-        """Register of an operation of the one table."""
+        """Register of the result of an operation, by its name in the operation table, on registers."""
 
     def expression(self, expr: Expr, symbols: Mapping[str, int]) -> int:
-        """Register of a scalar expression whose symbols have registers."""
+        """Register of the value of a scalar expression; ``symbols``: the registers of its symbols."""
 
     def affine(self, matrix: Floats, x: int, y: int, z: int) -> tuple[int, int, int]:
-        """Registers of a point mapped by a (3, 4) matrix."""
+        """Registers of the point (x, y, z), given by registers, mapped by a (3, 4) affine matrix."""
 
     def skeleton(self, skeleton: Any, x: int, y: int, z: int) -> int:
-        """Register of the density of a skeleton (sceneql.field.skeleton.skeleton.Skeleton) at a point."""
+        """Register of a skeleton's density (sceneql.field.skeleton.skeleton.Skeleton) at a point given by registers."""

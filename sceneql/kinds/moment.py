@@ -18,22 +18,22 @@ T = TypeVar("T")
 
 
 class Seen(Protocol):
-    """Something that has a value at an instant, besides the values of fields."""
+    """Something besides field values that can be evaluated at an instant."""
 
     def at(self, moment: Moment) -> Any:
-        """Its value."""
+        """Its value at the moment."""
 
 
 class Shaped(Protocol):
-    """An object of the script as other objects see it that are made of it; Object has the contract of each method."""
+    """An object of the script as seen by objects composed of it; Object has the contract of each method."""
 
     @property
     def material(self) -> Ref | None:
-        """Its material; None where the script names none."""
+        """Reference to its material; None where the script names none."""
 
     @property
     def color(self) -> Value | None:
-        """The color in place of the material's, if any."""
+        """Its color, which replaces the material's; None: the material's."""
 
     @property
     def hidden(self) -> bool:
@@ -41,30 +41,30 @@ class Shaped(Protocol):
 
     @property
     def traced(self) -> str:
-        """The kind of field that rays intersect it by."""
+        """The kind of field by which rays are intersected with it (Object.traced)."""
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None) -> Self:
         """A copy with other fields."""
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Drawn]:
-        """Its shapes."""
+        """Its shapes in the world at the moment."""
 
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
-        """Register of its implicit field."""
+        """Register of its implicit field at a point given by registers."""
 
     def hues(
         self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment
     ) -> tuple[int, int, int] | None:
-        """Registers of its color; None where its surface has a single one."""
+        """Registers of its linear RGB color at a point; None where its surface has a single color."""
 
     def domain(self) -> Any:
-        """Its inside as a two-dimensional domain of fields."""
+        """Its inside as a two-dimensional domain of fields; None where it is none."""
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of a world box around it."""
+        """Low and high corner (3,) [m] of a bounding box in the world."""
 
     def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments | None:
-        """Volume, center and second moments of its inside, where it knows them better than its field does."""
+        """Volume, center and second moments of its inside, where it knows them better than quadrature of its field."""
 
 
 Remembered = Union["Value", Seen]
@@ -75,15 +75,15 @@ class Moment(Protocol):
 
     @property
     def time(self) -> float:
-        """[s]"""
+        """Time of the instant [s]."""
 
     @property
     def end(self) -> float:
-        """When the run ends [s]."""
+        """End of the run [s]."""
 
     @property
     def room(self) -> tuple[float, float, float, float]:
-        """What overlays take of the picture's left, top, right and bottom, in parts of its width and height."""
+        """Margins covered by overlays at the picture's left, top, right and bottom, as parts of width and height."""
 
     @property
     def variants(self) -> tuple[str, ...]:
@@ -96,49 +96,54 @@ class Moment(Protocol):
         """The value now, even where it is not finite."""
 
     def past(self, value: Remembered) -> list[tuple[float, Any]]:
-        """(time [s], value) at the instants before now that a part asked for (its `remembers`), oldest first."""
+        """Past values (time [s], value), oldest first, at instants that a part asked for by its `remembers`."""
 
     def course(self, value: Value, variant: str | None = None, until: float = ...) -> tuple[Floats, Floats]:
-        """Times (n,) [s] of the run, whole or up to ``until``, and values (n, ...) of a value in `Overlay.courses`.
+        """Times (n,) [s] of the run, whole or up to ``until``, and values (n, ...) of a value in `courses`.
 
-        With ``variant``, in that variant of the script. The course of a run that fails ends at the failure.
+        ``variant``: the name of a variant of the script to take the values from. The course of a run that fails ends at
+        the failure.
         """
 
     def read(self, task: str, output: str) -> Any:
         """An output of a part now."""
 
     def state(self, name: str) -> ModelState:
-        """The state of a model that is solved, or of a contact, now."""
+        """The state of a solved model, or of a contact, now."""
 
     def object(self, ref: Ref) -> Shaped:
         """An object of the script."""
 
     def place(self, name: str) -> Floats:
-        """(3, 4) map to the world from the coordinates that an object's position is in: its group's or the world's."""
+        """(3, 4) map to the world from the coordinates of object ``name``'s position: its group's, or the world's."""
 
     def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
-        """The surface of object ``name``: its material's, with the color replaced where given; a default by order."""
+        """The surface of object ``name``: the material's, recolored where ``color`` is given.
+
+        Without a material a default color.
+        """
 
     def coloring(self) -> AbstractContextManager[None]:
-        """What is read inside gives colors: by it nothing that is drawn leaves the bounds that it has."""
+        """Context manager: values read inside only color shapes, so they cannot move a shape out of its bounds."""
 
     def kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:
-        """The result of ``make`` for a part: the last one where its key equals this one, else a new one.
+        """The result of ``make`` for part ``name``: the cached one where its key equals ``key``, else a new one.
 
         So arrays of shapes are the same objects from frame to frame (frame.is_held): the key holds all that they depend
         on. One result a part is kept, and no longer than the run.
         """
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of what the named objects draw over the whole film (infinite planes left out).
+        """Low and high corner (3,) [m] of what the named objects draw over the whole film, without infinite planes.
 
-        For no names of all that is drawn, but for what leaves for good.
+        Without names: of all that is drawn, except what leaves the scene for good.
         """
 
     def around(self) -> tuple[Floats, Floats] | None:
-        """Low and high corner (3,) around what the picture shows now (infinite planes left out); None where that is
-        not known, or nothing.
+        """Low and high corner (3,) [m] around what the picture shows now, without infinite planes.
+
+        None where that is not known, or where nothing is shown.
         """
 
     def outline(self) -> Floats:
-        """Points (n, 3) [m] whose hull holds all that is drawn over the whole film, but for what leaves for good."""
+        """Points (n, 3) [m] whose hull encloses all that is drawn over the whole film, except what leaves for good."""

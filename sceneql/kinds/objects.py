@@ -26,19 +26,19 @@ class Object(Kind):
 
     family: ClassVar[str] = "objects"
     collides: ClassVar[bool] = False
-    """Whether contacts that name no surface include it even where more than its placement varies in time."""
+    """Whether contacts that name no objects include it, even where more than its placement varies in time."""
 
     unseen: ClassVar[str] = ""
-    """For words that draw their members in another form: why nothing of it was seen where it drew nothing."""
+    """For words that draw their members in another form: the text of a warning that nothing of it was drawn."""
 
     grounds: ClassVar[bool] = False
-    """Whether all may stand on it: a scene that has one gets no other by default."""
+    """Whether it serves as a ground: a scene that has one gets no default ground."""
 
     edgeless: ClassVar[bool] = False
-    """Whether its surface is where a field is zero, and as a rule without edges."""
+    """Whether its surface is the zero set of a field, as a rule without edges."""
 
     decorates: ClassVar[bool] = False
-    """Whether a model that it reads still draws itself."""
+    """Whether a model whose outputs it reads still draws itself."""
 
     material: MaterialRef | None = field("How it looks; by default glossy, in a color by order.", None)
     color: Color | None = field("Color in place of the material's.", None)
@@ -46,9 +46,9 @@ class Object(Kind):
 
     @property
     def traced(self) -> str:
-        """The kind of field that rays intersect it by (frame.Implicit).
+        """The kind of field by which rays are intersected with it (frame.Implicit).
 
-        "formula"; "density" of points; "skeleton", of other parts; or "" for none.
+        "formula"; "density" (a sum over points); "skeleton" (a density of other primitives); or "" for none.
         """
         return ""
 
@@ -63,9 +63,9 @@ class Object(Kind):
         raise TypeError(f"`{self._word()}` cannot be drawn")
 
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
-        """Register of a field that is negative inside; (x, y, z) are registers of a point in the parent's coordinates.
+        """Register of a field, negative inside, at the point (x, y, z) of the parent's coordinates, given by registers.
 
-        Near the surface it should behave like a distance. Raises TypeError where the object has no inside.
+        Near the surface it should approximate a signed distance. Raises TypeError where the object has no inside.
         """
         raise TypeError(f"`{self._word()}` has no inside")
 
@@ -76,40 +76,41 @@ class Object(Kind):
         return None
 
     def domain(self) -> Any:
-        """Its inside as a flat domain of fields (grids.domain.cut.Level with bounds); None: it is none."""
+        """Its inside as a two-dimensional domain of fields (grids.domain.cut.Level with bounds); None: it is none."""
         return None
 
     def doubts(self, clock: Clock) -> Iterable[Doubt]:
-        """What its own fields and the film's time make doubtful, for warnings of `check`."""
+        """Doubtful settings of its own fields, given the clock; warnings of `check`."""
         return ()
 
     def holes(self) -> str:
-        """The holes of what should be closed, as ``3 holes of 117 edges``; empty where there are none."""
+        """The holes of a surface that should be closed, as ``3 holes of 117 edges``; empty where there are none."""
         return ""
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of a world box around it; infinite where it is unbounded."""
+        """Low and high corner (3,) [m] of a bounding box in the world; infinite where it is unbounded."""
         raise TypeError(f"`{self._word()}` has no extent")
 
     def volume_moments(self, moment: Moment, measure: Callable[[Shaped], VolumeMoments]) -> VolumeMoments | None:
-        """Volume, center and second moments of its inside in its parent's coordinates, for bodies.
+        """Volume, center and second moments of its inside in its parent's coordinates, for rigid bodies.
 
-        None: its field tells them best. ``measure`` tells those of a member in this object's own coordinates. Raises
-        ValueError where it has no inside to weigh, as an open mesh.
+        None: they are to be integrated from its field. ``measure`` returns those of a member in this object's own
+        coordinates. Raises ValueError where it has no inside to weigh, as an open mesh.
         """
         return None
 
     def convex(self, moment: Moment, center: Floats) -> Any:
-        """Its shape for contacts of rigid bodies (contacts.distance.convex), in its own axes from ``center`` (3,) [m].
+        """Its convex shape for contacts of rigid bodies (contacts.distance.convex), in its own axes.
 
-        Raises TypeError or ValueError where it has none that is covered.
+        ``center`` (3,) [m]: the origin of the shape. Raises TypeError or ValueError where it has none that these
+        contacts cover.
         """
         raise TypeError(f"`{self._word()}` has no convex shape that they know")
 
     def curved(self, moment: Moment) -> Any:
         """Its smooth shape for exact contacts of rigid bodies (contacts.rigid_exact.curved), in its own axes.
 
-        Raises TypeError or ValueError where it has none that is covered.
+        Raises TypeError or ValueError where it has none that these contacts cover.
         """
         raise TypeError(f"`{self._word()}` has no smooth shape that they know")
 
@@ -118,35 +119,47 @@ class Object(Kind):
         raise KeyError(output)
 
     def excess(self, count: Callable[[Value], int | None]) -> Iterable[tuple[Value, str]]:
-        """Lists that are too long for it, and why; ``count`` gives the length of a list where that is known."""
+        """Lists that are too long for it, each with the reason.
+
+        ``count`` returns the length of a list where it is known.
+        """
         return ()
 
     def cut_by_default(self) -> str:
-        """What cuts an unbounded object whose bounds the script does not give; empty where nothing is cut."""
+        """The default bounds, as text, that cut an unbounded object where the script gives none.
+
+        Empty where nothing is cut.
+        """
         return ""
 
     def members(self) -> tuple[Ref, ...]:
-        """Objects that are drawn by this one, and so not by themselves."""
+        """The objects that this one draws, so that they are not drawn by themselves."""
         return ()
 
     def joins(self) -> tuple[Ref, ...]:
-        """The members whose insides make up its own."""
+        """The members from whose insides its own is made."""
         return ()
 
     def labels(self, name: str, moment: Moment) -> Iterable[tuple[Any, Any, str]]:
-        """Labels, each with points (n, 3) in the world [m] that it stands beside, and the direction (3,) it lies in."""
+        """Labels: the world points (n, 3) [m] that each stands beside, the direction (3,) of its line, and its text."""
         return ()
 
     def remembers(self) -> Iterable[tuple[Value, float, float]]:
-        """Past values that it needs (`Moment.past`): how far back [s], and at which interval [s]."""
+        """Past values that it needs (`Moment.past`): each with how far back [s] and at which interval [s]."""
         return ()
 
     def courses(self, start: Moment) -> Iterable[Value]:
-        """Values that it needs over the whole run (`Moment.course`), by the start: then the physics runs once ahead."""
+        """Values that it needs over the whole run (`Moment.course`), found at its start.
+
+        The physics then runs once ahead.
+        """
         return ()
 
     def looks_ahead(self) -> str:
-        """What it takes from the bounds of the whole film (`Moment.bounds`), for `explain`; empty for nothing."""
+        """What it derives from the bounds of the whole film (`Moment.bounds`), as text for `explain`.
+
+        Empty for nothing.
+        """
         return ""
 
     def _word(self) -> str:

@@ -16,17 +16,14 @@ if TYPE_CHECKING:
 
 
 class Tools(Protocol):
-    """What the pipeline lends to an output."""
+    """The services that the pipeline gives an output."""
 
     @property
     def clock(self) -> Clock:
         """Film time and simulation time."""
 
     def path(self, extension: str) -> Any:
-        """Path of a file of the output, as ``scene.extension`` (also ``0001.ply``: many files are as good as one).
-
-        Write it by `sceneql.files.whole`, which gives a binary stream.
-        """
+        """Path of a file of the output, as ``scene.extension``; also ``0001.ply``, one of many files."""
 
     def pixels(self, output: Picture, moment: Moment, part: int = 0, parts: int = 1) -> Any:
         """The developed picture (h, w, 3) uint8 of this output's camera, renderer and size.
@@ -35,29 +32,32 @@ class Tools(Protocol):
         """
 
     def frame(self, moment: Moment, *, fields: bool = False) -> Frame:
-        """A frame whose ``shapes`` (the closed set of sceneql.frame, in the world) are what an output now ``draws``.
+        """A frame whose ``shapes`` (the closed set of sceneql.frame, in the world) are those to draw at the moment.
 
-        With ``fields`` objects that have an inside come as their field in a box (frame.Implicit), whatever they are
-        drawn as: what is to be polygonised; others as they are drawn. Arrays of shapes that are held (frame.is_held)
-        are the same objects in the next frame where they are the same. Raises RunFailure, with ``fields`` also for what
-        is unbounded: let the script name parts by `show`.
+        With ``fields`` objects that have an inside come as their implicit field in a box (frame.Implicit), for
+        polygonisation, whatever they are drawn as; others as they are drawn. Arrays of shapes that are held
+        (frame.is_held) are the same objects in the next frame where they are the same. Raises RunFailure, with
+        ``fields`` also for unbounded objects: let the script name parts by `show`.
         """
 
     def encoder(self, word: str, **settings: Any) -> Any:
-        """A writer with ``write``, ``close`` (whole under its final name) and ``abort`` (what was made, beside it)."""
+        """A writer of pictures with ``write``, ``close`` and ``abort``.
+
+        ``close`` lets the file appear under its final name; ``abort`` keeps what was made beside it.
+        """
 
 
 class Sink(Protocol):
-    """An open output. The paths that it returns are those of the files it has made."""
+    """An open output. ``close`` and ``abort`` return the paths of the files made."""
 
     def take(self, moment: Moment) -> None:
-        """One instant of those asked for."""
+        """Take the next of the instants that `Output.times` asked for."""
 
     def close(self) -> Iterable[Any]:
-        """Finish: files appear under their final names."""
+        """Finish; files appear under their final names."""
 
     def abort(self) -> Iterable[Any]:
-        """The run failed: keep what was made beside the final name."""
+        """Stop after a failed run; what was made is kept beside the final name."""
 
 
 class Output(Kind):
@@ -69,10 +69,10 @@ class Output(Kind):
 
     family: ClassVar[str] = "outputs"
     draws: ClassVar[bool] = False
-    """Whether it asks for shapes (`Tools.frame`)."""
+    """Whether it draws shapes (`Tools.frame`)."""
 
     def shown(self) -> tuple[Ref, ...] | None:
-        """Of one that draws: the parts that it draws; None: all that is not hidden. (`show`, where it is a field.)"""
+        """The parts to draw, for an output that draws; None: all that is not hidden. (`show`, where it is a field.)"""
         return None
 
     def times(self, clock: Clock) -> list[float]:
@@ -83,11 +83,11 @@ class Output(Kind):
         raise NotImplementedError
 
     def latest(self) -> tuple[str, float] | None:
-        """A field that asks for an instant, and that instant [s]: refused where the clock ends before it."""
+        """The name and value [s] of a field that asks for an instant: refused where the clock ends before it."""
         return None
 
     def open(self, tools: Tools) -> Sink:
-        """Start it."""
+        """Start the output."""
         raise NotImplementedError
 
 
@@ -141,11 +141,11 @@ class Picture(Output):
         return 1
 
     def seen_from(self, time: float) -> Ref | None:
-        """The camera of an instant [s] of the simulation, where that is not the output's own."""
+        """The camera at an instant [s] of the simulation, where it is not the output's own; else None."""
         return None
 
     @property
     def pixels(self) -> tuple[int, int]:
-        """Width and height."""
+        """Width and height of the picture [pixels]."""
         named = {"360p": (640, 360), "480p": (854, 480), "720p": (1280, 720), "1080p": (1920, 1080), "4k": (3840, 2160)}
         return named[self.size] if isinstance(self.size, str) else self.size

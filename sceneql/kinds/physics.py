@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Doubt:
-    """What a run will do, and yet may not be meant."""
+    """A likely mistake: something that a run will do and that may not be meant."""
 
     code: str
     text: str
@@ -46,11 +46,11 @@ class Model(Kind):
     flows: ClassVar[bool] = False
     """Whether it is an incompressible flow (system.Flow)."""
     turns: ClassVar[bool] = False
-    """Whether its bodies are rigid: those of a contact are solved together."""
+    """Whether its bodies are rigid: all models of a contact with it are then solved together."""
     has_bodies: ClassVar[bool] = True
     """Whether forces that name no model act on it."""
     has_skin: ClassVar[bool] = False
-    """Whether its masses span a surface: all of a contact with such a model are solved together."""
+    """Whether its masses are vertices of a surface: all models of a contact with it are then solved together."""
 
     carried: ClassVar[bool] = False
     """Whether it is a skin without inertia that a flow carries (system.Membrane)."""
@@ -58,15 +58,18 @@ class Model(Kind):
     """Whether a flow may carry it (Interaction.carrier): it is then assembled after the flow."""
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies | None:
-        """Reserve state, give initial values, add the terms of its own rate; the point masses forces may act on."""
+        """Reserve its state with initial values and add the terms of its own rate.
+
+        Returns the masses that forces may act on.
+        """
         raise TypeError(f"{type(self).__name__} has no state")
 
     def assemble_part(
         self, name: str, assembly: Assembly, bodies: Bodies, start: ModelState, first: int, last: int
     ) -> Bodies | None:
-        """Reserve its bodies first..last-1 alone, as they start: a block of those that feel no other one.
+        """Reserve only its bodies first..last-1, at their initial state, as a block that interacts with no other body.
 
-        None: it cannot be divided.
+        None: the model cannot be divided.
         """
         return None
 
@@ -75,18 +78,18 @@ class Model(Kind):
         raise TypeError(f"{type(self).__name__} gives no {output}")
 
     def places(self, output: str, state: ModelState) -> NDArray[int64] | None:
-        """Where in the state an output stands: indices into `state.y`, of the output's shape; None: it is computed.
+        """Indices into `state.y` at which an output stands, in the output's shape; None: the output is computed.
 
-        ``state``: at the start of the run, for its bodies, ints and floats; the same all the time. Values that are
-        evaluated at stage times, as the place of an attractor, read such outputs of models of their island. Of a model
-        that does not say it they read none: such a link is refused. All that is read between steps is `read`.
+        ``state``: at the start of the run, for its bodies, ints and floats; the indices stay the same. Values that are
+        evaluated at stage times, as the place of an attractor, can read such outputs of models of their island and no
+        others: other links are refused. Everything that is read between steps is read by `read`.
         """
         return None
 
     def point(self, output: str, state: ModelState) -> tuple[int, tuple[float, float, float]] | None:
-        """The number of the mass whose position an output is, and where on it, in its own axes from its center [m].
+        """The index of the mass whose position an output is, and the point on it in its own axes from its center [m].
 
-        None: it is not the position of one. ``state`` as in `places`.
+        None: the output is not such a position. ``state`` as in `places`.
         """
         found = None if state.bodies is None else self.places(output, state)
         if state.bodies is None or found is None or found.shape != (3,):
@@ -95,45 +98,42 @@ class Model(Kind):
         return None if rest or not 0 <= body < state.bodies.count else (body, (0.0, 0.0, 0.0))
 
     def remark(self, state: ModelState) -> str:
-        """What `explain` says of it at the start of the run, as how exact its numbers are."""
+        """Text for `explain` at the start of the run, as on the accuracy of its numbers."""
         return ""
 
     def trouble(self, state: ModelState) -> tuple[str, str]:
-        """What a warning says of it at the end of a run, and what helps; empty for nothing."""
+        """Text of a warning at the end of a run, and its remedy; both empty for none."""
         return "", ""
 
     def sums_up(self, output: str) -> bool:
-        """Whether an output is a sum over the run that the state holds: values that read it have no slopes."""
+        """Whether an output is accumulated over the run in the state (a tally): values that read it have no slopes."""
         return output in self.gives and self.gives[output].tally
 
     def field_count(self) -> int:
-        """The number of fields at centers of cells (system.Grid) that it is made of."""
+        """The number of cell-centered fields (system.Grid) of the model."""
         return 0
 
     def connect(self, name: str, assembly: Assembly) -> None:
-        """Add the terms that read what other models of the island have reserved: all are assembled by now."""
+        """Add the terms that read other models' reservations in the island; called once all models are assembled."""
 
     def items(self, output: str) -> int | None:
-        """How many items an output has, where its fields tell."""
+        """Number of items of an output, if its fields tell; else None."""
         return None
 
     def burdens(self, density: float) -> bool:
-        """Whether its masses, where a flow carries them, weigh other than what they displace of a density [kg/m^3]."""
+        """Whether its masses, carried by a flow, differ from the mass of displaced fluid of a density [kg/m^3]."""
         return False
 
     def fluid(self) -> tuple[float, float] | None:
-        """Density [kg/m^3] and viscosity [Pa s] of what it holds, where these are not those of its flow."""
+        """Density [kg/m^3] and viscosity [Pa s] of the fluid inside it; None where it is the flow's own fluid."""
         return None
 
     def fillings(self) -> Iterable[tuple[Ref, Callable[[Floats, Floats], None]]]:
-        """Objects that it fills by a measure, with a function of the low and high corner (3,) of their boxes.
-
-        The function raises Exceeds where that is sure to be too much.
-        """
+        """Objects that it fills at a spacing, each with a function of the corners (3,) [m] of the object's box."""
         return ()
 
     def held_parts(self) -> Iterable[HeldPart]:
-        """Parts of it that it holds by their places."""
+        """Its parts that are held fixed, selected by their position."""
         return ()
 
     def insides(self) -> Iterable[Ref]:
@@ -141,11 +141,11 @@ class Model(Kind):
         return ()
 
     def probed(self) -> Iterable[Probed]:
-        """Places of which it tells, which have to lie inside objects that it spreads in or fills."""
+        """Points that have to lie inside the objects that it fills or spreads in."""
         return ()
 
     def shaped(self) -> Iterable[Ref]:
-        """Objects whose shape it takes as it is at the start: they may be moved and turned, but as a whole alone."""
+        """Objects whose shape at the start it takes: they may only move rigidly as a whole."""
         return ()
 
     def standing(self) -> Iterable[Ref]:
@@ -153,7 +153,7 @@ class Model(Kind):
         return ()
 
     def lasts(self) -> bool:
-        """Whether its bodies are there all the time: births bring energy, and deaths take it."""
+        """Whether its bodies exist during the whole run: births add energy, and deaths remove it."""
         return True
 
     def conserves(self) -> tuple[str, ...]:
@@ -161,11 +161,11 @@ class Model(Kind):
         return ()
 
     def size_of(self, output: str, state: ModelState) -> Any:
-        """How large the terms are that such an output is a sum of: float or (count,)."""
+        """Magnitude of the terms whose sum a conserved output is: float or (count,)."""
         raise TypeError(f"{type(self).__name__} conserves no {output}")
 
     def computed(self, name: str, output: str) -> Expr | None:
-        """An output of a solved model by others of its own that `places` tells, as a place on a body by the body's."""
+        """An output of a solved model as an expression of others that `places` finds, as a point on a body."""
         return None
 
     def formula(self, output: str) -> Expr:
@@ -173,39 +173,46 @@ class Model(Kind):
         raise TypeError(f"{type(self).__name__} is not a function of time")
 
     def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
-        """Bounds on its fastest oscillations by its own fields, for `check`: without numpy, and quickly."""
+        """Bounds on its fastest oscillations from its own fields, for `check`: without numpy, and quickly."""
         return ()
 
     def doubts(self) -> Iterable[Doubt]:
-        """What its own fields make doubtful, for warnings of `check`."""
+        """Doubtful settings of its own fields, for warnings of `check`."""
         return ()
 
     def static_masses(self) -> Mapping[str, StaticMass]:
-        """Masses by name as its fields alone tell them, for `check`; one without a name stands for the lightest."""
+        """Masses by name that follow from its fields alone, for `check`.
+
+        The name "" stands for the lightest of nameless ones.
+        """
         return {}
 
     def lowest(self) -> float | None:
-        """A height [m] below which none of its masses starts, as its fields alone tell it; None: they do not."""
+        """A lower bound of the heights [m] at which its masses start, from its fields alone; None: not known."""
         return None
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Drawn]:
-        """How it draws itself where no object of the script does, or it is asked to."""
+        """Its shapes where no object of the script shows it, or where it is asked to draw itself."""
         return ()
 
     def shown_at(self, outputs: Collection[str]) -> bool:
-        """Whether an object whose position reads these outputs shows it, so that it does not draw itself."""
+        """Whether an object whose position reads these outputs shows the model, which then does not draw itself."""
         return True
 
     def asked_to_draw(self) -> bool:
-        """Whether the script says how it draws itself: then it does, whatever shows it besides."""
+        """Whether the script says how it draws itself; it then does so even where objects show it."""
         return False
 
     def shows(self, name: str) -> Value | None:
-        """The field that a `field_map` draws where no object of the script shows any of it."""
+        """The field to draw by a default `field_map`, where no object of the script shows any of the model's fields."""
         return None
 
+    def called(self, output: str) -> str:
+        """Name of an output in pictures."""
+        return output
+
     def shown_in_place_of(self) -> Iterable[Ref]:
-        """Objects that would hide it, or that map: it is drawn in their place."""
+        """Objects that would hide it or its default map: it is drawn in their place."""
         return ()
 
     def drives(self) -> Mapping[str, Mapping[str, str]]:
@@ -213,38 +220,38 @@ class Model(Kind):
         return {}
 
     def with_own_shapes(self, own: Callable[[Ref], Ref]) -> Model:
-        """Itself, each of its bodies driving the object that ``own`` gives for the one that the script names."""
+        """A copy in which each body drives the object ``own(ref)`` instead of the object that the script names."""
         return self
 
 
 class Interaction(Kind):
-    """What adds to the rate of models: a force, or a tie between two bodies."""
+    """An addition to the rate of models: a force, or a tie between two bodies."""
 
     family: ClassVar[str] = "forces"
 
     weighs: ClassVar[bool] = False
-    """Whether it is weight: what it acts on falls, and a picture shows a ground under it."""
+    """Whether it is a weight: its masses fall, and pictures show a ground under them."""
     mutual: ClassVar[bool] = False
-    """Whether the masses that it acts on act on one another: then their models are solved together."""
+    """Whether its masses act on one another; their models are then solved together."""
 
     def targets(self) -> tuple[str, ...] | None:
         """Names of the models it acts on; None: all that have masses."""
         return None
 
     def carrier(self) -> Ref | None:
-        """The flow by which it has models carried (Model.immersible), in place of acting on masses; else None."""
+        """The flow that carries its models (Model.immersible), where it couples them to one; else None."""
         return None
 
     def fastest_carried(self, models: Mapping[str, Model], flow: Model, scene: StaticScene) -> Iterable[Oscillation]:
-        """As `fastest`, of models that its `carrier` carries."""
+        """As `fastest`, for the models that its `carrier` carries."""
         return ()
 
     def assemble_carried(self, name: str, assembly: Assembly, model: str) -> None:
-        """Add its terms for one skin, where it has a `carrier`."""
+        """Add its terms for one skin, where there is a `carrier`."""
         raise NotImplementedError
 
     def assemble_weight(self, name: str, assembly: Assembly) -> None:
-        """Add what fluids of several densities weigh, where it is weight: `weighs`."""
+        """Add the weight of fluids of several densities, for an interaction that `weighs`."""
         raise NotImplementedError
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
@@ -252,26 +259,26 @@ class Interaction(Kind):
         raise NotImplementedError
 
     def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
-        """Add its terms for all models at once, where it is `mutual`."""
+        """Add its terms for all models at once; called where it is `mutual`."""
         raise NotImplementedError
 
     def fastest(self, name: str, on: Mapping[str, Mapping[str, StaticMass]]) -> Iterable[Oscillation]:
-        """Bounds on the fastest that it makes of its models' masses, for `check`: without numpy, and quickly.
+        """Bounds on the fastest oscillations of masses under this force, for `check`: without numpy, and quickly.
 
-        ``on``: by model what is told of the masses that it acts on.
+        ``on``: by model, the known masses that it acts on.
         """
         return ()
 
     def internal(self) -> bool:
-        """Whether it acts between masses alone, each on the other as much: then their momentum stays."""
+        """Whether all its forces are pairs of action and reaction between masses, so that it conserves momentum."""
         return False
 
     def at_a_distance(self) -> bool:
-        """Whether it is as smooth as the paths of masses in it, as gravity is: no spring, no friction, no far end."""
+        """Whether it is a smooth force at a distance, such as gravity."""
         return False
 
     def remark(self, state: ModelState) -> str:
-        """What `explain` says of a `mutual` force at the start of the run, as how far it is from exact."""
+        """Text for `explain` on a `mutual` force at the start of the run, as on the error of its approximation."""
         return ""
 
     def potential(self, bodies: Bodies, state: ModelState) -> float:
@@ -290,9 +297,9 @@ class Force(Interaction):
 
 
 class Tie(Interaction):
-    """Holds two bodies together, or one to the world, so that some motions are left.
+    """A constraint between two bodies, or a body and the world, that leaves some motions free.
 
-    Its forces are those that let the bodies keep to it, found together with those of all ties of the island.
+    Its constraint forces are solved for together with those of all ties of the island.
     """
 
     family: ClassVar[str] = "ties"
@@ -316,11 +323,11 @@ class Tie(Interaction):
         return tuple(dict.fromkeys(ref.name for ref in self.between if ref.name))
 
     def places(self) -> Iterable[tuple[Value, tuple[Ref, ...]]]:
-        """Places at the start, each with the bodies that it is to be on."""
+        """Points at the start, each with the bodies that it must lie on."""
         return ()
 
     def pivot(self) -> Ref | None:
-        """The body that only turns about a point of the world, where it leaves it no other motion; else None."""
+        """The body that can only rotate about a fixed point of the world; None where there is none."""
         return None
 
     def read(self, output: str, state: ModelState) -> Any:
@@ -328,28 +335,29 @@ class Tie(Interaction):
         raise TypeError(f"{type(self).__name__} gives no {output}")
 
     def trouble(self, state: ModelState) -> str:
-        """What a warning says of it at the end of a run; empty for nothing."""
+        """Text of a warning at the end of a run; empty for none."""
         return ""
 
 
 class Contact(Kind):
-    """Gives events and impulses."""
+    """Contact of masses or bodies with objects, or with one another: events and impulses."""
 
     family: ClassVar[str] = "contacts"
     also_under: ClassVar[str] = "forces"
     mutual: ClassVar[bool] = False
-    """Whether it acts between all masses of its models: these are tied, and it is assembled for all at once."""
+    """Whether it acts between all masses of its models: these are solved together, and it is assembled for all at
+    once."""
 
     def ties(self) -> tuple[Ref, ...]:
-        """The models and objects it acts between; empty: all models and the floor."""
+        """The models and objects that it acts between; empty: all models and the floor."""
         raise NotImplementedError
 
     def refusals(self, models: Mapping[str, Model]) -> Iterable[Diagnostic]:
-        """What it asks of the models that it acts on and they do not have, for `check`."""
+        """Errors, for `check`, where its models lack what it requires."""
         return ()
 
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies, others: tuple[Ref, ...]) -> None:
-        """Add gaps and impacts (or local backing off) of one model against the others."""
+        """Add gaps and impacts (or the local kernel that backs off) of one model against the others."""
         raise NotImplementedError
 
     def assemble_together(
@@ -361,7 +369,7 @@ class Contact(Kind):
     def assemble_rigid(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> None:
-        """Add its terms for all models at once, where there are rigid bodies among them."""
+        """Add its terms for all models at once; called where some of them are rigid bodies."""
         raise NotImplementedError
 
     def assemble_carried(
@@ -373,13 +381,13 @@ class Contact(Kind):
         everyone: Sequence[Bodies],
         others: tuple[Ref, ...],
     ) -> None:
-        """Add its terms for all skins and masses at once that a flow carries; ``everyone``: its other masses."""
+        """Add its terms for all skins and masses that a flow carries, at once; ``everyone``: its other masses."""
         raise NotImplementedError
 
     def assemble_skins(
         self, name: str, assembly: Assembly, everyone: Sequence[Bodies], others: tuple[Ref, ...]
     ) -> bool:
-        """Add its terms for all models at once, some of which have skins; whether it acts on skins."""
+        """Add its terms for all models at once, where some have skins; returns whether it acts on skins."""
         return False
 
     def read(self, output: str, state: ModelState) -> Any:
@@ -387,9 +395,9 @@ class Contact(Kind):
         raise TypeError(f"{type(self).__name__} gives no {output}")
 
     def remark(self, state: ModelState) -> str:
-        """What `explain` says of it at the start of the run, as what it leaves out."""
+        """Text for `explain` at the start of the run, as on what it neglects."""
         return ""
 
     def trouble(self, state: ModelState) -> str:
-        """What a warning says of it at the end of a run; empty for nothing."""
+        """Text of a warning at the end of the run; empty for none."""
         return ""

@@ -22,18 +22,18 @@ class Camera(Kind):
 
     family: ClassVar[str] = "cameras"
     yields: ClassVar[bool] = False
-    """Whether it leaves the room to overlays that they take of the picture (`Moment.room`)."""
+    """Whether it frames the scene within the margins that overlays leave free (`Moment.room`)."""
 
     def looks_ahead(self) -> bool:
-        """Whether it frames all that the whole film draws, so that the physics runs once before the pictures."""
+        """Whether it frames all that is drawn over the whole film: the physics then runs once before the pictures."""
         return True
 
     def remembers(self) -> Iterable[tuple[Remembered, float, float]]:
-        """Past values that it needs (`Moment.past`): how far back [s], and at which interval [s]."""
+        """Past values that it needs (`Moment.past`): each with how far back [s] and at which interval [s]."""
         return ()
 
     def view(self, size: tuple[int, int], moment: Moment) -> View:
-        """The view of this instant."""
+        """The view at the moment; ``size``: width and height [pixels]."""
         raise NotImplementedError
 
 
@@ -42,10 +42,10 @@ class Light(Kind):
 
     family: ClassVar[str] = "lights"
     stages: ClassVar[bool] = False
-    """Whether it lights a stage: a scene with such light alone, and no ground of its own, may get one."""
+    """Whether it is a stage light: a scene with such lights alone, and no ground of its own, may get a ground."""
 
     def lower(self, moment: Moment) -> Iterable[LightSource]:
-        """Closed-set lights of this instant."""
+        """Its light sources (the closed set of sceneql.frame) at the moment."""
         raise NotImplementedError
 
 
@@ -55,7 +55,7 @@ class Material(Kind):
     family: ClassVar[str] = "materials"
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
-        """The surface record; ``color``, linear, replaces the material's own where given."""
+        """The surface at the moment; ``color`` (linear RGB), where given, replaces the material's own."""
         raise NotImplementedError
 
 
@@ -67,7 +67,7 @@ class Renderer(Kind):
     """Whether its pictures are data (depth, normals), which are not developed."""
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """Modules whose import compiles its kernels; ``traced``: the kinds of fields of the objects (Object.traced)."""
+        """Modules whose import compiles its kernels; ``traced``: the kinds of the objects' fields (Object.traced)."""
         return ()
 
     def draw(self, frame: Any) -> Any:
@@ -75,7 +75,7 @@ class Renderer(Kind):
         raise NotImplementedError
 
     def draft(self) -> Renderer | None:
-        """What draws the coarser frames of `render --draft`; None where that is refused."""
+        """The renderer for the coarser frames of `render --draft`; None where that is refused."""
         return None
 
 
@@ -98,29 +98,26 @@ class Overlay(Kind):
     dark: bool = field("Light letters on a dark panel.", False)
 
     def courses(self) -> Iterable[Value]:
-        """Values that it needs over the whole run (`Moment.course`), so that the physics runs once before it."""
+        """Values needed over the whole run (`Moment.course`); the physics then runs once before."""
         return ()
 
     def places(self) -> tuple[str, ...]:
-        """The places in the picture that it may take (`place`), best first; the one that the script names, if it does.
+        """Candidate places in the picture (`place`), best first; only the one that the script names, if it does.
 
-        Of several it is given the one where it hides least of the scene. Nothing for what follows the scene.
+        Of several it gets the one that hides the least of the scene. Empty for an overlay that follows the scene.
         """
         return ()
 
     def box(self, place: str, size: tuple[int, int], moment: Moment, scale: float) -> tuple[int, int, int, int] | None:
-        """Left, top, right, bottom [pixels] of what it covers at a place; the whole picture is ``scale`` times as high.
-
-        None where it is not drawn.
-        """
+        """Left, top, right, bottom [pixels] of its box at a place; the whole picture is ``scale`` times as high."""
         return None
 
     def fades(self) -> Iterable[Value]:
-        """What it needs over the whole run to come and go softly: when it is there."""
+        """Values needed over the whole run in order to fade in and out: those of `show`."""
         return () if self.show is None or self.fade == 0 else (self.show,)
 
     def variants(self) -> bool:
-        """Whether it shows the script's variants."""
+        """Whether it shows the variants of the script."""
         return False
 
     def fill(self, pixels: NDArray[uint8], moment: Moment, scale: float) -> None:

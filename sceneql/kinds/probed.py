@@ -1,4 +1,4 @@
-"""Places of which a model tells what it has there, or that it holds."""
+"""Points that a model measures at or holds, which `check` compares with objects."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Probed:
-    """A place that has to lie inside an object as it is at the start."""
+    """A point that has to lie inside an object as it is at the start."""
 
     path: tuple[str, ...]
-    """Steps to its field; the last is its name."""
+    """Path to the field that gives the point; the last step is the field's name."""
     place: tuple[float, ...]
-    """Two or three numbers [m]; two are of the section at z = 0."""
+    """(2,) or (3,) coordinates [m]; two are in the plane z = 0."""
     inside: Ref
     room: float | None
-    """How far outside of the object it may lie [m]; None: a tenth of the object's longest side."""
+    """Distance outside of the object that is tolerated [m]; None: a tenth of the object's longest side."""
 
 
 @dataclass(frozen=True, slots=True)
 class HeldPart:
-    """A part of a solid that is held by its place."""
+    """A part of a solid that is held fixed, selected by position."""
 
     name: str
     span: Span | None
-    """Where the script says that place."""
+    """Where the script selects it."""
     inside: Ref | tuple[Sequence[float], Sequence[float]]
     """The object that the solid fills, or the low and high corner of its own box [m]."""
     misses: Callable[[Sequence[float], Sequence[float]], bool]
-    """Whether no place of a box, given by such corners, is held."""
+    """Function of the low and high corner (3,) [m] of a box: whether no point of the box is held."""

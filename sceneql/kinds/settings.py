@@ -24,7 +24,7 @@ class TooCoarse(ValueError):
 
 
 def bounded_moments(count: float) -> float:
-    """The number itself. Raises Exceeds where an output would take more instants than a run can have."""
+    """Returns ``count``. Raises Exceeds where it is more than MOST_MOMENTS instants."""
     if not count <= MOST_MOMENTS:
         raise Exceeds(f"{count:.3g} instants are more than the {MOST_MOMENTS:,} that an output may take")
     return count
@@ -52,7 +52,7 @@ class Gallery(Record):
 
 
 class Expect(Record):
-    """A number that the scene must give, and where that is known from."""
+    """A number that the scene must give, and the source of that number."""
 
     of: Expected = field("What is measured: an expression of outputs, with final(), max(), at(x, 2 s), ...")
     value: Expected | None = field("What it must be.", None)
@@ -64,7 +64,7 @@ class Expect(Record):
     variant: str | None = field("The variant that it holds for; by default the script as it stands.", None)
 
     def problems(self) -> Iterator[Problem]:
-        """A number that is compared with nothing, or twice."""
+        """An expectation that is compared with nothing, or with two things."""
         if (self.value is None) == (self.below is None):
             yield Problem("an expectation has either 'value' or 'below'")
         if not self.tolerance.constant:
@@ -73,7 +73,7 @@ class Expect(Record):
 
 
 def _unlike(of: Value, others: dict[str, Value | None]) -> Iterator[Problem]:
-    """Values that are compared with a measured one of another dimension."""
+    """Problems of values whose dimension differs from that of the measured value that they are compared with."""
     measured = of.expr.type.dimension
     for name, value in others.items():
         given = None if value is None else value.expr.type.dimension

@@ -1,4 +1,4 @@
-"""Solvers: what marches an island in time."""
+"""The family of solvers, which integrate islands in time."""
 
 from __future__ import annotations
 
@@ -16,45 +16,50 @@ if TYPE_CHECKING:
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Methods:
-    """What marches an island: a method to begin with, and those that may take its place during the run."""
+    """The methods for one island: the first one, and those that may replace it during the run."""
 
     solver: Solver = dataclasses.field(compare=False)
-    """The word whose methods these are, and, without ``bounded_by``, whose `growth` tells their stability."""
+    """The solver whose methods these are; without ``bounded_by`` its `growth` also gives their stability."""
     first: Stepper
     stiff: Stepper | None = None
-    """What the march goes to, and back from, where stability holds the steps of ``first`` (Method.stability)."""
+    """A stiff method to which the march switches, and back, where stability limits the steps of ``first``
+    (Method.stability)."""
     otherwise: Stepper | None = None
-    """What takes over for good from the first step of a given length on that ``first`` finds no solution of."""
+    """A method that replaces ``first`` for good at the first step of given length for which ``first`` finds no
+    solution."""
     remark: str = ""
-    """When it takes over, for `explain`."""
+    """When ``otherwise`` takes over, as text for `explain`."""
     bounded_by: Solver | None = dataclasses.field(default=None, compare=False)
-    """The word whose `growth` tells the stability of ``first``, where that is not ``solver``'s."""
+    """The solver whose `growth` gives the stability of ``first``, where it is not ``solver``'s."""
 
     @property
     def bounding(self) -> Solver:
-        """The word whose `growth` tells the stability of ``first``."""
+        """The solver whose `growth` gives the stability of ``first``."""
         return self.bounded_by or self.solver
 
 
 class Solver(Kind):
-    """Marches a system in time. Sees only its rate, its Jacobian, its invariants and its events."""
+    """Integrates a system in time. It sees only the rate, Jacobian, invariants and events of the system."""
 
     family: ClassVar[str] = "solvers"
     marches: ClassVar[Literal["anything", "a field", "a flow", "several fluids"]] = "anything"
-    """What it is for: islands of any kind, those that are one field on a grid, those with a flow, or of several."""
+    """Kind of island that it solves: any, one field on a grid, one with a flow, or one with several fluids."""
     static: ClassVar[bool] = False
-    """Whether it finds rests, without motion in time."""
+    """Whether it finds static equilibria, without motion in time."""
     refuses_ties: ClassVar[str] = ""
-    """Why it does not march bodies that ties hold; empty where it does."""
+    """Why it refuses bodies held by ties; empty where it does not."""
 
     on: tuple[ModelRef, ...] | None = field("The models it marches; by default all.", None)
 
     def explanation(self) -> str:
-        """What it chose to do and why, where it chooses a method by itself."""
+        """Text on the chosen method and the reason; empty if it makes no choice."""
         return ""
 
     def measure(self) -> str:
-        """What its tolerance is a part of, for `explain`, where that chooses its steps."""
+        """The scale that its tolerance is relative to, as text for `explain`.
+
+        Empty where no tolerance controls its steps.
+        """
         tolerance, absolute = (getattr(self, name, None) for name in ("tolerance", "absolute"))
         if tolerance is None or "absolute" not in type(self).model_fields:
             return ""
@@ -65,14 +70,14 @@ class Solver(Kind):
         raise NotImplementedError
 
     def choose(self, island: IslandFacts) -> Methods:
-        """What marches an island: its own step, unless that depends on the island."""
+        """The methods for an island: its own stepper, unless that depends on the island."""
         return Methods(self, self.stepper())
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
-        """Largest growth factor of a step of the linear system y' = jacobian y (its spectral radius).
+        """Spectral radius of one step [s] on the linear system y' = jacobian y: its largest growth factor.
 
-        ``partner`` (n,) int: for a position entry of y the index of its velocity, else -1. Raises Unsuitable for a
-        word that does not tell it.
+        ``partner`` (n,) int: for a position entry of y the index of its velocity, else -1. Raises Unsuitable where the
+        solver does not define it.
         """
         word = type(self).__module__.rpartition(".")[2]
         raise Unsuitable(f"`{word}` does not tell its growth, so nothing is known of its stable step")
@@ -80,6 +85,6 @@ class Solver(Kind):
     def oscillation(self, frequency: float, decay: float, step: float, turn: float = 0.0) -> float | None:
         """Growth factor of a fixed step on x'' = -frequency^2 x - (decay - i turn) x', in plain Python for `check`.
 
-        None where no bound is told before the run: implicit methods, and those whose steps follow a tolerance.
+        None where no bound is known before the run: implicit methods, and steps that follow a tolerance.
         """
         return None

@@ -1,4 +1,4 @@
-"""The stable step of a method on one mode, in plain Python: what `check` can know before the run."""
+"""The largest stable step of a method on one mode, in plain Python, for `check` before the run."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from sceneql.kinds.eigenvalues import Rows, eigenvalues
 LEAST, MOST = 1e-8, 1e3
 """Range of (step times frequency) that is searched."""
 RATIO = 1.3
-"""Ratio of successive steps that are tried: a gap of stable steps narrower than that is missed."""
+"""Ratio of successive steps that are tried; a narrower gap in the range of stable steps is missed."""
 NEUTRAL = 1e-8
-"""Growth per unit of (step times frequency) that counts as none: rounding."""
+"""Growth per unit of (step times frequency) that counts as rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,13 +29,13 @@ class Oscillation:
     decay: float
     """[1/s]; 0 where nothing damps it."""
     what: str
-    """What sets it: ``spring 'tether'``."""
+    """The cause, as ``spring 'tether'``."""
     at: tuple[str | int, ...] = ()
-    """Steps to the field that sets it: ``("springs", 2)``."""
+    """Path to the field that sets it: ``("springs", 2)``."""
     turn: float = 0.0
     """Angular velocity [1/s] at which velocities rotate in a magnetic field, or coupled states among each other."""
     later: bool = False
-    """Whether it may be there only after the start, whose spectrum does not show it."""
+    """Whether it may appear only after the start, so that the spectrum at the start does not show it."""
 
     @property
     def size(self) -> float:
@@ -44,12 +44,12 @@ class Oscillation:
 
 
 class StaticScene(NamedTuple):
-    """What is known of a script before anything runs, for bounds on steps."""
+    """The facts of a script that are known before the run, for bounds on steps."""
 
     objects: Mapping[str, Any]
     """Its objects, by name."""
     end: float
-    """Of the run [s]."""
+    """End of the run [s]."""
 
 
 class StaticMass(NamedTuple):
@@ -73,7 +73,7 @@ class StaticMass(NamedTuple):
 def oscillations(
     matrix: Rows, what: str, at: tuple[str | int, ...] = (), *, paired: bool = False
 ) -> Iterator[Oscillation]:
-    """The modes of y' = matrix y, or of x'' = matrix x if ``paired``, the fastest first, without their growth."""
+    """The modes of y' = matrix y, or of x'' = matrix x if ``paired``, fastest first; exponential growth is left out."""
     for value in sorted(eigenvalues(matrix), key=abs, reverse=True):
         if paired:
             mode = (-value) ** 0.5
@@ -83,7 +83,10 @@ def oscillations(
 
 
 def first_unstable(stable: Callable[[float], bool]) -> float:
-    """End of the interval of stable steps from LEAST on, to 1e-6; 0 where it is empty, inf beyond MOST."""
+    """Upper end of the interval of stable steps from LEAST on, to a relative 1e-6.
+
+    0 where it is empty, inf beyond MOST.
+    """
     low = high = LEAST
     if not stable(low):
         return 0.0
@@ -98,7 +101,7 @@ def first_unstable(stable: Callable[[float], bool]) -> float:
 
 
 def stable_step(growth: Callable[[float], float]) -> float:
-    """Largest stable step by ``growth(step)``, the growth factor; 0 where only rounding makes a step look stable."""
+    """Largest stable step; ``growth(step)``: growth factor. 0 where only rounding makes a step look stable."""
 
     def bound(neutral: float) -> float:
         return first_unstable(lambda step: growth(step) <= 1.0 + 1e-14 + neutral * step)

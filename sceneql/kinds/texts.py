@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from sceneql.kinds.moment import Moment
 
 FORM = re.compile(r"[+ ]?#?0?\d{0,2}(\.\d{1,2})?[eEfFgG%]?")
-"""How a number may be written: as Python writes floats."""
+"""Allowed format specifications of a number: a subset of Python's for floats."""
 MOST_LETTERS = 2_000
 """Most letters of a text that is drawn in pictures."""
 SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
@@ -24,7 +24,7 @@ POWER = re.compile(r"e([+-])0*(\d+)$")
 
 
 def overlong(text: str | None) -> str | None:
-    """What is wrong with a text that has too many letters to be drawn; None with another."""
+    """The error text for a text with too many letters to be drawn; None where it is short enough."""
     if text is None or len(text) <= MOST_LETTERS:
         return None
     return f"a text of {len(text):,} letters is longer than the {MOST_LETTERS:,} that are drawn"
@@ -32,7 +32,7 @@ def overlong(text: str | None) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class TextValue(Checked):
-    """A value inside a text, how its number is written, and its unit (None: a plain number)."""
+    """A value inside a text: its format specification and its unit (None: a plain number)."""
 
     value: Value
     form: str
@@ -40,7 +40,7 @@ class TextValue(Checked):
 
     @property
     def over_time(self) -> bool:
-        """Whether it asks for the run so far."""
+        """Whether it needs the course of the run so far."""
         return any(isinstance(node, Call) and OPERATIONS[node.op].series for node in walk(self.value.expr))
 
     def at(self, moment: Moment) -> str:
@@ -89,7 +89,7 @@ class Text(Checked):
 
     @property
     def courses(self) -> list[Value]:
-        """The values inside that ask for the run so far."""
+        """The values inside that need the course of the run so far."""
         return [piece.value for piece in self.pieces if isinstance(piece, TextValue) and piece.over_time]
 
     def at(self, moment: Moment) -> str:

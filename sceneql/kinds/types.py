@@ -39,14 +39,14 @@ FixedPosition = Annotated[tuple[float, float, float], Quantity(dim.LENGTH, (3,))
 FixedVelocity = Annotated[tuple[float, float, float], Quantity(dim.VELOCITY, (3,))]
 
 Measured = Annotated[Value, Quantity(None, None)]
-"""Any output or expression: what a record writes."""
+"""Any output or expression, for records."""
 Expected = Annotated[Value, Quantity(None, None, over_time=True)]
-"""Any expression, over the whole run too: what an expectation compares."""
+"""Any expression, including ones over the whole run, for expectations."""
 
 Words = Annotated[Text, Interpolated()]
 """A text with values in braces."""
 WordsOverTime = Annotated[Text, Interpolated(over_time=True)]
-"""The same, where values may look over the run so far."""
+"""The same, where values may also use the course of the run so far."""
 
 ObjectRef = Annotated[Ref, Refers("objects")]
 ModelRef = Annotated[Ref, Refers("models")]
@@ -59,6 +59,6 @@ DrawnRef = Annotated[Ref, Refers("objects", also="models")]
 """An object, or a model that draws itself."""
 
 PanelRef = Annotated[Ref, Refers("overlays", also="cameras")]
-"""What may stand in a panel of a layout."""
+"""An overlay or a camera in a panel of a layout."""
 
 File = Annotated[str, SceneFile()]

@@ -1,4 +1,4 @@
-"""What a field may hold: values in time, references, formulas; and the marks that say which."""
+"""The types that a field may hold (values in time, references, formulas), and the marks that select them."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ TIME = ("t", "time")
 
 
 MOST_READ = 600
-"""Numbers of the state by which a value of it is differentiated, for implicit solvers."""
+"""Largest number of state entries by which a value is differentiated, for implicit solvers."""
 
 
 FEW = range(5)
-"""Lengths of vectors and quaternions, and of lists that are made anew as soon."""
+"""Lengths of lists that are evaluated anew instead of kept, which is as fast; vectors and quaternions have these."""
 
 
 class Checked:
@@ -46,13 +46,13 @@ class Value(Checked):
     expr: Expr
     span: Span | None = None
     _read: tuple[Symbol | Link | Call, ...] | None = field(default=None, init=False, repr=False, compare=False)
-    """The times and outputs that it reads, and what looks over the whole run, once they are asked for."""
+    """Cache: the symbols of time, links and whole-run operations in the expression; None until first asked for."""
     _list: Any = field(default=None, init=False, repr=False, compare=False)
-    """What ``fixed_list`` gave before."""
+    """Cache of ``fixed_list``."""
 
     @property
     def constant(self) -> bool:
-        """Whether it depends neither on time nor on another part."""
+        """Whether it depends neither on time nor on another part's output."""
         return not self._reads()
 
     @property
@@ -68,7 +68,7 @@ class Value(Checked):
         return self._read
 
     def fixed_list(self) -> Any:
-        """The array of a constant list, made once and ``held`` from then on; None for other values."""
+        """The array of a constant list, made once and marked as ``held``; None for other values."""
         if (
             self._list is None
             and len(self.expr.type.shape) > 0
@@ -90,7 +90,7 @@ def _over_time(node: Expr) -> TypeGuard[Call]:
 
 
 def unreadable(link: Link, place: Span | None = None) -> Diagnostic:
-    """What is said of an output that a value of what is solved reads, and that does not stand in the state."""
+    """The error for a value in a solved system that links to an output which is not part of the state."""
     text = f"'{link.task}.{link.output}' is no part of the state that is solved together with this"
     help = "link to a position or velocity of a model of the same island, or to a kinematic model"
     return Diagnostic("unsupported-link", text, link.span or place, help)
@@ -108,11 +108,11 @@ class Quantity:
     shape: Shape | None = ()
     """None: any."""
     needs_unit: bool = False
-    """A bare number is refused (angles, temperatures)."""
+    """Whether a number without a unit is refused (angles, temperatures)."""
     direction: bool = False
-    """Not all components may be 0."""
+    """Whether the vector must not be zero."""
     over_time: bool = False
-    """May look over the whole run, as with `final`."""
+    """Whether it may use operations over the whole run, such as `final`."""
 
 
 class Paint:
@@ -153,22 +153,22 @@ class Ref(Checked):
     """A named part of the script."""
 
     name: str
-    """Empty for the world, where a field may name that."""
+    """Name of the part; empty for the world, where a field may name that."""
     span: Span | None = None
     within: str = ""
-    """The name of one of its bodies, where a field may name these."""
+    """The name of one of the part's bodies, where a field may name these."""
 
 
 @dataclass(frozen=True, slots=True)
 class Formula(Checked):
-    """A textbook formula of an `implicit` or `equations` entry: bound over plain numbers, symbols free."""
+    """A formula of an `implicit` or `equations` entry in plain numbers, with free symbols."""
 
     expr: Expr
     span: Span | None = None
 
     @property
     def constant(self) -> bool:
-        """Whether it depends neither on time nor on another part; it may depend on the place."""
+        """Whether it depends neither on time nor on another part; it may depend on position."""
         return not any(
             isinstance(node, Link) or (isinstance(node, Symbol) and node.name in TIME) for node in walk(self.expr)
         )
@@ -180,8 +180,9 @@ class Symbols:
 
     names: tuple[str, ...] | None
     dimension: Dimension | None = None
-    """Of its values, which are in SI where the formula is a plain number; None: any."""
+    """Dimension of its values, which are in SI where the formula is a plain number; None: any."""
     of_field: bool = False
-    """Whether they are of this dimension times that of the field that the kind solves (Kind.formula_dimension)."""
+    """Whether its values have this dimension times that of the field that the kind solves for
+    (Kind.formula_dimension)."""
     at_start: bool = False
-    """Whether it is evaluated before the run, when no other part has a value."""
+    """Whether it is evaluated before the run, when no other part has a value yet."""

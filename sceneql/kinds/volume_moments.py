@@ -1,4 +1,4 @@
-"""Volume, center and second moments of what is inside an object."""
+"""Volume, centroid and second moments of the inside of an object."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ class VolumeMoments:
     center: Floats
     """(3,) [m]."""
     second: Floats
-    """(3, 3) about the center [m^5]."""
+    """(3, 3) second moments about the center [m^5]."""
     error: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Estimated errors: of the volume [m^3], of the center [m], and of the second moments in the Frobenius norm [m^5].
+    """Estimated errors of the volume [m^3], of the center [m], and of the second moments in the Frobenius norm [m^5].
     Zero: exact but for rounding."""
 
     @classmethod
     def centered(cls, volume: float, squares: Sequence[float]) -> Self:
-        """Of a solid with its axes of symmetry along x, y and z, by the means (3,) of their squares over it [m^2]."""
+        """The moments of a solid with symmetry axes x, y, z; ``squares`` (3,): means of x^2, y^2, z^2 over it [m^2]."""
         import numpy as np
 
         return cls(volume, np.zeros(3), volume * np.diag(squares))
 
     def mapped(self, place: Floats) -> Self:
-        """Of the solid under an affine map (3, 4), which may stretch or mirror."""
+        """The moments of the solid mapped by an affine map (3, 4), which may stretch or mirror."""
         import numpy as np
 
         linear = place[:, :3]
@@ -47,12 +47,12 @@ class VolumeMoments:
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
-        """Of solids that do not overlap, taken together: by the theorem of parallel axes (Huygens & Steiner)."""
+        """The moments of the union of disjoint solids, by the parallel axis theorem (Huygens & Steiner)."""
         import numpy as np
 
         volumes = np.array([part.volume for part in parts])
         centers = np.array([part.center for part in parts])
-        # From one of the centers, so that nothing is lost far from the origin.
+        # Relative to one of the centers, against cancellation far from the origin.
         center = centers[0] + volumes @ (centers - centers[0]) / volumes.sum()
         away = centers - center
         second = sum(part.second for part in parts) + np.einsum("k,ki,kj->ij", volumes, away, away)

@@ -26,7 +26,7 @@ LIMITS: Mapping[str, tuple[Callable[[float, float], bool], str]] = {
     "below": (lambda x, limit: x < limit, "below"),
     "at_most": (lambda x, limit: x <= limit, "at most"),
 }
-"""For each end of a field's range: the test of a number, and its words in messages."""
+"""For each kind of limit of a field's range: the test (number, limit), and its words in messages."""
 
 
 def field(
@@ -52,7 +52,7 @@ def field(
 
 @cache
 def of_default(text: str) -> Value:
-    """The Value of a default's text, read once."""
+    """The Value of a default's text; cached."""
     return literal(text)
 
 
@@ -84,24 +84,24 @@ Step = str | int
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """An error in fields that are valid one by one: its text, and where it is reported."""
+    """An error in a combination of fields that are valid one by one."""
 
     text: str
     path: tuple[Step, ...] = ()
-    """Steps from the record to the wrong value; none: the record as a whole."""
+    """Path from the record to the wrong value; empty: the record as a whole."""
     at_key: bool = False
-    """The caret stands under the last step's name, not under its value."""
+    """Whether the caret is placed under the name of the path's last step, and not under its value."""
     code: str = "invalid"
     part: tuple[str, int, int] | None = None
-    """A text and the first and last (exclusive) of its characters that are wrong, where it is the value of the path."""
+    """Text of the value at the path, and the range [first, last) of its characters that are wrong."""
     help: str | None = None
-    """What to write in its place."""
+    """The suggested correction."""
 
 
 def grammar_of(info: Any) -> tuple[Quantity | Paint | Turn | None, Any]:
-    """What a field's text default is read by, and as which type: of a union the member that has a grammar.
+    """The grammar and the type by which a field's text default is read; of a union, the first member with a grammar.
 
-    None where the default is a text or a choice itself.
+    None where the default is itself a text or a choice.
     """
     members = get_args(info.annotation) if get_origin(info.annotation) is not tuple else ()
     if str in members or any(info.default in get_args(one) for one in members if get_origin(one) is Literal):
@@ -114,7 +114,7 @@ def grammar_of(info: Any) -> tuple[Quantity | Paint | Turn | None, Any]:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """An item of a default that is a tuple, with what pydantic's information on a field says of it."""
+    """An item of a tuple default, with the attributes of pydantic's FieldInfo that grammar_of reads."""
 
     annotation: Any
     metadata: tuple[Any, ...]
@@ -122,7 +122,7 @@ class Item:
 
 
 def items_of(info: Any) -> list[Item]:
-    """The items of a field's default that is a tuple, each with its own type."""
+    """The items of a field's tuple default, each with its own type."""
     types = [one for one in (info.annotation, *get_args(info.annotation)) if get_origin(one) is tuple]
     each = get_args(types[0]) if types else (Any, ...)
     each = (each[0],) * len(info.default) if each[1:] == (Ellipsis,) else each
@@ -131,7 +131,7 @@ def items_of(info: Any) -> list[Item]:
 
 
 def text_of(default: Any) -> str | None:
-    """A default that is a text, or a tuple with texts in it, as a script would write it; None for any other."""
+    """A default that is a text, or a tuple containing texts, as a script would write it; None for any other."""
     if not isinstance(default, tuple):
         return default if isinstance(default, str) else None
     texts = [text_of(item) for item in default]
@@ -141,7 +141,7 @@ def text_of(default: Any) -> str | None:
 
 
 def read_default(info: Any) -> Any:
-    """A field's default, texts in it read by the grammar of the field or of their place in a tuple."""
+    """A field's default; texts in it are parsed by the grammar of the field or of their place in a tuple."""
     text = text_of(info.default)
     if text is None:
         return info.default
@@ -156,9 +156,9 @@ class Record(BaseModel):
     """A group of fields inside a word (a mass, a spring, a clock): the same types, no methods of a family."""
 
     said_by: ClassVar[Mapping[str, str]] = {}
-    """What says it instead, for fields that it has not and that are likely to be tried: the help of the message."""
+    """Help texts, by name, for fields that it lacks but that are likely to be tried."""
     own_time: ClassVar[bool] = False
-    """Whether `time` in its values is another one than the film's: an age."""
+    """Whether `time` in its values is a time of its own, as an age, and not the film's."""
 
     # Schemas are built when a word is first used: most words of the vocabulary never are.
     model_config = ConfigDict(frozen=True, strict=True, extra="forbid", arbitrary_types_allowed=True, defer_build=True)
@@ -175,7 +175,7 @@ class Record(BaseModel):
         return filled
 
     def problems(self) -> Iterable[Problem]:
-        """Errors of its fields in combination; each becomes an error of the script."""
+        """Errors in combinations of its fields; each becomes an error of the script."""
         return ()
 
     @model_validator(mode="after")
@@ -203,9 +203,9 @@ class Gives:
     type: Type
     doc: str
     tally: bool = False
-    """Whether it is a sum over the run that the state holds, as of energy lost: values that read it have no slopes."""
+    """Whether it is accumulated over the run in the state, as dissipated energy: values that read it have no slopes."""
     computed: bool = False
-    """Whether it is worked out from the state, as an energy is: values of what is solved cannot read it."""
+    """Whether it is computed from the state, as an energy: values inside solved systems cannot read it."""
 
 
 def quantity_type(dimension: Dimension, shape: Shape = ()) -> Type:
@@ -218,25 +218,26 @@ class Kind(Record):
 
     family: ClassVar[str] = ""
     also_under: ClassVar[str] = ""
-    """Another section whose entries may be of this family too (a collision is a force to most)."""
+    """Another section of the script whose entries may be of this family, too (as a collision under `forces`)."""
     gives: ClassVar[Mapping[str, Gives]] = {}
     imports: ClassVar[tuple[str, ...]] = ()
-    """Libraries that its methods import during a run, and other scenes do without (`explain` names them)."""
+    """Libraries that its methods import during a run and that other scenes do not need (`explain` names them)."""
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
-        """The outputs of an entry. ``written`` is its fields as plain nested dicts, lists and texts.
-
-        Words whose outputs have the script's own names (``spring.bob.position``) add them here.
-        """
+        """The outputs of an entry. ``written``: its fields as plain nested dicts, lists and texts."""
         return cls.gives
 
     @classmethod
     def formula_symbols(cls, written: Mapping[str, Any]) -> tuple[str, ...]:
-        """The free symbols of its formulas that are marked ``Symbols(None)``; ``written`` as in `outputs`."""
+        """The free symbols of its formulas marked ``Symbols(None)``; ``written`` as in `outputs`."""
         return ()
 
     @classmethod
     def formula_dimension(cls, written: Mapping[str, Any]) -> Dimension | None:
-        """The dimension of the field to which formulas marked ``of_field`` belong; None: it is not known."""
+        """The dimension of the field to which formulas marked ``of_field`` belong; None: not known."""
         return None
+
+    def darkens(self) -> bool:
+        """Whether it is shown before the dark, where there is no ground: what shines, or moves in empty space."""
+        return False

@@ -1,4 +1,4 @@
-"""Values that YAML breaks apart: it knows no parentheses, reads ``#`` as a comment, and ends a value at ``]``."""
+"""Detection of values that YAML misreads: it knows no parentheses, takes ``#`` for a comment, ends a value at ``]``."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
+from sceneql.language.behind_quotes import without_letters
 from sceneql.language.tree import Scalar
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 from sceneql.quantities.instead import instead
@@ -29,16 +30,17 @@ _UNIT = re.compile(r"[^\W\d_]|[%°]")
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _ITEM = r"(?:[^(),]|\([^(),]*\))+"
 _PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
+_ROTATION = re.compile(r"\brotation:\s*\Z")
 _UNPARTED = re.compile(r"([^\W\d]\w*)(?:[ ]+|(:))(?=\[)")
 _BLOCK_VALUE = re.compile(r"\s*(?:- +)*(?:[^\s\[{\"'#][^\[{\"'#]*?:\s+)?(?=[\[{])")
 
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """Characters ``start`` to ``end`` should read ``fixed``; the error's caret begins at ``caret``.
+    """A misread value: characters ``start`` to ``end`` should read ``fixed``; the error's caret begins at ``caret``.
 
-    A fault that has no known repair carries a ``diagnostic`` instead. YAML reads ``blank`` in place of each character:
-    part of a plain word, or a space.
+    A fault without a known repair carries a ``diagnostic`` instead. For another attempt of YAML each of its characters
+    is replaced by ``blank``: part of a plain word, or a space.
     """
 
     code: str
@@ -51,7 +53,10 @@ class Fault:
 
 
 def swallowed(value: Scalar, text: str) -> Fault | None:
-    """The color behind an empty value, which YAML took for a comment. ``text`` as in `broken_near`."""
+    """The fault of a color behind an empty value, which YAML took for a comment; None if there is none.
+
+    ``text`` as in `broken_near`.
+    """
     if (color := _SWALLOWED.match(text, value.end)) is None:
         return None
     start, end = color.span(1)
@@ -59,7 +64,7 @@ def swallowed(value: Scalar, text: str) -> Fault | None:
 
 
 def broken_halves(halves: Iterable[Scalar], text: str) -> list[Fault]:
-    """Faults of expressions that a flow collection's commas cut, by their halves. ``text`` as in `broken_near`."""
+    """Faults of expressions that commas of a flow collection cut, by their halves; ``text`` as in `broken_near`."""
     faults: list[Fault] = []
     for half in halves:
         if faults and half.start < faults[-1].end:
@@ -90,7 +95,7 @@ def broken_near(source: Source, text: str, at: int, opening: int | None) -> list
 
 
 def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
-    """Report all faults, given in the order of the text, each with its line as it should be."""
+    """Report all faults, given in the order of the text, each with its line as corrected."""
     lines: dict[int, list[Fault]] = {}
     for fault in faults:
         lines.setdefault(source.position(fault.start)[0], []).append(fault)
@@ -117,7 +122,7 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
 
 
 def _corrected(source: Source, fault: Fault, together: list[Fault]) -> str:
-    """The line of a fault with all its faults repaired; of a very long line the repaired value alone."""
+    """The line of a fault with all its faults repaired; for a very long line, only the repaired value."""
     text = source.text
     first = source.line_starts[source.position(fault.start)[0] - 1]
     if fault.end - first > _MOST_SHOWN:
@@ -137,9 +142,9 @@ class _LostError(Exception):
 
 
 class _Scan:
-    """Reads flow syntax as the author meant it: with parentheses, and with brackets inside expressions.
+    """Scanner of flow syntax as the author meant it: with parentheses, and with brackets inside expressions.
 
-    ``text`` has blanks where the source's text, ``written``, has known faults.
+    ``text`` is the source's text, ``written``, with known faults blanked out.
     """
 
     def __init__(self, text: str, source: Source, end: int) -> None:
@@ -148,7 +153,7 @@ class _Scan:
         self.faults: list[Fault] = []
 
     def peek(self, at: int) -> str:
-        """The character at a place, empty behind the end."""
+        """The character at an offset; empty behind the end."""
         return self.text[at] if at < self.end else ""
 
     def value(self, at: int, depth: int, *, key: bool = False) -> int:
@@ -173,7 +178,7 @@ class _Scan:
         return end
 
     def torn(self, start: int, end: int, *, key: bool = False) -> Fault:
-        """The fault of an expression that YAML cuts, of a ``key`` without its colon, or of a colon without a space."""
+        """The fault of an expression that YAML cuts, of a ``key`` without a colon, or of a colon without a space."""
         written = self.written[start:end]
         if key and (unparted := _UNPARTED.match(written)) is not None:
             name, glued = unparted[1], unparted[2] is not None
@@ -183,6 +188,7 @@ class _Scan:
             return Fault("yaml-syntax", start, end, caret.start, "", diagnostic)
         vector = _PARENTHESES.fullmatch(written)  # as other languages write one
         fixed = _quote(written) if vector is None else _with_unit(vector[1], vector[2] or "")
+        fixed = without_letters(written) or fixed
         return Fault("torn-expression", start, end, start, fixed)
 
     def collection(self, at: int, depth: int) -> int:
@@ -208,7 +214,7 @@ class _Scan:
                 raise _LostError
 
     def space(self, at: int) -> int:
-        """Skip blanks and comments, but not a color that passes for one."""
+        """Skip blanks and comments, but not a color that looks like a comment; returns the offset behind."""
         while True:
             while self.peek(at).isspace():
                 at += 1
@@ -236,6 +242,8 @@ class _Scan:
         self.faults = [fault for fault in self.faults if fault.start < start]
         if self.text[start] == "[" and _UNIT.match(rest) is not None:
             fixed = _with_unit(self.written[start + 1 : close - 1], rest)
+            if _ROTATION.search(self.text, max(0, start - _MOST_SHOWN), start) and not fixed.startswith("["):
+                fixed = f"{{xyz: {fixed}}}"
             self.faults.append(Fault("unit-after-bracket", start, end, at, fixed))
         else:
             self.faults.append(self.torn(start, end))
@@ -278,7 +286,7 @@ def _quote(text: str) -> str:
 
 
 def _with_unit(inside: str, unit: str) -> str:
-    """A list with its unit, if any, where YAML allows one: ``0, 1, 0`` in m becomes ``0 1 0 m``."""
+    """A list with its unit, if any, as YAML allows it: ``0, 1, 0`` in m becomes ``0 1 0 m``."""
     items = _split(inside)
     if all(NUMBER.fullmatch(item) for item in items):
         return " ".join([*items, unit]).rstrip()
@@ -293,7 +301,7 @@ def _with_unit(inside: str, unit: str) -> str:
 
 
 def _split(text: str) -> list[str]:
-    """The items between the commas outside of brackets."""
+    """The items of a text, separated by commas outside of brackets."""
     items, depth, start = [], 0, 0
     for at, character in enumerate(text):
         depth += (character in "([{") - (character in ")]}")

@@ -1,4 +1,4 @@
-"""The composer: YAML 1.2 core types over PyYAML's events, with a span on every key and value, and limits."""
+"""The composer: a tree of YAML 1.2 core types from PyYAML's events, with a span on every key and value, and limits."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MOST_NODES: Final = 3_000_000
 MOST_EXPANDED: Final = 1_000_000
 MOST_ERRORS: Final = 100
 MOST_REREAD: Final = 2_000_000
-"""Most characters that are read again, beyond the first reading, to go on behind faults."""
+"""Largest number of characters that are read again, beyond the first reading, to go on behind faults."""
 
 _PROPERTIES = re.compile(r"(?:[&!][^\s,\[\]{}]*(?:\s+#[^\n]*|\s)*)*")
 _TAG = re.compile(r"!\S*")
@@ -50,10 +50,10 @@ def compose(source: Source, found: Diagnostics | None = None) -> Mapping:
 
 
 def compose_node(source: Source, start: int = 0, found: Diagnostics | None = None) -> Node:
-    """The tree of the text from character ``start`` on, of whatever kind. Raises ScriptError like `compose`.
+    """The tree of the text from character ``start`` on, of any kind. Raises ScriptError like `compose`.
 
-    With ``found``, broken values are read as they were meant, holes stand for unreadable values, mappings that lack an
-    entry are partial, and of a text that stops being YAML the complete entries before that are kept.
+    With ``found``, broken values are read as they were meant, and holes stand for unreadable values; mappings that lack
+    an entry are marked partial; of a text that stops being YAML, the complete entries before that point are kept.
     """
     if source.text.startswith("\ufeff"):
         source = Source(source.name, source.text[1:])
@@ -95,11 +95,11 @@ def _collector_off() -> Iterator[None]:
 
 
 class _StopError(Exception):
-    """Reading cannot go on; the reason is recorded."""
+    """Reading cannot go on; the reason has been recorded."""
 
 
 class _Composer:
-    """Reads the source once, with repairs in place of the known ``faults``."""
+    """One reading of the source, with repairs in place of the known ``faults``."""
 
     def __init__(self, source: Source, faults: list[Fault]) -> None:
         self.source = source
@@ -119,14 +119,14 @@ class _Composer:
         self.stack: list[Mapping | Sequence] = []
 
     def attempt(self, start: int) -> tuple[list[Fault], Node | None]:
-        """The faults beyond the known ones, and the tree of the readable text, if any."""
+        """Faults besides the known ones, and the tree of the readable text, if any."""
         near: list[Fault] = []
         try:
             self.document(start)
         except yaml.YAMLError as error:
             flow, at = self.flow_start(), place(self.source, error)
             if "nesting depth" in str(getattr(error, "problem", "")):
-                # The parser reads ahead, and has a bound of its own, so it may stop before these levels are counted.
+                # The parser reads ahead and has its own depth limit, so it may stop before these levels are counted.
                 span = Span(self.source, at - 1, at)
                 self.found.error("too-deep", f"more than {MOST_DEPTH} levels of lists and mappings", span, help=_DEEP)
             else:
@@ -174,7 +174,7 @@ class _Composer:
             self.stop("empty-script", "the script is empty", 0, 1, "write `objects:` and the objects below it")
 
     def tree(self, loader: yaml.SafeLoader) -> Node:
-        """The node whose events come next."""
+        """The node of the next events. Raises _StopError or yaml.YAMLError."""
         # One flat loop over local names: a script of 10 MB has 1.6 million events.
         source = self.source
         get: Callable[[], Any] = loader.get_event
@@ -209,7 +209,7 @@ class _Composer:
                                 node = hole(node.span)  # no key is a list
                             text = node.text if type(node) is Scalar else text
                         elif faults and any(node.start < at < end for at in faults):
-                            node = hole(node.span)  # a part of it is told already
+                            node = hole(node.span)  # an error inside it was reported already
                         elif "(" in text and text.count("(") > text.count(")") and here is not None and here.flow:
                             self.halves.append(node)
                 elif kind is open_mapping:
@@ -274,7 +274,7 @@ class _Composer:
             raise
 
     def flow_start(self) -> int | None:
-        """Where the outermost open flow collection begins."""
+        """Offset of the outermost open flow collection; None if there is none."""
         return next((one.start for one in self.stack if one.flow), None)
 
     def empty(self, node: Scalar) -> None:
@@ -284,7 +284,10 @@ class _Composer:
             self.colors.append(fault)
 
     def cut(self, key: Scalar, mapping: Mapping) -> bool:
-        """Report a key that a comma cut off the value before, which becomes a hole; False if there is no such value."""
+        """Report a key that a comma has cut off the value before, which becomes a hole.
+
+        Returns whether there is such a value.
+        """
         if key.quoted or not mapping.flow or not mapping.entries:
             return False
         before = next(reversed(mapping.entries))
@@ -295,18 +298,18 @@ class _Composer:
         return True
 
     def meant(self, event: Any, node: Scalar) -> Node:
-        """The repaired value where a scalar stands in place of a fault; any other scalar itself."""
+        """The repaired value where a scalar stands for a fault; otherwise the scalar itself."""
         fault = self.faults.get(self.behind_properties(event))
         return node if fault is None else repaired(fault, self.source)
 
     def behind_properties(self, event: Any) -> int:
-        """Offset of a node's own text, behind its anchor and tag."""
+        """Offset of a node's text behind its anchor and tag."""
         at: int = event.start_mark.index
         properties = _PROPERTIES.match(self.text, at, event.end_mark.index)
         return at if properties is None else properties.end()
 
     def properties(self, event: Any, node: Node) -> None:
-        """Record an anchor, refuse a tag, and let the node start behind both."""
+        """Record an anchor, report a tag, and set the node's start behind both."""
         text, at = self.text, event.start_mark.index
         node.start = self.behind_properties(event)
         if event.tag is not None and (tag := _TAG.search(text, at)) is not None:
@@ -342,7 +345,7 @@ class _Composer:
         return node
 
     def nameless_key(self, node: Node, mapping: Mapping) -> None:
-        """Report a key that is no text, once where such keys are nested; its value is left out."""
+        """Report a key that is no text, once for nested ones; its value is left out."""
         self.odd.append(mapping)
         if not self.nameless:
             span = Span(self.source, node.start, node.end)

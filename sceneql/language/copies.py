@@ -1,8 +1,8 @@
-"""`repeat` inside the fields of a part: entries of a map by name, or items of a list, written out as copies.
+"""Expansion of `repeat` inside the fields of a part: map entries by name, or list items, written out as copies.
 
-A copy's number is known where its values are read (`Mapping.index`); in braces it stands in names: ``bead.{i + 1}``,
-also in the fields of a part that is a copy itself.
-Where copies go over names, ``repeat: {leg: [left, right]}``, the word stands for one of them, alone or before a dot.
+A copy's number is looked up where its values are read (`Mapping.index`). In braces it is replaced in names: ``bead.{i +
+1}``, also in the fields of a part that is a copy itself. Where copies go over names, ``repeat: {leg: [left, right]}``,
+the word stands for one of them, alone or before a dot.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ _BRACES = re.compile(r"\{([\w\s+*/()-]+)\}")
 
 @dataclass(slots=True)
 class Copies:
-    """Writes out what is repeated inside the fields of parts. ``define``, ``lost``: as for `read_repeat`."""
+    """Expander of copies inside the fields of parts. ``define``, ``lost``: as for `read_repeat`."""
 
     define: Table[str, Node]
     lost: Broken
     found: Diagnostics
     any: bool = True
-    """Whether some file or patch of the script has the word, be it in what fills fields from elsewhere."""
+    """Whether any file or patch of the script contains the word `repeat`."""
     count: int = 0
 
     def written_out(self, fields: Node | None, scope: Scope | None) -> Node | None:
-        """The fields of a part with all copies in them; the same node where none are."""
+        """The fields of a part with all copies written out; the same node where there are none."""
         return self._walked(fields, scope) if self.any and fields is not None else fields
 
     def _walked(self, node: Node, scope: Scope | None) -> Node:
@@ -59,7 +59,7 @@ class Copies:
         return node.holding(entries, keys)
 
     def _made(self, name: str, item: Node, scope: Scope | None) -> Iterator[tuple[str, Node]]:
-        """An entry or item with its name, or its copies with theirs."""
+        """(name, node) of an entry or item, or of each of its copies."""
         keyed = isinstance(item, Mapping) and "keys" in item.entries and isinstance(item.entries.get(KEY), Scalar)
         if keyed or not (isinstance(item, Mapping) and KEY in item.entries and len(item.entries) > 1):
             yield name, self._walked(item, scope)
@@ -86,7 +86,10 @@ class Copies:
 
 
 def in_braces(node: Node, scope: Scope) -> Node:
-    """The fields of a part that is a copy, its number, the one field of ``scope``, in place of what is in braces."""
+    """The fields of a copied part, with its number in place of expressions in braces.
+
+    ``scope`` holds the number as its only field.
+    """
     if not _BRACES.search(node.source.text, node.start, node.end):
         return node
     ((symbol, written),) = scope.fields.items()
@@ -95,7 +98,7 @@ def in_braces(node: Node, scope: Scope) -> Node:
 
 
 def _numbered(node: Node, times: Repeat, number: int) -> Node:
-    """A copy's node with its name in place of the symbol, or its number in place of what stands in braces."""
+    """A copy's node, with its name in place of the symbol, or with numbers in place of expressions in braces."""
     if isinstance(node, Scalar):
         if times.names:
             word = rf"(?<![\w.'\"]){re.escape(times.symbol)}(?![\w'])"
@@ -109,7 +112,7 @@ def _numbered(node: Node, times: Repeat, number: int) -> Node:
 
 
 def _value(braces: re.Match[str], symbol: str, number: int) -> str:
-    """The whole number of an expression in braces; the braces themselves where it is of other names."""
+    """The whole number of an expression in braces; the braces themselves where it contains other names."""
 
     def meaning(parts: tuple[str, ...], span: Span) -> Expr | Diagnostic:
         return Number(float(number)) if parts == (symbol,) else Diagnostic("unknown-name", "another name", span)

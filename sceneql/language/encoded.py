@@ -1,4 +1,4 @@
-"""The bytes of a script: UTF-8, and not too many."""
+"""Decoding of a script's bytes: UTF-8, up to a largest size."""
 
 from __future__ import annotations
 

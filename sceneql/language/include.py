@@ -1,4 +1,4 @@
-"""Scripts that include others: read from the scene's own folder only, each once."""
+"""Inclusion of scripts: from the scene's own folder only, each file once."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note, ScriptE
 from sceneql.quantities.span import Source, Span
 
 Read = Callable[[str], Source]
-"""Gives the script at a path below the scene's folder. Raises OSError, OutsideError or ScriptError."""
+"""Function that returns the script at a path below the scene's folder. Raises OSError, OutsideError or ScriptError."""
 
 
 class OutsideError(Exception):
@@ -50,7 +50,7 @@ def _read(path: Path, name: str) -> Source:
 
 
 def read_included(root: Mapping, name: str, read: Read, found: Diagnostics) -> list[Mapping]:
-    """The script itself, then all scripts that it includes, in the order met. ``name`` is the script's own path.
+    """The script itself, then all scripts that it includes, in the order met; ``name``: the script's own path.
 
     Where an included script cannot be read, the tree of the script itself is marked partial.
     """

@@ -1,4 +1,4 @@
-"""Lines that lack a colon or have one too many: they are left out, and everything around them is read.
+"""Repair of lines that lack a colon or have one too many: they are left out, and everything around them is read.
 
 A second colon directly behind a key (``name::``) leaves no line out: `doubled` reads the key without it.
 """
@@ -71,13 +71,13 @@ def doubled(key: Scalar) -> tuple[Scalar, Diagnostic]:
 
 
 def marked(anchor: str, source: Source, faults: Iterable[Fault]) -> bool:
-    """Whether an anchor is defined in text that is left out, so that its alias is no error of its own."""
+    """Whether an anchor is defined in left-out text, so that its alias is no error of its own."""
     mark = re.compile(rf"&{re.escape(anchor)}(?![^\s,\[\]{{}}])")
     return any(mark.search(source.text, fault.start, fault.end) is not None for fault in faults)
 
 
 def _ended(source: Source, number: int) -> Fault | None:
-    """The fault of the line above, where that is text without a colon which a comment ends."""
+    """The fault of the line above ``number``, if that is a text without a colon that ends in a comment; else None."""
     above = number - 1
     while above > 0 and _bare(source.line(above)):
         above -= 1
@@ -93,7 +93,7 @@ def _ended(source: Source, number: int) -> Fault | None:
 
 
 def _bare(line: str) -> bool:
-    """Whether a line is blank or a comment alone."""
+    """Whether a line is blank or only a comment."""
     return not line.strip() or line.lstrip().startswith("#")
 
 
@@ -159,7 +159,7 @@ def _line(source: Source, number: int, start: int, caret: int, end: int, message
 
 
 def _top(source: Source, number: int) -> int:
-    """The first line of the plain scalar that YAML reads up to the key of line ``number``: lines without a colon."""
+    """The first line of the plain scalar that YAML reads up to the key of line ``number``, of lines without a colon."""
     line = source.line(number - 1) if number > 1 else ""
     while number > 1 and line.strip() and not line.lstrip().startswith("#") and _COLON.search(line) is None:
         number -= 1
@@ -173,9 +173,9 @@ def _head(line: str) -> int:
 
 
 def lacking(root: Node | None, faults: list[Fault]) -> None:
-    """Mark as partial the mappings that lack the entry of a left-out line, so that no missing field is reported there.
+    """Mark mappings that lack the entry of a left-out line as partial, so that no missing field is reported there.
 
-    A key or list item whose whole content was that line gets a hole.
+    A key or list item that consisted of that line alone becomes a hole.
     """
     for fault in faults:
         if fault.blank != " " or root is None or fault.diagnostic is None:

@@ -1,7 +1,7 @@
-"""Children that are written in place under names: parts of their own, as if they stood in the section themselves.
+"""Un-nesting of children that are written in place under names: they become parts of their section.
 
-``hip: {group: {children: {knee: {sphere: {}}}}}`` means ``hip: {group: {children: {knee: knee}}}`` and
-``knee: {sphere: {}}``. Where `repeat` stands beside one of them, the children stay in place: each copy has its own.
+``hip: {group: {children: {knee: {sphere: {}}}}}`` means ``hip: {group: {children: {knee: knee}}}`` and ``knee: {sphere:
+{}}``. Where `repeat` stands beside one of them, the children stay in place: each copy has its own.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ CHILDREN: Final = "children"
 
 
 def unnested(root: Mapping, families: Collection[str], found: Diagnostics) -> Mapping:
-    """The same script with nested children moved behind their parents, as entries of its or its templates' sections."""
+    """The script with nested children moved behind their parents, as entries of its or its templates' sections."""
     result = _unnested(root, families, found)
     templates = root.entries.get("templates")
     if isinstance(templates, Mapping):
@@ -54,7 +54,7 @@ def _flat(section: Mapping, found: Diagnostics) -> Mapping:
 
 
 def _parted(node: Node) -> tuple[Node, list[tuple[str, Scalar, Node]]]:
-    """An entry with the names of its children in their place, and the children."""
+    """An entry with its children replaced by their names, and the children as (name, key, node)."""
     if not isinstance(node, Mapping) or len(node.entries) != 1:
         return node, []
     ((word, fields),) = node.entries.items()

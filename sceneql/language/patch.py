@@ -15,10 +15,10 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, 
 from sceneql.quantities.span import Source, Span
 
 Patch = tuple[str, Node, Span]
-"""A dotted path, the node to put there, and where the path is written."""
+"""(dotted path, the node to put there, the span of the path)."""
 
 SET: Final = "--set"
-"""What stands for the file of what is given by `--set`."""
+"""Source name of values given by `--set`."""
 VARIANT_OPTIONS: Final = ("may_fail",)
 """Keys of a variant that are no paths."""
 
@@ -30,12 +30,12 @@ def apply_patch(
     settings: Collection[str] = (),
     found: Diagnostics | None = None,
 ) -> Mapping:
-    """A tree with the values replaced; subtrees off the paths are shared with the old tree, which is not changed.
+    """A tree with values replaced; the old tree is not changed, and subtrees off the paths are shared.
 
     A path names a section, a part and a field: ``models.cage.stiffness``. The part's word may stand between
-    (``models.cage.mass_spring.stiffness``), the section may be left out where one part or define alone has the name,
-    and a number selects an item of a list. A path may end in a new field or part, not go through one. Raises
-    ScriptError (`unknown-path`), or records it in ``found``. A path through an unreadable value changes nothing.
+    (``models.cage.mass_spring.stiffness``), the section may be left out where only one part or define has the name, and
+    a number selects an item of a list. A path may end in a new field or part, not go through one. Raises ScriptError
+    (`unknown-path`), or records it in ``found``. A path through an unreadable value changes nothing.
     """
     wrong = Diagnostics() if found is None else found
     for patch in patches:
@@ -112,7 +112,7 @@ class _Path:
         self.families, self.settings = families, settings
         self.steps = self.path.split(".")
         self.unsure = False
-        """Whether some definitions of the script are not known."""
+        """Whether some definitions of the script are unknown, as they were unreadable."""
         self.shift = 0
         """1 where the section is left out of the path."""
 
@@ -143,7 +143,7 @@ class _Path:
         return cast(Mapping, self.put(root, 0))
 
     def put(self, node: Node, at: int) -> Node:
-        """``node`` with the value set below it, by the steps from ``at`` on."""
+        """A node with the value set below it, along the steps from ``at`` on."""
         if at == len(self.steps):
             return self.value
         if empty(node):

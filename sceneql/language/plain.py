@@ -1,4 +1,4 @@
-"""Plain scalars: their YAML 1.2 core types, and keys that are the rest of a value which a comma cut."""
+"""Plain scalars: YAML 1.2 core types, and keys that are the remainder of a value cut at a comma."""
 
 from __future__ import annotations
 
@@ -28,5 +28,5 @@ def kind_of(text: str) -> Kind:
 
 
 def cut_off(key: str) -> bool:
-    """Whether a key without a value is the rest of a cut value: ``{radius: 1,5 m}`` has a key ``5 m``."""
+    """Whether a key without a value is the remainder of a cut value: ``{radius: 1,5 m}`` has a key ``5 m``."""
     return _CUT_OFF.match(key) is not None

@@ -1,4 +1,4 @@
-"""Repairs: broken values read as they were meant, and the complete entries of a text that stops being YAML."""
+"""Repairs: broken values are read as meant, and the complete entries kept of a text that stops being YAML."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _LAID_FLAT: Final = str.maketrans("[],\r\n\t", "      ")
 
 
 def joined(faults: Iterable[Fault], more: Iterable[Fault]) -> list[Fault]:
-    """Old and new faults in the order of the text; an old fault inside a new one is part of it, and dropped."""
+    """Old and new faults in the order of the text, without old ones that lie inside a new one."""
     more = list(more)
     kept = [old for old in faults if not any(new.start <= old.start and old.end <= new.end for new in more)]
     return sorted([*kept, *more], key=lambda fault: fault.start)
@@ -34,6 +34,8 @@ def blanked(text: str, faults: Iterable[Fault]) -> str:
 def repaired(fault: Fault, source: Source) -> Node:
     """The value that a fault was meant to be; a hole where that is not known."""
     span = Span(source, fault.start, fault.end)
+    if fault.code == "unit-after-bracket" and fault.fixed.startswith("{"):
+        return hole(span)  # a rotation, of which the fixed text says all
     if fault.code == "unit-after-bracket":
         inside = Span(source, fault.start, source.text.rindex("]", fault.start, fault.caret) + 1)
         return _with_unit(inside, source.text[fault.caret : fault.end]) or hole(span)

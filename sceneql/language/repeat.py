@@ -1,4 +1,4 @@
-"""`repeat`: the number of copies of an entry, and the name of a copy's index."""
+"""Reading of `repeat`: the number of copies of an entry, and the name of a copy's index."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _LOOP = re.compile(r"for(?:each)?\s+\(?(?:int |let |var )?\s*(\w+)\b.*")
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """``count`` copies; ``symbol`` is the name of a copy's index, from 0, and ``node`` is where that is written.
+    """``count`` copies; ``symbol``: the name of a copy's index, from 0, written at ``node``.
 
     Where copies go over ``names``, the symbol stands for one of these.
     """
@@ -41,7 +41,7 @@ class Repeat:
 
 
 def numbered(name: str) -> str | None:
-    """The help for a name with its copy's number in it, ``hook_{i}``, or a loop, ``for i in``; None for other names."""
+    """The help for a name with an index in it, ``hook_{i}``, or a loop, ``for i in``; None for other names."""
     if (found := _NUMBERED.fullmatch(name)) is not None:
         plain, index = found[1].rstrip("_") or "name", found[2]
         if found[3]:
@@ -58,7 +58,7 @@ def numbered(name: str) -> str | None:
 def read_repeat(
     node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics, *, names: bool = False
 ) -> Repeat | None:
-    """The value of `repeat`, or None after reporting what is wrong with it. ``names``: it may go over names."""
+    """The value of `repeat`; None after reporting errors. ``names``: whether it may go over names."""
     if unsure(node):
         return None
     if names and isinstance(node, Mapping) and len(node.entries) == 1 and "count" not in node.entries:
@@ -106,9 +106,9 @@ def _whole(node: Node, scope: Scope | None, define: Table[str, Node], lost: Brok
 def _number(
     node: Node | None, scope: Scope | None, define: Table[str, Node], lost: Broken, hops: int, known: _Known
 ) -> float | None:
-    """The whole number that a node stands for, None where it is none. Raises _LostError.
+    """The whole number that a node stands for; None where it is none. Raises _LostError.
 
-    ``hops``: so many names may still lead to it; ``known``: the numbers of nodes met before.
+    ``hops``: largest number of names that may still lead to it; ``known``: cache of numbers, by id of nodes.
     """
     if node is not None and unsure(node):
         raise _LostError
@@ -125,7 +125,7 @@ def _number(
             raise _LostError
         value, outer = (define.get(name), None) if inner is None else (inner.fields[name], inner.outer)
         if id(value) not in known:
-            known[id(value)] = None  # of a name that leads back to itself
+            known[id(value)] = None  # for a name that leads back to itself
             known[id(value)] = _number(value, outer, define, lost, hops - 1, known)
         return known[id(value)]
 

@@ -1,7 +1,7 @@
-"""`use`: a part that is another one with some of its fields changed.
+"""Expansion of `use`: a part that is a copy of another one, with some of its fields changed.
 
-``twin: {use: ball, position: 0 1 0 m}`` means what is written at ``ball``, word, fields and copies, with another
-position. A field that is given replaces the whole field. In a template the names of its own section come first.
+``twin: {use: ball, position: 0 1 0 m}`` copies what is written at ``ball`` (word, fields and `repeat`) with another
+position. A given field replaces the whole field. In a template the names of its own section come first.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _OWN: Final = (USE, "repeat")
 
 
 def reused(root: Mapping, sections: Collection[str], found: Diagnostics) -> Mapping:
-    """The same script with every `use` written out, in its sections and in those of its templates."""
+    """The script with every `use` written out, in its sections and in those of its templates."""
     outside = dict(_sections(root, sections))
     result = _body(root, sections, {}, found)
     templates = root.entries.get("templates")
@@ -113,7 +113,7 @@ class _Section:
         return used.text
 
     def changed(self, node: Mapping, below: Node) -> Node:
-        """An entry as it would be written without `use`; ``below`` is the entry that it uses."""
+        """An entry as it would be written without `use`; ``below``: the entry that it uses."""
         if isinstance(below, Scalar) and below.kind == "text":
             nothing = Mapping({}, {}, True, below.source, below.end, below.end)
             below = Mapping({below.text: nothing}, {below.text: below}, True, below.source, below.start, below.end)

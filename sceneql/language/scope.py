@@ -1,4 +1,4 @@
-"""Entries with the scope in which their names are looked up: what the checker reads."""
+"""Entries of a script with the scope in which their names are looked up, as the checker reads them."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from sceneql.quantities.span import Span
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scope:
-    """What names mean inside an instance of a template or a copy.
+    """The meaning of names inside an instance of a template or a copy.
 
-    ``names`` maps the names inside to those of the whole script (``hip`` to ``front_left.hip``). ``fields`` holds the
-    nodes of fields and copy numbers; the names in such a node are looked up in ``outer``, so that a field given to an
-    instance sees what is outside it, and a default sees the fields before it.
+    ``names`` maps local names to those of the whole script (``hip`` to ``front_left.hip``). ``fields`` holds the nodes
+    of fields and copy numbers; names in such a node are looked up in ``outer``, so that a field given to an instance
+    sees what is outside it, and a default sees the fields before it.
     """
 
     names: Table[str, str]
@@ -24,7 +24,7 @@ class Scope:
     outer: Scope | None
 
     def resolve(self, name: str) -> str:
-        """The name in the whole script of what is called ``name`` here; other names stay as they are."""
+        """The name in the whole script of the local name ``name``; other names stay as they are."""
         scope: Scope | None = self
         while scope is not None:
             if name in scope.names:
@@ -45,7 +45,7 @@ class Entry:
     scope: Scope | None
 
     def place(self, path: Iterable[str | int]) -> Span | None:
-        """Where a field stands; the entry itself where it is not written."""
+        """The span of a field, by its path; that of the entry where the field is not written."""
         node: Node | None = self.fields
         for step in path:
             if isinstance(node, Mapping) and step in node.entries:
@@ -70,11 +70,11 @@ class Broken:
 
     def __init__(self) -> None:
         self.any = False
-        """Whether any name may be among them."""
+        """Whether any name at all may be one of them."""
         self._names: set[str] = set()
 
     def add(self, name: str) -> None:
-        """Count a name among them."""
+        """Add a name."""
         self._names.add(name)
 
     @property
@@ -83,7 +83,7 @@ class Broken:
         return tuple(self._names)
 
     def __contains__(self, name: str) -> bool:
-        """Whether the name, or the part that would hold it, is among them: ``leg.knee`` where ``leg`` is."""
+        """Whether the name, or a part that would hold it, is one of them: ``leg.knee`` where ``leg`` is."""
         if self.any or name in self._names:
             return True
         return any(name[:at] in self._names for at, character in enumerate(name) if character == ".")

@@ -1,4 +1,4 @@
-"""A script as the checker reads it: composed, joined with what it includes, patched, templates written out."""
+"""Reading of a script for the checker: composed, joined with its includes, patched, templates written out."""
 
 from __future__ import annotations
 
@@ -110,10 +110,10 @@ class Composed:
     settings: Sequence[str]
     variants: tuple[str, ...]
     lost: tuple[str, ...]
-    """Names of parts in sections that no script has."""
+    """Names of parts in unknown sections."""
 
     def try_variants(self, chosen: str | None, found: Diagnostics) -> None:
-        """Report what is wrong in the paths of all variants, chosen or not: an error in an unused part is an error."""
+        """Report errors in the paths of all variants except ``chosen``: an error in an unused part is an error."""
         report_unnamed(self.root, found)
         wrong: dict[str, Diagnostics] = {}
         for name in self.variants:
@@ -191,7 +191,7 @@ def _check_version(tree: Mapping, found: Diagnostics) -> None:
 
 
 def _each(root: Mapping, name: str, found: Diagnostics) -> Iterable[list[Patch]]:
-    """The patches of a variant: one list, or none after reporting why there is none."""
+    """One list of the patches of a variant, or nothing after reporting errors."""
     try:
         return [variant(root, name)]
     except ScriptError as error:

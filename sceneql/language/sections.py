@@ -1,4 +1,4 @@
-"""Sections and entries: several scripts joined to one tree, and what an entry may look like."""
+"""Sections and entries: joining several scripts to one tree, and the shape of entries."""
 
 from __future__ import annotations
 
@@ -14,12 +14,14 @@ from sceneql.quantities.instead import instead
 NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect", "studies")
 """Sections beside the families that hold names."""
 
+NOTHING: Final = ("none", "no", "false", "off")
+"""Words of what is not to be there."""
 _ENTRY = "an entry is `name: word` or `name: {word: {fields}}`"
 
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """An entry as it stands: ``word`` is the node of the word, ``fields`` None where there are none."""
+    """An entry as written: ``word`` is the node of the word, ``fields`` None where there are none."""
 
     word: Scalar
     fields: Node | None
@@ -27,12 +29,12 @@ class Written:
 
 
 def empty(node: Node) -> bool:
-    """Whether nothing is written here."""
+    """Whether a node is an empty value."""
     return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
 
 
 def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
-    """The word and the fields of an entry, or None after reporting a shape that no entry has."""
+    """The word and fields of an entry; None after reporting a wrong shape."""
     if isinstance(node, Scalar):
         if broken(node):
             return None
@@ -42,7 +44,8 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
         found.error("entry-shape", message, node.span, help=instead("entry", what.strip("'")) or _ENTRY)
         return None
     if isinstance(node, Sequence):
-        found.error("entry-shape", f"{what} is a list, not a part", node.span, help=_ENTRY)
+        help = instead("list", what.strip("'")) or _ENTRY
+        found.error("entry-shape", f"{what} is a list, not a part", node.span, help=help)
         return None
     words = [key for key in node.entries if key != "repeat"]
     if not words and node.partial:
@@ -70,7 +73,7 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
 
 
 def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Broken, found: Diagnostics) -> Mapping:
-    """The sections of a script or template (``holder``), unknown ones reported.
+    """The sections of a script or template, which messages call ``holder``; unknown ones are reported.
 
     An unknown section of parts is read as the known one with the nearest name, unless that is present too; otherwise
     the names in it are added to ``lost``.
@@ -80,6 +83,8 @@ def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Br
         name = key
         if key not in known:
             other = instead("section", key)
+            if other is not None and isinstance(value, Scalar) and value.text.lower() in NOTHING:
+                other = instead("absent", key) or other
             near = nearest(key, known) if other is None else None
             every = f"{holder} may have {', '.join(dict.fromkeys(known))}: `sceneql words sections`"
             help = other or suggestion(key, known) or every
@@ -95,7 +100,7 @@ def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Br
 
 
 def _names_in(node: Node) -> list[str]:
-    """The names of the parts in a value that may be a section."""
+    """The names of parts in a value that may be a section."""
     if isinstance(node, Mapping):
         return list(node.entries)
     words = node.items if isinstance(node, Sequence) else []

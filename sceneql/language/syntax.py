@@ -1,4 +1,4 @@
-"""Errors of the YAML parser as diagnostics in our words, with our caret."""
+"""Translation of the YAML parser's errors to diagnostics in our words, with our caret."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Final
 
 import yaml
 
+from sceneql.language.behind_quotes import told_behind
 from sceneql.quantities.diagnostic import Diagnostic, Note
 from sceneql.quantities.span import Source, Span
 
@@ -39,17 +40,17 @@ _PROBLEMS: Final = (
 _NO_KEY = re.compile(r"(?:^|[,{\n\r])[ \t]*\Z")
 _KEY: Final = "write `name: value`"
 _LONGEST: Final = 1024
-"""Letters of a key (YAML 1.2, 7.4: implicit keys)."""
+"""Largest length of a key (YAML 1.2, 7.4: implicit keys)."""
 
 
 def unprintable(text: str) -> int | None:
-    """Where the first character stands that YAML does not allow, if any."""
+    """Offset of the first character that YAML does not allow; None if there is none."""
     found = _UNPRINTABLE.search(text)
     return None if found is None else found.start()
 
 
 def place(source: Source, error: yaml.YAMLError) -> int:
-    """The character at which the parser fails."""
+    """Offset of the character at which the parser fails."""
     size = len(source.text)
     return min(_index(error, "problem_mark", size), size)
 
@@ -72,6 +73,9 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
     if (long := _long_key(source.text, at, flow)) is not None:
         help = "a name is short: say more in a comment behind it"
         return _syntax(f"a key of {at - long:,} letters; it may have {_LONGEST:,}", source, long, help)
+    if (told := told_behind(source.text, at)) is not None:
+        help = f"a text has its values in braces: write `{told}`"
+        return _syntax("nothing can stand behind this quote", source, at, help)
     if flow is not None:
         return _in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow)
     character = source.text[at : at + 1]
@@ -90,7 +94,7 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
 
 
 def _long_key(text: str, at: int, flow: int | None) -> int | None:
-    """Where the key begins that a colon ends, where it is longer than the parser takes one for a key."""
+    """Offset of a key that ends at the colon ``at`` and is too long for the parser; None for other colons."""
     if text[at : at + 1] != ":" or at - 1 <= _LONGEST or text[at - 1].isspace():
         return None
     if text[at - 1] in "'\"":
@@ -142,7 +146,7 @@ def _index(error: yaml.YAMLError, name: str, default: int) -> int:
 
 
 def _tab(source: Source, at: int) -> int | None:
-    """Where a tab stands in the indentation of the line of ``at``, or of the line before."""
+    """Offset of a tab in the indentation of the line of ``at``, or of the line before; None if there is none."""
     line = source.position(at)[0]
     for number in (line, line - 1):
         if number >= 1:

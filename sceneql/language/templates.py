@@ -1,4 +1,4 @@
-"""Templates, parts, copies and defaults: the tree's sections rewritten to plain entries, each with its scope."""
+"""Expansion of templates, parts, copies and defaults to plain entries, each with its scope."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _EQUALS = re.compile(r"(\w+)\s*:?=\s*(\S+(?:[ \t]\S+)*)")
 
 
 def expand(root: Mapping, families: List[str], lost: Broken, found: Diagnostics, *, repeats: bool = True) -> Expanded:
-    """The entries of a script, templates and copies written out and defaults filled in.
+    """The entries of a script, with templates and copies written out and defaults filled in.
 
-    ``lost`` holds the names of unreadable entries; those of entries found to be wrong here are added; ``repeats``:
-    whether `repeat` stands anywhere. Raises ScriptError where there are more parts than are checked.
+    ``lost``: the names of unreadable entries, to which those of wrong entries are added; ``repeats``: whether `repeat`
+    stands anywhere. Raises ScriptError where there are more parts than are checked.
     """
     expander = _Expander(root, families, lost, found, repeats)
     expander.unique(root)
@@ -62,12 +62,15 @@ def filled(word: str, fields: Node | None, defaults: Table[str, Node], span: Spa
 
 
 class _FullError(Exception):
-    """There are more parts than any script needs."""
+    """There are more than MOST_PARTS parts."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where entries are added: prefix of names, scope, and the prefix and table of names of each enclosing instance."""
+    """The place where entries are added.
+
+    Prefix of names, scope, (prefix, table of names) of each enclosing instance, and the templates around.
+    """
 
     front: str
     scope: Scope | None
@@ -81,7 +84,7 @@ class _Template:
     gives: dict[str, Node]
     body: Mapping
     partial: bool
-    """Whether it may have more fields."""
+    """Whether the template may have more fields than were readable."""
 
 
 class _Expander:
@@ -132,7 +135,7 @@ class _Expander:
                     seen[name] = written
 
     def template(self, name: str) -> _Template | None:
-        """A template as it is written, its shape checked once."""
+        """A template as written, with its shape checked once; None after reporting errors."""
         if name not in self.read:
             self.read[name] = None
             node = self.templates[name]
@@ -181,12 +184,14 @@ class _Expander:
                 self.instances(name, written, place)
 
     def entry(self, name: str, node: Node, section: Node, place: _Place) -> Written | None:
-        """An entry whose name and shape are right; None after a report."""
+        """The parts of an entry with a valid name and shape; None after a report."""
         assert isinstance(section, Mapping)
         key = section.keys[name]
         if not name.split(".")[0].isidentifier() or (key.text == name and "." in name):
             message = f"'{name}' cannot be the name of a part"
             letters = "a name is made of letters, digits and underscores, and begins with a letter"
+            better = re.sub(r"\W+", "_", name).strip("_")
+            letters = f"write `{better}`: {letters}" if better.isidentifier() else letters
             help = numbered(name) or letters
             self.found.error("part-name", message, key.span, help=help)
             for part in (name, *re.split(r"\W+", name)):  # as it may be written in an expression

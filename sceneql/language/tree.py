@@ -1,4 +1,4 @@
-"""The tree a script becomes: scalars, lists and mappings, each with its span. Nothing is converted here."""
+"""The tree of a script: scalars, lists and mappings, each with its span. Nothing is converted here."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from sceneql.quantities.span import Source, Span
 
 @dataclass(slots=True, eq=False)
 class Scalar:
-    """A scalar as written. ``kind`` is the YAML 1.2 core type of a plain one; a quoted one is always `text`.
+    """A scalar as written. ``kind``: the YAML 1.2 core type of a plain one; a quoted one is always `text`.
 
-    A `broken` one stands for a value reported as unreadable, about which no further error is reported.
+    A `broken` scalar stands for a value reported as unreadable, about which no further error is reported.
     """
 
     text: str
@@ -29,7 +29,7 @@ class Scalar:
 
     @property
     def content(self) -> Span:
-        """The characters inside the quotes (of a plain scalar: all)."""
+        """The characters inside the quotes; of a plain scalar, all."""
         inset = 1 if self.quoted and self.end - self.start >= 2 else 0
         return Span(self.source, self.start + inset, self.end - inset)
 
@@ -73,7 +73,7 @@ class Mapping:
         return Span(self.source, self.start, self.end)
 
     def holding(self, entries: dict[str, Node], keys: dict[str, Scalar] | None = None) -> Mapping:
-        """The same mapping with other entries (and other keys)."""
+        """A copy of the mapping with other entries (and other keys)."""
         keys = self.keys if keys is None else keys
         return Mapping(entries, keys, self.flow, self.source, self.start, self.end, self.partial, self.index)
 
@@ -92,7 +92,7 @@ def unsure(node: Node) -> bool:
 
 
 def whole(node: Node) -> bool:
-    """Whether no node at or below this one is broken or partial. A node that aliases share is visited once."""
+    """Whether neither a node nor any node below it is broken or partial; shared nodes are visited once."""
     seen: set[int] = set()
     stack = [node]
     while stack:
@@ -106,7 +106,7 @@ def whole(node: Node) -> bool:
 
 
 def extent(node: Node, known: dict[int, tuple[int, int]]) -> tuple[int, int]:
-    """Depth and number of nodes of a finished tree, a shared node counted at each place.
+    """Depth and number of nodes of a finished tree, with shared nodes counted at each place.
 
     ``known`` caches these of collections, by id.
     """
@@ -120,7 +120,7 @@ def extent(node: Node, known: dict[int, tuple[int, int]]) -> tuple[int, int]:
 
 
 def hole(span: Span) -> Scalar:
-    """The scalar that stands for an unreadable value."""
+    """A `broken` scalar that stands for an unreadable value."""
     return Scalar("", "broken", False, span.source, span.start, span.end)
 
 

@@ -1,4 +1,4 @@
-"""Where characters of a scalar's text stand in the script, which may write them escaped, folded or indented."""
+"""Spans of characters of a scalar's text in the script, which may write them escaped, folded or indented."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from sceneql.language.tree import Scalar
 from sceneql.quantities.span import Span
 
 ESCAPE = re.compile(r"\\(?:x[0-9a-fA-F]{2}|u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|.)", re.DOTALL)
-"""One character between double quotes."""
+"""One written character between double quotes."""
 SKIPPED = {"'": re.compile(r"\s*"), '"': re.compile(r"(?:\s|\\\r?\n)*")}
-"""What stands before a character that is none itself: the ends and beginnings of lines, by the kind of quotes."""
+"""Text before a character that belongs to no character (line ends and indentation), by the kind of quotes."""
 WRITTEN = {"'": re.compile(r"''|.", re.DOTALL), '"': re.compile(rf"{ESCAPE.pattern}|.", re.DOTALL)}
-"""One character, by the kind of quotes."""
+"""One written character, by the kind of quotes."""
 
 
 def within(node: Scalar, start: int, end: int) -> Span:
-    """The span of characters ``start`` to ``end`` of a scalar's text; of all of it where they cannot be told."""
+    """The span of characters ``start`` to ``end`` of a scalar's text; the whole scalar where they cannot be located."""
     text, quote = node.source.text, node.source.text[node.start : node.start + 1] if node.quoted else ""
     at, last = node.content.start, node.content.end
     if quote in ("|", ">"):

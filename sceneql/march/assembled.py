@@ -1,4 +1,4 @@
-"""A graph's island as an assembly: its models, then its forces and contacts; whole, or in blocks of its bodies."""
+"""Assembly of a graph's island: its models, then its forces and contacts; whole, or in blocks of its bodies."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from sceneql.quantities.expression import Expr, Link
 from sceneql.system import Bodies, IslandFacts, ModelState, Stepper
 
 BLOCK = 4608
-"""Bodies of a block, roughly: at some 300 bytes each they stay in a core's cache from step to step."""
+"""Approximate number of bodies of a block: at some 300 bytes each they stay in a core's cache from step to step."""
 
 
 @dataclass(frozen=True)
@@ -43,29 +43,32 @@ class Setting:
         return None
 
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
-        """Density and viscosity of each other fluid that skins in a flow hold."""
+        """Density [kg/m^3] and viscosity [Pa s] of each other fluid that skins in a flow enclose."""
         found = [cast(Model, self.tasks[name].kind).fluid() for name, by in self._carriers.items() if by == flow]
         return tuple(one for one in found if one is not None)
 
     def carrier(self, model: str) -> str | None:
-        """The flow that carries a model."""
+        """The name of the flow that carries a model; None where none does."""
         return self._carriers.get(model)
 
     def laden(self, flow: str) -> bool:
-        """Whether masses that a flow carries add to its inertia, or take some away."""
+        """Whether masses carried by a flow add to its inertia or reduce it."""
         density = getattr(self.tasks[flow].kind, "density", 0.0)
         carried = [cast(Model, self.tasks[name].kind) for name, by in self._carriers.items() if by == flow]
         return any(model.burdens(density) for model in carried)
 
     @cached_property
     def _carriers(self) -> dict[str, str]:
-        """By model the flow that carries it."""
+        """The name of the flow, by the model that it carries."""
         kinds = [task.kind for task in self.tasks.values() if isinstance(task.kind, Interaction)]
         carried = [(name, flow.name) for kind in kinds if (flow := kind.carrier()) for name in kind.targets() or ()]
         return {name: flow for name, flow in carried if name in self.tasks}
 
     def formula(self, link: Link) -> Expr | None:
-        """The output of a kinematic model, or an object's field, as an expression; None of what stands in the state."""
+        """A linked output as an expression: of a kinematic model, or an object's field.
+
+        None where it stands in the state.
+        """
         kind = self.tasks[link.task].kind
         if isinstance(kind, Model):
             return kind.formula(link.output) if kind.kinematic else kind.computed(link.task, link.output)
@@ -86,7 +89,10 @@ class Assembled:
 
     @contextmanager
     def word(self, name: str, model: str | None = None) -> Iterator[None]:
-        """Mark what is added inside as the part ``name``'s; its errors are collected, and other parts still checked."""
+        """Context manager: what is added inside belongs to part ``name``.
+
+        Its errors are collected, so that others are found too.
+        """
         with self.assembly.word(name, self.graph.tasks[name].span, model):
             try:
                 yield
@@ -112,7 +118,7 @@ class Assembled:
         """Add the forces and contacts."""
         tasks = self.graph.tasks
         forces = dict.fromkeys(force for force, _ in self.island.forces)
-        # Masses that a flow carries come first: its skins move by its inertia, and theirs is part of it.
+        # Masses that a flow carries come first: skins need the flow's inertia, which includes these masses.
         for force in [force for force in forces if cast(Interaction, tasks[force].kind).carrier()]:
             self._add_to_masses(force)
         for force in forces:
@@ -210,20 +216,20 @@ def models_of(graph: SimulationGraph, island: Island) -> Assembled:
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Some bodies of an island as an island of their own."""
+    """A block: some bodies of an island, as an island of their own."""
 
     system: System
     places: tuple[tuple[int, int, int], ...]
-    """(offset in the island's state, offset in the block's, count) of its entries, except sums."""
+    """(offset in the island's state, offset in the block's, count) of its entries, without tallies."""
     sums: tuple[tuple[int, int], ...]
-    """(in the island's state, in the block's): entries that are sums over the bodies."""
+    """(index in the island's state, index in the block's) of tallies, which are sums over the bodies."""
     assembly: IslandAssembly
     changes: tuple[tuple[int, int, int], ...]
     """As ``places``, for the floats that change as bodies come and go."""
 
 
 def blocks_of(whole: Assembled, system: System, stepper: Stepper) -> list[Block]:
-    """The island in blocks that fit into a cache; none where bodies interact or steps are adaptive."""
+    """The island divided into blocks that fit into a cache; empty where bodies interact or steps are adaptive."""
     count = sum(0 if bodies is None else bodies.count for bodies in whole.bodies.values()) // BLOCK
     needs = stepper.needs
     fixed = not stepper.control.adaptive and not needs.jacobian and needs.prepare is None

@@ -1,4 +1,4 @@
-"""The term that makes an island's rate not finite."""
+"""Search for the term that makes an island's rate not finite."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 
 def culprit(system: System, driver: Driver, floats: Floats, t: float, y: Floats) -> Origin | None:
-    """The first term with which the rate at a time [s] and a finite state is not finite; None where it is finite.
+    """The first term with which the rate at time t [s] and state y is not finite; None where the rate is finite.
 
-    The driver is called with groups that end after the first term, the second and so on, up to the culprit.
+    The driver is called with groups that end after the first term, the second and so on, up to the culprit. None, too,
+    where the state itself is not finite.
     """
     ints, floats, rate = system.ints.copy(), floats.copy(), np.empty_like(y)
     firsts = ints[layout.GROUPS_AT : layout.GROUPS_AT + len(system.structure.terms) + 1].copy()

@@ -1,6 +1,7 @@
-"""The driver of an island: kernels, the same for all islands, that call the island's own by addresses in its integers.
+"""The driver of an island: kernels, the same for all islands, that call the island's own kernels by their addresses.
 
-So a new combination of forces, contacts and values compiles nothing but what its words bring.
+The addresses stand in the island's integers. So a new combination of forces, contacts and values compiles nothing but
+the kernels of its words.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ ACTS = "sceneql.march.driver_acts_kernels"
 
 
 class Driver(NamedTuple):
-    """The kernels of an island (system/__init__.py has their signatures)."""
+    """The driver kernels of an island (system/__init__.py has their signatures)."""
 
     rate: Any
     gap: Any
@@ -37,7 +38,7 @@ class Driver(NamedTuple):
 
 
 def driver(system: System) -> Driver:
-    """The driver of an island, whose own kernels are compiled now, but for those that only some solvers ask for."""
+    """The driver of an island, with its own kernels compiled except those that only some solvers call."""
     structure = system.structure
     _write(system, layout.CALLS_AT, _calls(structure))
     none = load("sceneql.march.march_kernels")
@@ -67,14 +68,14 @@ def jacobian(system: System) -> Any:
 
 
 def energy(system: System) -> Any:
-    """The potential energy of an island laid out with a Jacobian; None where it has none."""
+    """The kernel of the potential energy of an island laid out with a Jacobian; None where it has no potential."""
     if system.pattern is None or system.structure.energies is None:
         return None
     return load("sceneql.march.driver_slopes_kernels").energy
 
 
 def limit(system: System) -> Any:
-    """The largest part of a change that keeps surfaces apart; None on an island without such surfaces."""
+    """The kernel of the largest change that keeps surfaces apart; None for an island without such surfaces."""
     return load("sceneql.march.driver_limit_kernels").limit if system.structure.limits else None
 
 
@@ -101,7 +102,7 @@ def _acts(structure: Structure) -> bool:
 
 
 def lazy_first(structure: Structure) -> list[str]:
-    """Lazily compiled modules that contacts will soon need, in order: another process can begin with these."""
+    """Lazily compiled modules that contacts will soon need, in order, for another process to begin with."""
     local = dict.fromkeys(name.partition(":")[0] for name in structure.local)
     return [first for module in local for first in getattr(load(module), "LAZY_FIRST", ())]
 
@@ -141,7 +142,7 @@ def _slopes(structure: Structure) -> Iterator[int]:
 
 
 def _write(system: System, where: int, addresses: Iterator[int]) -> None:
-    """Write addresses to where the integer at ``where`` says, once."""
+    """Write addresses from index ints[where] on, unless they have been written before."""
     at = system.ints[where]
     for k, one in enumerate(addresses if system.ints[at] == 0 else (), at):
         system.ints[k] = one

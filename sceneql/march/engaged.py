@@ -1,4 +1,4 @@
-"""A method at work on an island: its compiled functions, its numbers and its memory."""
+"""A method prepared for an island: its compiled functions, numbers and memory."""
 
 from __future__ import annotations
 
@@ -22,17 +22,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Engaged:
-    """What the loop of steps needs of a method on one island."""
+    """The data of a method on one island that the loop of steps uses."""
 
     stepper: Stepper
     functions: Any
     """Addresses of the compiled functions, as `march_kernels` takes them."""
     dense: Any
-    """State within a step from the numbers at its ends and the method's scratch."""
+    """Function that interpolates the state within a step, from the states and rates at its ends and the method's
+    scratch."""
     extend: Any
-    """Computes further stages that ``dense`` reads; None: it needs none."""
+    """Function that computes further stages for ``dense``; None: it needs none."""
     mixed: bool
-    """Whether entries that something changes after steps are read on a line, all others by ``dense``."""
+    """Whether entries changed after the step (by contacts or births) are interpolated linearly, all others by
+    ``dense``."""
     settings: Floats
     numbers: Any
     work: Floats
@@ -40,16 +42,16 @@ class Engaged:
     kept: int
     text: str
     alone: Any
-    """(n,) bool: entries whose errors are measured by their own sizes."""
+    """(n,) bool: entries whose errors are scaled by their own magnitude alone."""
     scales: tuple[int, int]
     """`kept`, `text` and `scales` as in `Prepared`."""
     told: tuple[tuple[int, int], ...]
-    """(index, value) of the counts that tell the loop of steps how the method goes."""
+    """(index, value) of the counts that describe the method to the loop of steps."""
     first: Prepared
-    """What `settings` and `numbers` are before the first step."""
+    """Initial `settings` and `numbers`, and the size of the scratch."""
 
     def begin(self, counts: Any) -> Engaged:
-        """The method with a memory as before its first step, about which the loop's ``counts`` are told."""
+        """A copy of the method with its memory as before the first step; sets the loop's ``counts``."""
         for k, value in self.told:
             counts[k] = value
         settings, numbers = np.array(self.first.settings, np.float64), np.array(self.first.numbers, np.int64)
@@ -57,17 +59,17 @@ class Engaged:
 
     @property
     def sizes(self) -> Floats:
-        """The sizes that entries have had, a view of the settings."""
+        """The error scales (largest magnitudes of entries so far), a view of the settings."""
         first, count = self.scales
         return self.settings[first : first + count]
 
     def measure_as(self, before: Engaged) -> None:
-        """Go on with the sizes that entries have had, where the method before measured errors by these, too."""
+        """Take over the error scales of the method ``before``, where it measured errors by the same scales."""
         if len(self.sizes) == len(before.sizes) and np.array_equal(self.alone, before.alone):
             self.sizes[:] = before.sizes
 
     def go_on(self, before: Engaged) -> None:
-        """Go on with what the method has remembered on the same island, whose Jacobian had fewer places."""
+        """Take over the memory of the same method on the same island, ``before`` its Jacobian had more places."""
         if not self.kept:
             return
         counts = (len(self.stepper.method.settings), len(self.stepper.method.numbers), self.kept)
@@ -78,16 +80,19 @@ class Engaged:
 
 
 class Methods:
-    """The methods of a march as laid out on its island, between which it may go back and forth."""
+    """The methods of a march, prepared for its island; the march may switch between them."""
 
     def __init__(self, several: bool) -> None:
-        """``several``: whether it may; else nothing is kept."""
+        """``several``: whether the march may switch; else nothing is cached."""
         self._several = several
         self._system: System | None = None
         self._laid_out: dict[int, Engaged] = {}
 
     def begin(self, system: System, stepper: Stepper, driver: Driver, *, counts: Any) -> Engaged:
-        """The method at work, see `Engaged.begin`; laid out anew where the island has been, or at its first time."""
+        """The method at its beginning (`Engaged.begin`).
+
+        Prepared at its first use, and anew after the island was laid out anew.
+        """
         if system is not self._system:
             self._system = system
             self._laid_out.clear()
@@ -98,11 +103,11 @@ class Methods:
 
 
 def engage(system: System, stepper: Stepper, driver: Driver) -> Engaged:
-    """Lay out the work of a method on an island; it works after `begin`."""
+    """Prepare a method for an island; `begin` starts it."""
     method, control, needs = stepper.method, stepper.control, stepper.needs
     local = bool(system.structure.local)
     between = needs.jacobian and not needs.newton
-    # A step's own dense output does not have changes made after it, which local contacts may make in every step.
+    # A method's dense output lacks changes made after its step, as by local contacts in any step.
     mixed = between and (local or bool(system.structure.after))
     dense = None if local and not between else method.dense
     interpolant = kernels.hermite if dense is None else function(dense)
@@ -123,7 +128,7 @@ def engage(system: System, stepper: Stepper, driver: Driver) -> Engaged:
         (kernels.LAST_STAGE, -1 if local and between else method.last_stage),
         (kernels.CONTROLS, control.self_controlled),
         (kernels.HALVES, control.halves),
-        # The last stage of Newton's method is a state that it has reached without letting surfaces pass one another.
+        # Newton's method keeps surfaces from passing each other by itself, up to the state of its last stage.
         (kernels.WATCHED, keeps_apart is not None and not (needs.newton and method.last_stage >= 0)),
     )
     alone = np.zeros(len(system.y), dtype=bool) if prepared.alone is None else prepared.alone

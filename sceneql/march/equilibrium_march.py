@@ -1,4 +1,4 @@
-"""The march of rests: static at each instant's loads."""
+"""The march of static equilibria, each at the loads of its instant."""
 
 from __future__ import annotations
 
@@ -19,25 +19,30 @@ if TYPE_CHECKING:
 
 MOTIONS = ("move along x", "move along y", "move along z", "turn about x", "turn about y", "turn about z")
 FREE = 1e-7
-"""Stiffness against a motion, relative to the largest, below which it is free."""
+"""Stiffness against a rigid motion, relative to the largest stiffness, below which the motion counts as free."""
 MOVED = 1e-6
-"""Part of its size by which a model is moved to see that."""
+"""Displacement of a model, relative to its size, by which that stiffness is measured."""
 JUMPED = 1e-6
-"""Force on a rest, relative to the largest of the loads, from which on these have jumped."""
+"""Force on the former equilibrium, relative to the largest load, from which on the loads have jumped."""
 SHAKEN = 1e-8
-"""Part of its size by which a model is shaken to tell forces that have jumped from what Newton's method leaves."""
+"""Random displacement of a model, relative to its size, that tells forces after a jump of the loads from the residual
+of Newton's method."""
 LEAPT = 1e-9
-"""Distance between a place and where what is led to it is, relative to the largest place, from which on it leaps."""
+"""Distance between the place that is prescribed and the present one, relative to the largest coordinate, from which on
+a prescribed position jumps."""
 
 
 class EquilibriumMarch(March):
-    """Finds the rest of the start, then follows it through the run."""
+    """Finds the equilibrium at the start, then follows it through the run."""
 
     _asked = float("inf")
-    """The instant [s] that is asked for: no step goes beyond it."""
+    """The instant [s] that was asked for: no step goes beyond it."""
 
     def _start(self) -> None:
-        """Come to rest. Raises LimitRefused where models are held nowhere, RunFailure where there is no rest."""
+        """Find the first equilibrium.
+
+        Raises LimitRefused where nothing holds a model, RunFailure where there is no equilibrium.
+        """
         self.floats[channels.STATIC] = channels.RESTING
         super()._start()
         self._refuse_free_motions()
@@ -58,7 +63,7 @@ class EquilibriumMarch(March):
         self._rate0[:] = self._rate1[:] = self.rate(t, y)
 
     def _march(self, target: float, pace: Pace) -> None:
-        """Steps end at the instants that are asked for."""
+        """March to an instant; steps end at the instants that are asked for."""
         self._asked = target
         self._step_end = min(self._step_end, target)
         super()._march(target, pace)
@@ -75,7 +80,7 @@ class EquilibriumMarch(March):
             self._relax(self.time)
 
     def _leaps(self, t: float) -> bool:
-        """Whether what is led has places at an instant [s] to which it leaps from where it is."""
+        """Whether prescribed positions at an instant [s] differ by a jump from the present ones."""
         self.floats[channels.STATIC] = channels.PLACING
         off = self.rate(t, self._y1)
         self.floats[channels.STATIC] = channels.RESTING
@@ -84,7 +89,10 @@ class EquilibriumMarch(March):
         return bool(np.abs(off[placed]).max(initial=0.0) > LEAPT * np.abs(self._y1[placed]).max(initial=0.0))
 
     def _goes_on(self, status: int) -> bool:
-        """Where loads have jumped, rest is found anew; a path that has turned back ends the run."""
+        """Whether the march continues: where loads have jumped, a new equilibrium is found.
+
+        Raises RunFailure where the path of equilibria has turned back (a limit load), or where they become unstable.
+        """
         if status != kernels.STEP_TOO_SMALL:
             return False
         t = self.time
@@ -99,7 +107,7 @@ class EquilibriumMarch(March):
         raise self._failure("a limit load is reached: no rest beyond it is near", t)
 
     def _failure(self, message: str, t: float = 0.0) -> RunFailure:
-        """The failure, at the entry of the largest force."""
+        """The failure with a message, at the entry of the largest force."""
         forces = np.abs(self._forces(t, self._y1))
         origin = self.system.origin(int(forces.argmax()) if len(forces) else 0)
         return RunFailure(f"{message} (loads of {self._load(t):.6g} N)", part=origin.part, time=t, span=origin.span)
@@ -115,7 +123,7 @@ class EquilibriumMarch(March):
         return found
 
     def _load(self, t: float) -> float:
-        """Sum of the forces on masses, in size, that are no model's own [N]."""
+        """The load: sum of the magnitudes of forces on masses by other parts than their models [N]."""
         system, ints, floats = self.system, self.system.ints.copy(), self.floats.copy()
         firsts = ints[layout.GROUPS_AT : layout.GROUPS_AT + len(system.structure.terms) + 1].copy()
         models = {part for _, _, part, _ in system.ranges}
@@ -132,16 +140,16 @@ class EquilibriumMarch(March):
         return float(sum(np.linalg.norm(each[free], axis=1).sum() for each, free in zip(parts, moving, strict=True)))
 
     def _position_of(self) -> Any:
-        """(n,) the entry of the position whose rate each entry is; -1 where it is none."""
+        """(n,) for the velocity of a position the index of the position, -1 for other entries."""
         found = np.full(len(self.system.y), -1)
         paired = np.flatnonzero(self.system.partner >= 0)
         found[self.system.partner[paired]] = paired
         return found
 
     def _shaken(self, t: float) -> float:
-        """The largest change of a force on a rest as masses move by SHAKEN of their size [N].
+        """The largest change of a force as masses are displaced at random by SHAKEN of their model's size [N].
 
-        Where nothing but holds loads a solid, this tells what is left by Newton's method from a load that has jumped.
+        Where held places alone load a solid, this tells the residual of Newton's method from a load that has jumped.
         """
         y, some = self._y1.copy(), np.random.Generator(np.random.Philox(1))
         position_of = self._position_of()
@@ -152,7 +160,7 @@ class EquilibriumMarch(March):
         return float(np.abs(self._forces(t, y) - self._forces(t, self._y1)).max(initial=0.0))
 
     def _refuse_free_motions(self) -> None:
-        """Raise LimitRefused for models that nothing resists to move as they are."""
+        """Raise LimitRefused for models that may be moved as rigid bodies without resistance."""
         system = self.system
         position_of = self._position_of()
         if not system.masses:
@@ -190,13 +198,13 @@ class EquilibriumMarch(March):
                 )
 
     def _led(self, places: Any, at: Floats, numb: Any, size: float) -> Any:
-        """(3 n,) the components of places that are held: others feel them, and they, which are ``numb``, feel none."""
+        """(3 n,) bool: the components ``numb``, which feel no force, if forces on others depend on them; else none."""
         motion = np.where(numb, 1.0, 0.0).reshape(at.shape)
         felt = numb.any() and np.abs(self._resisted(places, at, motion, size)).max() > 0.0
         return numb if felt else np.zeros_like(numb)
 
     def _resisted(self, places: Any, at: Floats, motion: Floats, size: float) -> Floats:
-        """Change of all forces by a motion, from central differences."""
+        """(n,) change of all forces [N] by a motion of masses from ``at``, by central differences."""
         ends = []
         for sign in (1.0, -1.0):
             y = self._y1.copy()

@@ -23,7 +23,10 @@ class ExactMarch(March):
     """Solves each mode by itself, c(t) = c0 exp(-k t) + f (1 - exp(-k t))/k, without steps."""
 
     def _engage(self, stepper: Stepper) -> None:
-        """Find the modes. Raises ScriptError where the island is no field, LimitRefused where it has no such modes."""
+        """Find the modes of the field.
+
+        Raises ScriptError where the island is no field, LimitRefused where the field has no such modes.
+        """
         grid = self.system.fields.single
         if grid is None:
             _, _, part, spans = self.system.ranges[0]
@@ -68,7 +71,7 @@ class ExactMarch(March):
         cells = slice(grid.at, grid.at + n)
         volume = float(self.floats[grid.volumes_at])
         if self._modes is None:
-            self.statistics.steps = 1  # one to any instant
+            self.statistics.steps = 1  # one step reaches any instant
             self._modes = (
                 self._weights(self._y1[cells]),
                 self._weights(self.floats[grid.fed_at : grid.fed_at + n] / volume),

@@ -1,4 +1,4 @@
-"""What a failed march says: the part, entry, time and line, and whether the equations or the tolerance is at fault."""
+"""Messages of a failed march: part, entry, time and line, and whether the equations or the tolerance is at fault."""
 
 from __future__ import annotations
 
@@ -21,10 +21,11 @@ if TYPE_CHECKING:
     from sceneql.system import Control
 
 GROWTH_LIMIT = 1e12
-"""A run fails when an entry of y exceeds this times the largest at the start (at least 1, or a change by the rate)."""
+"""A run fails when an entry of y exceeds this factor times the largest entry at the start (at least 1, or the change
+over the run by the initial rate)."""
 
 LEAST = 1e-40
-"""Part of a run below which no step is tried, even at time 0."""
+"""Shortest step, relative to the run, even at time 0."""
 MESSAGES = {
     kernels.NOT_FINITE: "a value is no longer finite: the step is unstable, or the equations have no value there",
     kernels.GROWTH: f"the state has grown beyond {GROWTH_LIMIT:.0e} times its start: {{}}",
@@ -35,35 +36,35 @@ MESSAGES = {
     kernels.COSTLY: "contacts take more work than they may",
 }
 AHEAD = 1e-9
-"""Part of the time reached in which a rate without a value is looked for."""
+"""Interval ahead, relative to the time reached, in which a rate without a value is searched for."""
 BEND = 1e-6
-"""Relative change of a rate in some last digits of time from which its solution bends at once."""
+"""Relative change of a rate over DIGITS ulps of time from which on its solution counts as singular."""
 DIGITS = 64
-"""Those last digits."""
+"""Number of ulps of time for BEND."""
 ROUNDING = 1e-9
-"""Part of an entry below which its change in these is rounding."""
+"""Relative change of an entry over these ulps below which the change is rounding."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stopped:
-    """A march where it stopped."""
+    """The state of a march where it stopped."""
 
     system: System
     driver: Driver
     control: Control
     floats: Floats
     time: float
-    """Of the last good state [s]."""
+    """Time of the last good state [s]."""
     y: Floats
     rate: Floats
     end: float
-    """Of the run [s]."""
+    """End of the run [s]."""
     rate_at: Callable[[float, Floats], Floats]
     """dy/dt (n,) at a time [s] and state."""
 
 
 def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure:
-    """The failure of a march that has stopped with a status; ``ahead``: the step that comes next [s]."""
+    """The failure of a march that stopped with a status; ``ahead``: the next step to be tried [s]."""
     control = march.control
     if status in (kernels.STUCK, kernels.UNSEEN, kernels.COSTLY):
         return _at_contact(march, status, entry)
@@ -82,7 +83,7 @@ def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure
 
 
 def _at_contact(march: Stopped, status: int, pair: int) -> RunFailure:
-    """Contacts have no way on: told at the line of that of the pair, or of the first, where it has an advice."""
+    """The failure of contacts, at the line of the pair's contact, or of the first contact that has advice."""
     message, first = MESSAGES[status], 0
     for pairs, origin, help in march.system.events:
         if help and (status != kernels.STUCK or first <= pair < first + pairs):
@@ -92,7 +93,10 @@ def _at_contact(march: Stopped, status: int, pair: int) -> RunFailure:
 
 
 def blamed(march: Stopped, entry: int, message: str, aheads: Iterable[float] = ()) -> RunFailure:
-    """The failure at an entry of the state; a term that is not finite at one of some times ahead [s] is named."""
+    """The failure at an entry of the state.
+
+    It names a term that is not finite at one of the times ``aheads`` [s] ahead.
+    """
     t, y, rate = march.time, march.y, march.rate
     origin = march.system.origin(entry)
     span = origin.span
@@ -105,7 +109,7 @@ def blamed(march: Stopped, entry: int, message: str, aheads: Iterable[float] = (
 
 
 def _without_step(march: Stopped, entry: int) -> RunFailure:
-    """No step is short enough: the rate has no value ahead, or bends at once, or is known too roughly."""
+    """The failure where no step is short enough: the rate has no value ahead, is singular, or too inexact."""
     t, y, rate, text = march.time, march.y, march.rate, MESSAGES[kernels.STEP_TOO_SMALL]
     with np.errstate(all="ignore"):
         missing = _missing(march, t, y, rate)
@@ -123,7 +127,7 @@ def _without_step(march: Stopped, entry: int) -> RunFailure:
 
 
 def _hopeless(march: Stopped, step: float) -> RunFailure:
-    """Steps have been so short for so long that the march is given up (`pace`)."""
+    """The failure of a march given up (`pace`) because its steps have long been too short."""
     entry = int(np.argmax(np.abs(march.rate)))
     name = march.system.name(entry)
     told = f"{f'the rate of {name}' if name else 'a rate'} is {march.rate[entry]:.3g} where it is {march.y[entry]:.3g}"
@@ -132,7 +136,7 @@ def _hopeless(march: Stopped, step: float) -> RunFailure:
 
 
 def _missing(march: Stopped, t: float, y: Floats, rate: Floats) -> tuple[int, float] | None:
-    """The first entry whose rate has no value soon after a time [s], and how soon [s]."""
+    """The first entry whose rate has no value soon after time t [s], and how soon [s]; None if all have."""
     h = max(float(np.spacing(t)), LEAST * march.end)
     while h < AHEAD * max(t, AHEAD * march.end):
         bad = np.flatnonzero(~np.isfinite(march.rate_at(t + h, y + h * rate)))

@@ -1,4 +1,4 @@
-"""The first step of a method whose steps a tolerance chooses."""
+"""The first step of an adaptive method."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 def first_step(
     stepper: Stepper, y: Floats, rate: Floats, alone: Any, end: float, rate_at: Callable[[float, Floats], Floats]
 ) -> float:
-    """Its length [s] (Hairer, Norsett & Wanner 1993, II.4, "starting step size").
+    """Length of the first step [s] (Hairer, Norsett & Wanner 1993, II.4, "starting step size").
 
-    ``y``, ``rate`` (n,) at the start; ``alone`` (n,) bool: entries that are measured by their own sizes; ``end`` of the
-    run [s]. Such an entry counts where it has a size: a zero, by its change in such a step.
+    ``y``, ``rate`` (n,) at the start; ``alone`` (n,) bool: entries whose errors are scaled by their own magnitude;
+    ``end`` of the run [s]. Such an entry counts where it is not zero; a zero, by its change in such a step.
     """
     if stepper.method.order == 0:  # it has no steps
         return end

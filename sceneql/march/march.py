@@ -35,10 +35,10 @@ TOUCHING = 1e-13
 """Gap that counts as touching, relative to the largest position at the start or 1 m."""
 
 ENTRIES_A_CALL = 20_000_000
-"""Entries of y to step over in one compiled call, so that a long run can be interrupted."""
+"""Steps times entries of y in one compiled call, so that a long run can be interrupted."""
 
 AT_ONCE = 16
-"""Steps of a first call: steps of flows may be as long as all those of later ones."""
+"""Number of steps in the first call: steps of flows may take as long as all those of later calls."""
 LARGEST = 1e100
 """Largest number at the start in SI units, so that the square of its growth does not overflow."""
 
@@ -84,7 +84,8 @@ class March:
         self._clock[kernels.LEAST] = LEAST * end
         self._started = False
         self.corrected: Floats | None = None
-        """(n,) what was taken from the state at the start, as velocities that ties forbid; None: nothing settles it."""
+        """(n,) correction of the state at the start, as of velocities that ties forbid; None: no kernel corrects the
+        state."""
         self._floats_time = math.nan
         self._alone, self._within = np.zeros(n, dtype=bool), WithinContact(system)
         self._methods = Methods(several=stiff is not None)
@@ -94,12 +95,12 @@ class March:
         self._last_look = 0
         self._at_once = AT_ONCE
         self._from = 0.0 if before is None else self._go_on_from(before, kept)
-        """When it begins [s]."""
+        """Start of the march [s]."""
         self._look_for_breakpoint(self._from)
         self._engage(stepper)
 
     def _go_on_from(self, before: March, kept: int) -> float:
-        """Begin where another march ends, with its cost; when that is [s]."""
+        """Begin where another march ends, with its cost and first ``kept`` floats; returns that time [s]."""
         self.floats[channels.HEAD : kept] = before.floats[channels.HEAD : kept]
         self.floats[channels.RATES] = before.floats[channels.RATES]
         self.statistics = before.statistics
@@ -109,7 +110,7 @@ class March:
         return before.time
 
     def _engage(self, stepper: Stepper) -> None:
-        """Continue with a method."""
+        """Prepare a method and continue with it. Raises LimitRefused where it does not accept the island."""
         if stepper.needs.jacobian and self._with_jacobian is not None:
             self.system = self._with_jacobian()
             self.driver = driver(self.system)
@@ -125,13 +126,13 @@ class March:
         self.prepared_text = engaged.text
 
     def _take_over(self, stepper: Stepper) -> None:
-        """Continue with another method, which goes on with the sizes that entries have had."""
+        """Continue with another method, which takes over the error scales."""
         before = self._engaged
         self._engage(stepper)
         self._engaged.measure_as(before)
 
     def _grow(self) -> bool:
-        """Lay the island out with more places in its Jacobian, and go on with what the method remembers."""
+        """Lay the island out with more places in its Jacobian, keeping the method's memory; False: it needs no more."""
         self.floats[channels.GROWS] = 0.0
         system, before = self.system.grown(self.floats), self._engaged
         if system is None:
@@ -143,19 +144,19 @@ class March:
         return True
 
     def _look_for_breakpoint(self, time: float) -> None:
-        """Find the next breakpoint after an instant: an adaptive step ends a few ulps before it."""
+        """Find the next breakpoint after an instant; adaptive steps end a few ulps before it."""
         self._stop = next_breakpoint(self.system.stops, time, self.end) if self.stepper.control.adaptive else self.end
         self._step_end = before(self._stop) if self._stop < self.end else self.end
 
     def _pass_breakpoint(self) -> None:
-        """Move past a breakpoint: the next step begins with the values that hold behind it."""
+        """Move past a breakpoint: the next step begins with the values behind it."""
         self._clock[kernels.T1] = self._stop
         self._rate1[:] = self.rate(self._stop, self._y1)
         self._floats_time = math.nan
         self._look_for_breakpoint(self._stop)
 
     def _change(self, switch: Switch, t: float) -> None:
-        """Continue with the method that a switch has chosen, if it accepts this island."""
+        """Continue with the method that the switch has chosen; with the explicit one if that refuses the island."""
         try:
             self._take_over(switch.active)
         except LimitRefused as refusal:
@@ -211,7 +212,10 @@ class March:
         return self.floats_at(t, y), assembly.remembered(name)
 
     def _reach(self, t: float) -> tuple[Floats, bool]:
-        """March to an instant: the state there, and whether it is the end of a step, in the march's own array."""
+        """March to an instant.
+
+        Returns the state there, and whether it is the end of a step, in the march's own array.
+        """
         if not self._started:
             self._start()
         if t > self._clock[kernels.T1]:
@@ -227,7 +231,7 @@ class March:
             self._extend_step(t0, h)
             self._extended = t1
         y = np.empty_like(self._y1)
-        # What settles the end of a step takes errors away, which dense output has; what contacts change it has not.
+        # Dense output still has the errors that settling removes at the step's end, and lacks changes by contacts.
         settles, touched = bool(self._counts[kernels.SETTLES]) and not altered, bool(self._counts[kernels.LOCAL])
         y1 = self._sample if settles and not touched else self._y1
         steps = (self._y0, self._rate0, y1, self._rate1, self._work, self._settings, self._numbers)
@@ -240,7 +244,7 @@ class March:
         return self._settled(t, y), False
 
     def _settled(self, t: float, y: Floats) -> Floats:
-        """A state that is read, without what errors have added; one of a step is left as it is."""
+        """A state for reading, with accumulated errors removed (a copy, if any kernel does so)."""
         if self._counts[kernels.SETTLES]:
             y = y.copy()
             self.driver.settle(t, t, y, self._rate1, y, self.floats, self.system.ints)
@@ -287,7 +291,7 @@ class March:
         started = time.perf_counter() - compiled.seconds
         counts, clock = self._counts, self._clock
         if counts[kernels.HELD] and not math.isnan(self._floats_time):
-            # Frames have evaluated terms elsewhere: write again what contacts read of them at the step's end.
+            # Frames evaluated the terms at other states: restore their values at the step's end, which contacts read.
             self.rate(float(clock[kernels.T1]), self._y1)
         self._floats_time = math.nan
         left = 0
@@ -342,12 +346,12 @@ class March:
         raise found.giving_way() if self.system.gives_way else found
 
     def stopped(self) -> Stopped:
-        """The march where it stands."""
+        """The present state of the march, for failures."""
         state = self.stepper.control, self.floats, self.time, self._y1, self._rate1
         return Stopped(self.system, self.driver, *state, self.end, self.rate)
 
     def _look(self) -> None:
-        """Switch methods where it is time to compare and the other one is better."""
+        """Switch methods where a check is due and the other method is better."""
         switch, clock = self._switch, self._clock
         steps = int(self._counts[kernels.STEPS]) - self._last_look
         if switch is None or steps < switch.until_look:
@@ -359,7 +363,7 @@ class March:
             clock[kernels.STEP] = switch.stable(t, self._y1, step)
             clock[kernels.ERROR] = 1e-4
         if self._counts[kernels.HELD]:
-            self.rate(t, self._y1)  # write again what contacts read of the terms at this state
+            self.rate(t, self._y1)  # restore the terms' values at this state, which contacts read
 
     def _goes_on(self, status: int) -> bool:
         """Whether another method continues where the present one finds no step."""

@@ -32,7 +32,7 @@ FLOATS = ("_y0", "_rate0", "_y1", "_rate1", "_sample", "_work", "_settings", "fl
 FULL = ("_y1", "_settings", "floats", "_clock")
 """The arrays that are not all zeros before the first step."""
 TILES = 16
-"""Runs of blocks for each thread, one compiled call each."""
+"""Number of runs of blocks for each thread, each run one compiled call."""
 
 
 class BlockMarch(March):
@@ -103,7 +103,7 @@ class BlockMarch(March):
         return y, rate
 
     def _add_up(self, seconds: float) -> None:
-        """Update the cost so far: all blocks take the same steps."""
+        """Update the statistics; all blocks take the same steps."""
         done, first = self.statistics, self._blocks[0]
         done.steps, done.evaluations = int(first._counts[STEPS]), int(first.floats[channels.RATES])
         done.rejected = sum(int(block._counts[REJECTED]) for block in self._blocks)

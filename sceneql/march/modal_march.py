@@ -20,16 +20,19 @@ if TYPE_CHECKING:
     from sceneql.system import Stepper
 
 LOOKED_AT = (0.0, 0.0837, 0.2113, 0.3819, 0.5279, 0.6937, 0.8461, 1.0)
-"""Parts of the run at which stiffness must be the same, where values vary in time."""
+"""Instants, relative to the run, at which stiffness is compared where values vary in time: it must be the same."""
 COUPLED = 1e-6
-"""Damping between modes, relative to their own, from which on they are not apart."""
+"""Damping between modes, relative to their own, from which on modes count as coupled."""
 
 
 class ModalMarch(March):
-    """Moves each mode by itself, x = rest + sum of q s, without steps; loads in pieces of polynomials."""
+    """Integrates each mode by itself, x = rest + sum of q s, without steps, under piecewise polynomial loads."""
 
     def _engage(self, stepper: Stepper) -> None:
-        """Find the modes. Raises LimitRefused, at its line, for what is not the linear motion of masses."""
+        """Find the modes.
+
+        Raises LimitRefused, at its line, for a part that is not in linear motion about rest.
+        """
         system = self.system
         self._refuse()
         functions = addresses(None, None, *self.driver, jacobian(system), None, None, None)
@@ -62,7 +65,7 @@ class ModalMarch(March):
         self.prepared_text = self._told()
 
     def _refuse(self) -> None:
-        """Refuse what is no motion of masses by forces."""
+        """Raise LimitRefused for islands that are not masses moved by forces."""
         system, structure = self.system, self.system.structure
         if not system.masses:
             raise self._refusal(f"modes are those of masses, and '{system.ranges[0][2]}' has none")
@@ -76,11 +79,11 @@ class ModalMarch(March):
             raise self._refusal(f"modes are those of masses, and '{part}' has other numbers in its state", missing[0])
 
     def _others(self) -> list[int]:
-        """Entries on which nothing depends: what damping and loads take out."""
+        """Entries on which nothing depends: the tallies of energy."""
         return [] if self.system.pattern is None else self.system.pattern.tallies.tolist()
 
     def _known(self) -> Any:
-        """Entries that are places and velocities."""
+        """Entries that are positions or velocities."""
         positions = np.flatnonzero(self.system.partner >= 0)
         return np.concatenate([positions, self.system.partner[positions]])
 
@@ -88,7 +91,7 @@ class ModalMarch(March):
         return LimitRefused(message, self.system.origin(index).span, "let auto march it")
 
     def _project(self) -> None:
-        """The start and the loads as the modes have them."""
+        """Project the initial state and the loads onto the modes."""
         found, shapes, system = self._found, self._shapes, self.system
         weighed = found.mass @ shapes
         start = system.y
@@ -110,13 +113,13 @@ class ModalMarch(March):
         )
 
     def _loads(self, t: float) -> Floats:
-        """(m (1 + tallies),) the loads on the modes at rest, then those whose work each tally counts."""
+        """(m (1 + tallies),) the loads on the modes at rest, then, for each tally, those whose work it counts."""
         rate = self.rate(t, self._rest)
         forces: Floats = self._weighed.T @ rate[self._found.velocities]
         if not len(self._tallies):
             return forces
         m = len(forces)
-        if self._uncounted is not None:  # what no tally counts, as weight, is as a rule the same all the time
+        if self._uncounted is not None:  # loads outside all tallies, such as weight, are mostly constant
             way = np.cos(1.0 + np.arange(m))
             guess = self._uncounted - forces
             counted = self._power(t, way)
@@ -128,7 +131,7 @@ class ModalMarch(March):
         return np.concatenate([forces, *own])
 
     def _power(self, t: float, way: Floats) -> Floats:
-        """(tallies,) [W] of the loads at rest where modes move at speeds (m,): half the difference to the opposite."""
+        """(tallies,) power [W] of the loads at rest as modes move at speeds (m,): half the difference to -speeds."""
         ends = []
         for sign in (1.0, -1.0):
             y = self._rest.copy()
@@ -182,7 +185,7 @@ class ModalMarch(March):
         return y, False
 
     def _at(self, t: float) -> tuple[Floats, Floats, Floats]:
-        """q, q' and the tallies at an instant of the piece."""
+        """q, q' (m,) and the tallies at an instant of the piece."""
         assert self._piece is not None
         m = len(self._q)
         h = t - self._time
@@ -206,7 +209,7 @@ class ModalMarch(March):
         self._time = t
 
     def advance(self, t: float) -> tuple[Floats, Floats]:
-        """State and rate (n,): accelerations are those of the linear motion."""
+        """State and rate (n,) at an instant [s]; accelerations are those of the linear motion."""
         y, _ = self._reach(min(t, self.end))
         rate = self.rate(min(t, self.end), y)
         rate[self._found.velocities] = self._shapes @ self._pull

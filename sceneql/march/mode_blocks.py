@@ -1,4 +1,4 @@
-"""Modes of an island as small real systems, on each of which a solver's growth function is evaluated."""
+"""Modes of an island as small real systems, on which a solver's growth function is evaluated."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from sceneql.march.modes import Modes
 
 ERROR = 1e-6
-"""Part of a mode's eigenvalue below which a number is but the error of differences."""
+"""Numbers below this fraction of a mode's eigenvalue are errors of differences."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,7 +30,7 @@ class Block:
     jacobian: Floats
     partner: NDArray[int64]
     own: float = 0.0
-    """Allowed growth rate: twice the mode's own, which no method follows exactly."""
+    """Allowed growth rate: twice the mode's own growth rate, which no method follows exactly."""
 
 
 def alone(value: complex) -> Block:
@@ -46,11 +46,12 @@ def alone(value: complex) -> Block:
 
 
 def paired(march: March, modes: Modes) -> list[Block]:
-    """The modes for methods that advance positions by velocities, time scaled by the fastest.
+    """The modes as blocks for methods that advance positions by velocities, time scaled by the fastest.
 
-    Along a mode with v = x' and v' = K x + C v these are v' = k x + c v, k = <x, K x>/<x, x> and c = <v, C v>/<v, v> by
-    the masses, whose error is of second order in the mode's where forces have a potential: an oscillation has k < 0, a
-    charge that gyrates in a magnetic field an imaginary c without k. Modes of entries without velocities are scalar.
+    Along a mode with v = x' and v' = K x + C v the block is v' = k x + c v with the Rayleigh quotients k = <x, K x>/<x,
+    x> and c = <v, C v>/<v, v>, weighted by masses. Their error is of second order in the mode's error where forces have
+    a potential. An oscillation has k < 0; a charge that gyrates in a magnetic field has k = 0 and an imaginary c. Modes
+    of entries without velocities are scalar.
     """
     weights = _weights(march)
     return [_block(march, modes, k, weights) for k in range(len(modes.values))]
@@ -90,7 +91,7 @@ def _quotient(vector: NDArray[complex128], change: NDArray[complex128], weights:
 
 
 def _real(matrix: NDArray[complex128], partner: list[int]) -> Block:
-    """A complex system as a real one, with real and imaginary parts as unknowns if it has imaginary parts."""
+    """A complex system as a real one; the real and imaginary parts are the unknowns where the matrix is not real."""
     of = np.array(partner)
     values = np.linalg.eigvals(matrix)
     own = max(0.0, float(values.real.max()))
@@ -103,12 +104,12 @@ def _real(matrix: NDArray[complex128], partner: list[int]) -> Block:
 
 
 def _cleaned(number: complex, least: float) -> complex:
-    """The number without a real or imaginary part below ``least``, an error of differences."""
+    """The number with real or imaginary parts of at most ``least``, an error of differences, replaced by 0."""
     return complex(*(0.0 if abs(part) <= least else part for part in (number.real, number.imag)))
 
 
 def _weights(march: March) -> Floats:
-    """(n,) masses at the velocities' entries [kg]; 1 where there are none."""
+    """(n,) masses [kg] at entries of velocities, 0 for fixed ones; 1 at other entries."""
     weights = np.ones(len(march.system.y))
     for velocity_at, inverse_at, count in march.system.masses:
         inverse = np.repeat(march.floats[inverse_at : inverse_at + count], 3)
@@ -117,7 +118,7 @@ def _weights(march: March) -> Floats:
 
 
 def uses_pairs(solver: Any) -> bool:
-    """Whether a method treats positions and velocities apart."""
+    """Whether a method treats positions and velocities differently."""
     oscillator = np.array([[0.0, 1.0], [-1.0, 0.0]])
     with_pairs, without = (solver.growth(oscillator, np.array([k, -1]), 0.5) for k in (1, -1))
     return bool(abs(with_pairs - without) > 1e-9)

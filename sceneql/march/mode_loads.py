@@ -1,4 +1,4 @@
-"""Modes under loads that vary in time: q'' + 2 c q' + w^2 q = f(t), exactly where f is a polynomial in each piece."""
+"""Modes under varying loads: q'' + 2 c q' + w^2 q = f(t), solved exactly where f is a polynomial in each piece."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 PLACES = (0.0, 0.146446609406726, 0.5, 0.853553390593274, 1.0)
-"""Of a piece, where loads are looked at: Chebyshev's extreme places for polynomials of fourth degree."""
+"""Nodes of a piece, relative to its length: Chebyshev's extreme points for polynomials of fourth degree."""
 BETWEEN = (0.0573, 0.3017, 0.7219, 0.9411)
-"""Where polynomials through these are checked."""
+"""Points of a piece at which the interpolating polynomials are checked."""
 TERMS = len(PLACES)
 FIRST, SHORTEST = 1 / 16, 1e-7
-"""The first piece tried and the shortest, relative to what it is a part of and to the run."""
+"""Lengths of the first piece tried, relative to the run, and of the shortest, relative to the run."""
 SERIES = 18
-"""Terms of the series of the exponential of a matrix of norm 1."""
+"""Number of terms in the series of the exponential of a matrix of norm 1."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Modes:
-    """Modes of mass 1 kg m^2/m^2: decays c and squared frequencies w^2, both (m,) [1/s], [1/s^2]."""
+    """Modes of unit mass: decay rates c (m,) [1/s] and squared angular frequencies w^2 (m,) [1/s^2]."""
 
     decays: Floats
     squares: Floats
 
     def moved(self, q: Floats, speed: Floats, load: Floats, h: float) -> tuple[Floats, Floats, Floats]:
-        """q and q' (m,) after a time h [s], and integrals (m, terms) over it of q, of that integral and so on.
+        """q and q' (m,) after a time h [s], and repeated integrals (m, terms - 1) of q over that time.
 
         ``load`` (m, terms): f and its derivatives at the beginning. By the exponential of a matrix for each mode, in
         units of h (Van Loan 1978, IEEE Trans. Automat. Control 23, 395-404).
@@ -59,7 +59,7 @@ class Modes:
 
 
 def exponentials(matrices: Floats) -> Floats:
-    """(m, k, k) of matrices (m, k, k), by their series and squares (Moler & Van Loan 2003, SIAM Review 45, 3-49)."""
+    """Exponentials of matrices (m, k, k), by scaling and squaring (Moler & Van Loan 2003, SIAM Review 45, 3-49)."""
     found = np.empty_like(matrices)
     halvings = np.maximum(0, np.ceil(np.log2(np.abs(matrices).sum(axis=2).max(axis=1, initial=1.0)))).astype(int)
     for times in np.unique(halvings):
@@ -85,7 +85,7 @@ class Piece:
     """(k, terms) each load and its derivatives at the start, or (k, 1) where it is constant."""
 
     def at(self, time: float) -> Floats:
-        """(k, terms) likewise at an instant [s]."""
+        """(k, terms) the loads and their derivatives at an instant [s]."""
         found, h = np.zeros_like(self.loads), time - self.start
         terms = self.loads.shape[1]
         for k in range(terms):
@@ -99,9 +99,10 @@ class Piece:
 def next_piece(
     loads: Callable[[float], Floats], start: float, length: float, stops: BreakpointTable, end: float, allowed: float
 ) -> Piece | None:
-    """A piece that begins at an instant, at most ``length`` [s] long; None: loads are not smooth there.
+    """A piece that begins at ``start``, at most ``length`` [s] long; None: loads are not smooth there.
 
-    ``loads`` (k,) at a time [s]; ``allowed``: by how much polynomials may differ from these, relative to the largest.
+    ``loads(t)`` (k,) at a time [s]; ``allowed``: largest difference of polynomial and loads, relative to the largest
+    load.
     """
     stop = next_breakpoint(stops, start, end)
     h = min(length, stop - start)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sceneql.march.march import March
 
 DENSE = 400
-"""Entries of y up to which all modes are computed; above, the fastest alone."""
+"""Largest number of entries of y for which all modes are computed; above, only the fastest."""
 FASTEST, CLOSE = 24, 1e-4
 """Number of modes sought on a large island, and their residuals relative to the eigenvalue."""
 MANY, FEW, ROUGH = 20_000, 6, 1e-2
@@ -70,7 +70,7 @@ def modes_of(march: March) -> Modes | None:
 
 
 def jacobian(march: March) -> Floats:
-    """(n, n) derivative of the rate at the start by central differences."""
+    """(n, n) Jacobian of the rate at the start, by central differences."""
     y = march.system.y
     steps = DIFFERENCE * np.maximum(np.abs(y), _scale(y))
     columns = []
@@ -96,7 +96,7 @@ def product(march: March, vector: Floats) -> Floats:
 
 
 def active(matrix: Floats) -> NDArray[int64]:
-    """The entries on which others depend, without tallies of energy or positions under uniform gravity."""
+    """The entries on which other entries depend: not tallies of energy, nor positions under uniform gravity."""
     kept = np.arange(len(matrix))
     while True:
         used = np.any(matrix[np.ix_(kept, kept)] != 0.0, axis=0)

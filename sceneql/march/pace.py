@@ -1,4 +1,4 @@
-"""How fast a march comes on: told while it runs, and whether it can end at all."""
+"""Progress of a march: reports while it runs, and the judgment whether it can finish at all."""
 
 from __future__ import annotations
 
@@ -11,19 +11,20 @@ if TYPE_CHECKING:
     from sceneql.doing import Deed
 
 A_CALL = 0.3
-"""Seconds that a call of so many steps is to take."""
+"""Intended duration of a compiled call [s]."""
 MOST_STEPS = 1e11
-"""Most steps of a run, or of the rest of a way to the next instant: those of a single mass take half an hour."""
+"""Largest number of steps of a run, or of the rest up to the next instant: those of a single mass take half an hour."""
 LOOKS, FEWEST = 3, 10_000
-"""Looks in a row, and steps meanwhile, that must find so many: the first steps of a stiff start are as short."""
+"""Number of consecutive checks, and of steps meanwhile, that must predict too many steps: the first steps of a stiff
+start are as short."""
 YEARS, FEWER = 1e8, 2_000
-"""Where steps take long: seconds that all would take, from which on fewer of them are enough."""
+"""Predicted duration [s] from which on FEWER steps suffice, where steps take long."""
 GROWING = 1.5
-"""Factor from look to look by which steps grow that are on their way to be longer."""
+"""Factor from check to check by which steps grow that will soon be longer."""
 
 
 class Pace:
-    """The pace of a march on its way to an instant ``target`` [s], from a time [s] after so many steps."""
+    """The pace of a march towards an instant ``target`` [s]; ``t`` [s] and ``steps``: where it is now."""
 
     def __init__(self, deed: Deed, target: float, t: float, steps: int) -> None:
         self._deed, self._target = deed, target
@@ -33,20 +34,20 @@ class Pace:
 
     @property
     def until_look(self) -> int | None:
-        """Steps to the next look, where it is soon to be known whether the march leads anywhere; else None."""
+        """Number of steps to the next check, where it is soon to be known whether the march ends; else None."""
         return FEWEST if self._endless else None
 
     def at_once(self, t: float, steps: int, took: float) -> int:
-        """How many steps the next call may take, after one that came to a time [s] in so many steps and seconds.
+        """Number of steps of the next call, after a call that came to time t [s] in that many steps and seconds.
 
-        While the pace is not known, tell of that time.
+        While the pace is not known, the progress text gives that time.
         """
         if self._mean == 0.0:
             self._deed.what = f"solving, at {t:.6g} s"
         return max(1, int(steps * min(2.0, A_CALL / max(took, 1e-9))))
 
     def hopeless(self, t: float, steps: int) -> bool:
-        """Tell of the pace at a time [s] after so many steps; whether it leads nowhere."""
+        """Update the progress text at time t [s] and step count; returns whether the march is hopeless."""
         t0, before, at = self._last
         if steps == before:
             return False

@@ -1,4 +1,4 @@
-"""The fastest modes of an island at any moment of its run, by little more than a dozen evaluations of the rate."""
+"""Estimate of an island's fastest modes at any moment, by little more than a dozen evaluations of the rate."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
     """dy/dt (n,) at a time [s] and state."""
 
 SMALL = 12
-"""Entries of y up to which the whole Jacobian is found; above, the dimension of the Krylov space."""
+"""Largest number of entries of y for which the whole Jacobian is found; above, the dimension of the Krylov space."""
 MOVE = 1.5e-8
 """Relative size of differences: the root of the rounding unit."""
 LENGTHS = np.geomspace(0.1, 50.0, 400)
-"""Steps times a mode at which the stability of a method is tried."""
+"""Values of |step times eigenvalue| at which the stability of a method is evaluated."""
 
 
 def dominant(values: Complexes) -> complex:
-    """The eigenvalue of largest modulus, the upper one of a pair; 0 where there is none."""
+    """The eigenvalue of largest modulus, of a conjugate pair the upper one; 0 where there is none."""
     if not len(values):
         return 0j
-    found = complex(values[int(np.argmax(np.abs(values) + 1e-3 * np.abs(values.imag)))])  # of as fast ones, what swings
+    found = complex(values[int(np.argmax(np.abs(values) + 1e-3 * np.abs(values.imag)))])  # of equals, an oscillation
     return complex(found.real, abs(found.imag))
 
 
@@ -42,8 +42,8 @@ def dominant(values: Complexes) -> complex:
 def spectrum(rate_at: Rate, partner: Partners, t: float, y: Floats, negligible: float = 0.0) -> Complexes:
     """The outermost eigenvalues [1/s] of the rate's Jacobian at a state.
 
-    ``partner`` (n,): for a position entry of y the index of its velocity, else -1. Where all are below ``negligible``
-    [1/s], as a norm tells, there is none. Above SMALL entries by Arnoldi's iteration (Arnoldi 1951).
+    ``partner`` (n,): for a position entry of y the index of its velocity, else -1. Empty where a norm bounds all of
+    them below ``negligible`` [1/s]. Above SMALL entries by Arnoldi's iteration (Arnoldi 1951).
     """
     n = len(y)
     rate = rate_at(t, y)
@@ -54,7 +54,7 @@ def spectrum(rate_at: Rate, partner: Partners, t: float, y: Floats, negligible: 
 
 
 def _by_differences(rate_at: Rate, rate: Floats, t: float, y: Floats) -> Floats:
-    """The Jacobian (n, n)."""
+    """The Jacobian (n, n), by forward differences."""
     matrix = np.empty((len(y), len(y)))
     moved = y.copy()
     for k, value in enumerate(y.tolist()):
@@ -75,7 +75,7 @@ def _projected(rate_at: Rate, partner: Partners, rate: Floats, t: float, y: Floa
     size, largest = 0, 0.0
     for k in range(SMALL):
         product = (rate_at(t, y + units * basis[k]) - rate) / units
-        for _ in range(2):  # once leaves what rounding put back, which grows from vector to vector
+        for _ in range(2):  # twice: rounding errors of one pass would grow from vector to vector
             along = basis[: k + 1] @ product
             matrix[: k + 1, k] += along
             product -= along @ basis[: k + 1]
@@ -90,17 +90,14 @@ def _projected(rate_at: Rate, partner: Partners, rate: Floats, t: float, y: Floa
 
 @cache
 def _anywhere(n: int) -> Floats:
-    """A unit vector (n,) in no special direction."""
+    """A random unit vector (n,)."""
     found: Floats = np.random.Generator(np.random.Philox(1)).standard_normal(n)
     found /= np.linalg.norm(found)
     return found
 
 
 def _radius_at_most(matrix: Floats) -> float:
-    """A bound on the moduli of the eigenvalues: |A^4|^(1/4) in Frobenius' norm; NaN where it overflows.
-
-    The norm of A itself is far larger where positions and velocities differ in size.
-    """
+    """A bound on the moduli of a matrix's eigenvalues: |A^4|^(1/4) in the Frobenius norm; NaN where it overflows."""
     with np.errstate(over="ignore", invalid="ignore"):
         square = matrix @ matrix
         fourth = (square @ square).ravel()
@@ -108,16 +105,13 @@ def _radius_at_most(matrix: Floats) -> float:
 
 
 def units_of(rate_at: Rate, partner: Partners, t: float, y: Floats, scale: float) -> Floats:
-    """Units (n,) in which positions and velocities of stiff springs are of one size.
-
-    Without them the matrix is far from normal, and Ritz values of a small Krylov space are far from its eigenvalues.
-    """
+    """Units (n,) in which positions and velocities of stiff springs have the same magnitude."""
     units = np.ones(len(y))
     positions = np.flatnonzero(partner >= 0)
     if len(positions):
         velocities = partner[positions]
         moved = y.copy()
-        # Uneven moves: where all masses are moved alike, the springs between them do not pull.
+        # Random moves: a common translation would not stretch the springs between masses.
         moved[positions] += scale * np.random.Generator(np.random.Philox(2)).standard_normal(len(positions))
         pull = (rate_at(t, moved) - rate_at(t, y))[velocities] / scale
         square = float(np.sqrt(np.mean(pull * pull)))
@@ -126,9 +120,9 @@ def units_of(rate_at: Rate, partner: Partners, t: float, y: Floats, scale: float
 
 
 def boundary(coefficients: tuple[float, ...], direction: complex) -> float:
-    """Largest r with |R(s u)| <= 1 for s up to r, u the direction; R a polynomial, its coefficient of z^0 first.
+    """Largest r with |R(s u)| <= 1 for 0 <= s <= r in direction u.
 
-    The direction is rounded to a hundredth of a right angle; one of growth counts as that of an oscillation.
+    R: a polynomial, given by its coefficients from z^0 on.
     """
     along = math.atan2(abs(direction.imag), -direction.real) if direction.real < 0.0 else math.pi / 2
     return _boundary(coefficients, round(100 * along / (math.pi / 2)))
@@ -136,13 +130,13 @@ def boundary(coefficients: tuple[float, ...], direction: complex) -> float:
 
 @cache
 def least_boundary(coefficients: tuple[float, ...]) -> float:
-    """The least of `boundary`: that of decays, of oscillations or of what is midway."""
+    """The least of `boundary` over the directions of decays, of oscillations, and midway."""
     return min(_boundary(coefficients, k) for k in (0, 50, 100))
 
 
 @cache
 def _boundary(coefficients: tuple[float, ...], hundredths: int) -> float:
-    """`boundary` at so many hundredths of a right angle from the negative axis."""
+    """`boundary` in the direction at ``hundredths`` of a right angle from the negative real axis."""
     angle = math.pi * (1.0 - hundredths / 200.0)
     growth = np.abs(np.polyval(coefficients[::-1], LENGTHS * cmath.exp(1j * angle)))
     unstable = np.flatnonzero(growth > 1.0 + 1e-9)

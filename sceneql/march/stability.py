@@ -1,7 +1,7 @@
 """The largest stable step of a solver on an assembled island, with the part and line of the script that limits it.
 
-The rate is linearized at the start of the run, and a solver's growth factor is evaluated on each mode of the Jacobian
-as a small system (mode_blocks.py). A mode's own growth is the scene's and does not count as instability.
+The rate is linearized at the start of the run, and the solver's growth factor is evaluated on each mode of the Jacobian
+as a small system (mode_blocks.py). A mode's own growth belongs to the scene and does not count as instability.
 """
 
 from __future__ import annotations
@@ -26,17 +26,18 @@ if TYPE_CHECKING:
     from sceneql.quantities.span import Span
 
 WHOLE = 200
-"""Entries of y up to which methods that use pairs are tested on the whole Jacobian where modes are no oscillations."""
+"""Largest number of entries of y for which methods that use pairs are tested on the whole Jacobian, where modes are not
+pure oscillations."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stability:
-    """The stability of the step, known before the run."""
+    """The stability of a solver's step on an island, known before the run."""
 
     step: float
     """Largest stable step [s]; 0: none is; inf: any is."""
     growth: float
-    """Factor by which the worst mode grows in a step of the script's own length; 1 for adaptive methods."""
+    """Growth factor of the worst mode in a step of the script's own length; 1 for adaptive methods."""
     frequency: float
     """|lambda|/(2 pi) of the mode that sets the bound [1/s]."""
     part: str
@@ -76,7 +77,7 @@ def stability(march: March, solver: Solver) -> Stability:
 
 
 def _told(value: complex, frequency: float, part: str) -> str:
-    """A mode as a text: an oscillation by its frequency [Hz], what only decays or grows by its rate."""
+    """Description of a mode: the frequency [Hz] of an oscillation, the rate of a decay or growth."""
     if abs(value.imag) > NEUTRAL * abs(value.real):
         return f"a mode of '{part}' at {frequency:.4g} Hz"
     return f"a {'growth' if value.real > 0 else 'decay'} of '{part}' at {2 * math.pi * frequency:.4g}/s"
@@ -115,7 +116,7 @@ class _Reduced:
         return self.growth(block.jacobian, block.partner, step) * math.exp(-block.own * step)
 
     def bound(self) -> float:
-        """Largest stable scaled step; 0 below 100 LEAST, where rounding alone makes a step look stable."""
+        """Largest stable scaled step; 0 where it is below 100 LEAST, where rounding alone makes a step look stable."""
         sharp = self._bound(NEUTRAL)
         if sharp < 100 * LEAST or self._bound(NEUTRAL / 100) < 0.8 * sharp:
             return 0.0
@@ -138,13 +139,16 @@ class _Reduced:
 
 
 def _mixed(modes: Modes) -> bool:
-    """Whether relevant modes are damped, so that pairs couple them, and no mode grows by itself, hiding their bound."""
+    """Whether relevant modes are damped, so that pairs couple them, and none grows by itself and hides their bound."""
     rates = modes.values.real / modes.fastest
     return bool(rates.min() < -1e-3 and rates.max() < 1e-3)
 
 
 def _whole(march: March, solver: Solver, guess: float, own: float) -> float:
-    """The bound [s] by the whole Jacobian, starting from that of the modes; ``own`` [1/s]: the modes' own growth."""
+    """The largest stable step [s] by the whole Jacobian, searched from ``guess``.
+
+    ``own`` [1/s]: the modes' own growth.
+    """
     matrix, partner = jacobian(march), march.system.partner
 
     def stable(step: float) -> bool:

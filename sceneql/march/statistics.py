@@ -1,4 +1,4 @@
-"""What a march has cost."""
+"""The cost of a march."""
 
 from dataclasses import dataclass
 
@@ -15,6 +15,6 @@ class Statistics:
     evaluations: int = 0
     """Evaluations of the rate."""
     orderings: int = 0
-    """How many times linear systems were ordered anew, since pairs came near that had no place in the Jacobian."""
+    """How many times linear systems were ordered anew for pairs that had no place in the Jacobian yet."""
     seconds: float = 0.0
     """Run time of the compiled steps [s]."""

@@ -1,8 +1,8 @@
 """The switch between an explicit and a stiff method on an island: chosen at the start, reconsidered during the run.
 
 An explicit step is limited by stability, not by the tolerance, where its length times the fastest mode lies at the
-boundary of its stability region (Hairer & Wanner 1996, IV.2). Then a stiff method is tried, and kept as long as its
-steps replace more explicit ones than they cost. Costs are counts of steps and operations, never times of a clock.
+boundary of its stability region (Hairer & Wanner 1996, IV.2). Then a stiff method is tried, and kept as long as each of
+its steps replaces more explicit steps than it costs. Costs are counts of steps and operations, never times of a clock.
 """
 
 from __future__ import annotations
@@ -19,28 +19,30 @@ if TYPE_CHECKING:
     from sceneql.system import Stepper
 
 HELD = 0.5
-"""Part of the stability boundary from which on stability counts as limiting the step."""
+"""Fraction of the stability boundary from which on stability counts as limiting the step."""
 DECAYED = 0.05
-"""As HELD, for a decay, where a trial in vain would cost at most a fifth of what is left: below a tolerance of some
-1e-9 the rounding of what has decayed, which the fast mode amplifies in the error, keeps steps as short as that."""
+"""As HELD, for a decaying mode, where a trial in vain would cost at most a fifth of the remaining steps. At tolerances
+below some 1e-9 the rounding of what has decayed, amplified by the fast mode in the error estimate, keeps steps as short
+as that."""
 FIRST, LAST = 200, 6400
-"""Explicit steps before the first check, and at most between two checks."""
+"""Number of explicit steps before the first check, and largest number between two checks."""
 STAGES = 7
 """Stages of dopri5, in whose steps costs are measured."""
 LONG = 100
-"""Steps of radau for a decay and what comes after it, at a tolerance of 1e-4; they grow as its power -1/4."""
+"""Number of steps of radau for a decay and its aftermath at a tolerance of 1e-4; it grows as the tolerance to the power
+-1/4."""
 SWITCHING = 500
-"""Explicit steps that a change of the method costs a small island, which is laid out for it: what is left must be
-more."""
+"""Cost of a change of method in explicit steps, for a small island, which is laid out for it: more steps must
+remain."""
 KEPT = 2400
-"""Explicit steps that a stiff method which has become slow may cost it too many: a change and one back, and smaller
-errors, which are far below its tolerance where the explicit method's are not."""
+"""Excess cost, in explicit steps, that is allowed to a stiff method which has become slow: a change and one back, and
+its smaller errors, which are far below its tolerance where the explicit method's are not."""
 LARGE = 100
-"""Unknowns from which on it costs less, as a step takes longer."""
+"""Number of unknowns from which on these costs decrease, as a step takes longer."""
 TRIAL = 100
-"""Steps of a stiff method before a mean step length is measured, and again until it is first judged by that."""
+"""Number of steps of a stiff method before a mean step length is measured, and again until it is first judged."""
 PATIENCE = 1 / 3
-"""Part of its cost that a stiff step has to replace: vibrations excited at its start take some time to damp."""
+"""Fraction of its cost that a stiff step has to replace: vibrations excited at its start take some time to damp."""
 
 
 class Switch:
@@ -59,43 +61,44 @@ class Switch:
         self._since = 0.0
         self._warming = False
         self._lost = 0.0
-        """Explicit steps that the stiff method has cost too many."""
+        """Excess cost of the stiff method so far, in explicit steps."""
         self._proven = True
-        """Whether the stiff method has replaced as many as it should, or certainly would."""
+        """Whether the stiff method has replaced enough explicit steps, or certainly would."""
         self._part = 1.0
-        """The explicit method's steps, as a part of the longest stable one."""
+        """Length of the explicit method's steps, relative to the longest stable one."""
         self._in_vain = 0
-        """Successive trials of the stiff method in vain: each doubles the explicit steps before the next."""
+        """Number of consecutive trials of the stiff method in vain: each doubles the explicit steps before the next
+        trial."""
         self._possible = self.size <= LARGEST
 
     @property
     def cost(self) -> float:
-        """Explicit steps that one stiff step costs."""
+        """Cost of one stiff step, in explicit steps."""
         return step_cost(self.size) * STAGES / (len(self.explicit.method.stability) - 1)
 
     @property
     def switching(self) -> float:
-        """Explicit steps that a change of the method costs."""
+        """Cost of a change of method, in explicit steps."""
         return SWITCHING / (1.0 + self.size / LARGE)
 
     @property
     def _kept(self) -> float:
-        """Explicit steps that the stiff method may cost too many before it is left."""
+        """Excess cost, in explicit steps, at which the stiff method is left."""
         return KEPT / (1.0 + self.size / LARGE)
 
     @property
     def least_run(self) -> float:
-        """Steps in which the stiff method follows a decay and what comes after it."""
+        """Number of steps in which the stiff method follows a decay and its aftermath."""
         return LONG * math.sqrt(math.sqrt(1e-4 / self.stiff.control.tolerance))
 
     def _dies_out(self, values: Complexes) -> bool:
-        """Whether the fastest mode decays; one of a pair that decays and grows, as near a heavy body, does not."""
+        """Whether the fastest mode decays; False for a pair of a decaying and a growing mode, as near a heavy body."""
         fastest = dominant(values)
         return -fastest.real > max(abs(fastest.imag), 10.0 * float(values.real.max(initial=0.0)))
 
     @property
     def _often(self) -> int:
-        """Stiff steps between two checks: as many as cost LAST explicit ones."""
+        """Number of stiff steps between two checks: they cost as much as LAST explicit ones."""
         return max(TRIAL, int(LAST / self.cost))
 
     def start(self, y: Floats, step: float) -> None:
@@ -144,7 +147,7 @@ class Switch:
         if self._proven and self._lost < self._kept:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
-        # A trial in vain must not cost more than the steps before the next one; it may soon be stiff again.
+        # Wait in proportion to a trial's cost, twice as long after each in vain; it may soon be stiff again.
         self._between = FIRST
         self.until_look = max(FIRST, int(TRIAL * self.cost)) << self._in_vain
         self._in_vain = min(self._in_vain + 1, 5)
@@ -175,7 +178,7 @@ class Switch:
         return spectrum(self._rate_at, self._partner, t, y, negligible)
 
     def _steps(self, length: float, speed: complex) -> float:
-        """Stable explicit steps in a length [s]."""
+        """Number of largest stable explicit steps in a length [s], for a mode of eigenvalue ``speed`` [1/s]."""
         return length * abs(speed) / boundary(self.explicit.method.stability, speed) if speed else 0.0
 
     def _take(self, stepper: Stepper, t: float, why: str) -> None:

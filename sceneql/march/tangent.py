@@ -1,4 +1,4 @@
-"""The linear motion of an island's masses about their rest: M x'' = F(t) - K x - D x'."""
+"""Linearized motion of an island's masses about their rest: M x'' = F(t) - K x - D x'."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ if TYPE_CHECKING:
     from sceneql.march.march import March
 
 SAME = 1e-9
-"""Matrices that differ by less, relative to their largest entry, are the same."""
+"""Relative difference, to the largest entry, below which matrices count as the same."""
 MOVED, TELLS = 1e-4, 1e-5
-"""Part of the island's size by which it is moved to see which term is to blame, and what counts, relative to its own
-change."""
+"""Displacement, relative to the island's size, by which the term to blame is found, and the least difference that
+counts, relative to the term's own change."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Tangent:
-    """The matrices of the n entries that move freely, all sparse and symmetric (n, n)."""
+    """Mass, stiffness and damping matrices of the n entries that move freely, sparse and symmetric (n, n)."""
 
     positions: NDArray[int64]
-    """(n,) where these stand in y."""
+    """(n,) indices of their positions in y."""
     velocities: NDArray[int64]
-    """(n,) their velocities."""
+    """(n,) indices of their velocities in y."""
     axes: NDArray[int64]
-    """(n,) along x, y or z: 0, 1 or 2."""
+    """(n,) axis of each entry: 0, 1 or 2."""
     mass: Any
     """[kg]"""
     stiffness: Any
@@ -46,10 +46,10 @@ class Tangent:
 
 
 def tangent(march: March, functions: Any, rest: Floats, times: Floats) -> Tangent:
-    """That of a march's island about a state whose velocities are 0, which is the same at some times (k,) [s].
+    """The matrices of a march's island about a state of zero velocities, equal at the times (k,) [s].
 
-    ``functions``: the addresses that its Jacobian takes. Raises LimitRefused, at the line of the part to blame, where
-    forces have no slopes, where these change in time, and where they have no potential.
+    ``functions``: the addresses that the Jacobian takes. Raises LimitRefused, at the line of the part to blame, where
+    forces have no slopes, where the matrices change in time, and where forces have no potential.
     """
     from scipy.sparse import csr_array
 
@@ -73,12 +73,12 @@ def tangent(march: March, functions: Any, rest: Floats, times: Floats) -> Tangen
 
     found = matrices(float(times[0]))
     stiffness = abs(found[0])
-    # What is led: others feel its place, and it feels none.
+    # Led entries: others depend on their positions, they on none.
     led = (stiffness.sum(axis=0) > 0.0) & (stiffness.sum(axis=1) == 0.0)
     free = np.flatnonzero((inertia.diagonal() > 0.0) & ~led)
     found = [one[free][:, free] for one in found]
     sizes, changes = [_largest(one) for one in found], [0.0, 0.0]
-    for t in times[1:].tolist():  # one after the other: all at once would take the memory of as many
+    for t in times[1:].tolist():  # one at a time, to keep few matrices in memory
         for which, one in enumerate(matrices(t)):
             now = one[free][:, free]
             sizes[which] = max(sizes[which], _largest(now))
@@ -93,12 +93,12 @@ def tangent(march: March, functions: Any, rest: Floats, times: Floats) -> Tangen
 
 
 def _largest(matrix: Any) -> float:
-    """The largest size of an entry."""
+    """The largest magnitude of an entry; 0 of an empty matrix."""
     return float(np.abs(matrix.data).max(initial=0.0))
 
 
 def _inertia(system: System, floats: Floats) -> Any:
-    """(m, m) [kg] of all entries of masses, in their order; 0 where they are fixed."""
+    """(m, m) [kg] inertia of the entries of all masses, in their order; 0 where they are fixed."""
     from scipy.sparse import block_diag, diags_array
 
     parts, matrices = [], dict(system.inertia)
@@ -110,7 +110,10 @@ def _inertia(system: System, floats: Floats) -> Any:
 
 
 def _forces(system: System, floats: Floats) -> Any:
-    """(m, m) that turns rows of the Jacobian into those of forces: where inertia is a matrix, they are."""
+    """(m, m) matrix that converts the Jacobian's rows from accelerations to forces.
+
+    Rows of consistent masses are forces.
+    """
     from scipy.sparse import block_diag, eye_array
 
     matrices = dict(system.inertia)
@@ -124,7 +127,7 @@ def _forces(system: System, floats: Floats) -> Any:
 
 
 def _slopes(march: March, functions: Any, rest: Floats, t: float) -> Any:
-    """(n, n) the island's Jacobian."""
+    """(n, n) sparse Jacobian of the island at rest."""
     from scipy.sparse import coo_array
 
     pattern = march.system.pattern
@@ -137,7 +140,7 @@ def _slopes(march: March, functions: Any, rest: Floats, t: float) -> Any:
 
 
 def _refused(march: March, rest: Floats, times: Floats, message: str) -> LimitRefused:
-    """The refusal, at the first term whose changes by two motions differ in time, or are not symmetric."""
+    """The refusal, naming the first term whose response to two motions differs in time or is not symmetric."""
     system = march.system
     random = np.random.Generator(np.random.Philox(3))
     moving = np.flatnonzero(system.partner >= 0)
@@ -165,7 +168,7 @@ def _refused(march: March, rest: Floats, times: Floats, message: str) -> LimitRe
 
 
 def _of_terms(march: March, t: float, y: Floats) -> Floats:
-    """(terms, n) what each adds to the rate."""
+    """(terms, n) the part of each term in the rate."""
     system = march.system
     ints = system.ints.copy()
     count = len(system.terms)

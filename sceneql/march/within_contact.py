@@ -1,4 +1,4 @@
-"""What is read within a step at whose end contacts have changed the state."""
+"""Reading of states within a step at whose end contacts have changed the state."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sceneql.island.system import System
 
 JUMP = 4.0
-"""Change of a velocity in a step, in parts of what its rate makes of it, from which the body was struck."""
+"""Change of a velocity in a step, relative to its rate times the step, from which on the body was struck."""
 
 
 class WithinContact:
@@ -29,7 +29,8 @@ class WithinContact:
             if one[layout.COUNT] % 3 == 0
         ]
         self._momenta: NDArray[bool_] | None = None
-        """Entries of rigid bodies that contacts change at once: neither places nor rotations; None without such."""
+        """(n,) bool: entries of rigid bodies that contacts change at once, neither positions nor rotations; None
+        without such."""
         if system.structure.free and system.structure.local:
             self._momenta = system.partner < 0
             at = int(system.ints[layout.FREES_AT])
@@ -38,10 +39,11 @@ class WithinContact:
                 self._momenta[first : first + count] = False
 
     def read(self, part: float, h: float, step: tuple[Any, ...], changed: NDArray[bool_], y: Floats) -> None:
-        """Write the entries that contacts have changed of the state at a ``part`` of a step, whose ends ``step`` has.
+        """Write into ``y``, the state at fraction ``part`` of a step, the entries that contacts have changed.
 
-        In mode `local` a rigid body moves over the whole step by the velocity that it has after an impact (Moreau
-        1988): half way between the velocities before and after it there would be hardly any energy.
+        ``step``: the arrays of the step's ends. In mode `local` a rigid body moves over the whole step with the
+        velocity that it has after an impact (Moreau 1988): half way between the velocities before and after it there
+        would be hardly any energy.
         """
         import numpy as np
 

@@ -1,4 +1,4 @@
-"""A tree of boxes around triangles. Imports numpy and numba: to be imported by the method that runs."""
+"""A bounding volume hierarchy of triangles. Imports numpy and numba: to be imported by the method that runs."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
 
 
 class BoxTree(NamedTuple):
-    """Triangles by leaf, and nodes in depth-first order."""
+    """A hierarchy of axis-aligned boxes, its nodes in depth-first order, its triangles ordered by leaf."""
 
     order: NDArray[int64]
-    """(m,)"""
+    """(m,) numbers of the triangles, those of a leaf side by side."""
     boxes: Floats
-    """(b, 6) low and high corners."""
+    """(b, 6) low and high corner of each node."""
     links: NDArray[int64]
-    """(b, 3) next box outside this one in depth-first order, first triangle, number of triangles (0: no leaf)."""
+    """(b, 3) by node: next node outside its subtree, first place in ``order``, number of triangles (0: no leaf)."""
 
 
 def box_tree(corners: Floats, leaf: int) -> BoxTree:
-    """The tree of triangles (m, 3, 3), at most ``leaf`` to a leaf. Raises ValueError where there are none."""
+    """The tree of triangles (m, 3, 3), at most ``leaf`` in a leaf. Raises ValueError without triangles."""
     count = len(corners)
     if not count:
         raise ValueError("its mesh has no triangle of any area")

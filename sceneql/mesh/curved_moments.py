@@ -1,8 +1,9 @@
-"""Moments of implicit solids, by marching cubes and the room between its triangles and the surface. Imports numpy.
+"""Volume, center and second moments of implicit solids, of high order where they are smooth. Imports numpy.
 
-As the curved volume of measures.py, but with the distance from triangles to the surface found by its roots at places of
-a quadrature rule, and with second moments. Over a triangle the solid ends at p + s d: p on it, d the mean of the
-vertices' normals at p, s a root of the field. Neighbors share d along their edge, so their parts fit without gaps.
+The moments of marching cubes' polyhedron, plus those of the gaps between its triangles and the surface. Over a triangle
+the gap consists of the points p + t d, t from 0 to s: p on the triangle, d the interpolated vertex normal at p, s the
+root of the field along d, found at the nodes of a quadrature rule. Neighboring triangles have the same d along their
+common edge, so gaps of neighbors fit together.
 """
 
 from __future__ import annotations
@@ -28,38 +29,37 @@ FIRST, SECOND = 0.470142064105115, 0.101286507323456
 PLACES = np.array(
     [[1 / 3, 1 / 3, 1 / 3]] + [np.roll([1.0 - 2.0 * c, c, c], k) for c in (FIRST, SECOND) for k in range(3)]
 )
-"""(7, 3) places on a triangle by their shares of its corners: those of the rule of degree 5 (Radon 1948)."""
+"""(7, 3) barycentric coordinates of the nodes of the rule of degree 5 on a triangle (Radon 1948)."""
 WEIGHTS = np.repeat([0.225, 0.132394152788506, 0.125939180544827], [1, 3, 3])
 SQUARES = (PLACES**2).sum(axis=1)
 LOWER = np.concatenate([[0.0], np.linalg.solve([[3.0, 3.0], 3.0 * SQUARES[[1, 4]]], [1.0, 0.5]).repeat(3)])
-"""(7,) weights of Radon's rule, and of one of degree 2 without the middle."""
+"""(7,) weights at Radon's nodes of a rule of degree 2, which leaves out the center; WEIGHTS are Radon's."""
 DEPTHS, SHARES = (0.5 + 0.5 * np.polynomial.legendre.leggauss(3)[0]), 0.5 * np.polynomial.legendre.leggauss(3)[1]
-"""Gauss's rule on 0..1, of degree 5: exact between triangle and surface for all second moments."""
+"""Nodes and weights of Gauss's rule of degree 5 on 0..1, exact along d for all second moments."""
 SPANS = (1 / 16, 1 / 4, 1.0, 2.0)
-"""How far the surface is looked for, in cells."""
+"""Distances [cells] from a triangle within which the surface is searched, one after the other."""
 MOST = 60
-"""Steps of a search for a root."""
+"""Most steps of a root search."""
 NEAR = 1e-12
-"""Length of its last step, in cells."""
+"""Length [cells] of a root search's last step."""
 ROUGH, ROUGH_PART = 3e-4, 3e-5
-"""Difference of the two rules for the distance to the surface, in parts of a triangle's size, from which on it is
-quartered, and from which on a part of one is: as where an edge of the solid runs across it."""
+"""Difference between the two rules' mean distance to the surface, relative to a triangle's size, above which a triangle
+and a part of one are quartered: the case where an edge of the solid crosses it."""
 TURN = 0.8
-"""Cosine of 37 degrees: a triangle with gradients at two corners that turn by more is quartered, too."""
+"""Cosine of 37 degrees: a triangle with a larger angle between the gradients at two corners is quartered, too."""
 DEEPEST = 3
 """Most quarterings of a triangle."""
 MANY, FEW = 1024, 0.125
-"""Most triangles of a CHUNK that are quartered, and the share of them that may be besides, as along edges: of more the
-cells are too coarse, and none is."""
+"""A CHUNK in which more than MANY triangles plus the share FEW would be quartered has cells too coarse: none is."""
 CHUNK = 1 << 13
-"""Triangles at a time."""
+"""Triangles of one batch."""
 
 
 def curved_moments(tape: Tape, low: Corner, high: Corner, cell: float) -> VolumeMoments | None:
-    """Of the solid {tape < 0} cut at the box low..high, by cells of a size [m]; None where they meet no surface.
+    """Moments of the solid {tape < 0} clipped at the box low..high, from cells with side ``cell`` [m].
 
-    Of order 4 or more where it is smooth; edges and corners are met by triangles of an eighth of a cell at last.
-    Raises ValueError as ``polygonise``.
+    None where no cell meets the surface. The error is of order 4 or more in ``cell`` where the surface is smooth; along
+    edges and corners of the solid triangles are quartered to an eighth of a cell. Raises ValueError as ``polygonise``.
     """
     found = polygonise(tape, low, high, cell)
     if not len(found.triangles):
@@ -78,9 +78,9 @@ def curved_moments(tape: Tape, low: Corner, high: Corner, cell: float) -> Volume
 
 
 def _normals(vertices: Floats, triangles: Ints) -> Floats:
-    """(v, 3) unit normals at the vertices: means of those of the triangles by their areas, also on edges of the solid.
+    """(v, 3) unit vertex normals: the area-weighted means of the adjacent triangles' normals.
 
-    Unlike the gradients there they do not jump from one vertex to the next.
+    Unlike gradients of the field, they do not jump from one vertex to the next across an edge of the solid.
     """
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     across = np.cross(b - a, c - a)
@@ -92,13 +92,14 @@ def _normals(vertices: Floats, triangles: Ints) -> Floats:
 
 
 def _beyond(solid: Tape, middle: Floats, cell: float, corners: Floats, ways: Floats, turned: Bools) -> Floats:
-    """(10,) integrals as of ``polyhedra.integrals``, from triangles to the surface: corners and ways each (t, 3, 3).
+    """(10,) integrals, as of ``polyhedra.integrals``, over the gaps between triangles and the surface.
 
-    Quartered are triangles of ``turned`` (t,) and those over which the distance is far from a polynomial.
+    ``corners`` (t, 3, 3) [m] relative to ``middle``, ``ways`` (t, 3, 3) vertex normals there. Triangles of ``turned``
+    (t,), and those over which the two quadrature rules disagree, are quartered.
     """
     whole = np.zeros(10)
     for level in range(DEEPEST + 1):
-        # By einsum, since BLAS may add in another order with other numbers of threads.
+        # By einsum: the order of BLAS's sums may depend on the number of threads.
         feet, normals = (np.einsum("qk,tkj->tqj", PLACES, some) for some in (corners, ways))
         lengths = _roots(solid, (feet + middle).reshape(-1, 3), normals.reshape(-1, 3), cell).reshape(feet.shape[:2])
         first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
@@ -116,9 +117,9 @@ def _beyond(solid: Tape, middle: Floats, cell: float, corners: Floats, ways: Flo
 
 
 def _between(first: Floats, second: Floats, turns: Floats, feet: Floats, normals: Floats, lengths: Floats) -> Floats:
-    """(10,) integrals over p + s d, 0 <= s <= lengths (t, 7), of feet p and normals d (t, 7, 3).
+    """(10,) integrals over the points p + s d, 0 <= s <= ``lengths`` (t, 7); ``feet`` p and ``normals`` d (t, 7, 3).
 
-    ``first``, ``second`` (t, 3): how p changes along two sides of the triangle; ``turns`` (t, 2, 3): how d does.
+    ``first``, ``second`` (t, 3): derivatives of p along two sides of the triangle; ``turns`` (t, 2, 3): those of d.
     """
     whole = np.zeros(10)
     for depth, share in zip(DEPTHS, SHARES, strict=True):
@@ -136,17 +137,17 @@ def _between(first: Floats, second: Floats, turns: Floats, feet: Floats, normals
 
 
 def _quartered(corners: Floats) -> Floats:
-    """(4 t, 3, 3) of triangles (t, 3, 3), by the middles of their sides."""
+    """(4 t, 3, 3) the triangles (t, 3, 3), each cut into four by the midpoints of its sides."""
     a, b, c = corners.transpose(1, 0, 2)
     ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
     return np.concatenate([np.stack(part, axis=1) for part in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
 
 
 def _roots(solid: Tape, feet: Floats, normals: Floats, cell: float) -> Floats:
-    """(n,) the s next to 0, in sign and size, where the field at feet + s normals, each (n, 3), changes its sign.
+    """(n,) signed distances s from ``feet`` (n, 3) along ``normals`` (n, 3) at which the field changes its sign.
 
-    0 where it does not within the longest of SPANS. False position, as Illinois has it (Dowell & Jarratt 1971), with a
-    bisection now and then.
+    The search goes outward from a foot inside the solid, inward from one outside, over SPANS; s is 0 where the sign
+    does not change. By false position in the Illinois variant (Dowell & Jarratt 1971), each sixth step a bisection.
     """
     found = np.zeros(len(feet))
     here = field_values(solid, feet)

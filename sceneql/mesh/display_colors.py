@@ -1,4 +1,4 @@
-"""Light as the bytes of pictures and meshes."""
+"""Linear light encoded as the bytes of pictures and meshes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def levels(linear: Floats, *, curved: bool = True) -> NDArray[uint8]:
-    """8 bits of linear light, ``curved`` by the sRGB curve (IEC 61966-2-1) or as it is; what is no number is black."""
+    """Levels 0..255 of linear light, by the sRGB curve (IEC 61966-2-1) if ``curved``, else linear; NaN becomes 0."""
     light = np.clip(np.nan_to_num(linear), 0.0, 1.0)
     if curved:
         light = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)

@@ -11,16 +11,16 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 NEIGHBORS = 24
-"""Triangles, by their middles, among which the one nearest to a point is searched."""
+"""Number of triangles, those with the nearest centers, among which the one nearest to a point is searched."""
 FLAT = 1e-20
 """Squared sine of an angle of a triangle below which it counts as degenerate."""
 BATCH = 4096
 
 
 def hausdorff(a: tuple[Floats, Ints], b: tuple[Floats, Ints], most: int = 50_000) -> float:
-    """Hausdorff distance [m] of two meshes (vertices, triangles), from vertices and middles of triangles of both.
+    """Hausdorff distance [m] of two meshes (vertices, triangles), measured at vertices and triangles' centers of both.
 
-    At most ``most`` points of each, evenly chosen, are measured. Infinite if only one of them has triangles.
+    At most ``most`` points of each mesh, at equal steps of their order. Infinite if only one mesh has triangles.
     """
     if not len(a[1]) or not len(b[1]):
         return 0.0 if len(a[1]) == len(b[1]) else np.inf
@@ -35,7 +35,7 @@ def _farthest(mesh: tuple[Floats, Ints], other: tuple[Floats, Ints], most: int) 
 
 
 def distances(points: Floats, vertices: Floats, triangles: Ints) -> Floats:
-    """(n,) [m]: from points (n, 3) to the nearest of the NEIGHBORS triangles whose middles are nearest."""
+    """(n,) distances [m] of points (n, 3) from the nearest of those NEIGHBORS triangles whose centers are nearest."""
     corners = vertices[triangles]
     tree = cKDTree(corners.mean(axis=1))
     out = np.empty(len(points))
@@ -48,13 +48,13 @@ def distances(points: Floats, vertices: Floats, triangles: Ints) -> Floats:
 
 
 def to_triangles(points: Floats, corners: Floats) -> Floats:
-    """(...) [m]: from points (..., 3) to triangles (..., 3, 3): to the plane over their inside, else to edges."""
+    """(...) distances [m] of points (..., 3) from triangles (..., 3, 3)."""
     a, b, c = (corners[..., k, :] for k in range(3))
     normal = np.cross(b - a, c - a)
     square = np.einsum("...i,...i", normal, normal)
     height = np.einsum("...i,...i", points - a, normal)
     size = np.maximum(np.einsum("...i,...i", b - a, b - a), np.einsum("...i,...i", c - a, c - a))
-    inside = square > FLAT * size * size  # a degenerate triangle has its edges alone
+    inside = square > FLAT * size * size  # to a degenerate triangle only the distance from its edges is used
     square = np.where(inside, square, 1.0)
     foot = points - (height / square)[..., None] * normal
     least = np.full(height.shape, np.inf)

@@ -9,9 +9,9 @@ if TYPE_CHECKING:
 
 
 def faceted(shape: Implicit, cell: float, smooth: bool) -> Mesh:
-    """The mesh of an implicit shape by marching cubes with cells [m]; with normals if ``smooth``.
+    """The mesh of an implicit shape by marching cubes with cells of side ``cell`` [m]; with normals if ``smooth``.
 
-    The vertices of a painted shape have its colors. Raises ValueError as ``polygonise``.
+    A shape with paint gives its vertices colors. Raises ValueError as ``polygonise``.
     """
     from sceneql.field.tape.tape_solid import paint_values
     from sceneql.frame import Mesh

@@ -18,9 +18,9 @@ class Hausdorff(NamedTuple):
     """Largest distances [m] found at samples: lower bounds of the true ones."""
 
     to_surface: float
-    """From points on the triangles to the surface."""
+    """Largest distance from points on the triangles to the surface."""
     to_mesh: float
-    """From points on the surface to the triangles."""
+    """Largest distance from points on the surface to the triangles."""
 
     @property
     def distance(self) -> float:
@@ -29,11 +29,12 @@ class Hausdorff(NamedTuple):
 
 
 def hausdorff(polygons: Polygons, tape: Tape, samples: int = 20_000) -> Hausdorff:
-    """Distances between a mesh and the surface {tape = 0}, at points spread over the mesh by area.
+    """Distances between a mesh and the surface {tape = 0}, at sample points spread over the mesh by area.
 
-    Each point is moved along the gradient to the surface, by its distance or, at edges, a little more; the distance of
-    the foot, a point of the surface, from the mesh is measured in turn. Surface far from all triangles is not found so.
-    The points are the same in each call. Raises ValueError for a mesh without triangles.
+    Newton's method moves each point along the gradient to a foot on the surface; the length of the move is the point's
+    distance, at edges of the solid a little more. The distance of the foot from the mesh is measured in turn. Surface
+    far from all triangles is not found. Samples are the same in each call. Raises ValueError for a mesh without
+    triangles.
     """
     import numpy as np
 
@@ -49,7 +50,7 @@ def hausdorff(polygons: Polygons, tape: Tape, samples: int = 20_000) -> Hausdorf
 
 
 def _spread(corners: Floats, samples: int) -> Floats:
-    """(n, 3) points on triangles (m, 3, 3): at equal steps of area, spread in each by a low-discrepancy sequence."""
+    """(n, 3) points on triangles (m, 3, 3), at equal steps of cumulative area; in each by a quasirandom sequence."""
     import numpy as np
 
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -66,7 +67,7 @@ def _spread(corners: Floats, samples: int) -> Floats:
 
 
 def _feet(tape: Tape, points: Floats) -> tuple[Floats, Ints]:
-    """Points moved to the surface by Newton's method along the gradient, and the rows that converged."""
+    """Points (n, 3) moved to the surface by Newton's method along the gradient, and (n,) whether each converged."""
     import numpy as np
 
     feet = points.copy()

@@ -1,4 +1,4 @@
-"""Holes of triangle meshes: their edges, how many they are, and triangles that close them. Imports numpy."""
+"""Holes of triangle meshes: boundary edges, closed boundary loops, and triangles that cap them. Imports numpy."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 
 FLAT = 1e-9
-"""Height over length of a triangle in a slit, whose sides lie on one another: it is left out."""
+"""Twice the area over the squared longest side of a cap's triangle, below which it is left out: the hole is a slit."""
 
 
 def welded(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
-    """The mesh with coincident vertices merged, ordered by x, y and z, and triangles without area left out."""
+    """The mesh with coincident vertices merged and sorted by x, y and z, and without triangles of zero area."""
     order = np.lexsort(vertices.T[::-1])
     there = vertices[order]
     new = np.concatenate([[True], (there[1:] != there[:-1]).any(axis=1)]) if len(there) else np.zeros(0, dtype=bool)
@@ -30,9 +30,10 @@ def welded(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
 
 
 def open_sides(triangles: Ints) -> NDArray[int64]:
-    """(k, 2) sides of triangles (m, 3), first and second vertex, that no other triangle has the other way round.
+    """(k, 2) directed sides (first vertex, second vertex) of triangles (m, 3) that no opposite side cancels.
 
-    Of sides that several have as often as they differ in number: what is left has as many begin at a vertex as end.
+    A side with p uses in one direction and q in the other appears |p - q| times. At each vertex as many of these sides
+    begin as end.
     """
     sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).astype(np.int64)
     low, high = sides.min(axis=1), sides.max(axis=1)
@@ -45,7 +46,7 @@ def open_sides(triangles: Ints) -> NDArray[int64]:
 
 
 def loops(sides: NDArray[int64]) -> list[list[int]]:
-    """The vertices of closed paths along sides (k, 2), each side in one of them, that meet no vertex twice."""
+    """Vertices of closed loops into which directed sides (k, 2) are decomposed; no loop visits a vertex twice."""
     after: dict[int, list[int]] = {}
     for first, second in sides.tolist():
         after.setdefault(first, []).append(second)
@@ -70,9 +71,9 @@ def loops(sides: NDArray[int64]) -> list[list[int]]:
 
 
 def caps(vertices: Floats, sides: NDArray[int64]) -> tuple[Floats, Ints]:
-    """Vertices with the middles of the holes behind them, and triangles from each middle to its hole's sides (k, 2).
+    """(vertices with the holes' centers appended, cap triangles from each center to its hole's sides).
 
-    A slit, as where a vertex lies within an edge, gets none.
+    ``sides`` (k, 2): the open sides. A slit, as where a vertex lies on an edge, gets no triangles.
     """
     middles, lids = [vertices], []
     for k, loop in enumerate(loops(sides)):
@@ -87,7 +88,7 @@ def caps(vertices: Floats, sides: NDArray[int64]) -> tuple[Floats, Ints]:
 
 
 def described(vertices: Floats, triangles: Ints) -> str:
-    """How many holes a mesh has and how many edges they have, as ``3 holes of 117 edges``; empty of a closed one."""
+    """Text on a mesh's number of holes and of their edges, as ``3 holes of 117 edges``; empty for a closed mesh."""
     _, triangles = welded(vertices, triangles)
     sides = open_sides(triangles)
     if not len(sides):

@@ -8,11 +8,11 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 BEND = 0.5
-"""Cosine of 60 degrees: the most by which vertex normals may turn from their triangle's normal."""
+"""Cosine of 60 degrees, the largest angle between a triangle's normal and its vertex normals on a smooth surface."""
 
 
 def volume(vertices: Floats, triangles: Ints) -> float:
-    """Volume [m^3] enclosed by triangles that are counterclockwise from outside: a sum of tetrahedra."""
+    """Volume [m^3] of a closed mesh, triangles counterclockwise seen from outside: the sum of signed tetrahedra."""
     import numpy as np
 
     middle = vertices.mean(axis=0) if len(vertices) else np.zeros(3)
@@ -21,10 +21,10 @@ def volume(vertices: Floats, triangles: Ints) -> float:
 
 
 def curved_volume(vertices: Floats, triangles: Ints, normals: Floats) -> float:
-    """Volume [m^3] in a surface by points and unit normals (v, 3) of a mesh on it: of fourth order where it is smooth.
+    """Volume [m^3] inside a surface, from a mesh with vertices and unit normals (v, 3) on it; of fourth order.
 
-    Over each triangle the surface is taken as quadratic along the edges, with the mean of the slopes by the normals at
-    their ends; a triangle whose normals turn by more than BEND, as at an edge of the solid, counts as flat.
+    Over each triangle the surface is a quadratic whose slope changes along each edge by as much as the normals at its
+    ends say. A triangle with a vertex normal beyond BEND, as at an edge of the solid, counts as flat.
     """
     import numpy as np
 
@@ -36,7 +36,7 @@ def curved_volume(vertices: Floats, triangles: Ints, normals: Floats) -> float:
     facing = np.einsum("tkj,tj->tk", slopes, face)
     smooth = (facing > BEND).all(axis=1)
     corners, slopes, facing = corners[smooth], slopes[smooth], facing[smooth]
-    # At a share t of an edge the surface lies q t (1 - t) over it; over the triangle, q times the product of two
+    # At parameter t of an edge the surface lies q t (1 - t) above it; above the triangle, q times the product of two
     # barycentric coordinates, whose mean is 1/12.
     rise = np.zeros(len(corners))
     for k in range(3):
@@ -56,7 +56,7 @@ def area(vertices: Floats, triangles: Ints) -> float:
 
 
 def edge_counts(triangles: Ints) -> tuple[int, int, int]:
-    """(edges, edges of only one triangle, edges of more than two)."""
+    """Numbers of edges: (all, those of only one triangle, those of more than two)."""
     import numpy as np
 
     if not len(triangles):
@@ -89,13 +89,13 @@ def euler_by_piece(triangles: Ints) -> list[int]:
     count, piece = connected_components(
         coo_array((np.ones(len(ends[0])), ends), shape=(len(used),) * 2), directed=False
     )
-    # Three sides a triangle, each of two: V - E + F is V - F / 2.
+    # A triangle has three edges, an edge two triangles: V - E + F = V - F / 2.
     found: list[int] = sorted((np.bincount(piece) - np.bincount(piece[a], minlength=count) // 2).tolist())
     return found
 
 
 def pieces(triangles: Ints) -> int:
-    """Number of connected components: the least vertex number of each is propagated until nothing changes."""
+    """Number of connected components, by propagating the least vertex number of each until nothing changes."""
     import numpy as np
 
     if not len(triangles):

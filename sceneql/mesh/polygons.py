@@ -1,4 +1,4 @@
-"""The mesh that polygonization returns."""
+"""The triangle mesh that polygonization returns."""
 
 from __future__ import annotations
 

@@ -26,11 +26,9 @@ def format_of(path: Path) -> str:
 
 
 def write(path: Path, polygons: Polygons, colors: Floats | None = None) -> None:
-    """Write a mesh in meters, y up, with its normals where the format has any and the mesh has all.
+    """Write a mesh in meters, y up; with normals if the format has them and all vertices have one.
 
-    ``colors`` (n, 3) are linear RGB of the vertices, which an STL file has not.
-
-    Raises Unsuitable and OSError.
+    ``colors`` (n, 3): linear RGB of the vertices, left out of an STL file. Raises Unsuitable and OSError.
     """
     import trimesh
 

@@ -72,7 +72,7 @@ def numpy_arithmetic() -> SimpleNamespace:
 
 
 def _power(a: Any, b: Any) -> Any:
-    """numpy's own takes the square root where b is 0.5, which of minus infinity is NaN and not the power."""
+    """a to the power b; numpy's power takes the square root for b = 0.5, which gives NaN for minus infinity."""
     import numpy as np
 
     return np.where((a == -np.inf) & (b == 0.5), np.inf, np.power(a, b))
@@ -89,7 +89,7 @@ def _random(*counters: Any) -> Any:
 
 
 def _noise(formula: Callable[..., Any], *args: Any) -> Any:
-    """A formula of quantities.noise at numbers and of an order, the last argument."""
+    """A noise of quantities.noise on arrays; the last argument is the order of its derivative."""
     import numpy as np
 
     *numbers, order = args
@@ -168,7 +168,10 @@ def _reduce(name: str, value: Any, shape: Shape) -> Any:
 
 
 def _below(expr: Expr) -> tuple[Expr, ...]:
-    """The children to evaluate: of keyframes with constant times and values, which are a table, the argument alone."""
+    """The children to evaluate.
+
+    Of keyframes with constant times and values, which become a table, only the argument.
+    """
     return (expr.argument,) if isinstance(expr, Keys) and known_table(expr) is not None else children(expr)
 
 

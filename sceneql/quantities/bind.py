@@ -1,4 +1,4 @@
-"""Binding: names become what they mean, types are inferred, dimensions checked, constants folded."""
+"""Binding of a parsed tree: names are resolved, types inferred, dimensions checked, constants folded."""
 
 from __future__ import annotations
 
@@ -9,35 +9,33 @@ from typing import Any
 
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note
 from sceneql.quantities.dimension import PLAIN
-from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Name, Number, Symbol, Type, Vector, each_once
 from sceneql.quantities.instead import time_meant
 from sceneql.quantities.literal import quantity
-from sceneql.quantities.operations import CONSTANTS, OPERATIONS
+from sceneql.quantities.operations import CONSTANTS, FLOATS, OPERATIONS
 from sceneql.quantities.rules import MismatchError, listed, shape_text
+from sceneql.quantities.scalars import apply
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import parse_unit, stands_below
 
 Lookup = Callable[[tuple[str, ...], Span], Expr | Diagnostic | None]
-"""What a dotted name means: its typed tree, or the Diagnostic that says why it means nothing.
+"""Resolves a dotted name: its typed tree, or the Diagnostic that says why it has no meaning.
 
-The Diagnostic is reported only where the name is none of the constants `pi`, `tau`, `e` either, and no unit below the
-bar behind a number (``1500 /s``). None: the name is one of these constants, or its error has been reported already.
-"""
+The Diagnostic is reported only if the name is none of the constants `pi`, `tau`, `e`, nor a unit below the bar behind a
+number (``1500 /s``). None: the name is one of these constants, or its error has been reported already."""
 
 SECONDS = "the time is `t` here, a plain number of seconds, as all numbers here: write `sin(3*t)`, not `sin(3 /s*time)`"
-"""The help for a time in a formula over plain numbers."""
+"""The help of the error for `time` with a unit in a formula over plain numbers."""
 TURNS, FEWEST_DEGREES = ("sin", "cos", "tan"), 15.0
-"""Operations on an angle, and what numbers alone are whole multiples of that most likely mean degrees."""
+"""Functions of an angle; a bare number that is a multiple of FEWEST_DEGREES is most likely meant in degrees."""
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
-"""Names of a vector's components by their number."""
+"""Names of a vector's components, by the number of components."""
 
 
 def bind(expr: Expr, lookup: Lookup, found: Diagnostics) -> Expr | None:
-    """The typed tree of a parsed one, or None after reporting all that is wrong (`dimension-mismatch`, ...).
-
-    Trees that ``lookup`` gives are kept as they are, so that shared subtrees stay shared.
-    """
+    """The typed tree of a parsed tree; None after reporting all errors (`dimension-mismatch`, ...)."""
+    if isinstance(expr, Number):
+        return expr
     bound: dict[int, Expr | None] = {}
     for node in each_once(expr):
         bound[id(node)] = _bound(node, bound, lookup, found)
@@ -78,7 +76,7 @@ def _meaning(parts: tuple[str, ...], span: Span, lookup: Lookup) -> Expr | Diagn
 
 
 def component(whole: Expr, of: str, name: str, span: Span) -> Expr | Diagnostic:
-    """A component of the vector called ``of``, or why it has none of this name (`no-component`)."""
+    """A component of the vector named ``of``; a Diagnostic (`no-component`) if it has no component of this name."""
     shape = whole.type.shape
     names = COMPONENTS.get(shape[-1] or 0, "") if shape else ""
     if len(name) != 1 or name not in names:
@@ -90,17 +88,17 @@ def component(whole: Expr, of: str, name: str, span: Span) -> Expr | Diagnostic:
 
 
 def fold(expr: Call) -> Expr:
-    """The literal of an operation on constants alone, where its value is finite; else the call itself."""
+    """The literal result of an operation on constants, where it is finite; else the call itself."""
     operation = OPERATIONS[expr.op]
     if operation.series or None in expr.type.shape or not all(_constant(arg) for arg in expr.args):
         return expr
-    value = evaluate(expr, {})
-    bare = not operation.angle and all(n.bare for n in each_once(expr) if isinstance(n, Number))
+    value = apply(FLOATS, expr, [_value(arg) for arg in expr.args])
+    bare = not operation.angle and all(_bare(arg) for arg in expr.args)
     return _literal(value, expr, bare) if _finite(value) else expr
 
 
 def _doubt_degrees(call: Call, found: Diagnostics) -> None:
-    """Warn of a sine of a number alone that is most likely one of degrees."""
+    """Warn of a sine, cosine or tangent of a bare number that is most likely meant in degrees."""
     (angle,) = call.args
     if isinstance(angle, Number) and angle.bare and angle.span is not None:
         size = abs(angle.value)
@@ -116,6 +114,21 @@ def _constant(expr: Expr) -> bool:
     return isinstance(expr, Number)
 
 
+def _value(constant: Expr) -> Any:
+    """The float of a number, the nested tuples of a vector of numbers."""
+    if isinstance(constant, Vector):
+        return tuple(_value(item) for item in constant.items)
+    assert isinstance(constant, Number)
+    return constant.value
+
+
+def _bare(constant: Expr) -> bool:
+    """Whether no number has a unit."""
+    if isinstance(constant, Vector):
+        return all(_bare(item) for item in constant.items)
+    return isinstance(constant, Number) and constant.bare
+
+
 def _finite(value: Any) -> bool:
     return all(_finite(item) for item in value) if isinstance(value, tuple) else math.isfinite(value)
 
@@ -129,7 +142,7 @@ def _literal(value: Any, expr: Expr, bare: bool) -> Expr:
 
 
 def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, lookup: Lookup, found: Diagnostics) -> None:
-    """Point at the arguments as they stand in this expression, not at a define that they name."""
+    """Report a type error at the arguments as written in this expression, not at a define that they name."""
     second = None if error.second is None else parts[error.second].span
     notes = [] if second is None else [Note("the other is here", second)]
     written = "" if node.span is None else node.span.text
@@ -141,7 +154,7 @@ def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, lookup: L
 
 
 def _better(node: Expr, parts: tuple[Expr, ...], error: MismatchError) -> str | None:
-    """What to write in place of the whole, with one argument as it should be."""
+    """The help text with the whole expression as it should be written, one argument corrected."""
     if error.better is None:
         return None
     index, text = error.better

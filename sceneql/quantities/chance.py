@@ -1,4 +1,4 @@
-"""Counter-based chance: the number depends on its counters alone, never on what was drawn before."""
+"""Counter-based random numbers: each depends on its counters alone, not on earlier draws."""
 
 from __future__ import annotations
 

@@ -130,7 +130,7 @@ def mean(o: Any, items: Any) -> Any:
 
 
 def count(o: Any, items: Any) -> Any:
-    """How many there are."""
+    """The number of items."""
     return float(len(items))
 
 

@@ -1,4 +1,4 @@
-"""Keyframes: the value of a curve through keys, over floats, arrays or expressions alike."""
+"""Keyframe curves: interpolation through keys, over floats, arrays or expressions alike."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ class Table:
     values: tuple[Components, ...]
     """(k, c) components."""
     slopes_in: tuple[Components, ...]
-    """(k, c) slope that a cubic arrives with at each key."""
+    """(k, c) slopes before each key, for cubic curves."""
     slopes_out: tuple[Components, ...]
-    """(k, c) slope that it leaves with."""
+    """(k, c) slopes after each key."""
     curve: int
     """Index into CURVES."""
     cycle: float
     """Period [s]; 0 for none."""
     rotation: bool
-    """Components are a quaternion: spherical interpolation."""
+    """Whether the components are a quaternion, which is interpolated spherically."""
 
 
 def table_of(o: Any, keys: Keys, number: Callable[[Expr], float], components: Callable[[Expr], Components]) -> Table:
@@ -87,7 +87,11 @@ def _chords(o: Any, times: tuple[float, ...], values: tuple[Components, ...], cl
 def interpolate(
     o: Any, table: Table, t: Any, find: Callable[[Any, tuple[float, ...]], int] | None = None
 ) -> Components:
-    """Components at ``t`` over an arithmetic ``o``; ``find``: gives the last key not after t, where that is known."""
+    """The components of the curve at ``t``, over an arithmetic ``o``.
+
+    ``find(t, times)`` returns the index of the last key not after t, where it can be computed; else all pieces are
+    selected by `where`.
+    """
     times, last = table.times, len(table.times) - 1
     if table.cycle > 0.0:
         t = o.add(times[0], o.mod(o.sub(t, times[0]), table.cycle))

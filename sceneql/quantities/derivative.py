@@ -32,7 +32,7 @@ __all__ = ["components", "differentiate", "simplify"]
 
 
 class _Unknown:
-    """Stands for a list whose length is not known."""
+    """Placeholder for a list of unknown length."""
 
 
 Meaning = Callable[[Link], Any]
@@ -51,7 +51,7 @@ def components(expr: Expr, meaning: Meaning | None = None) -> tuple[Expr, ...]:
 
 
 def _taken_apart(expr: Expr, meaning: Meaning | None = None, linked: dict[Link, Any] | None = None) -> Any:
-    """Nested tuples of scalar trees; ``linked``: those of links that are known."""
+    """Split an expression into nested tuples of scalar trees; ``linked`` caches those of links."""
     values: dict[int, Any] = {}
     linked = {} if linked is None else linked
     for node in each_once(expr):

@@ -13,15 +13,16 @@ class Dimension:
 
     exponents: tuple[Fraction, ...]
     kind: str = field(default="", compare=False)
-    """What a plain number is in words: `an angle`, `a percentage`, what a define was whose unit a textbook formula
-    drops; else empty. It stays in sums and choices; products, quotients, powers and functions drop it."""
+    """The kind of a plain number in words: `an angle`, `a percentage`, or the former dimension of a define whose unit a
+    formula in plain numbers drops; else empty. Sums and choices keep it; products, quotients, powers and functions drop
+    it."""
 
     def __mul__(self, other: Dimension) -> Dimension:
         pairs = zip(self.exponents, other.exponents, strict=True)
         return Dimension(tuple(a + b if a and b else a or b for a, b in pairs))  # a sum of fractions takes long
 
     def __truediv__(self, other: Dimension) -> Dimension:
-        return Dimension(tuple(a - b for a, b in zip(self.exponents, other.exponents, strict=True)))
+        return Dimension(tuple(a - b if b else a for a, b in zip(self.exponents, other.exponents, strict=True)))
 
     def __pow__(self, power: Fraction | int) -> Dimension:
         return Dimension(tuple(a * power for a in self.exponents))
@@ -70,9 +71,10 @@ MOMENTUM = MASS * VELOCITY
 
 
 def common(dimensions: Iterable[Dimension | None]) -> Dimension | None:
-    """What a sum or a list of quantities is that all have one dimension (None: any, as the literal 0).
+    """The dimension of a sum or list of quantities, which all have one dimension (None: any, as the literal 0).
 
-    An angle or a percentage and a plain number are an angle or a percentage; other kinds are kept if all agree.
+    An angle and a plain number give an angle, a percentage and a plain number a percentage; another kind is kept if all
+    agree on it.
     """
     known = [dimension for dimension in dimensions if dimension is not None]
     if not known:
@@ -96,6 +98,9 @@ def suits(given: Dimension | None, wanted: Dimension | None) -> bool:
 
 
 def comparable(given: Dimension | None, measured: Dimension | None) -> bool:
-    """Whether a quantity may be compared with a measured one; of plain numbers some are angles, and none says so."""
+    """Whether a quantity may be compared with a measured one.
+
+    Any two plain numbers may, as angles are not marked as such.
+    """
     both_plain = given is not None and measured is not None and given.plain and measured.plain
     return both_plain or suits(given, measured)

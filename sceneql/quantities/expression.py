@@ -1,4 +1,7 @@
-"""The typed expression tree: what every value of a script becomes. Frozen nodes; spans take no part in equality."""
+"""The typed expression tree that every value of a script becomes.
+
+Nodes are frozen; spans do not count in equality.
+"""
 
 from __future__ import annotations
 
@@ -61,14 +64,14 @@ class Link:
     type: Type = SCALAR
     span: Span | None = field(default=None, compare=False)
     computed: bool = field(default=False, compare=False)
-    """Whether the part works it out from its state, and has it nowhere there."""
+    """Whether the part computes the output from its state, where it is not stored."""
 
 
 class Shared:
-    """A node with nodes below it, of which one may stand at many places: a ``define`` that is used twice is one tree.
+    """A node with children, which may be shared: a ``define`` that is used twice is one subtree.
 
-    So a script of n lines has trees of some n nodes that written out would have 2^n. Two trees are compared, and the
-    hash of one is made, in time linear in their distinct nodes, without recursion.
+    So a script of n lines has trees of about n nodes that would have 2^n if written out. Comparison and hashing take
+    time linear in the number of distinct nodes, without recursion.
     """
 
     __slots__ = ("_hash",)
@@ -198,9 +201,9 @@ def holders(test: Callable[[Expr], bool], *roots: Expr) -> set[int]:
 def rebuilt(
     expr: Expr, make: Callable[[Expr, Expr], Expr], below: Callable[[Expr], tuple[Expr, ...]] = children
 ) -> Expr:
-    """The tree with each distinct node replaced once, from the leaves up, so that what is shared stays shared.
+    """The tree with each distinct node replaced once, from the leaves up; shared subtrees stay shared.
 
-    ``make`` gets a node, and the node with what has become of its children. ``below``: the children to descend to.
+    ``make(old, new)`` gets a node, and the node with its replaced children. ``below``: the children to descend to.
     """
     made: dict[int, Expr] = {}
     for node in each_once(expr, below=below):
@@ -209,10 +212,7 @@ def rebuilt(
 
 
 def recursive(step: Callable[[Expr], Generator[Expr, Any, Any]], expr: Expr) -> Any:
-    """What a recursive function of trees gives, called once for each distinct node, to any depth.
-
-    The function is written as a generator: ``value = yield child`` is its call for a child, ``return`` its result.
-    """
+    """The result of a recursive function on trees, called once for each distinct node, to any depth."""
     known: dict[int, tuple[Expr, Any]] = {}  # with the nodes themselves, so that no other gets the id of one
     stack = [(expr, step(expr))]
     value: Any = None
@@ -234,7 +234,7 @@ def recursive(step: Callable[[Expr], Generator[Expr, Any, Any]], expr: Expr) -> 
 
 
 def _with_children(node: Expr, made: Mapping[int, Expr]) -> Expr:
-    """A node with the children that ``made`` has by the ids of its own; the node itself where none differs."""
+    """A node with its children replaced by those in ``made`` (by id); the node itself where none differs."""
     if all(made.get(id(child), child) is child for child in children(node)):
         return node
 
@@ -253,7 +253,7 @@ def _with_children(node: Expr, made: Mapping[int, Expr]) -> Expr:
 
 
 def _own(node: Expr) -> Any:
-    """What a node says beside its children."""
+    """The attributes of a node besides its children, for comparison."""
     match node:
         case Call(op=op, args=args, type=of):
             return Call, op, len(args), of

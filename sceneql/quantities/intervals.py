@@ -1,4 +1,4 @@
-"""Between which numbers an expression lies whose symbols lie in ranges: by interval arithmetic, never too narrow."""
+"""Interval arithmetic: bounds on an expression whose symbols lie in given ranges, never too narrow."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ANY: Range = (-math.inf, math.inf)
 
 
 def range_of(expr: Expr, known: Mapping[str, Range]) -> Range:
-    """The least and the largest that a scalar expression may be; infinite where its operations are not told here."""
+    """Lower and upper bound of a scalar expression; infinite where it has operations that are not covered here."""
     return _range(expr, known, {})
 
 

@@ -1,4 +1,4 @@
-"""Keyframes whose times and values are constant, as tables of numbers."""
+"""Tables of numbers for keyframes whose times and values are constant."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def keys_table(keys: Keys) -> Table:
 
 
 _TABLES: dict[tuple[int, int, str, int], tuple[Keys, Table | None]] = {}
-"""By the id of the keys, which are kept with the table so that no other object gets their id."""
+"""Cache by the id of the keys, which are stored with the table so that no other object gets their id."""
 _MOST_TABLES = 10_000
 
 

@@ -1,4 +1,4 @@
-"""Numbers with units: the literals of expressions, and the scalars that are nothing but numbers and one unit."""
+"""Parsing of numbers with units: literals of expressions, and scalars that consist of numbers and one unit."""
 
 from __future__ import annotations
 
@@ -25,13 +25,14 @@ _ITEMS = re.compile(rf"(?:{_ITEM.pattern})+")
 _THOUSANDS = re.compile(r"(?<![\d,.])([1-9]\d{0,2}(?:,\d{3})+)(?![\d,])")
 _DECIMAL = re.compile(r"(?<![\d,])(\d+),(?=\d+(?![\d,]))")
 EXACT = 40
-"""Digits up to which a literal is converted exactly and rounded once: 1.7 mm is the double nearest to 0.0017."""
+"""Largest number of digits of a literal that is converted exactly and rounded once: 1.7 mm is the double nearest to
+0.0017."""
 
 
 def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[Unit | None, int]:
-    """The unit behind a number that ends at ``at`` (None: there is no unit), and where the unit ends.
+    """The unit behind a number that ends at ``at`` (None: there is none), and where the unit ends.
 
-    A name, ``%`` or ``1/name`` there must be a unit, and so must ``/name`` where ``below`` says so. Raises ScriptError.
+    A name, ``%`` or ``1/name`` there must be a unit; ``/name`` too, if ``below`` is set. Raises ScriptError.
     """
     start = _skip(text, at)
     word = _WORD.match(text, start)
@@ -112,7 +113,10 @@ def whole_value(text: str, span: Span) -> Expr | None:
 
 
 def vector_meant(text: str) -> str | None:
-    """The vector meant by numbers between commas or with a unit each: ``1 2 3 m`` for ``1 m, 2 m, 3 m``, if any."""
+    """The vector most likely meant by numbers with commas or with a unit each: ``1 2 3 m`` for ``1 m, 2 m, 3 m``.
+
+    None where the text has no such form.
+    """
     items: list[tuple[str, str]] = []
     at = 0
     while at < len(text) <= EXACT * 3:

@@ -1,8 +1,8 @@
 """Gradient noise (Perlin 2002, Improving noise): smooth, zero at whole numbers, with its derivatives of every order.
 
-Around every point with whole coordinates the noise is a linear function whose gradient is chosen by chance, faded from
-one to the next by 6 f^5 - 15 f^4 + 10 f^3, whose first and second derivatives vanish at both ends. ``m`` is what an
-arithmetic does of its own: ``floor``, ``where``, and ``word``, a whole number modulo 2^32.
+Each lattice point (whole coordinates) has a linear function with a random gradient. Between lattice points these are
+blended by the weight 6 f^5 - 15 f^4 + 10 f^3, whose first and second derivatives vanish at both ends. The arithmetic
+``m`` provides ``floor``, ``where``, and ``word`` (a whole number modulo 2^32).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from sceneql.quantities.chance import philox, unit
 FADE = (0.0, 0.0, 0.0, 10.0, -15.0, 6.0, 0.0)
 """Coefficients of the fade by powers of f."""
 BY_X, BY_Y, BY_Z = 1.0, 8.0, 64.0
-"""What a derivative along an axis adds to the order; at most 7 along each."""
+"""The order of a mixed derivative is the sum of these, one for each derivative along the axis; at most 7 along each."""
 MOST_ORDER = 512
 
 
@@ -39,7 +39,7 @@ def noise_space(x: float, y: float, z: float, order: float) -> float:
 
 
 def line(m: Any, x: Any, order: int) -> Any:
-    """The derivative of an order of noise in one dimension: its slopes at whole numbers are evenly from -2 to 2."""
+    """The derivative of given order of noise in one dimension; slopes at whole numbers are uniform in -2..2."""
     below = m.floor(x)
     (_, near), (_, far) = _weights(x - below, order)
     first, second = (4.0 * unit(*philox(m.word(below + k), m.word(0.0), m.word(0.0))) - 2.0 for k in (0.0, 1.0))
@@ -64,14 +64,14 @@ def space(m: Any, x: Any, y: Any, z: Any, order: int) -> Any:
 
 
 def _sloped(where: Any, chosen: Any, x: Any, y: Any, z: Any) -> Any:
-    """The product with one of Perlin's gradients, which point to the twelve edges of a cube (four are there twice)."""
+    """The scalar product with one of Perlin's gradients: towards the twelve edges of a cube, four of them twice."""
     first = where(chosen < 8, x, y)
     second = where(chosen < 4, y, where((chosen == 12) | (chosen == 14), x, z))
     return where(chosen & 1, -first, first) + where(chosen & 2, -second, second)
 
 
 def _weights(f: Any, order: int) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
-    """Of the corners at f = 0 and f = 1 the derivatives of the weight, and of the weight times the way from there."""
+    """Derivatives, for the corners at f = 0 and f = 1, of the weight w and of w times the offset from the corner."""
     fade, faded = f * 0.0, f * 0.0  # of the fade s(f), and of f s(f)
     for power in range(6, order - 1, -1):
         steep = float(math.perm(power, order))

@@ -1,8 +1,8 @@
-"""THE ONE TABLE of operations: what an expression may do, for every evaluator, checker and printer.
+"""The one table of operations of expressions, used by every evaluator, checker and printer.
 
-A *primitive* has a function on floats, one of numpy, and (where it has one) its partial derivatives. A *composite*
-has a formula over primitives instead, from which every evaluator and its derivative follow. A *reduction* takes the
-first axis of its one argument away.
+A *primitive* has a function on floats, one of numpy, and (where it has one) its partial derivatives. A *composite* is
+defined by a formula over primitives, from which every evaluator and its derivative follow. A *reduction* removes the
+first axis of its one argument.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from sceneql.quantities import chance, composites, noise, partials, real, rules
 from sceneql.quantities.expression import Expr, Type
 
 MANY = 10_000
-"""Most arguments of an operation that takes any number of them: an expression has no room for more."""
+"""Limit on the number of arguments of a variadic operation: an expression has no room for more."""
 
 CONSTANTS = {"pi": math.pi, "tau": math.tau, "e": math.e}
-"""Names with a value in every expression; a define of the same name goes before them."""
+"""Named constants of every expression; a define of the same name takes precedence."""
 
 
 @dataclass(frozen=True, slots=True)
 class Operation:
     """One operation.
 
-    ``rule`` gives the result's type from typed arguments or raises rules.MismatchError. ``partials(o, *args)`` gives
-    the partial derivatives in any arithmetic ``o``. ``formula(o, *args)``, of a reduction ``formula(o, items)``, is
-    what a composite means. ``vector_args`` says which arguments of a composite are vectors; a vector is a tuple of its
-    components there. ``numpy`` names numpy's function. ``series``: asks for values over time. ``reduces``: with one
-    argument it is a reduction. ``infix``: written as a sign, not called by its name. ``angle``: gives radians.
-    ``part_of``: the function whose formula has it, which a script calls instead.
+    ``rule`` returns the result's type from typed arguments or raises rules.MismatchError. ``partials(o, *args)``
+    returns the partial derivatives in any arithmetic ``o``. ``formula(o, *args)``, for a reduction ``formula(o,
+    items)``, defines a composite. ``vector_args`` flags the arguments of a composite that are vectors, passed as tuples
+    of components. ``numpy`` names numpy's function. ``series``: whether it needs values over time. ``reduces``: with
+    one argument it is a reduction. ``infix``: written as a sign, not called by its name. ``angle``: whether it returns
+    radians. ``part_of``: the function whose formula uses it, and which a script calls instead.
     """
 
     name: str

@@ -1,8 +1,4 @@
-"""Text to unbound tree, by precedence climbing (Pratt 1973). Our own: a script's text is never run as Python.
-
-From loose to tight: comparisons (which do not chain), ``+ -``, ``* /``, sign, ``^`` or ``**`` (to the right), then
-names, calls, brackets and numbers with their units.
-"""
+"""Parser of expressions, by precedence climbing (Pratt 1973): text to unbound tree. A text is never run as Python."""
 
 from __future__ import annotations
 
@@ -18,7 +14,7 @@ from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
 
 LONGEST, DEEPEST = 10_000, 100
-"""Most characters of one expression (each node takes at least one), and the deepest tree."""
+"""Limits on the number of characters of one expression (each node takes at least one), and on the depth of its tree."""
 
 BINARY = {
     "<": (10, "lt"), "<=": (10, "le"), ">": (10, "gt"), ">=": (10, "ge"), "==": (10, "eq"),
@@ -59,7 +55,7 @@ class _Parser:
         self._read(0)
 
     def whole(self) -> Expr:
-        """The text from end to end."""
+        """Parse the whole text. Raises ScriptError."""
         if self.kind == "end":
             raise self._fail("syntax", "an expression is missing here")
         expr = self._expression(0)
@@ -255,7 +251,7 @@ class _Parser:
         return self._fail("syntax", "two values stand side by side", help=help)
 
     def _unit_behind(self, expr: Expr) -> str | None:
-        """The text meant by ``0.2*time m/s``: the unit behind the product is that of the number before it."""
+        """The text most likely meant by ``0.2*time m/s``, whose unit belongs to the number before the product."""
         number = expr.args[0] if isinstance(expr, Call) and expr.op in ("mul", "div") else None
         if self.kind != "name" or self.token not in UNITS or not isinstance(number, Number) or not number.bare:
             return None

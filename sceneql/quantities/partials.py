@@ -126,7 +126,7 @@ def tanh(o: Any, a: Any) -> Partials:
 
 
 def exp(o: Any, a: Any) -> Partials:
-    """Itself."""
+    """exp(a)."""
     return (o.exp(a),)
 
 
@@ -151,10 +151,10 @@ def flat(o: Any, *args: Any) -> Partials:
 
 
 def noise_line(o: Any, x: Any, order: Any) -> Partials:
-    """Itself, of the next order; by the order, which is part of the form, nothing."""
+    """The noise of the next order; 0 for the order, which is part of the form."""
     return o.noise_line(x, o.add(order, BY_X)), 0.0
 
 
 def noise_space(o: Any, x: Any, y: Any, z: Any, order: Any) -> Partials:
-    """Itself, of the next order along an axis; by the order, which is part of the form, nothing."""
+    """The noise of the next order along each axis; 0 for the order, which is part of the form."""
     return *(o.noise_space(x, y, z, o.add(order, by)) for by in (BY_X, BY_Y, BY_Z)), 0.0

@@ -1,4 +1,4 @@
-"""Trees as text that parses to the same tree again, and dimensions in words."""
+"""Printing of trees as text that parses to the same tree again, and of dimensions in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Operations on floats as IEEE 754 and numpy have them: nothing raises, a pole is an infinity, a bad argument NaN."""
+"""Operations on floats with the results of IEEE 754 and numpy: poles give infinity, bad arguments NaN.
+
+Nothing raises.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ def power(a: float, b: float) -> float:
 
 
 def _within(function: Callable[[float], float]) -> Callable[[float], float]:
-    """NaN outside of the function's domain."""
+    """The function, extended by NaN outside its domain."""
 
     def quiet(x: float) -> float:
         try:

@@ -18,7 +18,7 @@ Args = tuple[Expr, ...]
 Rule = Callable[[Args], Type]
 LARGEST_POWER = 100
 MOST_AXES, MOST_NUMBERS = 6, 1_000_000
-"""Of lists in an expression: defines that hold one another twice would double them with each line."""
+"""Limits on lists in an expression: with defines that hold one another twice, lists would double with each line."""
 
 
 class MismatchError(Exception):
@@ -105,7 +105,7 @@ def _plain(args: Args, indices: tuple[int, ...], name: str) -> None:
 
 
 def alike(sentence: str, *, result_plain: bool = False) -> Rule:
-    """All arguments of one dimension, which the result has too unless it is plain."""
+    """Rule of an operation on arguments of one dimension, which the result has too unless it is plain."""
 
     def rule(args: Args) -> Type:
         dimension = common_dimension(args, tuple(range(len(args))), sentence)
@@ -115,7 +115,7 @@ def alike(sentence: str, *, result_plain: bool = False) -> Rule:
 
 
 def plain(name: str) -> Rule:
-    """Plain numbers to a plain number."""
+    """Rule of a function of plain numbers whose result is plain."""
 
     def rule(args: Args) -> Type:
         _plain(args, tuple(range(len(args))), name)
@@ -125,7 +125,7 @@ def plain(name: str) -> Rule:
 
 
 def some_alike(name: str, same: tuple[int, ...], others: tuple[int, ...], *, result_plain: bool = False) -> Rule:
-    """The arguments ``same`` of one dimension, the ``others`` plain."""
+    """Rule of an operation whose arguments ``same`` have one dimension, and whose ``others`` are plain."""
     sentence = f"{name} needs quantities of one kind, not {{a}} and {{b}}"
 
     def rule(args: Args) -> Type:
@@ -137,13 +137,13 @@ def some_alike(name: str, same: tuple[int, ...], others: tuple[int, ...], *, res
 
 
 def multiplied(args: Args) -> Type:
-    """Product."""
+    """Type of a product."""
     a, b = args[0].type.dimension, args[1].type.dimension
     return _limited(Type(_shape(args), None if a is None or b is None else a * b))
 
 
 def divided(args: Args) -> Type:
-    """Quotient."""
+    """Type of a quotient."""
     a, b = args[0].type.dimension, args[1].type.dimension
     return _limited(Type(_shape(args), None if a is None or b is None else a / b))
 
@@ -159,13 +159,13 @@ def signed(args: Args) -> Type:
 
 
 def rooted(args: Args) -> Type:
-    """Square root."""
+    """Type of a square root."""
     dimension = args[0].type.dimension
     return _limited(Type(args[0].type.shape, None if dimension is None else dimension ** Fraction(1, 2)))
 
 
 def raised(args: Args) -> Type:
-    """Power; a base with a dimension needs a constant exponent that is a simple fraction."""
+    """Type of a power; a base with a dimension needs a constant exponent that is a simple fraction."""
     base, exponent = args
     shape = _shape(args)
     _plain(args, (1,), "an exponent")
@@ -185,7 +185,8 @@ def raised(args: Args) -> Type:
 
 def _limited(result: Type) -> Type:
     exponents = () if result.dimension is None else result.dimension.exponents
-    if any(abs(e) > 1000 or e.denominator > 1000 for e in exponents):
+    # By whole numbers: to compare fractions takes ten times as long.
+    if any(e.denominator > 1000 or abs(e.numerator) > 1000 * e.denominator for e in exponents):
         raise MismatchError("dimension-mismatch", "the dimension of this has absurdly large exponents", 0)
     return result
 
@@ -225,7 +226,10 @@ def picked(args: Args) -> Type:
 
 
 def vectors(name: str, sizes: tuple[int | None, ...], result: tuple[int, ...], dimension: Rule) -> Rule:
-    """Arguments with last axes of these sizes (0: any, alike for all; None: scalars), whose outer axes broadcast."""
+    """Rule of an operation on vectors: sizes of the arguments' last axes; outer axes broadcast.
+
+    A size of 0: any, the same for all such arguments; None: a scalar. ``result``: shape of the result's last axes.
+    """
 
     def rule(args: Args) -> Type:
         outer: list[Shape] = []
@@ -248,7 +252,7 @@ def vectors(name: str, sizes: tuple[int | None, ...], result: tuple[int, ...], d
 
 
 def normalized(args: Args) -> Type:
-    """A vector of any dimension and size to a plain one."""
+    """Type of a normalized vector: plain, of any size."""
     shape = args[0].type.shape
     if not shape or shape[-1] is None:
         raise MismatchError("shape-mismatch", f"normalize needs a vector, not {shape_text(shape)}", 0)

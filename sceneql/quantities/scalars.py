@@ -65,7 +65,7 @@ def item_of(call: Call, count: int) -> int:
 
 
 def apply(o: Any, call: Call, args: list[Any]) -> Any:
-    """An operation over an arithmetic ``o``, on scalars of ``o`` or nested tuples of them."""
+    """Apply an operation over an arithmetic ``o`` to scalars of ``o`` or nested tuples of them."""
     operation = OPERATIONS[call.op]
     if operation.series:
         raise TypeError(f"'{call.op}' needs a quantity over time")

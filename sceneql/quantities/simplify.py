@@ -1,7 +1,4 @@
-"""The arithmetic of scalar expressions: operations make trees, with constants folded and 0 and 1 dropped.
-
-Results have plain types: trees are simplified as numbers in SI, after dimensions have been checked.
-"""
+"""The arithmetic of scalar expressions: operations build trees, with constants folded and 0 and 1 dropped."""
 
 from __future__ import annotations
 
@@ -16,7 +13,7 @@ ZERO, ONE = Number(0.0), Number(1.0)
 
 
 class Trees:
-    """An arithmetic ``o`` for formulas and partial derivatives, whose results are trees; floats may be given too."""
+    """An arithmetic ``o`` for formulas and partial derivatives whose results are trees; operands may be floats."""
 
     def __init__(self, make: Callable[..., Any]) -> None:
         self._make = make
@@ -28,7 +25,7 @@ class Trees:
 
 
 def simplify(expr: Expr) -> Expr:
-    """The same value by a simpler tree: in calls of scalar primitives constants are folded, 0 and 1 dropped."""
+    """A simpler tree with the same value: in calls of scalar primitives constants are folded, 0 and 1 dropped."""
     known: dict[int, Expr] = {}
     for node in each_once(expr):
         known[id(node)] = node
@@ -61,10 +58,7 @@ def made(op: str, *operands: Expr | float) -> Expr:
 
 
 def formed(op: str, *operands: Expr | float) -> Expr | float:
-    """A scalar primitive, simplified by the constants of a formula alone, never by the value of a Number.
-
-    So the form of the result depends on the form of the script alone, and a changed number finds its compiled code.
-    """
+    """A scalar primitive, simplified only by the float constants of a formula, never by the value of a Number."""
     if op in ("min", "max") and len(operands) != 2:
         half = len(operands) // 2
         return operands[0] if half == 0 else formed(op, formed(op, *operands[:half]), formed(op, *operands[half:]))
@@ -101,7 +95,10 @@ def _add(a: Expr, b: Expr) -> Expr | None:
 
 
 def _halves(expr: Expr) -> tuple[Expr, Expr, Expr] | None:
-    """Condition and branches of a `where` with a branch 0, as in derivatives of `min`."""
+    """Condition and branches of a `where` with a zero branch, as in derivatives of `min`.
+
+    None for other expressions.
+    """
     if isinstance(expr, Call) and expr.op == "where" and (_is(expr.args[1], 0.0) or _is(expr.args[2], 0.0)):
         condition, a, b = expr.args
         return condition, a, b
@@ -161,7 +158,7 @@ _RULES: dict[str, Callable[..., Any]] = {
 }  # fmt: skip
 
 TREES = Trees(made)
-"""Simplifies all that it can: for derivatives."""
+"""Arithmetic that simplifies all that it can, for derivatives."""
 
 FORMS = Trees(formed)
-"""Keeps the form of the script: for splitting vectors."""
+"""Arithmetic that keeps the form of the script, for splitting vectors."""

@@ -1,7 +1,4 @@
-"""Temperatures on a scale whose zero is not 0 K, as 20 °C: which sums and products of them mean one thing alone.
-
-A temperature and a difference in K give a temperature, two temperatures a difference; all else is refused.
-"""
+"""Temperatures on scales with another zero than 0 K, as 20 °C: sums and products whose meaning is unambiguous."""
 
 from __future__ import annotations
 
@@ -18,14 +15,17 @@ class Temperatures:
     """The operands of one expression that are temperatures by a literal in °C or °F, by the ids of their nodes."""
 
     _known: dict[int, tuple[Expr, Number, float]] = field(default_factory=dict)
-    """With the node itself, so that no other gets its id, the literal, and its number as a difference [K]."""
+    """(the node itself, so that no other gets its id; the literal; the literal's number as a difference [K])."""
 
     def add(self, literal: Number, difference: float) -> None:
         """Note a literal; ``difference`` is what its number is as a difference of temperatures [K]."""
         self._known[id(literal)] = literal, literal, difference
 
     def combine(self, whole: Call, *args: Expr) -> None:
-        """Note what an operation on ``args`` gives. Raises ScriptError (`offset-unit`) where that is not clear."""
+        """Track the result of an operation on ``args``.
+
+        Raises ScriptError (`offset-unit`) where its meaning is ambiguous.
+        """
         known = [self._known.get(id(arg)) for arg in args]
         found = [one for one in known if one is not None]
         if not found or whole.op in COMPARISONS or (whole.op == "sub" and known[1] is not None):

@@ -1,4 +1,4 @@
-"""Vectors turned by quaternions, and how fast these turn, as expressions."""
+"""Expressions for vectors rotated by quaternions, and for the angular velocity of quaternions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ AXIS = Type((3,))
 
 
 def rotated(rotation: Expr, vector: Expr) -> Expr:
-    """A vector turned by a unit quaternion [w, u]: v + 2 w (u x v) + 2 u x (u x v)."""
+    """A vector v rotated by a unit quaternion [w, u]: v + 2 w (u x v) + 2 u x (u x v)."""
     w, *rest = (Call("component", (rotation, Number(float(k))), Type(())) for k in range(4))
     axis = Vector(tuple(rest), AXIS)
     across = Call("cross", (axis, vector), PLACE)

@@ -99,7 +99,7 @@ UNITS = _with_prefixes()
 
 _CELSIUS, _FAHRENHEIT = (Fraction(1), Fraction("273.15")), (Fraction(5, 9), Fraction("459.67") * Fraction(5, 9))
 OFFSET_UNITS = {"degC": _CELSIUS, "°C": _CELSIUS, "degF": _FAHRENHEIT, "°F": _FAHRENHEIT}
-"""Temperatures on scales that do not start at absolute zero: ratio to the kelvin, and the zero in kelvin."""
+"""Temperature scales that do not start at absolute zero: (ratio to the kelvin, their zero [K])."""
 
 KNOWN_UNITS = (*UNITS, *OFFSET_UNITS)
 """All names, for suggestions."""

@@ -21,7 +21,7 @@ from sceneql.quantities.unit_table import KNOWN_UNITS, OFFSET_UNITS, QUANTITIES,
 __all__ = ["KNOWN_UNITS", "Unit", "describe", "format_quantity", "in_words", "parse_unit", "scan_unit", "unit_of"]
 
 LARGEST_EXPONENT = LARGEST_UNIT = 20
-"""Largest exponent of a factor, and most factors: beyond is a mistake, and could be slow to work out."""
+"""Limits on the exponent of a factor and on the number of factors: more is a mistake, and could be slow to compute."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,10 +76,10 @@ def parse_unit(text: str, span: Span | None = None) -> Unit:
 
 
 def scan_unit(text: str, start: int, span: Span | None, *, spaced: bool = False) -> tuple[Unit, int]:
-    """The unit that starts at ``text[start]``, and where it ends; it may begin with the bar of a division.
+    """The unit that starts at ``text[start]``, and where it ends; it may begin with a division bar.
 
-    The first name must be a known unit. After a sign the next name belongs to the unit only if it is a known unit,
-    not the name of a call, and (unless ``spaced``) touches the sign: ``1 m/dt`` and ``2 m * h`` are arithmetic.
+    The first name must be a known unit. After a sign the next name belongs to the unit only if it is a known unit, not
+    the name of a call, and (unless ``spaced``) touches the sign: ``1 m/dt`` and ``2 m * h`` are arithmetic.
     """
     found = _INVERSE.match(text, start)
     sign, at = (-1, found.end()) if found else (-1, start + 1) if text[start : start + 1] == "/" else (1, start)
@@ -138,9 +138,9 @@ def unit_hint(name: str) -> str | None:
 
 
 def stands_below(name: str, text: str, at: int) -> bool:
-    """Whether a unit's name at ``text[at]`` stands below the bar behind a number and its unit if any.
+    """Whether a unit's name at ``text[at]`` stands below a division bar that follows a number, with or without unit.
 
-    So stand s in ``1500 /s``, and kg and K in ``4186 J/(kg*K)``.
+    As s in ``1500 /s``, and kg and K in ``4186 J/(kg*K)``.
     """
     written = _BAR_BEFORE.search(text, max(0, at - LONGEST_BEFORE), at)
     if written is None or name not in UNITS:
@@ -206,6 +206,7 @@ def _unknown(name: str, span: Span | None, at: int) -> ScriptError:
     else:
         hint = instead("unit", name)
         same = [known for known in KNOWN_UNITS if known.lower() == name.lower()]
+        same += [name[:-1]] if name.endswith("s") and name[:-1] in KNOWN_UNITS else []  # 20 cms
         meant = sign_of(name) or (same[0] if same else None)
         hint = hint or (suggestion(name, KNOWN_UNITS) if meant is None else f"did you mean '{meant}'?")
     return _error("unknown-unit", f"there is no unit '{name}'", span, at, at + max(1, len(name)), hint)

@@ -1,4 +1,4 @@
-"""`bench`: the error of each solver, and of each way to draw a surface, against the time it takes."""
+"""`bench`: error against run time, of each solver and of each way to draw a surface."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from sceneql.report.surface_measures import pictured
 from sceneql.report.work_precision import Measurement, Reference, among, known, measurements, solvers, warm
 
 CLEAR = 10.0
-"""An error counts for the order if it is this many times the reference's own."""
+"""An error counts for the observed order if it is at least this multiple of the reference's own error."""
 ASKED = (1e-3, 1e-6, 1e-9)
 """Relative errors for which the cheapest solver is named by default."""
 
@@ -43,16 +43,16 @@ def bench(
     progress: Callable[[int, int], None] = lambda done, total: None,
     chosen: Sequence[str] = (),
 ) -> str:
-    """Run every island by every solver that applies, and measure implicit surfaces by rays and meshes; returns text.
+    """Run every island by every applicable solver, and measure implicit surfaces by rays and meshes.
 
-    ``output`` is a folder, or the files' path without extension: CSV and JSON with all runs, SVGs of the error against
-    run time and step and of the drift of energy, PNGs beside them, HTML with all of it. Fields are run on several grids
-    (``grids``), on these by all schemes (``schemes``), their systems solved by every linear solver (``linear``).
-    Implicit surfaces, those of the first picture at its start in several sizes, have files of their own (``rays``,
-    ``meshes``, ``surfaces``). ``words`` is a folder of the user's own words; ``asked`` the relative error for which the
-    cheapest solver is named; ``chosen`` the words of the solvers to run, where not all. Raises Unsuitable for a scene
-    without islands and implicit surfaces and for solvers that do not apply, RunFailure where no reference reaches the
-    end.
+    Returns the report text. ``output``: a folder, or the files' path without extension. Written are CSV and JSON with
+    all runs, SVGs (and PNGs) of the error against run time and step and of the energy drift, and HTML with all of it.
+    Fields are run on several grids (``grids``), on these by all schemes (``schemes``), and their systems are solved by
+    every linear solver (``linear``). Implicit surfaces of the first picture at its start, in several sizes, have files
+    of their own (``rays``, ``meshes``, ``surfaces``). ``words``: a folder of the user's own words; ``asked``: the
+    relative error for which the cheapest solver is named; ``chosen``: the solvers to run, empty for all. Raises
+    Unsuitable for a scene without islands and implicit surfaces and for solvers that do not apply, RunFailure where no
+    reference reaches the end.
     """
     frames = pictured(graph)
     if not graph.islands and not frames:
@@ -110,9 +110,9 @@ def bench(
 
 
 def cheapest(rows: Sequence[Measurement], asked: float) -> tuple[str, float] | None:
-    """The solver that reaches a relative error in the least time, and that time [s], by interpolating between its runs.
+    """The solver that reaches a relative error in the least time, and that time [s], interpolated between its runs.
 
-    None where no run is that good.
+    None where no run is that accurate.
     """
     found: dict[str, float] = {}
     for word in dict.fromkeys(row.solver for row in rows):
@@ -129,7 +129,7 @@ def cheapest(rows: Sequence[Measurement], asked: float) -> tuple[str, float] | N
 
 
 def cheapest_lines(rows: Sequence[Measurement], truth: Reference, asked: float | None) -> list[str]:
-    """Lines that name the cheapest solver for the error asked for, or for each of ASKED."""
+    """Lines that name the cheapest solver for the error ``asked``, or for each of ASKED."""
     lines = []
     for error in ASKED if asked is None else (asked,):
         best = cheapest(rows, error)
@@ -141,7 +141,7 @@ def cheapest_lines(rows: Sequence[Measurement], truth: Reference, asked: float |
 
 
 def _order(runs: Sequence[Measurement], floor: float, end: float) -> float | None:
-    """Observed order in the mean step."""
+    """Observed order of convergence in the mean step; None where there is none."""
     done = [run for run in runs if run.ok]
     return observed_order([end / run.steps for run in done], [run.error for run in done], floor)
 
@@ -231,7 +231,7 @@ def _times(row: Measurement) -> tuple[str, str]:
 
 
 def _drift_table(drifts: Sequence[Drift]) -> Table:
-    """Relative changes of energy, at the end and at most, and of momentum where it is conserved."""
+    """Table of relative changes of energy (at the end, and largest), and of momentum where it is conserved."""
     head = ("island", "solver", "step or tolerance", "energy at the end", "energy at most", "momentum at most", "")
     rows = [
         (
@@ -289,7 +289,7 @@ def _write_json(
 
 
 def write_json(path: Path, found: Mapping[str, Any]) -> None:
-    """Write plain data; numbers that are not finite become null, which JSON can say."""
+    """Write plain data as JSON, with null for numbers that are not finite."""
     with whole(path) as file:
         file.write(json.dumps(_sayable(found), indent=1, allow_nan=False).encode())
 

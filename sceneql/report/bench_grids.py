@@ -1,4 +1,4 @@
-"""The part of `bench` on fields on grids: their error against the cells, and how their linear systems are solved."""
+"""The part of `bench` on fields on grids: error against cell size, and the linear solvers of their systems."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def is_field(graph: SimulationGraph, island: Island) -> bool:
 
 
 def grid_section(graph: SimulationGraph, stem: Path, schemes: Mapping[str, Mapping[str, Solver]]) -> GridSection | None:
-    """Measure the fields of a scene, beside ``stem``; None where it has none.
+    """Measure the fields of a scene and write files beside ``stem``; None where it has none.
 
-    ``schemes``: of each island, by its title, the solvers that march it.
+    ``schemes``: the applicable solvers of each island, by its title.
     """
     islands = [island for island in graph.islands if is_field(graph, island)]
     if not islands:
@@ -98,7 +98,7 @@ def _written(
     linear: Sequence[LinearRun],
     by_methods: Sequence[MethodRun],
 ) -> GridSection:
-    """The section with its files."""
+    """Write the files of the section; returns the section."""
     parts: list[tuple[str, str, type, Sequence[Any]]] = [
         ("grids", "Grids", GridRun, runs),
         ("schemes", "Schemes, grids and steps", SchemeRun, by_schemes),

@@ -1,4 +1,4 @@
-"""The part of `bench` on a field by finite volumes and by finite elements: error of space against run time."""
+"""The part of `bench` on fields by finite volumes and by finite elements: error in space against run time."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 LEVELS = (4.0, 2.0, 1.0, 0.5, 0.25)
-"""Sides of cells in parts of the script's own, from coarse to fine."""
+"""Cell sizes relative to the script's own, from coarse to fine."""
 ENOUGH_SECONDS = 15.0
-"""Seconds of a run, with its set-up, after which no finer one is tried."""
+"""Run time with set-up [s] after which no finer run is tried."""
 LONGEST = 10.0
-"""Seconds of compiled steps after which a run is given up."""
+"""Time of compiled steps [s] after which a run is given up."""
 REPEATS = 3
 TOLERANCE = 1e-6
-"""Tolerance in time."""
+"""Relative tolerance of the time integration."""
 
 
 @dataclass(frozen=True, slots=True)
 class MethodRun:
-    """A field at the end by one method, on one spacing."""
+    """A run of a field by one method with one cell size, at the end."""
 
     island: str
     method: str
@@ -38,11 +38,11 @@ class MethodRun:
     """[m]"""
     unknowns: int
     error: float
-    """Root mean square over the volume, in parts of the largest value."""
+    """Root mean square error over the volume, relative to the largest value."""
     seconds: float
-    """Median run time of the compiled steps."""
+    """Median run time of the compiled steps [s]."""
     setup: float
-    """Seconds in which cells or elements and their matrices are made."""
+    """Time for making cells or elements and their matrices [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,13 +55,13 @@ class _End:
     weights: Floats
     unknowns: int
     field: Any
-    """From places (k, 3) to values (k,), of elements."""
+    """For elements: function from places (k, 3) to values (k,)."""
 
 
 def method_runs(graph: SimulationGraph, island: Island) -> list[MethodRun]:
-    """Runs by all methods of a model that has several, compared with its elements of highest order on the finest mesh.
+    """Runs by all methods of a model, compared with the highest-order elements on the finest mesh.
 
-    Empty where it has one.
+    Empty where the model has only one method.
     """
     title = ", ".join(island.models)
     kind: Any = graph.tasks[island.models[0]].kind
@@ -82,7 +82,7 @@ def method_runs(graph: SimulationGraph, island: Island) -> list[MethodRun]:
 
 
 def told(runs: Sequence[MethodRun]) -> list[str]:
-    """A line for each run, with the order between it and the coarser one."""
+    """A line of text for each run, with the observed order between it and the coarser one."""
     lines, before = [], None
     for one in runs:
         order = ""
@@ -97,7 +97,7 @@ def told(runs: Sequence[MethodRun]) -> list[str]:
 
 
 def _ends(graph: SimulationGraph, island: Island, kind: Any, cell: float) -> list[_End]:
-    """From coarse to fine, those that can be made; the finest takes long, or is the last."""
+    """Results from coarse to fine, of runs that are possible; the finest takes long, or is the last level."""
     found: list[_End] = []
     for part in LEVELS:
         try:

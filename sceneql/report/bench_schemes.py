@@ -1,4 +1,4 @@
-"""The whole error of a field against run time: every scheme that applies, on several grids, by ever shorter steps."""
+"""The total error of a field against run time: every applicable scheme, on several grids, with decreasing steps."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ from sceneql.report.grid_ends import End, difference, end_on
 from sceneql.report.work_precision import adaptive, at
 
 COARSER = 2
-"""Halvings of a measured grid's cell down to the finest grid: a sixteenth of the error at second order."""
+"""Number of halvings from a measured grid's cell to the finest grid's: a sixteenth of the error at second order."""
 GRIDS = 3
 STEPS = tuple(4**k for k in range(2, 10))
 TOLERANCES = tuple(100.0**-k for k in range(1, 6))
 SETTLED = 1.05
-"""No shorter step is tried once the error is this many times that of the grid itself."""
+"""No shorter step is tried once the error is this multiple of the grid's own error."""
 ENOUGH_SECONDS = 0.2
-"""Seconds of a run after which no shorter step is tried, and of all repeats of a run."""
+"""Run time [s] after which no shorter step is tried, and time of all repeats of a run."""
 LONGEST = 2.0
-"""Seconds of compiled steps after which a run is given up."""
+"""Time of compiled steps [s] after which a run is given up."""
 
 
 @dataclass(frozen=True, slots=True)
 class SchemeRun:
-    """A field at the end of the run by one scheme, on one grid, with one step or tolerance."""
+    """A run of a field by one scheme, on one grid, with one step or tolerance, at the end."""
 
     island: str
     solver: str
@@ -38,7 +38,7 @@ class SchemeRun:
     setting: float
     """Step [s], or relative tolerance."""
     error: float
-    """Root mean square error of space and time together, in parts of the largest value."""
+    """Root mean square error of space and time together, relative to the largest value."""
     seconds: float
     steps: int
 
@@ -46,9 +46,9 @@ class SchemeRun:
 def scheme_runs(
     graph: SimulationGraph, island: Island, schemes: Mapping[str, Solver], ends: Sequence[End]
 ) -> Iterator[SchemeRun]:
-    """Runs by all schemes on grids that the finest of ``ends``, from fine to coarse, can judge; failed ones left out.
+    """Runs by all schemes on grids much coarser than the finest of ``ends``, from fine to coarse; without failed ones.
 
-    On each grid, steps grow shorter until the error is that of the grid.
+    On each grid, steps decrease until the error is that of the grid.
     """
     title = ", ".join(island.models)
     for end in ends[COARSER : COARSER + GRIDS]:
@@ -70,7 +70,7 @@ def scheme_runs(
 
 
 def front(runs: Sequence[SchemeRun]) -> list[SchemeRun]:
-    """The Pareto front in error and time, from quick to exact, of runs with errors below the field itself."""
+    """The Pareto front in error and time, from fast to accurate, of runs with errors below the field itself."""
     best: list[SchemeRun] = []
     for run in sorted(runs, key=lambda run: (run.seconds, run.error)):
         if run.error < (best[-1].error if best else 1.0):

@@ -1,4 +1,4 @@
-"""What curves of reports have beside them: labels at their ends, bands of repeated measurements."""
+"""Additions to the curves of reports: labels at their ends, and bands of repeated measurements."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from typing import Any
 
 GAP = 0.045
-"""Least way between two labels, as a part of a panel's height: a line of their letters."""
+"""Least distance between two labels, as a fraction of a panel's height: a line of text."""
 
 
 def label_ends(axes: Any) -> None:
     """Write the label of every line of a panel to the right of it, at the height of its end where there is room.
 
-    A thin line leads from the end to a label that had to move; what has no point is told below the others. To be called
-    once all lines are drawn.
+    A thin line leads from the end to a label that had to move; labels of lines without points stand below the others.
+    To be called after all lines are drawn.
     """
     axes.autoscale_view()
     place = axes.transScale + axes.transLimits
@@ -39,14 +39,14 @@ def label_ends(axes: Any) -> None:
 
 
 def _end(line: Any) -> tuple[float, float] | None:
-    """The point of a line that is nearest to the labels, the last of several; None without one that can be drawn."""
+    """The rightmost point of a line, the last of several; None without a finite one."""
     points = [(float(x), float(y)) for x, y in zip(*line.get_data(), strict=True)]
     drawn = [(x, y) for x, y in points if math.isfinite(x) and math.isfinite(y)]
     return max(reversed(drawn), key=lambda point: point[0], default=None)
 
 
 def spread(heights: Sequence[float]) -> list[float]:
-    """Ascending heights in a panel of height 1, moved as little apart as labels need; closer where there are many."""
+    """Ascending heights in a panel of height 1, moved apart as little as labels need; closer where there are many."""
     gap = min(GAP, 1.0 / max(len(heights), 1))
     moved = [min(max(height, 0.0), 1.0) for height in heights]
     for k in range(1, len(moved)):
@@ -57,9 +57,9 @@ def spread(heights: Sequence[float]) -> list[float]:
 
 
 def band(axes: Any, line: Any, median: Sequence[float]) -> None:
-    """Shade the way from a line's points to the right, as far as the median of the repeats [s], or out of the panel.
+    """Shade from a line's points to the right, up to the median of repeats [s] or the edge of the panel.
 
-    To be called once all lines are drawn: a machine that was busy for a moment leaves the scale to the points.
+    To be called after all lines are drawn: the scale is kept, so that a busy machine does not change it.
     """
     fastest, errors = line.get_data()
     if len(fastest):
@@ -68,7 +68,7 @@ def band(axes: Any, line: Any, median: Sequence[float]) -> None:
 
 
 def repeats(axes: Any, line: Any, median: Sequence[float]) -> None:
-    """The same for points that are no curve: a bar from each."""
+    """As `band` for points that form no curve: a bar from each."""
     fastest, errors = line.get_data()
     axes.autoscale(False)
     axes.hlines(errors, fastest, median, color=line.get_color(), alpha=0.4, lw=3)

@@ -1,4 +1,4 @@
-"""How far the energy of an island drifts in time under each solver."""
+"""Energy drift of an island in time under each solver."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ MOMENTS = 200
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """Energy of one run, relative to the largest of its kinetic energy and that of the start; else an invariant."""
+    """Change of energy in one run, relative to the largest kinetic or initial energy.
+
+    Without energy, of an invariant.
+    """
 
     island: str
     solver: str
@@ -30,13 +33,13 @@ class Drift:
     changes: tuple[float, ...]
     """(E(t) - E(0)) / scale."""
     momentum: float = math.nan
-    """Largest change of momentum, relative to the sum of the masses' own; NaN where it is not conserved."""
+    """Largest change of momentum, relative to the sum of the masses' momenta; NaN where momentum is not conserved."""
     driven: bool = False
-    """Whether what varies in time drives it, so that its energy changes in truth."""
+    """Whether energy changes in truth, as by values that vary in time."""
 
 
 def drift(graph: SimulationGraph, island: Island, word: str, solver: Solver) -> Drift | None:
-    """The drift up to the end or to a failure of the run; None where no model has an energy or an invariant."""
+    """The drift up to the end or a failure of the run; None where no model has an energy or an invariant."""
     from sceneql.run.run import Run
     from sceneql.run.watch import Watch
 

@@ -1,4 +1,4 @@
-"""The error of a run's end beside a reference: by kinds of quantities, each in its own range over the run."""
+"""The error of a run's end against a reference: by kinds of quantities, each relative to its range over the run."""
 
 from __future__ import annotations
 
@@ -15,27 +15,35 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
 
 LATE = 0.75
-"""Part of the run after which motion counts as late."""
+"""Fraction of the run after which motion counts as late."""
 LEAST = 1e-3
-"""Part of the largest range of a kind that an entry has at least: what a symmetry keeps at zero has no range."""
+"""Least scale of an entry, relative to the largest range of its kind: an entry kept at zero by symmetry has no
+range."""
 MOVING, DAMPED = 0.05, 0.1
-"""A kind moves late where the reference's late range is that part of its whole one; damped below this part of that."""
+"""A kind moves late where the reference's late range is at least MOVING times its whole range; a run damps it where its
+late range is below DAMPED times the reference's."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ErrorMeasure:
-    """The scales of a state's entries: places, speeds and cells of a model are kinds, other states each its own."""
+    """The error scales of a state's entries. Positions, velocities and cells of a model are kinds.
+
+    Other states are their own.
+    """
 
     kinds: NDArray[int64]
     """(entries,) the kind of each entry; -1: not a model's."""
     scales: Floats
-    """(entries,) what an error of each is relative to."""
+    """(entries,) the scale of each entry's error."""
     late: Floats
-    """(kinds,) largest range of an entry of each late in the run; 0 where it hardly moves then."""
+    """(kinds,) largest late range of an entry of each kind; 0 where it hardly moves then."""
 
     @classmethod
     def of(cls, island: IslandRun, own: NDArray[bool_], looks: Sequence[tuple[float, Floats]]) -> ErrorMeasure:
-        """By the states of a reference over its run, (time [s], (entries,)) at each look, that of the start first."""
+        """The measure by a reference's states over its run: (time [s], (entries,)) at each look, the start first.
+
+        ``own`` (entries,) bool: entries of models.
+        """
         import numpy as np
 
         from sceneql.stepping.error_scales import error_scales
@@ -62,7 +70,10 @@ class ErrorMeasure:
         return float(errors[worst]) if len(errors) else 0.0, worst
 
     def damped(self, looks: Sequence[tuple[float, Floats]]) -> tuple[float, int] | None:
-        """Part of its late motion that is left of a kind that has come to rest, and an entry of it; None: none has."""
+        """The kind that a run has damped most: the fraction of late motion left, and an entry.
+
+        None where none is damped.
+        """
         import numpy as np
 
         moved = _late(looks)
@@ -75,7 +86,7 @@ class ErrorMeasure:
 
 
 def name_of(island: IslandRun, entry: int) -> str:
-    """What an entry of the state is, for a reader."""
+    """Description of an entry of the state for a reader."""
     system = island.march.system
     part = system.origin(entry).part
     for velocity_at, _, count in system.masses:

@@ -1,4 +1,4 @@
-"""Measures the numbers of a scene's `expect`, against exact, independent or conserved values."""
+"""Measurement of the numbers in a scene's `expect`, against exact, independent or conserved values."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class Outcome:
     measured: float
     wanted: float
     error: float
-    """|measured - wanted|, or the measured value where that must stay below a bound."""
+    """|measured - wanted|; the measured value itself where that must stay below a bound."""
     limit: float
     """Largest error allowed."""
 
     @property
     def holds(self) -> bool:
-        """Whether it is as expected (NaN is not)."""
+        """Whether the measurement is as expected (NaN is not)."""
         return self.error <= self.limit
 
     def __str__(self) -> str:
@@ -39,7 +39,7 @@ class Outcome:
 
 
 def outcomes(graph: SimulationGraph, variant: str | None = None) -> list[Outcome]:
-    """Measure every expectation of a graph that holds for the variant, in one run."""
+    """Measure all expectations of a graph for the variant, in one run."""
     held = {name: e for name, e in graph.settings.expect.items() if e.variant == variant}
     if not held:
         return []
@@ -59,7 +59,7 @@ def moments_of(graph: SimulationGraph, values: Iterable[Value]) -> list[float]:
 
 
 def sample(moments: Iterable[Moment], times: list[float], values: Iterable[Value]) -> Series:
-    """The links of values at the times of a run, each (times, ...): NaN where not needed, since reading may be slow."""
+    """The links of values at the times of a run, each (times, ...); NaN where not needed, since reading may be slow."""
     import numpy as np
 
     wants: dict[Link, set[float]] = {}

@@ -1,4 +1,4 @@
-"""The plan of a scene: what will run, in which order, for which output, by which solver; what is left out and why."""
+"""The plan of a scene: what runs, in which order, for which output, by which solver; what is left out and why."""
 
 from __future__ import annotations
 
@@ -77,20 +77,20 @@ def _looks_ahead(graph: SimulationGraph, camera: str) -> bool:
 
 
 def _objects_ahead(graph: SimulationGraph) -> dict[str, str]:
-    """What objects take from a dry run of the physics, by their names."""
+    """What objects need from a dry run of the physics, as texts by name."""
     objects = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Object)}
     return {name: why for name, kind in objects.items() if graph.islands and (why := kind.looks_ahead())}
 
 
 def _changing(graph: SimulationGraph) -> dict[str, list[str]]:
-    """The fields of each object that a frame may have other values of than the one before; empty: it is made once."""
+    """By object, the fields whose values may change from frame to frame; empty: its shapes are made once."""
     tasks = graph.tasks
     objects = {name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}
     return {name: [field for field, value in kind if not _constant(value, tasks)] for name, kind in objects.items()}
 
 
 def _constant(value: Any, tasks: Mapping[str, Task]) -> bool:
-    """Whether what stands in a field is the same at all times, and so are the parts that it names."""
+    """Whether a field's value, and the parts to which it refers, are the same at all times."""
     if isinstance(value, Value | Formula):
         return value.constant
     if isinstance(value, Ref):
@@ -103,7 +103,7 @@ def _constant(value: Any, tasks: Mapping[str, Task]) -> bool:
 
 
 def _placed(graph: SimulationGraph) -> list[str]:
-    """The overlays that look for a place which the whole run leaves free."""
+    """The overlays that seek a place which is free over the whole run."""
     over = {name: task.kind for name, task in graph.tasks.items() if isinstance(task.kind, Overlay)}
     pictures = [task.kind for task in graph.tasks.values() if isinstance(task.kind, Picture)]
     drawn = {name for kind in pictures for name in over if name not in {ref.name for ref in kind.laid_out}}
@@ -111,14 +111,14 @@ def _placed(graph: SimulationGraph) -> list[str]:
 
 
 def _kernels(words: set[tuple[str, str]]) -> set[str]:
-    """Words with compiled code in a file of their name, left out with them; kernels of renderers stand elsewhere."""
+    """Words among the given ones with compiled code in a file of their name; kernels of renderers stand elsewhere."""
     files = (*ROOT.glob("words/*/*_kernels.py"), *ROOT.glob("*/*_kernels.py"))
     own = {word for family, word in words if family != "renderers"}
     return own & {path.stem.removesuffix("_kernels") for path in files}
 
 
 def _solved(graph: SimulationGraph) -> dict[str, Any]:
-    """The islands, and the objects for which these are marched ahead of the film: their ranges are the whole run's."""
+    """The islands, and the objects that need a dry run for ranges over the whole run."""
     if not graph.islands:
         return {"islands": [], "ranges": []}
     from sceneql.run.dry_run import asked_by_objects
@@ -132,7 +132,7 @@ def _solved(graph: SimulationGraph) -> dict[str, Any]:
 
 
 def _later(bound: tuple[float, str] | None) -> str:
-    """What bounds steps after the start, as a text."""
+    """Text on stability bounds that apply after the start."""
     if bound is None:
         return ""
     return f"; after the start stable up to a step of {duration(bound[0])}, set by {bound[1]}"
@@ -172,7 +172,7 @@ def _island(graph: SimulationGraph, run: IslandRun) -> dict[str, Any]:
 
 
 def _chosen(run: IslandRun) -> list[str]:
-    """The method that an automatic solver begins with, and why; nothing where the start fails."""
+    """The first method of an automatic solver and the reason; empty where the start fails."""
     if run.solver is not run.graph.tasks[run.island.solver].kind:
         word = type(run.solver).__module__.rpartition(".")[2]
         return [f"{word} takes its place " + (run.methods.remark or "on a field on a grid")]
@@ -182,7 +182,7 @@ def _chosen(run: IslandRun) -> list[str]:
 
 
 def _why(run: IslandRun) -> tuple[str, ...]:
-    """Why it is solved by itself, what its solver chose, how that works here, and what takes over when."""
+    """Texts: why the island is solved by itself, what its solver chose, how that works, what takes over and when."""
     march, methods = run.march, run.methods
     remark = methods.remark if run.solver is run.graph.tasks[run.island.solver].kind else ""
     return run.island.reason, run.solver.explanation(), *_chosen(run), march.prepared_text, remark
@@ -216,7 +216,7 @@ def _model_remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
 
 
 def _redundant(run: IslandRun) -> list[int]:
-    """Conditions of ties at the start, and how many of them the others imply; none without ties."""
+    """[number of constraints of ties at the start, number of redundant ones]; empty without ties."""
     if not run.assembly.ties:
         return []
     from sceneql.bodies.rigid.tie_system import redundant
@@ -226,7 +226,7 @@ def _redundant(run: IslandRun) -> list[int]:
 
 
 def _singular(run: IslandRun) -> dict[str, list[str]]:
-    """The ties that are singular at the start, by what that is like."""
+    """The ties that are singular at the start, by a description of the singularity."""
     if not run.assembly.ties:
         return {}
     from sceneql.bodies.rigid.singular import singular
@@ -248,7 +248,7 @@ def _contact_remarks(graph: SimulationGraph, run: IslandRun) -> dict[str, str]:
 
 
 def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
-    """Why an island's contacts work in their mode."""
+    """The reason for the mode of an island's contacts."""
     if run.assembly.contact_why:
         return run.assembly.contact_why
     if run.assembly.contact_mode == "barrier":
@@ -260,7 +260,7 @@ def _contact_why(graph: SimulationGraph, run: IslandRun) -> str:
 
 
 def _control(island: dict[str, Any]) -> str:
-    """Order and steps of an island's solver; nothing for a solver without steps."""
+    """Text on the order and steps of an island's solver; empty for a solver without steps."""
     if island["order"] == 0:
         return ""
     steps = f"steps by the tolerance {island['tolerance']:g}" if island["adaptive"] else f"step {island['step']:g} s"

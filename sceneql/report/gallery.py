@@ -1,4 +1,4 @@
-"""The gallery: every scene's poster and expected numbers, compared with what the program makes now."""
+"""The gallery: posters and expected numbers of all scenes, compared with what the program makes now."""
 
 from __future__ import annotations
 
@@ -13,11 +13,10 @@ from sceneql.kinds import Picture
 from sceneql.report.expect import Outcome, outcomes
 
 MEAN, NEARLY_ALL, LARGEST = 0.002, 0.05, 0.2
-"""Two posters are the same if the mean difference, that of 99.9 % of the pixels and the largest are below these.
+"""Bounds below which two posters count as the same: mean difference, that of 99.9 % of the pixels, and the largest.
 
-A pixel's difference is that of its most different channel, from 0 to 1. The three bounds tell rounding by another
-processor (everywhere, tiny) from damage (local, large).
-"""
+A pixel's difference is that of its most different channel, from 0 to 1. The three bounds distinguish rounding by
+another processor (everywhere, tiny) from damage (local, large)."""
 
 
 def scenes_of(scenes: tuple[Path, ...]) -> list[Path]:
@@ -39,7 +38,7 @@ def poster(graph: SimulationGraph) -> Any:
 
 
 def numbers(scene: Path) -> list[Outcome]:
-    """What the scene's expectations measure, each in its own variant."""
+    """Outcomes of the scene's expectations, each in its own variant."""
     variants = dict.fromkeys(expect.variant for expect in pipeline.load(scene).settings.expect.values())
     graphs = ((pipeline.load(scene, variant=variant, pruned=False), variant) for variant in variants)
     return [found for graph, variant in graphs for found in outcomes(graph, variant)]
@@ -60,7 +59,7 @@ def check(scenes: tuple[Path, ...], folder: Path) -> tuple[list[str], bool]:
 
 
 def compare(picture: Any, kept: Path) -> tuple[str, bool]:
-    """How a picture differs from a kept one, and whether it counts as the same."""
+    """Description of the difference between a picture and a kept one, and whether they count as the same."""
     import numpy as np
     from PIL import Image
 

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
 
 MOST_CELLS = 100_000
-"""Most cells of the finest grid, unless the script's own has more."""
+"""Largest number of cells of the finest grid, unless the script's own has more."""
 GRIDS = 6
 FINER = 2
-"""Most halvings of the script's cell."""
+"""Largest number of halvings of the script's cell."""
 FEWEST = 200
-"""Fewest cells of a grid for which a coarser one is tried."""
+"""Smallest number of cells of a grid for which a coarser one is tried."""
 REPEATS = 3
 TOLERANCE = 1e-6
 """Tolerance in time, where no exact solution is known."""
@@ -33,7 +33,7 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class End:
-    """A field at the end on one grid."""
+    """A field at the end of a run on one grid."""
 
     cell: float
     seconds: float
@@ -50,9 +50,9 @@ class End:
 
 
 def ends_on_grids(graph: SimulationGraph, island: Island) -> tuple[list[End], str]:
-    """The field at the end on grids from fine to coarse, with a negligible error in time, and the method in time.
+    """The field at the end on grids from fine to coarse, with negligible time error, and the method in time.
 
-    Each grid has cells of twice the side of the one before. Raises RunFailure, LimitRefused or ScriptError where the
+    Each grid has cells of twice the size of the one before. Raises RunFailure, LimitRefused or ScriptError where the
     script's own grid fails.
     """
     solver, how = _in_time(graph, island)
@@ -73,7 +73,7 @@ def ends_on_grids(graph: SimulationGraph, island: Island) -> tuple[list[End], st
 
 
 def _in_time(graph: SimulationGraph, island: Island) -> tuple[Solver, str]:
-    """A solver of the island with a negligible error in time, and its description."""
+    """A solver of the island with negligible time error, and its description."""
     from sceneql.words.solvers.exact import Exact
     from sceneql.words.solvers.tr_bdf2 import TrBdf2
 
@@ -96,8 +96,9 @@ def end_on(
     graph: SimulationGraph, island: Island, solver: Solver, cell: float, longest: float = LONGEST,
     enough: float = ENOUGH_SECONDS,
 ) -> End:  # fmt: skip
-    """The model's first field at the end on a grid of that cell; its run time is a median until ``enough`` [s] in all.
+    """The model's first field at the end, on a grid of given cell size.
 
+    Its run time is the median of repeats, until ``enough`` [s] in total; a run is given up after ``longest`` [s].
     Raises RunFailure, LimitRefused, ScriptError.
     """
     name = island.models[0]
@@ -132,7 +133,7 @@ def difference(coarse: End, fine: End) -> float:
 
 
 def _interpolated(end: End, places: Floats, count: int) -> tuple[Floats, Any]:
-    """Lagrange interpolation by ``count`` cells along each axis at places (k, 3): values, if all are inside."""
+    """Lagrange interpolation by ``count`` cells along each axis at places (k, 3): values; whether all are inside."""
     import numpy as np
 
     shape, values, inside = end.layout.shape, np.zeros(len(places)), np.ones(len(places), dtype=bool)

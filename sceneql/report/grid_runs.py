@@ -1,4 +1,4 @@
-"""Measured runs of fields on grids: by the size of their cells, and by the linear solver of a step."""
+"""Measured runs of fields on grids: by cell size, and by the linear solver of a step."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ class GridRun:
     """Side of a cell [m]."""
     cells: int
     error: float
-    """Root mean square in parts of the largest value, extrapolated from the next finer grid by the observed order."""
+    """Root mean square error relative to the largest value, extrapolated from the next finer grid by the observed
+    order."""
     seconds: float
-    """Run time of the compiled steps, or of the exact solution."""
+    """Run time of the compiled steps, or of the exact solution [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,11 +41,11 @@ class LinearRun:
     iterations: int
     seconds: float
     residuals: tuple[float, ...]
-    """Residual at each check, in parts of the first; empty for a direct solver."""
+    """Residual at each check, relative to the first; empty for a direct solver."""
 
 
 def on_grids(title: str, ends: Sequence[End]) -> tuple[list[GridRun], float | None]:
-    """Errors on each but the finest of some grids, from coarse to fine, and the observed order in the cell."""
+    """Errors on all grids but the finest, from coarse to fine, and the observed order in the cell size."""
     pairs = list(pairwise(ends))
     differences = [difference(coarse, fine) for fine, coarse in pairs]
     order = None
@@ -59,7 +60,7 @@ def on_grids(title: str, ends: Sequence[End]) -> tuple[list[GridRun], float | No
 
 
 def linear_runs(graph: SimulationGraph, island: Island) -> Iterator[LinearRun]:
-    """One step of the script's length by every linear solver that applies; those that do not converge are left out."""
+    """One step of the script's length by every applicable linear solver, without those that do not converge."""
     from sceneql.grids.multigrid.linear_solvers import Linear
     from sceneql.grids.prepare_stages import report
     from sceneql.words.solvers.implicit_euler import ImplicitEuler

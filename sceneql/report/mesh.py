@@ -1,4 +1,4 @@
-"""The command ``mesh``: an object of a scene to a file of triangles, and an account of them."""
+"""The command ``mesh``: writes an object of a scene as triangles, and accounts for them."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from sceneql.run.instant import Instant
 
 CELLS = 128
-"""Cells along the longest side of an object's box, where nothing is said."""
+"""Default number of cells along the longest side of an object's box."""
 COARSE = 16
-"""Likewise, where the search for a tolerance begins."""
+"""The same at the beginning of the search for a tolerance."""
 
 
 @dataclass(frozen=True, slots=True)
 class Account:
-    """What was written."""
+    """The account of a written mesh."""
 
     file: Path
     vertices: int
@@ -47,16 +47,16 @@ class Account:
     """[m^2]"""
     boundary_edges: int
     folded: int
-    """Triangles that face inward of the mesh itself, as of ``overturned``, of sharp ones ``folds``."""
+    """Triangles that are folded over (``overturned``; for sharp meshes ``folds``)."""
     unresolved: int
-    """Cells without a change of sign, whether or not something smaller than they hides in them."""
+    """Number of cells without a change of sign that are not proved empty or full."""
     unresolved_volume: float
     """[m^3]"""
     missed: float
-    """[m] How far surface was found from all triangles, where that is more than the tolerance."""
+    """Largest distance found from the surface to all triangles, where it exceeds the tolerance; else 0 [m]."""
 
     def text(self) -> str:
-        """As lines."""
+        """The account as lines of text."""
         lines = [
             f"made {self.file}",
             f"{self.triangles} triangles, {self.vertices} vertices, cells of {self.cell:.4g} m",
@@ -89,9 +89,9 @@ def mesh(
 ) -> Account:  # fmt: skip
     """Polygonise an object at an instant [s] by cells [m], or by cells that keep within a distance [m] of the surface.
 
-    With ``sharp``, its edges and corners are kept. A surface on a field's grid has cells of its own. Raises OSError,
-    Unsuitable for what is no object or file, and RunFailure for what has no inside, is empty or unbounded, or needs too
-    many cells.
+    With ``sharp``, edges and corners are kept. A surface on a field's grid has cells of its own. Raises OSError,
+    Unsuitable for something that is no object or file, and RunFailure for an object that has no inside, is empty or
+    unbounded, or needs too many cells.
     """
     from sceneql.mesh.write_mesh import format_of, write
 
@@ -130,7 +130,7 @@ def mesh(
 def _of_solid(
     solid: Implicit, task: Task, name: str, time: float, cell: float | None, tolerance: float | None, sharp: bool
 ) -> Within:
-    """Polygons of a solid, the cells that they are of, and what they do not resolve."""
+    """Polygons of a solid, their cell size, and what they do not resolve."""
     from sceneql.mesh.cubes.grid import grid_around
     from sceneql.mesh.cubes.refine import refined
     from sceneql.mesh.cubes.tolerance import Within, polygonise_within
@@ -159,7 +159,7 @@ def _of_solid(
 def _account(
     output: Path, polygons: Polygons, cell: float, hidden: Unresolved | None, missed: float, folded: int
 ) -> Account:
-    """What was written."""
+    """The account of a written mesh."""
     from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
 
     vertices, triangles = polygons.vertices, polygons.triangles
@@ -180,7 +180,7 @@ def _account(
 
 
 def _why_empty(tape: Tape, low: Corner, high: Corner, cell: float) -> str:
-    """Why there is no surface."""
+    """The reason why there is no surface."""
     from sceneql.field.tape.emptiness import nowhere_defined, nowhere_finite, why_empty
 
     if nowhere_defined(tape, low, high):

@@ -1,4 +1,4 @@
-"""A first script to change: commented, and known to editors by its schema."""
+"""A first script to change, with comments and a schema for editors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The observed order of convergence: the slope of log(error) against log(step) where the method is in its regime."""
+"""Observed order of convergence: the slope of log(error) against log(step) in the asymptotic range."""
 
 from __future__ import annotations
 
@@ -7,19 +7,20 @@ from itertools import pairwise
 from math import isfinite, log, nan
 
 LARGEST_ERROR = 0.1
-"""Relative errors above this are not small: the leading term of the error does not dominate yet."""
+"""Relative errors above this are outside of the asymptotic range."""
 LEAST_POINTS = 4
 SPREADS = (0.1, 0.2, 0.4)
-"""Spreads of slopes between neighbors about a range's own slope: the first that some range keeps to."""
+"""Allowed spreads of the slopes between neighbors about a range's own slope; the first one that some range meets is
+used."""
 
 
 def observed_order(steps: Sequence[float], errors: Sequence[float], floor: float = 1e-12) -> float | None:
     """Least-squares slope of log(error) over log(step) in the asymptotic range; None where there is none.
 
-    ``steps`` [s] and relative ``errors`` belong together; ``floor`` is the error below which rounding or the
-    reference rules. The asymptotic range is the longest run of neighboring points, below LARGEST_ERROR and above the
-    floor, whose slopes from point to point all lie close to the run's own (SPREADS). It reaches down to the smallest
-    step, or to the one before: a straight piece that bends below is no order.
+    ``steps`` [s] and relative ``errors`` belong together; ``floor``: the error below which rounding or the reference
+    dominates. The asymptotic range is the longest run of neighboring points, below LARGEST_ERROR and above the floor,
+    whose slopes from point to point all lie close to the run's own (SPREADS). It must include the smallest step or the
+    one next to it: a straight piece that bends below is no order.
     """
     usable = sorted(
         (log(h), log(e))
@@ -36,7 +37,7 @@ def observed_order(steps: Sequence[float], errors: Sequence[float], floor: float
 
 
 def _slope(points: Sequence[tuple[float, float]]) -> float:
-    """Least-squares slope; NaN where all points stand at one place."""
+    """Least-squares slope of points (x, y); NaN where all have the same x."""
     mean_x = sum(x for x, _ in points) / len(points)
     mean_y = sum(y for _, y in points) / len(points)
     spread = sum((x - mean_x) ** 2 for x, _ in points)

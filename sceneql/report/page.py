@@ -1,4 +1,4 @@
-"""A report as one static HTML page: text, tables and plots, all in the one file."""
+"""Reports as single static HTML pages with text, tables and plots."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sceneql.files import refuse_unwritable, try_folder, whole
 from sceneql.graph import SimulationGraph
 
 EXTENSIONS = ("csv", "html", "json", "png", "svg")
-"""Formats of all files of reports."""
+"""Extensions of all files of reports."""
 
 TEMPLATE = """\
 <!doctype html>
@@ -50,7 +50,7 @@ TEMPLATE = """\
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A table of texts, each with the class it is colored by, or none."""
+    """A table of texts, each with its CSS class or ""."""
 
     caption: str
     head: Sequence[str]
@@ -73,10 +73,10 @@ def write_page(
 
 
 def file_names(graph: SimulationGraph, kind: str, output: Path | None) -> Path:
-    """The files' path without extension: ``<scene>.<kind>`` in a folder, or what the user named.
+    """The files' path without extension: ``<scene>.<kind>`` in a folder, or as the user named it.
 
-    To be asked for before anything is run: raises OSError where none can be written, and Unsuitable where names are too
-    long or those of files that the script reads.
+    To be called before anything is run. Raises OSError where the files cannot be written, and Unsuitable where names
+    are too long or those of files that the script reads.
     """
     stem = (output or Path()) / f"{graph.name}.{kind}" if output is None or output.is_dir() else output
     try_folder(stem.parent)
@@ -86,5 +86,5 @@ def file_names(graph: SimulationGraph, kind: str, output: Path | None) -> Path:
 
 
 def beside(stem: Path, extension: str) -> Path:
-    """A file of the report: ``scene.bench`` and ``csv`` make ``scene.bench.csv``; it ends in one of `EXTENSIONS`."""
+    """The path of a file of the report: ``scene.bench`` and ``csv`` make ``scene.bench.csv``; one of `EXTENSIONS`."""
     return stem.with_name(f"{stem.name}.{extension}")

@@ -20,16 +20,18 @@ if TYPE_CHECKING:
 
 MARKS = "osD^vP*X<>"
 COLORS = {"stable": "#8fd0a8", "inaccurate": "#f3d06b", "failed": "#c8553d", "skipped": "#e4e4e4"}
-"""Colors of the classes of runs, which differ in lightness, too."""
+"""Colors of the outcomes of runs, which differ in lightness, too."""
 DOTS = 150
-"""Pixels of a PNG along an inch."""
+"""Resolution of PNGs [dots per inch]."""
+PLAIN = 1e-3, 1e4
+"""Numbers between these are written without powers of ten."""
 SMALLEST = 1e-17
 """Smallest change that is drawn."""
 
 
 @contextmanager
 def figure_at(path: Path, size: tuple[float, float]) -> Iterator[Any]:
-    """A figure that is written as SVG, and as PNG beside it, when the block ends."""
+    """Context manager: a figure that is written as SVG, and as PNG beside it, when the block ends."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
@@ -49,16 +51,17 @@ def as_png(svg: Path) -> Path:
 
 
 def both(plots: Sequence[tuple[str, Path]]) -> list[Path]:
-    """The files of plots by caption: of each its SVG and its PNG."""
+    """The files of plots (caption, SVG): each SVG and its PNG."""
     return [path for _, svg in plots for path in (svg, as_png(svg))]
 
 
 def error_against_time(
     path: Path, title: str, rows: Sequence[Measurement], orders: Mapping[tuple[str, str], float | None]
 ) -> None:
-    """Write an SVG with a panel an island: relative error over run time [s], a line a solver, its order at its end.
+    """Write an SVG with a panel for each island: relative error over run time [s], a line for each solver.
 
-    ``orders`` by (island, solver); failed runs are counted there. Bands reach to the median of repeated runs.
+    The label at a line's end tells the order, from ``orders`` by (island, solver), and the number of failed runs. Bands
+    reach to the median of repeated runs.
     """
     _errors(path, title, rows, orders, "run time [s]", lambda row: row.seconds, lambda row: row.median)
 
@@ -66,7 +69,7 @@ def error_against_time(
 def error_against_step(
     path: Path, title: str, rows: Sequence[Measurement], orders: Mapping[tuple[str, str], float | None], end: float
 ) -> None:
-    """The same over the mean step [s]: the slope is the order."""
+    """As `error_against_time` over the mean step [s]: the slope is the order."""
     _errors(path, title, rows, orders, "mean step [s]", lambda row: end / row.steps)
 
 
@@ -101,7 +104,7 @@ def _errors(
 
 
 def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Sequence[MeshRun]) -> None:
-    """Write an SVG: wrong pixels and depth error of rays over run time [s], errors of each mesh over its cells [m]."""
+    """Write an SVG: wrong pixels and depth error of rays over run time [s]; errors of each mesh over cell size [m]."""
     named = list(dict.fromkeys(mesh.name for mesh in meshes))
     with figure_at(path, (9.0, 4.2 * (2 + len(named)))) as figure:
         for k, label in enumerate(("share of wrong pixels (none: a tenth of one)", "mean error of depth [m]")):
@@ -132,10 +135,10 @@ def surface_errors(path: Path, title: str, rays: Sequence[RayRun], meshes: Seque
 def study_errors(
     path: Path, title: str, label: str, rows: Mapping[str, Sequence[tuple[float, float, float, float]]]
 ) -> None:
-    """Write an SVG of a study: errors over run time [s], and over the number that is swept, if any.
+    """Write an SVG of a study: errors over run time [s], and over the swept number, if any.
 
     ``rows``: by the other values, (number, error, seconds, median of repeats) of each run that reached its end;
-    ``label``: the number's.
+    ``label``: that of the number.
     """
     numbered = any(math.isfinite(number) for runs in rows.values() for number, *_ in runs)
     with figure_at(path, (9.0, 9.6 if numbered else 4.8)) as figure:
@@ -156,7 +159,7 @@ def study_errors(
 
 
 def panel(figure: Any, count: int, k: int) -> Any:
-    """Axes of panel ``k`` of ``count``, with a cycle of colors for as many solvers."""
+    """Axes of panel ``k`` of ``count``, with a color cycle for many solvers."""
     from matplotlib import colormaps
 
     axes = figure.add_subplot(count, 1, k + 1)
@@ -165,23 +168,32 @@ def panel(figure: Any, count: int, k: int) -> Any:
 
 
 def logarithmic(axes: Any) -> None:
-    """Logarithmic scales on both axes; within two decades the lower one, which has room, is labeled at 1, 2 and 5."""
+    """Logarithmic scales on both axes; within two decades the x axis is labeled at 1, 2 and 5."""
     from matplotlib.ticker import LogFormatterSciNotation, LogLocator
 
+    class Plain(LogFormatterSciNotation):
+        """Numbers as they are where all of the axis has few digits: 20, not 2 x 10^1."""
+
+        def __call__(self, x: float, pos: Any = None) -> str:
+            text: str = super().__call__(x, pos)
+            low, high = axes.xaxis.get_view_interval()
+            return f"{x:g}" if text and PLAIN[0] <= low and high <= PLAIN[1] else text
+
     axes.set(xscale="log", yscale="log")
+    axes.xaxis.set_major_formatter(Plain())
     axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
-    axes.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(2.0, 2.0)))
+    axes.xaxis.set_minor_formatter(Plain(minor_thresholds=(2.0, 2.0)))
     axes.grid(True, which="major", alpha=0.3)
 
 
 def legend(solver: str, order: float | None, failed: int) -> str:
-    """``rk4, order 4.0, 2 failed``."""
+    """Legend text of a solver: ``rk4, order 4.0, 2 failed``."""
     parts = [solver, "no order seen" if order is None else f"order {order:.1f}"]
     return ", ".join([*parts, f"{failed} failed"] if failed else parts)
 
 
 def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
-    """Write an SVG with a panel an island: relative change of energy over simulation time [s], a line a solver."""
+    """Write an SVG with a panel for each island: relative change of energy over time [s], a line for each solver."""
     islands = list(dict.fromkeys(drift.island for drift in drifts))
     with figure_at(path, (9.0, 4.8 * len(islands))) as figure:
         for k, island in enumerate(islands):
@@ -197,14 +209,14 @@ def drift_against_time(path: Path, title: str, drifts: Sequence[Drift]) -> None:
 
 
 def _tick(value: float) -> str:
-    """A number in three digits, or as many as it has before its point: 0.0316, 12.5, 4670."""
+    """A number in three digits, or in as many as stand before its point: 0.0316, 12.5, 4670."""
     return f"{value:.0f}" if 1e3 <= value < 1e6 else f"{value:.3g}"
 
 
 def stability_map(path: Path, title: str, label: str, cells: Sequence[Cell]) -> None:
-    """Write an SVG with a panel an island: a row a solver, a column a value swept over, colored by the outcome.
+    """Write an SVG with a panel for each island: a row for each solver, a column for each value, colored by outcome.
 
-    A cell shows the power of ten of its error; a bar stands where the step passes the bound known before the run.
+    A cell shows the power of ten of its error; a bar stands where the step exceeds the bound known before the run.
     """
     from matplotlib.patches import Patch, Rectangle
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def _panels(figure: Any, title: str, rows: Sequence[Any]) -> Any:
-    """A panel an island, and its rows."""
+    """(axes, rows) of a panel for each island."""
     islands = list(dict.fromkeys(row.island for row in rows))
     for k, island in enumerate(islands):
         axes = panel(figure, len(islands), k)

@@ -1,7 +1,7 @@
-"""A progress bar with what is being done, or without a terminal lines on long runs; it raises interrupts that got lost.
+"""A progress bar with the present activity, or lines on long runs without a terminal; raises interrupts that got lost.
 
-Without a terminal there is a line a minute of what has been done for long and how far that is, else, after 1, 2, 4, ...
-minutes, one of how many frames there are, and about how long they will take.
+Without a terminal there is a line a minute on an activity that takes long and the progress so far; otherwise, after 1,
+2, 4, ... minutes, one with the number of frames and the remaining time.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
 PATIENCE = 0.3
-"""Seconds before it is drawn: what is done by then needs none."""
+"""Time before the bar is drawn [s]; short tasks need none."""
 LINES, LONG = 60.0, 30.0
-"""Seconds between lines where there is no terminal, each of what has been done for longer than so many seconds."""
+"""Time between lines without a terminal, and age from which on an activity is told [s]."""
 
 
 @contextmanager
 def bar(title: str) -> Iterator[Callable[[int, int], None]]:
-    """A function of (done, total) that draws a bar on standard error while the block runs.
+    """Context manager: a function (done, total) that draws a bar on standard error while the block runs.
 
     It raises KeyboardInterrupt for a signal that was lost in a callback of a C library (`interrupts.raised`). An error
-    for want of that callback's result becomes the interrupt, too.
+    caused by that callback's missing result is replaced by the interrupt, too.
     """
     with raised() as lost, _drawn(title) as draw:
 
@@ -93,7 +93,7 @@ def _lines(title: str) -> Iterator[Callable[[int, int], None]]:
 
 
 class _Shown:
-    """The bar itself, and what the program is doing beside it; the library's thread draws both, also between steps."""
+    """The bar and the present activity beside it, both also drawn between steps by the library's thread."""
 
     def __init__(self, title: str) -> None:
         self._title = title
@@ -101,7 +101,7 @@ class _Shown:
         self._steps: tuple[int, int | None] = (0, None)
 
     def appear(self) -> None:
-        """Draw it from now on."""
+        """Draw the bar from now on."""
         from rich.console import Console
         from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn
         from rich.progress import TimeRemainingColumn as Remaining
@@ -119,7 +119,7 @@ class _Shown:
         self._progress = progress
 
     def step(self, done: int, total: int) -> None:
-        """So many of all are done."""
+        """Set the number of steps done, and of all."""
         self._steps = done, total
         if self._progress is not None:
             self._progress.update(self._progress.task_ids[0], completed=done, total=total)

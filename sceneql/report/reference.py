@@ -1,4 +1,4 @@
-"""References of a benchmark: the script's exact numbers, or a far tighter run by another method."""
+"""References of benchmarks: the script's exact numbers, or a far more accurate run by another method."""
 
 from __future__ import annotations
 
@@ -26,14 +26,15 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
 
 TOLERANCES = ((1e-13, 1e-12), (1e-10, 1e-9), (1e-7, 1e-6))
-"""Of the reference and of a second run, whose difference bounds its error; where these fail, the next pair is taken."""
+"""Tolerances of the reference and of a second run, whose difference estimates its error; the next pair is used where
+these fail."""
 METHODS = ("dop853", "dopri5", "radau")
-"""Our own methods for references, the first that reaches the end."""
+"""Our own methods for references; the first one that reaches the end is used."""
 MOST_CALLS = 200_000
-"""Most evaluations of the rate by scipy's method: each goes through Python."""
+"""Largest number of evaluations of the rate by scipy's method: each goes through Python."""
 ROUNDING = 1e-14
 CONSTANT = 1e-9
-"""Range of a number, relative to it, up to which it counts as constant."""
+"""Range of a quantity, relative to its size, up to which it counts as constant."""
 
 
 class _TooManyCalls(Exception):
@@ -49,11 +50,12 @@ def reference(
     most_calls: int = MOST_CALLS,
     methods: Sequence[str] = METHODS,
 ) -> Reference:
-    """The exact numbers that the script expects at the end, where these are enough to determine the state.
+    """The reference by exact numbers that the script expects at the end, where these determine the state.
 
-    Enough are as many as the island has positions and other states that are not velocities; a single number may hide an
-    error (a turning point hides one in time). Else a run at a far tighter tolerance by another method, which is
-    compared with what exact numbers there are. Raises RunFailure or LimitRefused where none reaches the end.
+    Else by a run. They do where they are as many as the island's positions and other states except velocities; a single
+    number may hide an error (a turning point hides one in time). Otherwise the reference is a run at a far tighter
+    tolerance by another method, which is compared with the available exact numbers. Raises RunFailure or LimitRefused
+    where no method reaches the end.
     """
     words = [word for word in methods if word in catalogue.words("solvers")]
     own = {word: cast(type[Solver], catalogue.load("solvers", word)).model_validate({}) for word in words}
@@ -98,7 +100,7 @@ def _by_runs(
     most_calls: int,
     seen: Sequence[tuple[float, Floats]],
 ) -> Reference:
-    """A reference by our own runs, or by scipy's DOP853 where that is quick enough and the rate is all that acts."""
+    """A reference by our own runs, or by scipy's DOP853 where that is fast enough and nothing acts besides the rate."""
     tight = tolerances[0]
     moment, march = fine
     end, other = _end(march), _end(coarse)
@@ -134,7 +136,7 @@ def _by_runs(
 
 
 def _unknowns(island: IslandRun) -> int:
-    """Number of states, velocities and counters of energy left out."""
+    """Number of states of an island without velocities and tallies of energy."""
     partner = island.march.system.partner
     bodies = sum(bodies is not None for bodies in island.bodies.values())
     return int(_own(island).sum()) - int((partner >= 0).sum()) - bodies
@@ -151,7 +153,7 @@ def _tells_the_end(expect: Expect, island: Island) -> bool:
 
 
 def _value(expr: Expr, moment: Instant) -> Floats:
-    """An expression of an expectation at the end of a run."""
+    """The value of an expectation's expression at the end of a run."""
     import numpy as np
 
     times = [moment.time]
@@ -165,7 +167,7 @@ def _value(expr: Expr, moment: Instant) -> Floats:
 def _ranges(
     exact: Mapping[str, Expect], graph: SimulationGraph, island: Island, own: Mapping[str, Solver]
 ) -> dict[str, float]:
-    """The range over the run of what each expectation expects at its end, by the first method that reaches the end."""
+    """The range over the run of each expected quantity, by the first method that reaches the end."""
     import numpy as np
 
     from sceneql.run.run import Run
@@ -185,9 +187,9 @@ def _ranges(
 
 
 def _exact_error(expectations: Mapping[str, Expect], moment: Instant, ranges: Mapping[str, float]) -> tuple[float, str]:
-    """Largest error of the expected numbers, each relative to its range over the run, and the expectation's name.
+    """Largest error of the expected numbers, each relative to its range over the run, and that expectation's name.
 
-    What keeps its value has no range: its error is relative to that value.
+    A constant quantity has no range: its error is relative to its value.
     """
     import numpy as np
 
@@ -203,7 +205,7 @@ def _exact_error(expectations: Mapping[str, Expect], moment: Instant, ranges: Ma
 
 
 def _by_dop853(island: IslandRun, tolerance: float, most_calls: int) -> Floats:
-    """The end of an island by scipy's DOP853 (Hairer, Norsett & Wanner 1993, II.5) on the compiled rate."""
+    """The final state of an island by scipy's DOP853 (Hairer, Norsett & Wanner 1993, II.5) on the compiled rate."""
     import numpy as np
     from scipy.integrate import solve_ivp
 
@@ -231,7 +233,7 @@ def _end(island: IslandRun) -> Floats:
 
 
 def _own(island: IslandRun) -> NDArray[bool_]:
-    """Which entries of the state are the models' (contacts keep their records there, too)."""
+    """(n,) bool: entries of the state that belong to models (contacts keep records there, too)."""
     import numpy as np
 
     own = np.zeros(len(island.march.system.y), dtype=bool)

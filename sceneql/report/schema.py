@@ -10,7 +10,8 @@ from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import NONE, OPTIONAL
-from sceneql.compiler.read import FALSE, TRUE
+from sceneql.compiler.likely import TRUE
+from sceneql.compiler.read import FALSE
 from sceneql.kinds import Formula, Interpolated, Kind, Refers, SceneFile, Settings, written_name
 from sceneql.report.manual import type_text
 
@@ -129,7 +130,7 @@ def _type(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
 
 
 def _copied(annotation: Any, catalogue: Catalogue) -> dict[str, Any]:
-    """A value of a map or list: a group of fields there may be repeated."""
+    """The schema of a value of a map or list, where a group of fields may be repeated."""
     rule = _type(annotation, catalogue)
     if "properties" not in rule:
         return rule

@@ -1,4 +1,4 @@
-"""`stability`: which solver survives where, as a map over decades of a step, a stiffness or any value of the script."""
+"""`stability`: a map of which solver is stable where, over decades of a step, a stiffness or any other value."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from sceneql.report.stability_map import Cell, Load, cells, default_sweep
 from sceneql.report.stability_sweep import Sweep, parse_sweep
 
 LARGEST_ERROR = 0.1
-"""A run with a larger relative error at its end is called inaccurate: the eye sees it."""
+"""Relative error at the end above which a run is called inaccurate: it is visible."""
 LETTERS = {"stable": ".", "inaccurate": "~", "failed": "X", "skipped": " "}
 
 
@@ -32,10 +32,10 @@ def stability(
     largest_error: float = LARGEST_ERROR,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> str:
-    """Run every solver at every value of a sweep; write the map as CSV, JSON, SVG and HTML; the report as text.
+    """Run every solver at every value of a sweep and write the map as CSV, JSON, SVG and HTML; returns the report text.
 
-    ``load`` gives the scene with more patches; ``sweep`` is text as in `parse_sweep`, by default steps around the
-    bound; ``output`` a folder, or the files' path without extension. Raises Unsuitable, ScriptError.
+    ``load(patches)``: the scene with more patches; ``sweep``: text as in `parse_sweep`, by default steps around the
+    bound; ``output``: a folder, or the files' path without extension. Raises Unsuitable, ScriptError.
     """
     graph = load(())
     if not graph.islands:

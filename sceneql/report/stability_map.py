@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 TOLERANCES = ((1e-10, 1e-9), (1e-7, 1e-6))
 """Tolerances of the references, tight enough to see inaccurate runs."""
 RAN_AWAY = 10.0
-"""A run with a larger relative error at its end has failed, even where all its numbers are finite."""
+"""Relative error at the end above which a run counts as failed, even where all its numbers are finite."""
 METHODS = ("radau", "dopri5")
 """Methods of the references: a sweep over stiffness needs one for stiff systems."""
 LONGEST = 5.0
-"""Seconds of compiled steps after which a run is given up."""
+"""Time of compiled steps [s] after which a run is given up."""
 MOST_CALLS = 10_000
-"""Most evaluations of a rate by a reference that is not our own."""
+"""Largest number of evaluations of a rate by a reference method that is not our own."""
 SLOWEST = 1e-3
-"""Middle of the steps tried where no rate depends on the state, in parts of the run's end."""
+"""Middle of the steps tried, relative to the run's end, where no rate depends on the state."""
 
 Load = Callable[[Sequence[str]], SimulationGraph]
-"""The scene with more patches."""
+"""Function that loads the scene with more patches."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +48,11 @@ class Cell:
     """Step [s], or relative tolerance."""
     outcome: Literal["stable", "inaccurate", "failed", "skipped"]
     why: str
-    """Reason of a failed or skipped run; of an inaccurate one, in what."""
+    """Reason of a failed or skipped run; the worst quantity of an inaccurate one."""
     error: float
     """Relative error at the end; NaN where there is none."""
     bound: float
-    """Largest stable step [s] by the spectrum at the start; inf: any; NaN: not asked for (many states)."""
+    """Largest stable step [s] by the spectrum at the start; inf: any; NaN: not computed (many states)."""
     seconds: float
     """Run time of the compiled steps."""
     steps: int
@@ -64,7 +64,7 @@ class Cell:
 
 
 def default_sweep(graph: SimulationGraph) -> Sweep:
-    """Steps around the one that belongs to the fastest mode of all islands at their starts."""
+    """Steps around that of the fastest mode of all islands at their starts."""
     from sceneql.march.modes import modes_of
     from sceneql.run.run import Run
 
@@ -81,7 +81,7 @@ def cells(
     largest_error: float,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Iterator[Cell]:
-    """Every solver that applies at every value, on every island. Raises ScriptError for an invalid value."""
+    """Runs by every applicable solver at every value, on every island. Raises ScriptError for an invalid value."""
     truths: dict[tuple[str, ...], Reference] = {}
     for done, value in enumerate(sweep.values):
         progress(done, len(sweep.values))

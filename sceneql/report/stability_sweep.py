@@ -10,9 +10,9 @@ from sceneql.failure import Unsuitable
 
 SHAPE = re.compile(rf"\s*([^=\s]+)\s*=\s*({NUMBER})\s*\.\.\s*({NUMBER})\s*(.*?)\s*")
 FEWEST = 30
-"""Fewest steps of a run in which an instability may show."""
+"""Smallest number of steps in which an instability may show."""
 OWN = ("step", "tolerance")
-"""Names for the solvers' own settings [s], [1]; anything else is a path of the script as for ``--set``."""
+"""Names of the solvers' own settings ([s] and [1]); any other is a path of the script as for ``--set``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class Sweep:
 
     @property
     def own(self) -> bool:
-        """Whether it is a setting of the solvers."""
+        """Whether the swept value is a setting of the solvers."""
         return self.path in OWN
 
     @property
@@ -39,9 +39,9 @@ class Sweep:
 
 
 def parse_sweep(text: str, points: int = POINTS) -> Sweep:
-    """``define.k=1e0..1e12 N/m`` in so many points, evenly spaced in the logarithm (linearly where 0 lies between).
+    """A sweep from a text such as ``define.k=1e0..1e12 N/m``.
 
-    Raises Unsuitable.
+    The values are evenly spaced in the logarithm, or linearly where 0 lies between. Raises Unsuitable.
     """
     match = SHAPE.fullmatch(text)
     if match is None:
@@ -57,6 +57,6 @@ def parse_sweep(text: str, points: int = POINTS) -> Sweep:
 
 
 def around(bound: float, end: float) -> Sweep:
-    """Steps over two decades to both sides of a bound [s], of which at least FEWEST fit into the run up to ``end``."""
+    """Steps over two decades on both sides of a bound [s], such that at least FEWEST fit into the run up to ``end``."""
     values = [float(f"{bound * 10 ** (k / 4):.4g}") for k in range(-8, 9)]
     return Sweep("step", tuple(value for value in values if value * FEWEST <= end) or (end / FEWEST,), "s")

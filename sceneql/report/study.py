@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 REPEATS = 3
 ENOUGH_SECONDS = 0.5
-"""Seconds of all repeats of a run, after which there is no further one."""
+"""Time of all repeats of a run [s] after which there is no further one."""
 LONGEST = 20.0
-"""Seconds of compiled steps after which a reference is given up."""
+"""Time of compiled steps [s] after which a reference is given up."""
 
 Load = Callable[[Sequence[Patch]], SimulationGraph]
-"""The scene, nothing left out, with more patches."""
+"""Function that loads the unpruned scene with more patches."""
 Outcome = Literal["stable", "inaccurate", "failed", "skipped"]
 
 
@@ -47,11 +47,11 @@ class Trial:
     error: float
     """Relative error; NaN where there is none."""
     seconds: float
-    """Least run time of the compiled steps of all repeats, compilation left out."""
+    """Least run time of the compiled steps over all repeats [s], without compilation."""
     steps: int
     evaluations: int
     measured: dict[str, float]
-    """The other measurements of the study, SI."""
+    """The other measurements of the study, in SI."""
     median: float = math.nan
     """Median run time of the repeats [s]."""
 
@@ -72,7 +72,7 @@ def trials(load: Load, name: str, progress: Callable[[int, int], None] = lambda 
 
 
 def _reference(load: Load, name: str, patches: Sequence[Patch]) -> tuple[Any, str]:
-    """The reference value of a study (None: there is none), and why there is none."""
+    """The reference value of a study (None: there is none), and the reason why there is none."""
     graph = load(patches)
     study = graph.settings.studies[name]
     try:
@@ -117,7 +117,7 @@ def _trial(graph: SimulationGraph, name: str, values: tuple[Tried, ...], truth: 
 
 
 def _run(graph: SimulationGraph, values: Sequence[Value], longest: float) -> tuple[list[float], Series, Run, float]:
-    """Times, samples of values at them, the run, and its run time [s]. Raises TooLong beyond ``longest`` [s]."""
+    """Times, samples of values at these, the run, and its run time [s]. Raises TooLong beyond ``longest`` [s]."""
     from sceneql.run.run import Run
 
     times, run = moments_of(graph, values), Run(graph)

@@ -25,10 +25,10 @@ def study(
     output: Path | None = None,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> str:
-    """Run a study; write it as CSV, JSON, SVG and HTML; the report as text.
+    """Run a study and write it as CSV, JSON, SVG and HTML; returns the report text.
 
-    ``name``: which, where the script has several; ``output`` a folder, or the files' path without extension. Raises
-    Unsuitable, ScriptError.
+    ``name``: that of the study, where the script has several; ``output``: a folder, or the files' path without
+    extension. Raises Unsuitable, ScriptError.
     """
     graph = load(())
     known = graph.settings.studies
@@ -70,7 +70,7 @@ LEGEND = (
 
 
 def _rest(trial: Trial, numbered: int | None) -> str:
-    """The values of a run without the numbered one."""
+    """Label of a run's values without the numbered one."""
     return ", ".join(value.label for k, value in enumerate(trial.values) if k != numbered) or "script"
 
 
@@ -83,7 +83,7 @@ def _by_rest(found: Sequence[Trial], numbered: int | None) -> dict[str, list[tup
 
 
 def _cell(name: str, trial: Trial, numbered: int) -> Cell:
-    """A run for the map, in which no step is compared with a bound."""
+    """A run as a cell of the stability map, without a stability bound."""
     number, nan = trial.values[numbered].number, math.nan
     error, rest = trial.error, _rest(trial, numbered)
     return Cell(name, rest, number, True, nan, trial.outcome, trial.why, error, nan, trial.seconds, trial.steps)

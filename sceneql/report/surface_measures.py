@@ -21,33 +21,33 @@ if TYPE_CHECKING:
 
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
 REFERENCE = 1e-14
-"""Tolerance of the certified intervals that these are compared with: finer than all that it judges."""
+"""Tolerance of the reference by certified intervals, finer than all that it judges."""
 SAMPLES = tuple(2**k for k in range(4, 13))
 CELLS = (16, 32, 64, 128, 256)
-"""Cells along the longest side of an object's box."""
+"""Numbers of cells along the longest side of an object's box."""
 SIZES = 4_000, 16_000, 64_000
-"""Most pixels of the pictures: a larger picture is made smaller."""
+"""Largest numbers of pixels of the pictures: larger pictures are reduced."""
 REPEATS = 3
 ENOUGH_SECONDS = 3.0
-"""Seconds of a run after which it is not repeated, and no finer one is made."""
+"""Time of a run [s] after which it is not repeated, and no finer one is made."""
 
 
 @dataclass(frozen=True, slots=True)
 class RayRun:
-    """A picture's implicit surfaces, by one ray through the center of each pixel."""
+    """A run on a picture's implicit surfaces, by one ray through the center of each pixel."""
 
     renderer: str
     width: int
     height: int
     """Height of the picture [pixels]."""
     setting: float
-    """Tolerance of `trace`, samples on a ray of `march`."""
+    """Tolerance of `trace`, or number of samples on a ray of `march`."""
     seconds: float
-    """Median, without compilation; what `trace` prepares for a frame counts."""
+    """Median run time [s] without compilation, with `trace`'s preparation of a frame."""
     pixels: int
-    """Pixels where the reference meets a surface."""
+    """Number of pixels where the reference meets a surface."""
     wrong: int
-    """Pixels that meet a surface where the reference does not, or vice versa, or are undecided."""
+    """Number of pixels that meet a surface where the reference does not, or vice versa, or are undecided."""
     undecided: int
     depth_error: float
     """[m] Mean over the pixels that meet a surface in both."""
@@ -65,7 +65,7 @@ class MeshRun:
     cell: float
     """[m]"""
     seconds: float
-    """Median, without compilation."""
+    """Median run time [s] without compilation."""
     triangles: int
     volume: float
     """[m^3]"""
@@ -76,12 +76,12 @@ class MeshRun:
     hausdorff: float
     """[m] Hausdorff distance from the finest mesh; NaN for that itself."""
     volume_error: float
-    """Relative, against the value extrapolated from the two finest."""
+    """Error relative to the value extrapolated from the two finest meshes."""
     area_error: float
 
 
 def pictured(graph: SimulationGraph) -> list[SeenFrame]:
-    """The first picture of a scene with its implicit objects alone, in rising sizes; none where it has none.
+    """The first picture of a scene with only its implicit objects, in increasing sizes; empty where it has none.
 
     Raises RunFailure where all of them are empty.
     """
@@ -117,7 +117,7 @@ def _there(graph: SimulationGraph, shapes: list[Implicit]) -> None:
 
 
 def timed(work: Callable[[], Any]) -> tuple[Any, float]:
-    """The result of some work, and the median of its seconds; the caller has run it once before."""
+    """The result of ``work``, and its median time [s]; the caller has run it once before."""
     times: list[float] = []
     while len(times) < REPEATS and sum(times) < ENOUGH_SECONDS:
         started = time.perf_counter()
@@ -127,7 +127,7 @@ def timed(work: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def ray_runs(frame: SeenFrame) -> Iterator[RayRun]:
-    """`trace` over tolerances and `march` over samples, against the certified intervals alone.
+    """Runs of `trace` over tolerances and of `march` over samples, against certified intervals alone.
 
     Objects that `trace` intersects in packets at its usual tolerance are intersected in packets here.
     """
@@ -173,7 +173,7 @@ def compared(renderer: str, setting: float, seconds: float, found: Probe, truth:
 
 
 def mesh_runs(shape: Implicit) -> list[MeshRun]:
-    """A solid polygonised by smaller and smaller cells, as by the command ``mesh``."""
+    """Meshes of a solid with decreasing cells, as by the command ``mesh``."""
     from sceneql.mesh.cubes.refine import refined
     from sceneql.mesh.distance import hausdorff
     from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume

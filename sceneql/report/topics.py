@@ -1,4 +1,4 @@
-"""Topics of the manual: what the language has besides words, a page each, in the folder `topics` beside this file.
+"""Topics of the manual: the language besides its words, a page each, in the folder `topics` beside this file.
 
 The examples are whole scripts, indented by four spaces; the suite checks each of them.
 """
@@ -16,13 +16,13 @@ FOLDER = Path(__file__).parent / "topics"
 
 
 def topics() -> dict[str, str]:
-    """Every topic with what its title says of it."""
+    """Every topic with the description in its title."""
     pages = {path.stem: path for path in sorted(FOLDER.glob("*.md"))}
     return {name: _title(path.read_text(encoding="utf-8")) for name, path in pages.items()}
 
 
 def page(topic: str, **tables: Iterable[str]) -> str:
-    """The page of a topic; a line ``{units}`` of it stands for the lines of that table."""
+    """The page of a topic; a line ``{units}`` in it is replaced by the lines of that table."""
     text = (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
     for name, lines in {**tables, "units": _units()}.items():
         text = text.replace(f"\n{{{name}}}\n", "\n" + "\n".join(lines) + "\n")
@@ -30,7 +30,7 @@ def page(topic: str, **tables: Iterable[str]) -> str:
 
 
 def example(text: str) -> str:
-    """The script of a page; empty where it has none."""
+    """The script in a page; empty where it has none."""
     lines = [line for line in text.splitlines() if line.startswith("    ") or not line]
     return "\n".join(line[4:] for line in lines).strip("\n")
 

@@ -1,4 +1,4 @@
-"""What a script leaves unsaid, as the entries that would say it: to paste behind its own, and then to change."""
+"""The default parts that a script leaves unsaid, as entries to paste behind its own, and then to change."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from sceneql.kinds.word import written_name
 
 
 def unsaid(graph: SimulationGraph) -> str:
-    """The parts that the defaults added, as YAML by family; empty where the script says all.
+    """The default parts as YAML by family; empty where the script leaves none unsaid.
 
-    A family that the script has already stands in comments, to be put into its own: a key cannot be given twice.
+    A family that the script already has stands in comments, to be put into its own: a key cannot be given twice.
     """
     families: dict[str, list[str]] = {}
     for task in _settled(graph).tasks.values():
@@ -28,7 +28,7 @@ def unsaid(graph: SimulationGraph) -> str:
 
 
 def _settled(graph: SimulationGraph) -> SimulationGraph:
-    """The graph as its run has it: with the floor under what stands lower."""
+    """The graph as its run has it: with the floor lowered under the objects."""
     from sceneql.run.grounded import grounded
     from sceneql.run.run import Run
 
@@ -56,4 +56,4 @@ def _written(kind: Kind, name: str) -> str | None:
         return None
     if isinstance(value, Value) and value != type(kind).model_validate({}).__dict__.get(name) and value.constant:
         return f"{float(value.number())!r} m"
-    return default
+    return value if isinstance(value, str) else default

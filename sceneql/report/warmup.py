@@ -1,4 +1,4 @@
-"""Compile everything once: importing a kernel file compiles its kernels for their explicit signatures."""
+"""Compilation of everything: importing a kernel file compiles its kernels for their explicit signatures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sceneql.compiled.kernels import compiled
 
 
 def warmup() -> str:
-    """Import every kernel file of the package; what was compiled and how long it took."""
+    """Import every kernel file of the package; returns how many functions were compiled and how long it took."""
     for package in (sceneql, renderers):
         root = Path(str(package.__file__)).parent
         for path in sorted(root.rglob("*_kernels.py")):

@@ -1,4 +1,4 @@
-"""Runs of one island by one solver setting after another: the error at the end, and the run time."""
+"""Work-precision runs of an island: the error at the end and the run time, for a series of solver settings."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
 
 STEPS = tuple(2**k for k in range(4, 19))
-"""Numbers of steps of fixed-step runs, until ENOUGH_SECONDS or the reference's own error is reached."""
+"""Numbers of steps of fixed-step runs, until a run takes ENOUGH_SECONDS or reaches the reference's own error."""
 TOLERANCES = tuple(10.0**-k for k in range(2, 14))
 TOLERANCE = 1e-6
 """Tolerance where the script's own solver has none."""
 REPEATS = 5
 ENOUGH_SECONDS = 0.5
-"""Seconds of a run after which no smaller step is tried, and of all repeats of a run."""
+"""Time of a run [s] after which no smaller step is tried, and of all repeats of a run."""
 LONGEST = 20.0
-"""Seconds of compiled steps after which a run is given up."""
+"""Time of compiled steps [s] after which a run is given up."""
 LOOKS = 128
-"""Instants at which a run is looked at for the ranges of its quantities."""
+"""Number of instants at which states are recorded for the ranges of quantities."""
 FIRST_LOOK, NEXT_LOOK = 1e-9, 1.25
-"""Part of a run after which its time is first checked, and the factor to each further check."""
+"""Fraction of a run after which its time is first checked, and the factor to each further check."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,16 +48,16 @@ class Measurement:
     setting: float
     """Step [s], or relative tolerance."""
     outcome: str
-    """``ok``, or why the run failed."""
+    """``ok``, or the reason why the run failed."""
     error: float
     """Relative error at the end; NaN where the run failed."""
     seconds: float
-    """Least run time of the compiled steps of all repeats, compilation left out; NaN where the run failed."""
+    """Least run time [s] of the compiled steps over all repeats, without compilation; NaN where the run failed."""
     steps: int
     evaluations: int
     """Evaluations of dy/dt."""
     worst: str = ""
-    """The quantity with that error."""
+    """Description of the quantity with that error."""
     median: float = math.nan
     """Median run time of the repeats [s]."""
 
@@ -69,7 +69,7 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """The end that runs are compared with."""
+    """The reference with which the ends of runs are compared."""
 
     error: Callable[[Instant, IslandRun], float]
     """Relative error of a run that has reached the end."""
@@ -79,18 +79,19 @@ class Reference:
     worst: Callable[[Instant, IslandRun], str] = lambda moment, march: ""
     """The quantity with that error."""
     damped: Callable[[IslandRun, Sequence[tuple[float, Floats]]], str] = lambda march, looks: ""
-    """What has come to rest in a run, by its states at instants [s], and still moves in the reference; else empty."""
+    """Function of a run and its states at instants [s]: text on a quantity at rest that still moves in the reference;
+    or ""."""
 
 
 class TooLong(RunFailure):
-    """A run that was given up for its run time."""
+    """A run that was given up because of its run time."""
 
 
 def solvers(graph: SimulationGraph, island: Island, catalogue: Catalogue) -> dict[str, Solver]:
     """The solvers that can march an island, at the script's step or tolerance.
 
-    They are the words that require no other field, and the script's own. A word whose steps are those of another is
-    left out, `auto` first.
+    These are the words that require no other field, and the script's own. Of words with equal methods only one is kept,
+    `auto` only if no other has them.
     """
     step, tolerance = settings(graph, island)
     given = {"step": step, "tolerance": tolerance}
@@ -127,7 +128,7 @@ def known(chosen: Sequence[str], catalogue: Catalogue) -> None:
 
 
 def among(chosen: Sequence[str], applying: dict[str, dict[str, Solver]]) -> dict[str, dict[str, Solver]]:
-    """Those that are chosen, or all where none is, by the islands' titles. Raises Unsuitable where none applies."""
+    """By the islands' titles, the chosen solvers, or all where none is chosen. Raises Unsuitable where none applies."""
     kept = {
         title: {word: solver for word, solver in found.items() if word in chosen or not chosen}
         for title, found in applying.items()
@@ -152,7 +153,7 @@ def at(solver: Solver, setting: float) -> Solver:
 
 
 def setting_of(solver: Solver) -> float:
-    """Its step [s] or tolerance, as it is asked for: a method may be given a part of the latter."""
+    """A solver's step [s] or tolerance as requested: its method may use a fraction of the latter."""
     control = solver.stepper().control
     if not control.adaptive:
         return control.first_step
@@ -161,12 +162,12 @@ def setting_of(solver: Solver) -> float:
 
 
 def adaptive(solver: Solver) -> bool:
-    """Whether its steps follow a tolerance."""
+    """Whether a solver's steps follow a tolerance."""
     return solver.stepper().control.adaptive
 
 
 def prepared(graph: SimulationGraph, island: Island, solver: Solver) -> SimulationGraph:
-    """The scene with one island alone, by another solver."""
+    """The scene with only one island, by another solver."""
     task = replace(graph.tasks[island.solver], kind=solver)
     return replace(graph, tasks={**graph.tasks, island.solver: task}, islands=(island,))
 
@@ -180,7 +181,7 @@ def run(
 ) -> tuple[Instant, IslandRun]:
     """An island's run by a solver, at its end. Raises RunFailure; TooLong after ``longest`` [s] of compiled steps.
 
-    ``seen`` is filled with the states at LOOKS instants of the run, and at its start.
+    ``seen`` is filled with (time [s], state) at the start and at LOOKS evenly spaced instants or more.
     """
     from sceneql.run.run import Run
 
@@ -210,7 +211,7 @@ def _looks(end: float) -> Iterator[float]:
 def measurements(
     graph: SimulationGraph, island: Island, word: str, solver: Solver, reference: Reference
 ) -> Iterator[Measurement]:
-    """Runs of one solver from coarse to fine, until its error is the reference's own or the runs take long."""
+    """Runs of one solver from coarse to fine, until its error reaches the reference's own or runs take long."""
     end = graph.settings.clock.end
     for setting in TOLERANCES if adaptive(solver) else [end / steps for steps in STEPS]:
         found = measure(graph, island, word, at(solver, setting), reference, REPEATS)
@@ -222,7 +223,7 @@ def measurements(
 def measure(
     graph: SimulationGraph, island: Island, word: str, solver: Solver, reference: Reference, repeats: int = 1
 ) -> Measurement:
-    """One setting of one solver: its error, and the least and the median time of its runs."""
+    """A measurement of one solver setting: its error, and the least and median time of its runs."""
     title, setting = ", ".join(island.models), setting_of(solver)
     times: list[float] = []
     try:
@@ -252,7 +253,7 @@ def measure(
 
 
 def warm(graph: SimulationGraph, island: Island, solver: Solver) -> float:
-    """Compile all that a run needs before it is timed; returns the seconds that this took."""
+    """Compile all that a run needs before it is timed; returns the compilation time [s]."""
     from sceneql.compiled.kernels import compiled
 
     before = compiled.seconds

@@ -1,4 +1,4 @@
-"""Cameras that stand inside a solid, for a warning: they see its inside, and nothing of the scene."""
+"""Warnings of cameras that stand inside a solid, where they see its inside and nothing of the scene."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from sceneql.graph import Task
 
 WOUND = 0.99
-"""Part of the full solid angle from which a mesh is around a point: open sheets are around none."""
+"""Fraction of the full solid angle from which on a mesh encloses a point: open sheets enclose none."""
 
 Within = dict[tuple[str, str], tuple[float, float]]
-"""By camera and part the first and the last instant [s] of a picture at which the one stood inside the other."""
+"""By camera and part, the first and the last instant [s] of a picture at which the camera stood inside the part."""
 
 
 def look(frame: SeenFrame, camera: str, within: Within) -> None:
-    """Record which solids of a frame its camera stands in. What light passes through may be looked through."""
+    """Record in ``within`` the solids of a frame in which its camera stands; transparent ones may be looked through."""
     if frame.view.orthographic:
         return
     eye = np.array(frame.view.origin)
@@ -36,7 +36,7 @@ def look(frame: SeenFrame, camera: str, within: Within) -> None:
 
 @np.errstate(over="ignore", invalid="ignore")
 def around(shape: Shape, eye: Floats) -> bool:
-    """Whether a bounded solid is around a point (3,) [m]."""
+    """Whether a bounded solid encloses a point (3,) [m]."""
     match shape:
         case Points(centers=centers, radii=radii, soft=None):
             return bool((((centers - eye) ** 2).sum(axis=1) < radii**2).any())
@@ -59,13 +59,13 @@ def around(shape: Shape, eye: Floats) -> bool:
 
 
 def _boxed(shape: Shape, eye: Floats) -> bool:
-    """Whether the box of a bounded shape holds a point."""
+    """Whether the finite bounding box of a shape contains a point."""
     low, high = box_of(shape)
     return bool(np.isfinite([low, high]).all() and (low < eye).all() and (eye < high).all())
 
 
 def _turns(corners: Floats) -> float:
-    """How often triangles (m, 3, 3) wind around the origin, by their solid angles (Van Oosterom & Strackee 1983)."""
+    """|Winding number| of triangles (m, 3, 3) about the origin, by solid angles (Van Oosterom & Strackee 1983)."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     la, lb, lc = (np.linalg.norm(one, axis=1) for one in (a, b, c))
     up = (a * np.cross(b, c)).sum(axis=1)

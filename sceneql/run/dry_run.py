@@ -1,4 +1,4 @@
-"""The dry run, before the film's own: bounds of all that is drawn, and values over the whole run."""
+"""The dry run before the film's own run: bounds of all that is drawn, and values over the whole run."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 BOUNDS_EVERY = 12
 BOUNDS_STEPS = 48
-"""Instants at which bounds are taken; values are taken BOUNDS_EVERY times as often."""
+"""Number of instants at which bounds are taken; values are taken BOUNDS_EVERY times as often."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,16 +40,16 @@ class DryRun:
     """Low and high corner (3,) of each part over the run; None: not asked for."""
     times: list[float]
     rows: Mapping[int, Floats]
-    """(times, ...) values of the subexpressions that were asked for, by their id."""
+    """(times, ...) values of the requested subexpressions, by their id."""
     leaving: Sequence[Leaving] = ()
-    """What leaves for good."""
+    """The moving things that leave the scene for good."""
     staying: tuple[Floats, Floats] | None = None
     """Low and high corner (3,) of everything else; None where nothing leaves."""
     outlines: Mapping[str, Floats] = field(default_factory=dict)
-    """Points (n, 3) of each part over the run, whose hull holds it (outlines.outline)."""
+    """Points (n, 3) [m] by part, whose hull encloses the part over the run (outlines.outline)."""
 
     def course(self, expr: Expr, until: float) -> tuple[Floats, Floats]:
-        """Times (n,) [s] up to ``until``, and values (n, ...) of an expression of `asked`."""
+        """Times (n,) [s] up to ``until``, and values (n, ...) of an expression that was requested (`asked`)."""
         count = max(1, int(np.searchsorted(self.times, until, side="right")))
         series: dict[Symbol | Link, Any] = {}
 
@@ -69,7 +69,7 @@ class DryRun:
 
 
 def pieces(expr: Expr) -> Iterator[Expr]:
-    """The largest subexpressions without operations on time, numbers left out."""
+    """The largest subexpressions without operations over the run, constants left out."""
     over_time = holders(lambda node: isinstance(node, Call) and OPERATIONS[node.op].series, expr)
     varying = holders(lambda node: isinstance(node, Symbol | Link), expr)
     stack, known = [expr], set[int]()
@@ -84,23 +84,23 @@ def pieces(expr: Expr) -> Iterator[Expr]:
 
 
 def asked(graph: SimulationGraph) -> dict[tuple[str, int], Value]:
-    """The values whose course overlays ask for, by the overlay's name and the value's index."""
+    """The values whose course overlays request, by the overlay's name and the value's index."""
     overlays = [(name, task.kind) for name, task in graph.tasks.items() if isinstance(task.kind, Overlay)]
     return {(name, k): value for name, kind in overlays for k, value in enumerate((*kind.courses(), *kind.fades()))}
 
 
 def asked_by_objects(start: Instant) -> dict[str, list[Value]]:
-    """Likewise what objects ask for as a run's start tells, by their names."""
+    """The values whose course objects request, found from the run's start, by the objects' names."""
     objects = {name: task.kind for name, task in start.run.graph.tasks.items() if isinstance(task.kind, Object)}
     return {name: values for name, kind in objects.items() if (values := list(kind.courses(start)))}
 
 
 @doing("running ahead of the film")
 def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
-    """March a fresh run to its end for what cameras and overlays need of the whole run.
+    """March a fresh run to its end for bounds and values over the whole run, as cameras and overlays need them.
 
-    Bounds are those of the start alone where the run fails, since a state that explodes fits into no picture. A part
-    that reads nothing at the start that can vary is looked at there alone.
+    Where the run fails, the bounds are those of the start alone, since a state that explodes fits into no picture. The
+    shapes of a part that reads nothing varying at the start are evaluated only there.
     """
     graph = ahead.graph
     wanted = over_time = list(asked(graph).values())
@@ -117,7 +117,7 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     every = 1
 
     def instants() -> Iterator[float]:
-        """The start, then as many as what is asked for takes, which the start tells."""
+        """The start, then the instants of the rest; their number is known from the start."""
         yield 0.0
         steps = BOUNDS_STEPS * every
         yield from (graph.settings.clock.end * k / steps for k in range(1, steps + 1))
@@ -164,12 +164,12 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
 
 
 def _often(clock: Clock) -> int:
-    """How many instants there are for one at which bounds are taken, so that there are about as many as frames."""
+    """Instants for each one at which bounds are taken, so that there are about as many as frames."""
     return min(BOUNDS_EVERY, math.ceil(len(clock.frames(clock.fps)) / BOUNDS_STEPS))
 
 
 def _widened(bounds: Bounds, shapes: Mapping[str, Sequence[Shape]], holders: Mapping[str, str]) -> Bounds:
-    """Bounds widened by the shapes of some parts at a moment."""
+    """The bounds, widened by the shapes of some parts at a moment."""
     result = dict(bounds)
     for name, drawn in shapes.items():
         for shape in drawn:

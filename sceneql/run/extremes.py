@@ -1,4 +1,4 @@
-"""A watch over fields that leave the range which an exact solution keeps, by an error of the solver."""
+"""Monitor of fields that leave the range in which an exact solution stays, by an error of the solver."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from sceneql.system import Grid
 
 BEYOND = 0.01
-"""Excess beyond the range, in parts of its width, from which a field gives a warning."""
+"""Excess beyond the range, relative to its width, from which on there is a warning."""
 
 
 @dataclass
 class Extremes:
-    """How far a field has left the range that it should keep."""
+    """The excess of a field beyond the range in which it should stay."""
 
     model: str
     output: str
@@ -60,7 +60,7 @@ class Extremes:
 
 
 def watched(island: IslandRun) -> list[Extremes]:
-    """The fields that have a range to keep, of an island without forces."""
+    """The fields of an island that have a range to keep; none where forces act on the island."""
     if island.island.forces:
         return []
     fields = island.assembly.fields.items()

@@ -1,4 +1,4 @@
-"""A watch over masses that fall into objects which nothing has them hit: a contact that was forgotten."""
+"""Monitor of masses that fall into objects without a contact between them: a contact that was forgotten."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun
 
 MOST_MASSES, MOST_OBJECTS = 64, 16
-"""Masses of a model, evenly among all, and objects that are looked at."""
+"""Largest number of masses of a model, evenly chosen, and of objects that are monitored."""
 HELP = "write `contacts: [collision]`, or in one list `forces: [gravity, collision]`"
 
 
 @dataclass
 class Falling:
-    """A model that weight acts on and no contact, and the objects that it may fall into."""
+    """A model with weight and without contact, and the objects that it may fall into."""
 
     model: str
     island: IslandRun
     others: list[str]
     outside: dict[tuple[int, str], bool] = field(default_factory=dict)
-    """Whether a mass began outside of an object."""
+    """Whether a mass, by number, started outside of an object, by name."""
     found: Diagnostic | None = None
 
     def look(self, moment: Instant) -> None:
-        """Note the first mass that is inside an object and was not at the start."""
+        """Record the first mass that is inside an object and started outside."""
         from sceneql.bodies.bodies import positions
 
         bodies = self.island.bodies[self.model]
@@ -56,7 +56,10 @@ class Falling:
 
 
 def _heights(name: str, places: Floats, moment: Instant) -> list[float]:
-    """The field of an object at points (n, 3): negative inside; 1 outside of its box, and where it has none."""
+    """The implicit field of an object at points (n, 3), negative inside.
+
+    1 outside of its box, and where it is undefined.
+    """
     import numpy as np
 
     from sceneql.field.tape.builder import TapeBuilder
@@ -75,7 +78,7 @@ def _heights(name: str, places: Floats, moment: Instant) -> list[float]:
 
 
 def falling(island: IslandRun) -> list[Falling]:
-    """The models of an island that have weight and no contact, where there is something to fall into."""
+    """The models of an island with weight and without contact, where there are objects to fall into."""
     tasks = island.graph.tasks
     weighed = [model for force, model in island.island.forces if cast(Interaction, tasks[force].kind).weighs]
     hit = {model for _, model, _ in island.island.contacts}
@@ -85,7 +88,7 @@ def falling(island: IslandRun) -> list[Falling]:
 
 
 def _standing(tasks: Mapping[str, Task]) -> list[str]:
-    """The objects with an inside that are seen, are no parts of others, and that no model moves or is made of."""
+    """The visible objects with an inside that are no parts of others and that no model moves or is made of."""
     objects = {name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}
     aside = {ref.name for kind in objects.values() for ref in kind.members()}
     aside |= {need for task in tasks.values() if isinstance(task.kind, Model) for need in task.needs}

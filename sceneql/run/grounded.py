@@ -1,4 +1,4 @@
-"""The default floor that contacts hit, put under the objects that stand lower: how low takes their shapes."""
+"""The default floor for contacts, lowered under the lowest object; how low is known from the objects' shapes."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from sceneql.run.instant import Instant
 
 ROUNDS = 4
-"""How often the lowest part of a formula's box is sampled anew."""
+"""Number of times that the lowest part of an implicit solid's box is sampled anew."""
 PART = 1 / 8
-"""That part's height, of the box's."""
+"""Height of that part, relative to the box."""
 
 
 def grounded(graph: SimulationGraph, start: Callable[[], Instant]) -> SimulationGraph:
-    """The graph with its default floor under every object at ``start`` that contacts touch and no model moves."""
+    """The graph, its default floor lowered under each object at ``start`` that contacts touch and no model moves."""
     touched = sorted({name for island in graph.islands for _, _, others in island.contacts for name in others})
     floors = [name for name in touched if graph.tasks[name].span is None]
     if len(floors) != 1:
@@ -48,7 +48,7 @@ def grounded(graph: SimulationGraph, start: Callable[[], Instant]) -> Simulation
 
 
 def _lowest(shape: Shape) -> float:
-    """The height [m] of a shape's lowest point, infinite where it has none; that of a formula as samples see it."""
+    """Height [m] of a shape's lowest point, infinite where it has none; for an implicit solid by sampling."""
     low, high = surface_box(shape)
     if isinstance(shape, Implicit):
         for _ in range(ROUNDS):

@@ -1,4 +1,4 @@
-"""History: values that parts of a picture remember, at evenly spaced instants of the physics, not at frames."""
+"""History of values that parts of a picture remember, at evenly spaced instants of the physics, not at frames."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 SLACK = 1e-9
 MOST, SHORTEST = 20_000, 1e-12
-"""Most instants that are kept of a value, and their least distance [s]: where more are asked for, they are coarser."""
+"""Largest number of instants that are kept of a value, and their least distance [s]; a finer request is coarsened."""
 
 
 class History:
-    """The values that objects and cameras among some parts ask to be remembered (`remembers`), as far back as asked."""
+    """The values that objects and cameras among ``tasks`` ask for by `remembers`, kept as far back as asked."""
 
     def __init__(self, tasks: Iterable[Task]) -> None:
         asked = [
@@ -35,18 +35,18 @@ class History:
         self._seen = dict.fromkeys(self._kept, -1)
 
     def due(self, time: float) -> Iterator[tuple[float, list[int]]]:
-        """Instants [s] after the last, up to ``time``, at which values are due, with the keys of these values."""
+        """Instants [s] after the previous call, up to ``time``, at which values are due, with these values' keys."""
         wanted: dict[float, list[int]] = {}
         for key, (_, keep, every, _) in self._kept.items():
             first = max(self._seen[key] + 1, math.ceil((time - keep) / every - SLACK))
-            last = max(math.floor(time / every - SLACK), 0 if time > 0.0 else -1)  # the start, however long it is kept
+            last = max(math.floor(time / every - SLACK), 0 if time > 0.0 else -1)  # the start is due in any case
             for k in range(first, last + 1):
                 wanted.setdefault(k * every, []).append(key)
             self._seen[key] = max(last, self._seen[key])
         yield from sorted(wanted.items())
 
     def see(self, moment: Moment, keys: Iterable[int]) -> None:
-        """Record the values of these keys at an instant. Raises RunFailure where one has none then."""
+        """Record the values of some keys at an instant. Raises RunFailure where a value is undefined then."""
         for key in keys:
             value, keep, every, kept = self._kept[key]
             task = self._of[key]
@@ -56,6 +56,6 @@ class History:
                 kept.popleft()
 
     def past(self, value: Remembered, now: float) -> list[tuple[float, Any]]:
-        """(time [s], value) of the instants remembered up to ``now``, oldest first, for a value that was asked for."""
+        """(time [s], value) at the remembered instants up to ``now``, oldest first, for a value that was asked for."""
         _, keep, _, kept = self._kept[id(value)]
         return [(time, seen) for time, seen in kept if now - keep - SLACK <= time <= now]

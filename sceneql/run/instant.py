@@ -1,4 +1,4 @@
-"""One instant of a run: values, states, shapes and surfaces of its parts then."""
+"""One instant of a run: values, states, shapes and surfaces of its parts at that time."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 IDENTITY = np.eye(3, 4)
 BURST = 100.0
-"""A variant that comes to be so many times as large as another has burst: the framing of all does without it."""
+"""Size ratio to the smallest variant from which on a variant counts as burst: the common framing leaves it out."""
 T = TypeVar("T")
 
 
@@ -36,33 +36,30 @@ class Framed(Protocol):
     """A run as cameras see it: the boxes of its parts over the film."""
 
     def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
-        """Low and high corner (3,) of each part over the whole run."""
+        """Low and high corner (3,) [m] of each part over the whole run."""
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats] | None:
-        """Low and high corner (3,) of what the parts draw over the whole run; for no names of all that stays.
-
-        None where nothing is drawn.
-        """
+        """Low and high corner (3,) [m] of what the parts draw over the whole run; without names of all that stays."""
 
     def outline(self) -> Floats:
-        """Points (n, 3) whose hull holds what stays of all that is drawn, over the whole run."""
+        """Points (n, 3) [m] whose hull encloses all that is drawn and stays, over the whole run."""
 
 
 class Running(Framed, Protocol):
-    """What instants need of their run, and a run ahead of it (run.Run)."""
+    """The run of an instant, as it uses it (run.Run), or a run ahead of that."""
 
     graph: SimulationGraph
     ahead: bool
-    """Whether it is the run ahead."""
+    """Whether it is a dry run ahead of the film."""
     orders: dict[str, int]
-    """All that any picture draws, in order."""
+    """The parts that any picture draws, with their order."""
     palette: dict[str, int]
-    """For every object and model its place in the row of default colors."""
+    """Index of every object and model in the list of default colors."""
     holders: dict[str, str]
-    """For every object inside another the one that draws it."""
+    """For every object inside another one, the name of the object that draws it."""
     history: History
     kept: dict[str, tuple[Hashable, Any]]
-    """By part the last that was made for it (Instant.kept), and of what."""
+    """By part the key and the result of the latest `Instant.kept`."""
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order."""
@@ -71,7 +68,7 @@ class Running(Framed, Protocol):
         """The latest state of a model that is solved, or of a contact."""
 
     def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
-        """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""
+        """Times (n,) [s] and a requested value at each (n, ...), up to an instant, in a variant of the script."""
 
 
 @dataclass
@@ -82,16 +79,16 @@ class Instant:
     now: float
     """[s]"""
     asked: bool = False
-    """Whether it was asked for what may be otherwise at another instant."""
+    """Whether something was read that may differ at another instant."""
     beside: tuple[Framed, ...] = ()
-    """The runs of variants that are seen in panels beside this one: one framing serves all."""
+    """The runs of variants shown in panels beside this one, which share one framing."""
     room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    """What overlays take of the picture's left, top, right and bottom, in parts of its width and height."""
+    """Margins covered by overlays at the picture's left, top, right and bottom, as parts of width and height."""
     shown: tuple[Drawn, ...] | None = None
-    """The shapes of the picture that is being made, once they are known."""
+    """The shapes of the picture in the making; None before they are known."""
     _states: dict[str, ModelState] = field(default_factory=dict)
     _values: dict[tuple[str, str], tuple[Any, bool]] = field(default_factory=dict)
-    """Formulas of other parts that values read, by part and output, and whether each varies: worked out once."""
+    """Cache of formulas of other parts, by part and output: the value, and whether it varies."""
 
     @property
     def time(self) -> float:
@@ -132,11 +129,11 @@ class Instant:
         return self.read(node.task, node.output)
 
     def past(self, value: Remembered) -> list[tuple[float, Any]]:
-        """(time [s], value) at the instants before that a part asked for, oldest first."""
+        """Remembered values (time [s], value) at instants before, oldest first."""
         return self.run.history.past(value, self.time)
 
     def course(self, value: Value, variant: str | None = None, until: float = math.inf) -> tuple[Floats, Floats]:
-        """Times (n,) [s] and a value that was asked for at each of them (n, ...)."""
+        """Times (n,) [s] and values (n, ...) of a value that was requested."""
         if self.run.ahead:
             return np.array([self.time]), np.array([self.measure(value)])
         return self.run.course(value, variant, until)
@@ -169,7 +166,10 @@ class Instant:
         return cast(Object, self.run.graph.tasks[ref.name].kind)
 
     def surface(self, name: str, material: Ref | None, color: Value | None) -> Surface:
-        """The surface of a drawn part: its material's, its color in place of that, a default by order."""
+        """The surface of a drawn part: its material's, recolored where ``color`` is given.
+
+        Without a material a default color.
+        """
         from sceneql.frame import Surface
 
         with self.coloring():
@@ -181,19 +181,19 @@ class Instant:
 
     @contextmanager
     def coloring(self) -> Iterator[None]:
-        """What is read inside gives colors: by it nothing that is drawn leaves the bounds that it has."""
+        """Context manager: values read inside only color shapes, so they cannot move a shape out of its bounds."""
         before = self.asked
         yield
         self.asked = before
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of what the parts draw over the whole film; for no names of all that stays."""
+        """Low and high corner (3,) [m] of what the parts draw over the whole film; without names of all that stays."""
         asked = list(names)
         boxes = self._of_panels(lambda run: None if (box := run.bounds(asked)) is None else np.array(box))
         return (boxes.min(axis=0), boxes.max(axis=0)) if len(boxes) else (np.full(3, -1.0), np.full(3, 1.0))
 
     def around(self) -> tuple[Floats, Floats] | None:
-        """Low and high corner (3,) around what the picture shows now; None where that is not known or nothing."""
+        """Low and high corner (3,) [m] around what the picture shows now; None where that is not known or nothing."""
         from sceneql.shapes.world_boxes import box_of
 
         boxes = np.array([box_of(shape) for shape in self.shown or ()]).reshape(-1, 2, 3)
@@ -201,12 +201,12 @@ class Instant:
         return (boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)) if len(boxes) else None
 
     def outline(self) -> Floats:
-        """Points (n, 3) whose hull holds all that stays over the whole film, in all panels."""
+        """Points (n, 3) [m] whose hull encloses all that stays over the whole film, in all panels."""
         points = self._of_panels(lambda run: run.outline())
         return points if len(points) else np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
 
     def _of_panels(self, points_of: Callable[[Framed], Floats | None]) -> Floats:
-        """Points (n, 3) of this run and of those beside it, but for variants that burst."""
+        """Points (n, 3) of this run and of those beside it, except variants that burst."""
         runs = () if self.run.ahead else (self.run, *self.beside)
         found = [points for run in runs if (points := points_of(run)) is not None and len(points)]
         sizes = [float(np.linalg.norm(points.max(axis=0) - points.min(axis=0))) for points in found]
@@ -215,7 +215,7 @@ class Instant:
         return np.concatenate([np.zeros((0, 3)), *kept])
 
     def place(self, name: str) -> Floats:
-        """(3, 4) map to the world from the coordinates that an object's position is told in."""
+        """(3, 4) map to the world from the coordinates of an object's position."""
         holder = self.run.holders.get(name)
         if holder is None:
             return IDENTITY
@@ -223,7 +223,7 @@ class Instant:
         return compose(self.place(holder), kind.local(self)) if isinstance(kind, Placed) else self.place(holder)
 
     def kept(self, name: str, key: Hashable, make: Callable[[], T]) -> T:
-        """What was made for a part when it was last asked for, where the key was equal, else what is made now."""
+        """The cached result for a part where its key equals ``key``; else ``make()``, which replaces it."""
         known, made = self.run.kept.get(name, (None, None))
         if made is None or known != key:
             made = make()
@@ -231,7 +231,10 @@ class Instant:
         return cast(T, made)
 
     def lower(self, names: Iterable[str], *, fields: bool = False) -> list[Drawn]:
-        """The shapes of the named objects and models; with ``fields`` objects with an inside by their fields."""
+        """The shapes of the named objects and models.
+
+        With ``fields`` objects that have an inside come as implicit fields.
+        """
         shapes: list[Drawn] = []
         for name in names:
             task = self.run.graph.tasks[name]
@@ -248,5 +251,5 @@ class Instant:
 
     @cached_property
     def everything(self) -> list[str]:
-        """All that any picture draws, in order."""
+        """Names of the parts that any picture draws, in order."""
         return list(self.run.orders)

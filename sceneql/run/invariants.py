@@ -1,4 +1,4 @@
-"""Quantities that a script's equations should conserve, observed between frames."""
+"""Quantities that a script's equations conserve, monitored between frames."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 
 LOST = 1 / 3
-"""Change, in parts of the largest terms of the quantity's sum, that gives a warning: one term grown by half."""
+"""Change, relative to the largest terms of the quantity's sum, from which on there is a warning."""
 
 
 @dataclass
 class Invariant:
-    """One output of a model that an exact solution would keep."""
+    """An output of a model that an exact solution would conserve."""
 
     model: str
     output: str
@@ -33,9 +33,9 @@ class Invariant:
     drifts: list[float] = field(default_factory=list)
     """Relative change since the start at each time (absolute for a start at 0); the largest of several copies."""
     lost: float = 0.0
-    """Largest change in parts of the largest terms so far: a scale for quantities that start at 0, too."""
+    """Largest change relative to the largest terms so far, which works for quantities that start at 0, too."""
     lost_at: float = 0.0
-    """When that was [s]."""
+    """Time of that change [s]."""
     _start: Any = None
     _size: Any = 0.0
 

@@ -1,4 +1,4 @@
-"""What leaves a scene for good: the few of many that the default camera lets go, so that the others stay large."""
+"""Detection of the few moving things that leave a scene for good; the default camera then frames the others."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ if TYPE_CHECKING:
     from sceneql.graph import Task
 
 MOST = 4096
-"""Moving things that are followed; where there are more, none is let go."""
+"""Largest number of moving things that are followed; where there are more, none is let go."""
 FEW = 0.25
-"""Largest share of the moving things that is let go: where more leave, they are what the film is about."""
+"""Largest fraction of the moving things that is let go: where more leave, they are what the film is about."""
 NEAR = 1.0
-"""Width of the margin around the scene, in its diagonals, outside which a thing has left it."""
+"""Width of the margin around the scene, relative to the scene's diagonal, outside which a thing has left it."""
 LAST = 0.25
-"""Part of the film, at its end, during which it must have gone farther and farther away."""
+"""Final fraction of the film during which the distance of a leaving thing must grow all the time."""
 
 
 @dataclass
 class Paths:
-    """The boxes of moving things at instants of the film: a sphere of many, or a whole part, is one thing."""
+    """The boxes of moving things at instants of the film. A thing is one sphere of many, or a whole part."""
 
     times: list[float] = field(default_factory=list)
     boxes: dict[str, list[tuple[Floats, Floats]]] = field(default_factory=dict)
-    """By part, at each instant low and high corners (things, 3)."""
+    """By part, for each instant, low and high corners (things, 3) [m]."""
 
     def see(self, time: float, shapes: Mapping[str, Sequence[Shape]]) -> None:
         """Record the shapes of the parts at an instant [s]."""
@@ -57,11 +57,11 @@ class Leaving:
     of: int
     """All things of the part."""
     time: float
-    """When the first has left [s]."""
+    """Time at which the first has left [s]."""
 
 
 def warning(one: Leaving, tasks: Mapping[str, Task]) -> Diagnostic:
-    """The warning for what leaves of a part."""
+    """The warning for the things of a part that leave."""
     verb = "leaves" if one.count == 1 else "leave"
     what = f"'{one.part}' leaves" if one.of == 1 else f"{one.count} of the {one.of} masses of '{one.part}' {verb}"
     them = "it" if one.count == 1 else "them"
@@ -71,9 +71,10 @@ def warning(one: Leaving, tasks: Mapping[str, Task]) -> Diagnostic:
 
 
 def let_go(paths: Paths, still: Iterable[tuple[Floats, Floats]]) -> tuple[list[Leaving], tuple[Floats, Floats] | None]:
-    """What leaves, and the box of everything else over the film, with what leaves as long as it is near.
+    """The things that leave, and the box (low, high) of everything else over the film.
 
-    ``still``: boxes of what does not move. The box is None where nothing leaves.
+    The box includes the leaving things while they are near; it is None where nothing leaves. ``still``: boxes of parts
+    that do not move.
     """
     steady = {
         name: boxes

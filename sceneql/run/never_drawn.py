@@ -1,4 +1,4 @@
-"""Solids and surfaces of a film that never had anything to draw, for a warning."""
+"""Warnings of solids and surfaces that were empty in every picture of a film."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 NO_SHAPE = "it was empty whenever it was drawn"
 LITTLE = 0.01
-"""Share of a solid's bounds in which rounding may decide without a word."""
+"""Fraction of a solid's bounds in which rounding may decide the sign of its field without a warning."""
 
 
 def solids(names: Iterable[str], tasks: Mapping[str, Task]) -> Iterator[str]:
-    """Names of the solids among the parts and their members: those drawn by their fields, or by triangles of these."""
+    """Names of the solids among parts and their members: those drawn by implicit fields, or by triangles of these."""
     for name in names:
         kind = tasks[name].kind
         if not isinstance(kind, Object):
@@ -34,9 +34,9 @@ def _hidden(task: Task) -> bool:
 
 
 def look(shapes: Sequence[Shape], asked: Iterable[str], tasks: Mapping[str, Task], present: dict[str, str]) -> None:
-    """Record in ``present`` by name why nothing of a solid was drawn, or "" once something may have been.
+    """Record in ``present``, by name, why nothing of a solid was drawn, or "" once something may have been.
 
-    ``asked`` are the solids (as of ``solids``) that the shapes were made of.
+    ``asked``: the solids (by ``solids``) that the shapes were made of.
     """
     from sceneql.frame import Implicit
 
@@ -63,7 +63,7 @@ def look(shapes: Sequence[Shape], asked: Iterable[str], tasks: Mapping[str, Task
 
 
 def look_at_rounding(shapes: Sequence[Shape], rounded: dict[str, float]) -> None:
-    """Record in ``rounded`` by name in which share of its bounds rounding decides what is inside a solid."""
+    """Record in ``rounded``, by name, the fraction of an implicit solid's bounds in which rounding decides its sign."""
     from sceneql.frame import Implicit
 
     for shape in shapes:
@@ -74,7 +74,7 @@ def look_at_rounding(shapes: Sequence[Shape], rounded: dict[str, float]) -> None
 
 
 def decided_by_rounding(rounded: Mapping[str, float], tasks: Mapping[str, Task]) -> Iterator[Diagnostic]:
-    """A warning for each solid of which rounding decides more than a little, at its formula where it has one."""
+    """A warning for each solid with more than LITTLE of such bounds, at its formula where it has one."""
     for name, share in rounded.items():
         if share > LITTLE:
             formula = getattr(tasks[name].kind, "field", None)

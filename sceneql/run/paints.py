@@ -1,4 +1,4 @@
-"""A watch over colors that vary in time: none reflects more light than falls on it, nor less than none."""
+"""Monitor of time-varying colors: no surface reflects more light than falls on it, or less than none."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from sceneql.kinds import Moment
 
 ROUNDING = 1e-6
-"""How far beyond 0 and 1 a component may go by rounding alone: a part of a level of 8 bits."""
+"""Tolerance beyond 0 and 1 of a component, for rounding: a small part of a level of 8 bits."""
 NAMES = ("red", "green", "blue")
 
 
 @dataclass
 class Painted:
-    """A color that varies in time, and when and how it left the range first."""
+    """A color that varies in time, and when and how it first left the range."""
 
     part: str
     field: str

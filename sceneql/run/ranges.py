@@ -1,4 +1,4 @@
-"""Values of models, forces, contacts and solvers that vary in time within a range: checked in every frame."""
+"""Checks, in every frame, of time-varying values of models, forces, contacts and solvers that have a range."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Ranged:
     limits: dict[str, float]
 
     def check(self, moment: Moment) -> None:
-        """Raise RunFailure at the value's line where it is out of its range now; it may be equal to an open bound.
+        """Raise RunFailure at the value's line where it is out of its range now. It may equal an open bound.
 
         (A spring whose stiffness falls to 0 is switched off.)
         """

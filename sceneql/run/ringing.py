@@ -1,4 +1,4 @@
-"""Fixed steps that let a rough field ring: modes that decay fast keep their size and change sign at every step."""
+"""Warnings of fixed steps that let a rough field ring: fast modes keep their size and change sign at every step."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 FAST = 2.0
 """Step times decay rate above which the trapezoidal rule changes signs."""
 CARRIED = 0.5
-"""Part of a mode that remains after a step, from which there is a warning."""
+"""Fraction of a mode left after a step from which on there is a warning."""
 SHOWN = 1e-4
-"""Lag, relative to the field's spread or to the change at its boundary, from which there is a warning."""
+"""Lag, relative to the field's spread or to the change at its boundary, from which on there is a warning."""
 
 
 def ringing(island: IslandRun) -> Diagnostic | None:
-    """A warning where the start has modes that the solver's fixed steps let ring: jumps, or cells at the boundary.
+    """A warning where the start has modes that ring with the solver's fixed steps: jumps, or cells at the boundary.
 
-    Of jumps, the decay rate of the roughest mode is estimated by the rate at the start over the spread of the field,
-    with the bound of the cells (Gershgorin). Source: Rannacher (1984), Numer. Math. 43, 309-327.
+    For jumps, the decay rate of the roughest mode is estimated by the largest rate at the start over the spread of the
+    field, bounded by the cells' conductances (Gershgorin). Source: Rannacher (1984), Numer. Math. 43, 309-327.
     """
     march, grid = island.march, island.march.system.fields.single
     control = march.stepper.control
@@ -60,18 +60,22 @@ def ringing(island: IslandRun) -> Diagnostic | None:
 
 
 def _left(island: IslandRun, step: float, decay: float) -> float:
-    """Part of a mode that decays at ``decay`` [1/s] which a step [s] leaves with its sign turned; 0: it does not."""
+    """Fraction of a mode of decay rate ``decay`` [1/s] that a step [s] leaves with its sign changed.
+
+    0: no change of sign.
+    """
     if step * decay <= FAST:
         return 0.0
     return island.solver.growth(np.array([[-decay]]), np.array([-1]), step)
 
 
 def _lag(island: IslandRun, grid: Grid, spread: float) -> float:
-    """The rate [1/s] at which the cell follows the boundary that lags behind it most at the start; 0: none that shows.
+    """The exchange rate [1/s] of the cell that lags most behind its boundary value at the start; 0: no relevant lag.
 
-    A cell that exchanges s/V (value - c) with a boundary value follows it by value' V/s later. It starts without that
-    lag, so a method without damping turns the difference about at every step. All cells raised by the same amount lose
-    by this exchange alone, which tells s/V; the derivative of the rates by time is s/V value'.
+    A cell that exchanges s/V (value - c) with a boundary value follows it with a lag of value' V/s. It starts without
+    that lag, so a method without damping changes the sign of the difference at every step. s/V is measured by raising
+    all cells by the same amount, which they lose by this exchange alone; s/V value' is the time derivative of the
+    rates.
     """
     march = island.march
     n = int(np.prod(grid.cells.shape))

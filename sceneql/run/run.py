@@ -1,4 +1,4 @@
-"""Graph to moments: the islands march, and the moments asked for are read off, in one pass."""
+"""A run: the islands of a graph march, and the requested moments are read off, in one pass."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 class Run:
     """One run of a graph. ``moments`` may be called once; its moments are valid until the next one is asked for.
 
-    Raises ScriptError with all that keeps its islands from being built. Without ``marching`` there are none. One
-    ``ahead`` of the film knows of the whole run no more than what is now.
+    Raises ScriptError with all errors of building its islands. Without ``marching`` there are no islands. A run
+    ``ahead`` of the film knows of the whole run only the present.
     """
 
     def __init__(self, graph: SimulationGraph, *, marching: bool = True, ahead: bool = False) -> None:
@@ -53,7 +53,7 @@ class Run:
         self._let_go: Sequence[Leaving] = ()
         self._dry_runs: dict[str | None, DryRun] = {}
         self.kept: dict[str, tuple[Hashable, Any]] = {}
-        """By part the last that was made for it (Instant.kept), and of what."""
+        """By part the key and the result of the latest `Instant.kept`."""
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order; times do not decrease. Raises RunFailure."""
@@ -80,13 +80,13 @@ class Run:
         return self.island_of[name].state(name)
 
     def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
-        """Low and high corner (3,) of each part over the whole run."""
+        """Low and high corner (3,) [m] of each part over the whole run."""
         return self._bounded().bounds or {}
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats] | None:
-        """Low and high corner (3,) of what the parts draw over the whole run; None where nothing is drawn.
+        """Low and high corner (3,) [m] of what the parts draw over the whole run; None where nothing is drawn.
 
-        For no names of all that is drawn, but for what leaves for good.
+        Without names: of all that is drawn, except what leaves for good.
         """
         named, seen = list(names), self._bounded()
         if not named and seen.staying is not None:
@@ -99,7 +99,7 @@ class Run:
         return lows.min(axis=0), highs.max(axis=0)
 
     def outline(self) -> Floats:
-        """Points (n, 3) whose hull holds what stays of all that is drawn, over the whole run."""
+        """Points (n, 3) [m] whose hull encloses all that is drawn and stays, over the whole run."""
         seen = self._bounded()
         self._let_go = seen.leaving
         if seen.staying is not None:
@@ -109,17 +109,17 @@ class Run:
         )
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """A warning for what leaves for good, where a camera let it go."""
+        """Warnings of things that leave for good, where a camera let them go."""
         return tuple(warning(one, self.graph.tasks) for one in self._let_go)
 
     def _bounded(self) -> DryRun:
-        """What a run ahead of this one sees, bounds among it."""
+        """The dry run ahead of this run, with bounds; made once."""
         if None not in self._dry_runs or self._dry_runs[None].bounds is None:
             self._dry_runs[None] = dry_run(Run(self.graph, ahead=True))
         return self._dry_runs[None]
 
     def course(self, value: Value, variant: str | None, until: float) -> tuple[Floats, Floats]:
-        """Times (n,) [s] and an asked-for value at each (n, ...), up to an instant, in a variant of the script."""
+        """Times (n,) [s] and a requested value at each (n, ...), up to an instant, in a variant of the script."""
         ahead, mine = self._dry_run(variant), value
         if variant is not None:
             key = next(key for key, one in asked(self.graph).items() if one is value)
@@ -127,7 +127,7 @@ class Run:
         return ahead.course(mine.expr, until)
 
     def _dry_run(self, variant: str | None) -> DryRun:
-        """What a run ahead of the script, or of a variant of it, sees."""
+        """The dry run of the script or of a variant of it; made once."""
         if variant not in self._dry_runs:
             graph = self.graph if variant is None else self.graph.variant(variant)
             self._dry_runs[variant] = dry_run(Run(graph, ahead=True), bounded=False)
@@ -135,7 +135,7 @@ class Run:
 
 
 class IslandRun:
-    """An island on its way: its assembly, its march and its latest state."""
+    """An island in a run: its assembly, its march and its latest state."""
 
     def __init__(self, graph: SimulationGraph, island: Island) -> None:
         from sceneql.compiled.compile_beside import compile_beside
@@ -146,11 +146,15 @@ class IslandRun:
         self.members = {*island.models, *(contact for contact, _, _ in island.contacts), *ties}
         self._now: tuple[float, Floats, Floats] | None = None
         self.notes: list[Diagnostic] = []
-        """What has become of it on its way: warnings of the run."""
+        """Warnings collected during the run."""
         self._make({})
 
     def _make(self, went_on: Mapping[str, ModelState], before: March | None = None, kept: int = 0) -> None:
-        """Assemble the island, and its march; from one that ends ``before``, whose first floats are ``kept``."""
+        """Assemble the island and its march.
+
+        ``before``: a march whose end this one continues; its first ``kept`` floats are taken over. ``went_on``: as in
+        Assembly.
+        """
         from sceneql.compiled.compile_beside import compile_beside
         from sceneql.compiled.numba import lazy_kernels
         from sceneql.march.assembled import blocks_of, models_of
@@ -162,14 +166,14 @@ class IslandRun:
         self.bodies = made.bodies
         self.assembly = made.assembly
         self.assembly.places, self.assembly.points = self._places, self._points
-        if not self.assembly.fields and not island.contacts:  # the solver's step is known before what acts is made
+        if not self.assembly.fields and not island.contacts:  # the solver's step is known before forces are added
             compile_beside((solver.stepper().method.step.partition(":")[0],))
         made.act()
         made.found.raise_errors()
         self.methods = solver.choose(made.facts())
         self.solver = self.methods.solver
         system = self._compiled(self.methods.first)
-        compile_beside(lazy_kernels.modules())  # nobody waits for what may never be called
+        compile_beside(lazy_kernels.modules())  # in the background: kernels that may never be called
         blocks = blocks_of(made, system, self.methods.first)
         try:
             self.march = self._marched(system, blocks, before, kept)
@@ -177,7 +181,10 @@ class IslandRun:
             raise refused.at(graph.tasks[island.solver].span) from None
 
     def _go_on(self, why: GivesWay) -> None:
-        """Assemble the island anew where a contact gives way, and go on from there. Raises RunFailure if it cannot."""
+        """Assemble the island anew where a contact gives way, and continue from there.
+
+        Raises ``why`` if that is impossible.
+        """
         from sceneql.system import ModelState
 
         march, assembly = self.march, self.assembly
@@ -197,7 +204,7 @@ class IslandRun:
         self.notes.append(Diagnostic("gave-way", message, self.graph.tasks[name].span, help, severity="warning"))
 
     def _compiled(self, stepper: Stepper) -> System:
-        """The island laid out for a method, when the kernels of both are compiled."""
+        """The island laid out for a method, after the kernels of both are compiled."""
         from sceneql.compiled.compile_beside import compile_beside
         from sceneql.compiled.generated import function
         from sceneql.island.jacobian import BY_DIFFERENCES
@@ -219,7 +226,7 @@ class IslandRun:
         acting = compile_beside((*solving, *drives, *scales, *modules(system.structure), *events, *dense))
         acting(*solving)
         compile_beside(lazy_first(system.structure))
-        if needs.march is None:  # while the process beside compiles what solves
+        if needs.march is None:  # meanwhile the second process compiles the solver
             driver(system)
             if needs.jacobian:
                 jacobian(system)
@@ -227,7 +234,7 @@ class IslandRun:
         return system
 
     def _marched(self, system: System, blocks: Sequence[Block], before: March | None, kept: int) -> March:
-        """Its march: the method's own, that of blocks of bodies, or the one of all others."""
+        """The march of the island: the method's own class, or BlockMarch, or March."""
         from sceneql.compiled.generated import function
         from sceneql.march.march import March
 
@@ -251,12 +258,12 @@ class IslandRun:
         )
 
     def _places(self, link: Link) -> Any:
-        """Where in the state an output of one of the models stands, for values that read it at stage times."""
+        """Indices into the state of an output of one of the models (Model.places), for values read at stage times."""
         state = self._at_start(link.task)
         return None if state is None else cast(Model, self.graph.tasks[link.task].kind).places(link.output, state)
 
     def _points(self, link: Link) -> Any:
-        """The bodies of a link to a position, which of them, and where on it, for forces that act there."""
+        """The bodies of a link to a position, the number of one, and the point on it (Model.point), for forces."""
         state = self._at_start(link.task)
         if state is None or state.bodies is None:
             return None
@@ -264,7 +271,7 @@ class IslandRun:
         return None if found is None else (state.bodies, *found)
 
     def _at_start(self, name: str) -> ModelState | None:
-        """The state of one of the models at the start; None of any other part, or of one that is not assembled yet."""
+        """The state of one of the models at the start; None for other parts, or before it is assembled."""
         from sceneql.system import ModelState
 
         if name not in self.bodies:
@@ -285,7 +292,7 @@ class IslandRun:
         self._now = (time, y, rate)
 
     def _explained(self, failure: RunFailure) -> RunFailure:
-        """A failure that has no help gets what ails a model in the last good state."""
+        """The failure, with the trouble of a model in the last good state as its help, where it has none."""
         from sceneql.system import ModelState
 
         if type(failure) is not RunFailure or failure.help or not hasattr(self.march, "stopped"):
@@ -300,13 +307,13 @@ class IslandRun:
 
     @property
     def y(self) -> Floats:
-        """Its state at the latest instant."""
+        """(n,) its state at the latest instant."""
         if self._now is None:
             raise RuntimeError("the island has not been marched yet")
         return self._now[1]
 
     def state(self, name: str) -> ModelState:
-        """The view of a model, contact or tie."""
+        """The state at the latest instant as a model, contact or tie sees it."""
         from dataclasses import replace
 
         from sceneql.system import ModelState
@@ -340,12 +347,12 @@ def _built(graph: SimulationGraph, island: Island, found: Diagnostics) -> Island
 
 
 def _orders(graph: SimulationGraph) -> dict[str, int]:
-    """All that any picture draws, in order."""
+    """The parts that any picture draws, with their order."""
     return {name: k for k, name in enumerate(dict.fromkeys(name for of in graph.cameras for name in graph.drawn[of]))}
 
 
 def _holders(graph: SimulationGraph) -> dict[str, str]:
-    """For every object inside another the one that draws it (the first of several)."""
+    """For every object inside another one, the name of the (first) object that draws it."""
     holders: dict[str, str] = {}
     for name, task in graph.tasks.items():
         for ref in task.kind.members() if isinstance(task.kind, Object) else ():
@@ -354,5 +361,5 @@ def _holders(graph: SimulationGraph) -> dict[str, str]:
 
 
 def _palette(graph: SimulationGraph) -> dict[str, int]:
-    """For every object and model its place in the row of default colors, whatever is pruned: by the script's order."""
+    """Index of every object and model in the list of default colors, by the script's order before pruning."""
     return {name: k for k, name in enumerate(graph.palette)}

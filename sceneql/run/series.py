@@ -1,4 +1,4 @@
-"""Expressions over a whole run, evaluated from the values of links at all its times."""
+"""Evaluation of expressions over a whole run, from the values of links at all its times."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ Series = Mapping[Symbol | Link, Any]
 
 
 def plain(expr: Expr) -> bool:
-    """Whether an expression has no operation on time."""
+    """Whether an expression has neither operations over the run nor reductions."""
     calls = (OPERATIONS[node.op] for node in walk(expr) if isinstance(node, Call))
     return not any(operation.series or operation.reduces for operation in calls)
 
 
 def wanted(expr: Expr, when: Sequence[float], times: Sequence[float]) -> Iterator[tuple[Link, Sequence[float]]]:
-    """The links of an expression, each with the times at which its value counts; ``when``: those of the expression."""
+    """The links of an expression, each with the times at which its value is needed.
+
+    ``when``: those of the expression.
+    """
     instants: dict[int, Sequence[float]] = {}
     stack, known = [(expr, when)], set[tuple[int, int]]()
     while stack:
@@ -38,9 +41,9 @@ def wanted(expr: Expr, when: Sequence[float], times: Sequence[float]) -> Iterato
 
 
 def measure(expr: Expr, series: Series, times: list[float]) -> Any:
-    """The value of an expression over series (times, ...); one without an operation on time is read at the end.
+    """The value of an expression over series (times, ...); without an operation over the run, its value at the end.
 
-    The value at an instant after the end of the run is NaN.
+    An `at` after the end of the run gives NaN.
     """
     if plain(expr):
         return evaluate(expr, lambda node: _look_up(node, series)[-1], arrays=True)
@@ -48,10 +51,7 @@ def measure(expr: Expr, series: Series, times: list[float]) -> Any:
 
 
 def course(expr: Expr, series: Series, times: list[float]) -> Any:
-    """Values (times, ...) of an expression at each of the times; a single one where it has one for the whole run.
-
-    Operations over the whole run use the times that are given.
-    """
+    """Values (times, ...) of an expression at each time; a single one where it has one for the whole run."""
     import numpy as np
 
     known: dict[Symbol, Any] = {}
@@ -65,7 +65,7 @@ def course(expr: Expr, series: Series, times: list[float]) -> Any:
         if not isinstance(node, Call) or not OPERATIONS[node.op].series:
             return node
         value = np.asarray(evaluate(node.args[0], look_up, arrays=True))
-        if value.ndim == len(node.args[0].type.shape):  # constant, it has one value for the whole run
+        if value.ndim == len(node.args[0].type.shape):  # a constant: one value for the whole run
             value = np.broadcast_to(value, (len(times), *value.shape))
         symbol = Symbol(f"series {len(known)}", node.type)
         known[symbol] = _SERIES[node.op].of(value, times, node)
@@ -75,7 +75,7 @@ def course(expr: Expr, series: Series, times: list[float]) -> Any:
 
 
 def _parts(node: Expr) -> tuple[Expr, ...]:
-    """The children in which an operation on time may stand: keyframes have none."""
+    """The children that may contain operations over the run; keyframes have none."""
     return () if isinstance(node, Keys) else children(node)
 
 
@@ -111,12 +111,12 @@ def _drift(value: Any, times: list[float], node: Call) -> Any:
 
 
 class _Series(NamedTuple):
-    """How an operation on time is evaluated."""
+    """The evaluation of an operation over the run."""
 
     of: Callable[[Any, list[float], Call], Any]
-    """(series, its times, the call) to its value."""
+    """Function (series, its times, the call) to the value."""
     instants: Callable[[Sequence[float], Call], Sequence[float]] = lambda times, node: times
-    """The times at which the series counts."""
+    """Function of all times and the call to the times at which the series is needed."""
 
 
 _SERIES: Mapping[str, _Series] = {

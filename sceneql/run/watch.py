@@ -1,4 +1,4 @@
-"""A watch over energy, momentum, stretch and colors between frames: what is conserved, and what diverges."""
+"""Monitor of energy, momentum, stretch and colors between frames: conserved quantities, and divergence."""
 
 from __future__ import annotations
 
@@ -24,19 +24,20 @@ if TYPE_CHECKING:
     from sceneql.run.run import IslandRun, Run
 
 COST, AT_LEAST = 0.008, 0.005
-"""Share of the run's time that the watch may take, and seconds that it may take in any case."""
+"""Fraction of the run's time that the monitor may take, and seconds that it may take in any case."""
 MOST_STATES = 20_000
-"""Largest state of an island that is always observed from start to end; a larger one when the run can afford it."""
+"""Largest state of an island that is always observed from start to end; larger ones only if the run's time allows
+it."""
 FIRST = 4e-7
-"""Seconds for each number of the state that the first observation takes at most; the last one predicts the next."""
+"""Predicted seconds of a first observation, for each number of the state; later ones are predicted by the last."""
 MOST_PAIRED = 256
-"""Most bodies of an observed island with forces between all pairs."""
+"""Largest number of bodies of an observed island with forces between all pairs."""
 GAINED = 0.5
-"""Energy gained, in parts of the largest kinetic energy, that gives a warning."""
+"""Energy gained, relative to the largest kinetic energy, from which on there is a warning."""
 FORBIDDEN = 1e-6
-"""Part of the velocities at the start above which ties are told to have changed them."""
+"""Change of velocities by ties at the start, relative to the velocities, from which on there is a warning."""
 OVERSTRETCHED = 4.0
-"""(L - L0)/L0 of a spring that gives a warning, unless half of it was there at the start."""
+"""Strain (L - L0)/L0 of a spring from which on there is a warning, unless half of it was there at the start."""
 
 
 @dataclass
@@ -50,9 +51,9 @@ class Balance:
     energies: list[float] = field(default_factory=list)
     """[J]"""
     kinetic: float = 0.0
-    """Largest so far [J]."""
+    """Largest kinetic energy so far [J]."""
     momentum: float = 0.0
-    """Largest change so far [kg m/s]."""
+    """Largest change of momentum so far [kg m/s]."""
     impulse: float = 0.0
     """Largest sum of the magnitudes of the masses' momenta [kg m/s]."""
     cost: float = 0.0
@@ -60,7 +61,7 @@ class Balance:
     stretch: dict[str, tuple[float, float]] = field(default_factory=dict)
     """By model, the largest (L - L0)/L0 of its springs at the start and over all times."""
     at_start: Floats | None = None
-    """Momentum at the start."""
+    """(3,) momentum at the start [kg m/s]."""
 
     @property
     def drifts(self) -> list[float]:
@@ -86,15 +87,17 @@ class Balance:
 
     @property
     def closed(self) -> bool:
-        """Whether energy is conserved: no value in time drives, no body is born or dies, no flow carries any; forces
-        count their work."""
+        """Whether energy is conserved, apart from the work that forces count.
+
+        So it is where no value varies in time, no body is born or dies, and no flow carries any.
+        """
         lasting = all(cast(Model, self.island.graph.tasks[name].kind).lasts() for name in self.models)
         carried = any(one is not None and one.immersed is not None for one in self.island.bodies.values())
         return lasting and not carried and not self.island.march.system.structure.varying
 
 
 class Watch:
-    """Observes a run's moments as often as it can afford; ``always``: all of them, and islands of any size."""
+    """Observes a run's moments as often as the time allows; ``always``: all moments, and islands of any size."""
 
     def __init__(self, run: Run, *, always: bool = False) -> None:
         self.always = always
@@ -115,9 +118,10 @@ class Watch:
         self._started, self._spent = time.perf_counter(), 0.0
 
     def look(self, moment: Instant, *, last: bool = False) -> None:
-        """Record energies and momenta at a moment, unless the watch has used up its share of the time.
+        """Record energies and momenta at a moment, unless the monitor has used up its share of the time.
 
-        The start is always recorded, since gains are measured from it; the last moment of all but the largest islands.
+        The start is always recorded, since gains are measured from it; so is the last moment, except of the largest
+        islands.
         """
         started = time.perf_counter()
         free = self.always or last or self._spent < AT_LEAST + COST * (started - self._started)
@@ -141,8 +145,11 @@ class Watch:
         self._spent += time.perf_counter() - started
 
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings: contacts that gave way or are lacking, energy gained, springs overstretched, fields ringing or
-        overshooting, breakpoints, halved steps."""
+        """All warnings of the run.
+
+        Contacts that gave way or are lacking, energy gained, springs overstretched, fields ringing or overshooting,
+        breakpoints, halved steps, singular ties, troubles of models.
+        """
         found = [*self._ringing, *(note for island in self._islands for note in island.notes)]
         for span in self._turning:
             message = f"this turns more than {MOST:,} times in the run: steps that a tolerance chooses go over some"
@@ -203,7 +210,7 @@ class Watch:
 
 
 def _alone(island: IslandRun) -> bool:
-    """Whether observing needs no sum over very many pairs, which takes as long as their forces."""
+    """Whether observing the island needs no sum over very many pairs, which takes as long as their forces."""
     forces = (cast(Interaction, island.graph.tasks[force].kind) for force, _ in island.island.forces)
     bodies = sum(0 if one is None else one.count for one in island.bodies.values())
     return bodies <= MOST_PAIRED or not any(force.mutual for force in forces)
@@ -216,12 +223,12 @@ def _foretold(island: IslandRun) -> float:
 
 
 def _adaptive(island: IslandRun) -> bool:
-    """Whether a tolerance controls its steps."""
+    """Whether the solver of an island is adaptive."""
     return island.solver.stepper().control.adaptive
 
 
 def _halved(island: IslandRun) -> Diagnostic | None:
-    """A warning for a solver of given steps that were halved where Newton's method found no solution."""
+    """A warning for fixed steps that were halved where Newton's method found no solution."""
     control, tries = island.solver.stepper().control, island.march.statistics.rejected
     if not control.halves or tries == 0:
         return None
@@ -268,7 +275,7 @@ def _impulse(balance: Balance, moment: Instant) -> float:
 
 
 def _forbidden(island: IslandRun) -> Diagnostic | None:
-    """A warning where ties left bodies other velocities at the start than the script gives."""
+    """A warning where ties changed the velocities that the script gives bodies at the start."""
     march, tasks = island.march, island.graph.tasks
     ties = [name for name, _ in island.island.forces if isinstance(tasks[name].kind, Tie)]
     if march.corrected is None or not ties:
@@ -290,7 +297,7 @@ def _forbidden(island: IslandRun) -> Diagnostic | None:
 
 
 def _singular(island: IslandRun) -> Iterator[Diagnostic]:
-    """Warnings for ties that hold each other in a position that they cannot leave, or leave in more than one way."""
+    """Warnings of ties in a singular position, which bodies cannot leave, or can leave in more than one way."""
     if not island.assembly.ties:
         return
     from sceneql.bodies.rigid.singular import singular
@@ -314,7 +321,7 @@ def _singular(island: IslandRun) -> Iterator[Diagnostic]:
 
 
 def _troubled(island: IslandRun) -> Iterator[Diagnostic]:
-    """What models, contacts and ties say of the run at its end."""
+    """Warnings of models, contacts and ties at the end of the run."""
     tasks = island.graph.tasks
     for name in island.island.models:
         text, help = cast(Model, tasks[name].kind).trouble(island.state(name))

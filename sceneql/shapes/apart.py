@@ -1,4 +1,4 @@
-"""Objects that stand apart from one another, measured each by itself."""
+"""Moments of objects that do not overlap: each object measured by itself, the moments added."""
 
 from __future__ import annotations
 
@@ -11,15 +11,18 @@ if TYPE_CHECKING:
     from sceneql.kinds import Moment, Shaped
 
 TOUCHING = 1e-12
-"""By how much of their size boxes may overlap that touch but for rounding."""
+"""Overlap of two boxes that still counts as rounding of touching boxes, relative to the largest coordinate."""
 MANY = 1000
-"""Members above which pairs are not looked at."""
+"""Most members whose pairs of boxes are compared."""
 
 
 def apart(
     members: Sequence[Shaped], moment: Moment, measure: Callable[[Shaped], VolumeMoments]
 ) -> VolumeMoments | None:
-    """The moments of all members together; None where boxes of two overlap, or one has no end, or one is empty."""
+    """Moments of the union of the members, as the sum of each member's ``measure``.
+
+    None where the boxes of two members overlap, where a box is infinite or empty, and for no member or more than MANY.
+    """
     import numpy as np
 
     if not 0 < len(members) <= MANY:

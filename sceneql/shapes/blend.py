@@ -2,8 +2,8 @@
 
 The blend of values f_i of width k is the least, over all weights w_i >= 0 of sum 1, of sum w_i f_i less
 k/2 (1 - sum w_i^2): a minimum that is smoothed on the simplex (Nesterov 2005, section 4.1). Of two values it is the
-quadratic smooth minimum min(a, b) - max(k - |a - b|, 0)^2 / (4 k) (Quilez, "Smooth minimum"). It is C1, does not know
-an order of the values, and is the least of them itself where no other is within k of it.
+quadratic smooth minimum min(a, b) - max(k - |a - b|, 0)^2 / (4 k) (Quilez, "Smooth minimum"). It is C1, symmetric in
+the values, and equal to their minimum where no other value is within k of the minimum.
 """
 
 from __future__ import annotations
@@ -45,10 +45,11 @@ def _of_two(build: FieldBuilder, a: int, b: int, width: float) -> int:
 
 
 def _of_many(build: FieldBuilder, values: Sequence[int], width: float) -> int:
-    """f - k/2 + t - sum max(t - g_i, 0)^2 / (2 k): f the least, g_i = f_i - f, and sum max(t - g_i, 0) = k.
+    """Register of the blend of three or more values: f - k/2 + t - sum max(t - g_i, 0)^2 / (2 k).
 
-    The level t is the least of (k + g_1 + ... + g_j) / j of the gaps in order, least first: the sum is smaller with
-    others than those below t (Held, Wolfe & Crowder 1974, on projections to the simplex). No gap above k counts.
+    f is the minimum of the values, g_i = f_i - f are their gaps, and the level t solves sum max(t - g_i, 0) = k. With
+    the gaps sorted, t is the minimum over j of (k + g_1 + ... + g_j) / j (Held, Wolfe & Crowder 1974, on projections
+    to the simplex). Gaps above k have no effect.
     """
     first = reduce(lambda a, b: build.op("min", a, b), values)
     most = build.constant(width)
@@ -65,12 +66,12 @@ def _of_many(build: FieldBuilder, values: Sequence[int], width: float) -> int:
         share = build.op("max", build.op("sub", level, gap), build.constant(0.0))
         squares = build.op("add", squares, build.op("square", share))
     below = build.op("sub", build.op("mul", squares, build.constant(0.5 / width)), less(build, level, 0.5 * width))
-    # The bound is met only where all are equal; it keeps enclosures of the whole narrow.
+    # The bound is reached only where all values are equal; it keeps interval enclosures of the blend narrow.
     return build.op("sub", first, build.op("min", below, build.constant(bulge(len(values), width))))
 
 
 def comparators(count: int) -> Iterator[tuple[int, int]]:
-    """Pairs of places to compare and swap, one pair after the other, that sort ``count`` values.
+    """Comparators (i, j), i < j, of a sorting network for ``count`` values, in the order of their execution.
 
     Merge exchange (Batcher 1968; Knuth, The Art of Computer Programming 3, 5.2.2, algorithm M).
     """

@@ -1,4 +1,4 @@
-"""Script colors are sRGB; everything behind the script is linear. The default palette."""
+"""Colors: sRGB of scripts converted to linear RGB, which all other code uses, and the default palette."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
 
 
 PALETTE = ("#e4572e", "#2978b5", "#f2a71b", "#3a9d6b", "#8c55a8", "#14a3a8", "#d6457f", "#7f9c2c")
-"""sRGB colors of parts that have none of their own, by their order."""
+"""sRGB colors of parts without a color of their own, in turn by the order in which the parts are drawn."""
 
 
 def linear(color: Iterable[float]) -> RGB:
-    """Linear RGB of an sRGB color, components from 0 to 1 (IEC 61966-2-1:1999); what is less becomes 0, what is more 1.
+    """Linear RGB of an sRGB color, both with components from 0 to 1 (IEC 61966-2-1:1999).
 
-    A surface that gave back more light than it gets would brighten all around it without end.
+    Components outside 0 to 1 are clamped: an albedo above 1 would gain energy at each reflection.
     """
     r, g, b = (_decode(min(max(float(c), 0.0), 1.0)) for c in color)
     return r, g, b
@@ -29,7 +29,7 @@ def _decode(c: float) -> float:
 
 
 def default_color(index: int) -> RGB:
-    """Linear RGB of the part that is drawn at this place in the order."""
+    """Linear RGB of the default color of the part that is drawn as number ``index``."""
     return linear(level / 255 for level in eight_bits(PALETTE[index % len(PALETTE)]))
 
 

@@ -1,4 +1,4 @@
-"""Triangles of files as they are shaded: coincident vertices merged, and split along sharp edges (creases_kernels)."""
+"""Shading normals of mesh files: coincident vertices merged, then split along sharp edges (creases_kernels)."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
 
 def creased(raw: RawMesh, crease: float) -> tuple[Floats, Ints, Floats, Floats | None]:
-    """Vertices (n, 3), triangles (m, 3) with an area, unit normals (n, 3), and linear colors (n, 3) if there are any.
+    """Vertices (n, 3) [m], triangles (m, 3), unit normals (n, 3) and linear colors (n, 3) or None, for shading.
 
-    Edges that turn by more than ``crease`` [rad] are sharp. Memory grows with the number of triangles alone.
+    Triangles without area are dropped. An edge is sharp where its dihedral angle differs from flat by more than
+    ``crease`` [rad]. Memory grows with the number of triangles alone.
     """
     places, place_of, corners, shades = _merged(raw)
     corners = corners[: 3 * drop_flat(places, corners, np.empty((3, 3)))]
@@ -43,7 +44,11 @@ def creased(raw: RawMesh, crease: float) -> tuple[Floats, Ints, Floats, Floats |
 
 
 def _merged(raw: RawMesh) -> tuple[Floats, Ints, Ints, NDArray[np.float32] | None]:
-    """Vertices of one place and color as one: places (v, 3), by place a number (v,), corners (3 m), colors (v, 3)."""
+    """Vertices merged where position and color coincide.
+
+    Returns positions (v, 3), for each vertex the number of its position (v,), the corners of the triangles as vertices
+    (3 m,), and colors (v, 3) or None.
+    """
     keys = list(raw.vertices.T)
     if raw.colors is not None:
         keys += list(raw.colors.T)

@@ -1,4 +1,4 @@
-"""What the words of constructive solid geometry share: their members, their field, the blend where surfaces meet."""
+"""Base class of constructive solid geometry's words: members, fields of members, blend width, colors."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ class Combination(Solid):
     blend: Length = field("How wide its edges are rounded where surfaces of members meet.", "0 m", at_least=0)
 
     def problems(self) -> Iterator[Problem]:
-        """Too few members."""
+        """A problem where there are fewer than two members."""
         if len(self.of) < 2:
             yield Problem(f"{type(self).__name__.lower()} joins at least two objects", ("of",))
 
     def members(self) -> tuple[Ref, ...]:
-        """Its members."""
+        """References to the members, in order."""
         return tuple(self.of.values()) if isinstance(self.of, dict) else self.of
 
     def joins(self) -> tuple[Ref, ...]:
-        """All of its members."""
+        """References to all members: the solid is made from the insides of all."""
         return self.members()
 
     def width(self, moment: Moment) -> float:
@@ -44,13 +44,13 @@ class Combination(Solid):
         return [moment.object(ref).implicit(build, x, y, z, moment) for ref in self.members()]
 
     def gaps(self, build: FieldBuilder, values: list[int]) -> list[int]:
-        """Registers of a number for each member, the least that of the member whose surface is seen."""
+        """Registers of one number a member; at a point of the surface, the smallest belongs to the visible member."""
         raise NotImplementedError
 
     def hues(
         self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment
     ) -> tuple[int, int, int] | None:
-        """The colors of its members, where it has none of its own."""
+        """Registers of the members' mixed colors; None where the combination has a color or material of its own."""
         if self.color is not None or self.material is not None:
             return None
         members = [(ref.name, moment.object(ref)) for ref in self.members()]
@@ -59,7 +59,7 @@ class Combination(Solid):
         return joined(build, members, gaps, at, surface, self.bare, self.width(moment), moment)
 
     def extents(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
-        """Low and high corners (m, 3) of its members' boxes in the coordinates that ``place`` maps its own to."""
+        """Low and high corners (m, 3) of the m members' boxes, mapped by ``place`` (3, 4)."""
         import numpy as np
 
         boxes = [moment.object(ref).extent(place, moment) for ref in self.members()]

@@ -1,4 +1,4 @@
-"""Deformed solids cut open by planes: what of the skin is left, and the faces of the cut. Imports numpy."""
+"""Deformed solids cut open by planes: the skin clipped, and the cross sections triangulated. Imports numpy."""
 
 from __future__ import annotations
 
@@ -14,38 +14,39 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 ON_PLANE = 1e-9
-"""Part of the solid's size by which what lies on a plane is taken before it."""
+"""Height above a plane, relative to the solid's size, that points on the plane are given."""
 SAME = 1e-6
-"""Part of that below which two points of an outline are one."""
+"""Distance, relative to the solid's size, below which two points of an outline are merged."""
 TIMES = 5
-"""How often the sides of an outline that no triangle has are halved."""
+"""Rounds of triangulation, after each of which the outline's sides that are no edge of it are halved."""
 INNER, APART = 1.5, 0.6
-"""Points inside an outline stand so many lengths of its sides apart, and so many from it."""
+"""Spacing of the points inside an outline, and their least distance from it, in median lengths of its sides."""
 ROUNDING = 1e-12
 
 Inside = Callable[["Floats"], tuple["Floats", "Floats"]]
-"""Places of the material (k, 3) [m] at points (k, 3) of the drawing, and what is shown there (k, 1), or (k, 0)."""
+"""Maps deformed positions (k, 3) [m] to rest positions (k, 3) [m] and shown values (k, 1), or (k, 0) without any."""
 Corners = Any
-"""(m, 3, c) for the corners of triangles: place (3) in the drawing, and what else is linear in between."""
+"""(m, 3, c) data of triangles' corners: deformed position (3), normal (3), rest position (3), shown value if any."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plane:
-    """A plane by a point and its unit normal; what is before it may be taken away."""
+    """A plane by a point and its unit normal; the normal points to the side that may be cut away."""
 
     through: Floats
     normal: Floats
 
     def heights(self, places: Floats) -> Floats:
-        """(...) of places (..., 3): above 0 before the plane."""
+        """Signed distances (...) [m] of positions (..., 3), positive on the side of the normal."""
         found: Floats = (places - self.through) @ self.normal
         return found
 
 
 def cut_open(skin: Mesh, values: Floats | None, inside: Inside, planes: Sequence[Plane]) -> Iterator[tuple[Mesh, Any]]:
-    """The meshes that are left where what lies before all planes is away, and what is shown of their vertices.
+    """Meshes of the solid without the part that lies before all planes at once, with the values at their vertices.
 
-    ``skin``: the whole skin, closed; ``values`` (v,) what is shown of its vertices.
+    First the clipped skin, then the cross section of each plane. ``skin``: the closed skin, with normals and rest
+    positions; ``values`` (v,): a quantity shown at its vertices, or None.
     """
     assert skin.normals is not None
     assert skin.rest is not None
@@ -77,12 +78,12 @@ def cut_open(skin: Mesh, values: Floats | None, inside: Inside, planes: Sequence
 
 
 def _off(heights: Floats, size: float) -> Floats:
-    """Heights none of which is 0."""
+    """The heights with those nearer to 0 than ON_PLANE times the size replaced by that positive value."""
     return np.where(np.abs(heights) < ON_PLANE * size, ON_PLANE * size, heights)
 
 
 def clipped(corners: Corners, heights: Floats) -> Corners:
-    """What of triangles (m, 3, c) with heights (m, 3) at their corners lies where these are below 0."""
+    """Triangles (n, 3, c) of the part of triangles (m, 3, c) where the linear heights, (m, 3) at corners, are <= 0."""
     above = heights > 0.0
     count = above.sum(axis=1)
     found = [corners[count == 0]]
@@ -105,7 +106,11 @@ def _crossing(p: Floats, q: Floats, at_p: Floats, at_q: Floats) -> Floats:
 
 
 def _face(triangles: Floats, plane: Plane, inside: Inside, size: float) -> Corners:
-    """Triangles of what a plane cuts of a solid whose skin is closed: (m, 3, 3) corners of its triangles."""
+    """Triangulated cross section (m, 3, c) of a solid by a plane; ``triangles`` (t, 3, 3) are its closed skin.
+
+    A Delaunay triangulation of the outline and of a lattice inside it; sides of the outline that are no edge of the
+    triangulation are halved until they are, at most TIMES times.
+    """
     from scipy.spatial import Delaunay, cKDTree
 
     width = 9 + inside(plane.through[None])[1].shape[1]
@@ -146,7 +151,7 @@ def _face(triangles: Floats, plane: Plane, inside: Inside, size: float) -> Corne
 
 
 def _outline(triangles: Floats, heights: Floats) -> Floats:
-    """(s, 2, 3) where a plane cuts triangles (m, 3, 3) with heights (m, 3)."""
+    """Segments (s, 2, 3) in which a plane cuts triangles (m, 3, 3); heights (m, 3) of their corners above the plane."""
     above = heights > 0.0
     count = above.sum(axis=1)
     some = (count == 1) | (count == 2)
@@ -158,7 +163,7 @@ def _outline(triangles: Floats, heights: Floats) -> Floats:
 
 
 def _grid(points: Floats, step: float) -> Floats:
-    """(k, 2) places on the plane, of a lattice of triangles so wide."""
+    """Points (k, 2) of a triangular lattice with spacing ``step`` that covers the bounding box of points (n, 2)."""
     low, high = points.min(axis=0), points.max(axis=0)
     x = np.arange(low[0], high[0], step)
     y = np.arange(low[1], high[1], step * 0.75**0.5)
@@ -167,7 +172,7 @@ def _grid(points: Floats, step: float) -> Floats:
 
 
 def _holds(outline: Floats, points: Floats) -> Any:
-    """(k,) whether points (k, 2) lie in a closed outline of sides (s, 2, 2): an odd number of these is on the right."""
+    """(k,) whether points (k, 2) lie inside a closed outline of sides (s, 2, 2), by the even-odd rule."""
     found = np.zeros(len(points), dtype=bool)
     for k in range(0, len(points), 4096):
         x, y = points[k : k + 4096, 0, None], points[k : k + 4096, 1, None]
@@ -179,13 +184,13 @@ def _holds(outline: Floats, points: Floats) -> Any:
 
 
 def _distinct(points: Floats, apart: float) -> tuple[Floats, Any]:
-    """Points (d, 2) of which none are nearer than about ``apart``, and the number of each point (k, 2) among them."""
+    """Points (d, 2) that differ when rounded to multiples of ``apart``, and the row among them of each point (k,)."""
     _, first, which = np.unique(np.round(points / apart), axis=0, return_index=True, return_inverse=True)
     return points[first], which.ravel()
 
 
 def planes_of(sections: Iterable[Any], place: Floats) -> list[Plane]:
-    """Planes of `Section` records in the world, for what is drawn at ``place`` (3, 4)."""
+    """Planes of `Section` records in world coordinates; ``place`` (3, 4) maps the object's coordinates to the world."""
     turn = np.linalg.inv(np.asarray(place)[:, :3]).T
     found = []
     for one in sections:

@@ -9,15 +9,16 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 PAIRWISE_LIMIT = 2000
-"""Above this number of parts, each counts as a neighbor of all."""
+"""Number of parts above which distances between parts are not computed: all count as neighbors of each."""
 
 
 def reaches(skeleton: Skeleton, threshold: float) -> Floats:
-    """(p,) distances [m]: {density >= threshold} lies in the union of the parts' neighborhoods of this radius; 0: none.
+    """(p,) distances [m] from the parts whose union of neighborhoods contains {density >= threshold c}; 0: empty.
 
-    At a point of the solid let part i contribute most. Of the parts that reach there, N_i at most, none contributes
-    more, so w_i K(d_i/R_i) >= c/N_i, which bounds d_i since the kernel K falls. N_i counts the parts of weight above 0
-    that come within R_j of where part i can contribute most; a second round uses the distances of the first.
+    At a point of the solid let part i have the largest contribution, w_i K(d_i / R_i). At most N_i parts reach the
+    point, so this contribution is at least c / N_i; since the kernel K decreases, that bounds the distance d_i. N_i
+    counts the parts j of positive weight whose support R_j meets the neighborhood of part i. A second pass counts with
+    the distances of the first.
     """
     return skeleton.kept(f"reaches {threshold!r}", lambda: _reaches(skeleton, threshold))
 

@@ -1,4 +1,4 @@
-"""A polygon in space as triangles (ears_kernels)."""
+"""Triangulation of a polygon in space by ear clipping (ears_kernels)."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 
 
 def ears(corners: Floats) -> NDArray[int64]:
-    """(n - 2, 3) numbers of the corners (n, 3) of triangles that fill a simple, nearly flat polygon."""
+    """Triangles (n - 2, 3), as rows of ``corners`` (n, 3), that fill a simple, nearly flat polygon."""
     import numpy as np
 
     from sceneql.shapes.ears_kernels import cut_ears
 
     following = np.roll(corners, -1, axis=0)
-    normal = np.cross(corners, following).sum(axis=0)  # Newell's: twice the area
+    normal = np.cross(corners, following).sum(axis=0)  # Newell's normal: twice the area vector
     axis = int(np.argmax(np.abs(normal)))
     flat = np.delete(corners, axis, axis=1)
     if (normal[axis] < 0) != (axis == 1):

@@ -1,6 +1,6 @@
-"""The description in a glTF 2.0 file (Khronos 2021): what it declares, that it hangs together and reads no other file.
+"""The JSON description in a glTF 2.0 file (Khronos 2021): its counts, its consistency, no reference to other files.
 
-Imports no numpy: `check` asks, too.
+Imports no numpy, since the command `check` uses it.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from sceneql.kinds import Exceeds
 from sceneql.shapes.mesh_limits import LARGEST_BINARY, LARGEST_DESCRIPTION, counted, within
 
 MOST_PARTS = 500_000
-"""Objects, lists and values in the description."""
+"""Most objects, lists and values of the description, by its brackets and commas."""
 MOST_NODES = 10_000
 DEEPEST = 200
-"""Nodes below one another."""
+"""Most levels of the trees of nodes."""
 SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
-"""Bytes of the types of numbers."""
+"""Bytes of a number by its componentType."""
 COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 HARMLESS = ("KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "KHR_mesh_quantization", "KHR_xmp")
-"""Beginnings of extensions that the triangles do not depend on, or that need nothing more to be read."""
+"""Prefixes of extensions that do not change the triangles, or that the reader supports anyway."""
 JSON, BINARY = 0x4E4F534A, 0x004E4942
 
 
@@ -60,7 +60,7 @@ def gltf(stream: BinaryIO, size: int) -> tuple[int, int]:
 
 
 def _sums(text: bytes, own: list[int]) -> tuple[int, int]:
-    """Vertices and triangles of a description, of which ``own`` are the sizes of the GLB's buffers."""
+    """Vertices and triangles of all instances in a description; ``own``: bytes of the GLB's binary chunks."""
     parts = sum(text.count(mark) for mark in (b"{", b"[", b","))
     if parts > MOST_PARTS:
         raise Exceeds(f"has a description of {parts:,} parts, more than {MOST_PARTS:,}")
@@ -77,14 +77,14 @@ def _sums(text: bytes, own: list[int]) -> tuple[int, int]:
 
 
 class _Counts(NamedTuple):
-    """Rows of an accessor, or of a mesh's primitives."""
+    """Numbers of vertices and triangles of a mesh's primitives."""
 
     vertices: int
     triangles: int
 
 
 class _Description:
-    """The JSON of a glTF, whose parts have any types. Methods raise ValueError, KeyError, TypeError, IndexError."""
+    """The JSON of a glTF, not validated: methods raise ValueError, KeyError, TypeError or IndexError for a bad one."""
 
     def __init__(self, tree: dict[str, Any], own: list[int]) -> None:
         self.tree, self.own = tree, own
@@ -110,7 +110,7 @@ class _Description:
         return vertices, triangles
 
     def _buffers(self) -> None:
-        """Refuse buffers that are other files, and views and accessors that reach beyond them."""
+        """Raise ValueError for buffers in other files, and for views and accessors that exceed their buffers."""
         sizes, own = [], iter(self.own)
         for buffer in self.tree.get("buffers", []):
             uri = buffer.get("uri")
@@ -143,7 +143,7 @@ class _Description:
             raise Exceeds(f"declares {max(read, sum(views)):,} bytes of numbers, more than {LARGEST_BINARY:,}")
 
     def _mesh(self, mesh: dict[str, Any]) -> _Counts:
-        """What the primitives of a mesh hold."""
+        """Numbers of vertices and triangles of a mesh's primitives."""
         vertices = triangles = 0
         for primitive in mesh["primitives"]:
             mode = primitive.get("mode", 4)
@@ -162,7 +162,7 @@ class _Description:
         return _Counts(vertices, triangles)
 
     def _shown(self) -> Iterator[dict[str, Any]]:
-        """The nodes of the scene that is shown, which stand in trees."""
+        """The nodes of the default scene. Raises ValueError where they do not form trees, Exceeds for too many."""
         nodes = self.tree.get("nodes", [])
         if len(nodes) > MOST_NODES:
             raise Exceeds(f"has {len(nodes):,} nodes, more than {MOST_NODES:,}")
@@ -179,7 +179,7 @@ class _Description:
 
 
 def _index(value: Any) -> int:
-    """A number that counts. Raises ValueError."""
+    """The value as a nonnegative integer. Raises ValueError for anything else."""
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise ValueError(f"its description has {str(value)[:40]} where it counts")
     return value

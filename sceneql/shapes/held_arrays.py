@@ -1,4 +1,4 @@
-"""Results computed from arrays that never change (frame.is_held), kept as long as the arrays live."""
+"""A cache of results computed from arrays that never change (frame.is_held), kept as long as the arrays live."""
 
 from __future__ import annotations
 

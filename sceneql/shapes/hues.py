@@ -1,4 +1,4 @@
-"""Colors of joined objects: each member's where its surface is seen, mixed along a blend."""
+"""Colors of objects that are joined into one: each point has the color of the member visible there, mixed in blends."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ def joined(
     build: FieldBuilder, members: Sequence[tuple[str, Shaped]], gaps: Sequence[int], at: Registers,
     surface: Surface, bare: Bare, width: float, moment: Moment,
 ) -> Registers | None:  # fmt: skip
-    """Registers of linear RGB at a point ``at`` of the parent's coordinates; None where all have its surface's color.
+    """Registers of linear RGB at the point ``at`` in the parent's coordinates.
 
-    ``gaps``: a number for each member, the least that of the member whose surface is seen. A member's share is
-    max(width - its gap + the least gap, 0), so colors mix exactly where a blend of this width [m] joins the members,
-    whatever their order. Members that are ``bare`` of color and material have each a default of their own (apart), the
-    parent's ``surface`` (shared), or the color of the first member (first). None also where no member is given a color.
+    None where no member has a color or material, or all have the color of ``surface``, the parent's. ``gaps``:
+    registers of one number a member, smallest for the visible member. The mean is weighted by
+    max(width - gap + smallest gap, 0): colors mix exactly where a blend of this ``width`` [m] joins members, in any
+    order. A ``bare`` member, without color and material, has a default color of its own (apart), the color of
+    ``surface`` (shared), or that of the first member (first).
     """
     hues: list[Registers | None] = []
     colors: list[tuple[float, float, float]] = []
@@ -50,7 +51,7 @@ def joined(
 
 
 def _shares(build: FieldBuilder, values: Sequence[int], width: float) -> list[int]:
-    """Shares of members by their values; without a width only that of the least value is above 0."""
+    """Registers of the members' weights max(width - value + least value, 0); with width 0, 1 for the least value."""
     least = values[0]
     for value in values[1:]:
         least = build.op("min", least, value)
@@ -61,7 +62,7 @@ def _shares(build: FieldBuilder, values: Sequence[int], width: float) -> list[in
 
 
 def _mean(build: FieldBuilder, shares: list[int], values: list[int]) -> int:
-    """The mean of values, weighted by their shares."""
+    """Register of the mean of the values, weighted by the shares."""
     total, parts = shares[0], build.op("mul", shares[0], values[0])
     for share, value in zip(shares[1:], values[1:], strict=True):
         total, parts = build.op("add", total, share), build.op("add", parts, build.op("mul", share, value))

@@ -1,6 +1,6 @@
-"""What a mesh file declares, seen in its first bytes and its size: enough to refuse it before it is read.
+"""Headers of mesh files: format, numbers of vertices and triangles, so that a bad file is refused before it is read.
 
-Imports no numpy: `check` asks, too.
+Imports no numpy, since the command `check` uses it.
 """
 
 from __future__ import annotations
@@ -14,23 +14,23 @@ from sceneql.shapes.gltf_header import glb, gltf
 from sceneql.shapes.mesh_limits import LARGEST_BINARY, LARGEST_STREAM, LARGEST_TEXT, counted, unreadable, within
 
 LARGEST_HEADER = 2**16
-"""Bytes of a PLY's header, and of what stands above the numbers in an OFF."""
+"""Most bytes of a PLY's header, and of the lines before the vertices in an OFF."""
 
 
 class Declared(NamedTuple):
-    """What a file says of itself."""
+    """Format and counts that a mesh file's header declares; None where the header has no counts."""
 
     format: str
-    """As the file's name ends: obj, ply, stl, off, glb, gltf."""
+    """The file name's extension: obj, ply, stl, off, glb, gltf."""
     vertices: int | None = None
     triangles: int | None = None
-    """At least; a polygon counts as one."""
+    """A lower bound: a polygon counts as one triangle."""
 
 
 def declared(file: str) -> Declared:
-    """What a mesh file declares, by the format that its name ends in.
+    """The header of a mesh file in the format that its extension names.
 
-    Raises Exceeds for one that is too large, OSError for one that cannot be read as this format.
+    Raises Exceeds for a file that is too large, OSError for one that is not of that format or of an unknown one.
     """
     path = Path(file)
     form = path.suffix.lower().lstrip(".")
@@ -82,7 +82,7 @@ PLY_BYTES = {
 
 
 class _Element:
-    """Rows of a PLY: their number, and what the header says of one."""
+    """An element of a PLY's header: name, number of rows, and the properties of a row."""
 
     def __init__(self, name: str, count: str) -> None:
         if not count.isdecimal() or len(count) > 18:
@@ -92,7 +92,7 @@ class _Element:
         self.names: list[str] = []
 
     def take(self, words: list[str]) -> None:
-        """Take a line "property ..." of the header."""
+        """Add a property, given as the words of its header line. Raises ValueError for a malformed line."""
         many = words[1:2] == ["list"]
         types = words[2:-1] if many else words[1:-1]
         if len(types) != (2 if many else 1) or any(kind not in PLY_BYTES for kind in types) or words[-1] in self.names:
@@ -119,7 +119,7 @@ def _ply(stream: BinaryIO, size: int) -> Declared:
 
 
 def _ply_header(stream: BinaryIO) -> tuple[bool, dict[str, _Element]]:
-    """Whether the rows are text, and the elements by name; the stream stands at the first row. Raises ValueError."""
+    """(whether the format is ASCII, elements by name); leaves the stream at the first row. Raises ValueError."""
     lines: list[list[str]] = []
     while "end_header" not in (words := stream.readline(LARGEST_HEADER).decode("ascii", "replace").split()):
         lines.append(words)

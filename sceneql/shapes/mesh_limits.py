@@ -1,4 +1,4 @@
-"""How much a mesh file may hold."""
+"""Limits on the sizes of mesh files, and the errors of files that exceed them."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from sceneql.kinds import Exceeds
 
 MOST_TRIANGLES = 4_000_000
 MOST_VERTICES = 3 * MOST_TRIANGLES
-"""Triangles that share none have three each."""
+"""Vertices of MOST_TRIANGLES triangles that share none."""
 LARGEST_STREAM = 2**30
-"""Bytes of a file that is read a block at a time."""
+"""Most bytes of a file that is read block by block."""
 LARGEST_BINARY = 2**29
-"""Bytes of a file that is read as a whole, to arrays."""
+"""Most bytes of a file that is read as a whole into arrays."""
 LARGEST_DESCRIPTION = 2**24
-"""Bytes of the JSON of a glTF, of which one letter beyond Latin makes four each."""
+"""Most bytes of the JSON of a glTF; one letter beyond Latin makes Python store it with four bytes a letter."""
 LARGEST_TEXT = 2**26
-"""Bytes of a file that is read as a whole, to many small objects."""
+"""Most bytes of a file that is read as a whole into many small objects."""
 
 
 def within(size: int, most: int, why: str = "") -> None:

@@ -1,4 +1,4 @@
-"""Results computed from arrays that are known by their numbers, so that equal arrays are not worked on twice."""
+"""A cache of results computed from arrays, keyed by the arrays' contents."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ T = TypeVar("T")
 
 
 class OfContents(Generic[T]):
-    """The last few results. A run ahead of the film asks for what the film's own run asks for again."""
+    """The ``most`` results made last: a run before the film asks for results that the film's run needs again."""
 
     def __init__(self, most: int = 2) -> None:
         self._most = most
         self._made: dict[bytes, T] = {}
 
     def get(self, arrays: tuple[NDArray[Any], ...], make: Callable[[], T]) -> T:
-        """The result for these arrays' shapes, types and numbers, else a new one."""
+        """The result kept for arrays of these shapes, types and contents, else the result of ``make()``."""
         import numpy as np
 
         digest = blake2b(digest_size=32)

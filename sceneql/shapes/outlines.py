@@ -1,6 +1,6 @@
-"""Outlines: few points whose hull nearly holds a shape: a camera is fitted to what is there, not to a box.
+"""Outlines: few points whose convex hull nearly contains a shape, for a camera that is fitted tighter than to a box.
 
-The hull is inscribed where the shape is round: a unit sphere's comes as near to the center as 0.96.
+The hull of a round shape is inscribed: that of the unit sphere has points at distance 0.96 from the center.
 """
 
 from __future__ import annotations
@@ -21,9 +21,12 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
 
 COUNT = 96
-"""Directions in which points are looked for."""
+"""Directions in each of which the farthest point is searched."""
 AT_ONCE = 50_000
-"""Vertices or spheres that are looked at together."""
+"""Vertices or spheres of one block of the search, which bounds its memory."""
+CLOUD, STRAYS = 200, 0.02
+"""Number of spheres from which on they count as a cloud; share of a cloud's spheres that may lie beyond its outline in
+each direction, so that the camera does not zoom out for a few stars far away."""
 
 
 def _directions() -> Floats:
@@ -38,12 +41,14 @@ DIRECTIONS = _directions()
 
 
 def outline(shape: Shape) -> Floats:
-    """Points (n, 3) [m] whose hull nearly holds a shape, at most some hundred; none for an empty or unbounded one."""
+    """Points (n, 3) [m], at most about COUNT, whose hull nearly contains a shape; none if it is empty or unbounded."""
     match shape:
         case Mesh(vertices=points):
             return outermost(points)
-        case Points(centers=points, radii=radii):
+        case Points(centers=points, radii=radii) if len(points) < CLOUD:
             return _around(points, radii)
+        case Points(centers=points, radii=radii):
+            return _cloud(points, radii)
         case Segments(ends=ends, radii=radii):
             return _around(ends.reshape(-1, 3), np.repeat(radii, 2))
         case Quadric(linear=linear) if not any(linear):
@@ -57,7 +62,7 @@ def outline(shape: Shape) -> Floats:
 
 
 def outermost(points: Floats) -> Floats:
-    """Of points (n, 3) those farthest in any of the directions."""
+    """The points, of (n, 3), that are farthest along any of the DIRECTIONS; all points if there are at most COUNT."""
     if len(points) <= COUNT:
         return points
     found: Floats = points[np.unique(_farthest(points, 0.0))]
@@ -65,7 +70,7 @@ def outermost(points: Floats) -> Floats:
 
 
 def _around(centers: Floats, radii: Floats) -> Floats:
-    """Points on the spheres that reach farthest."""
+    """(COUNT, 3) the farthest points, in each direction, of spheres with centers (n, 3) and radii (n,) [m]."""
     if len(centers) == 0:
         return centers.reshape(-1, 3)
     farthest = _farthest(centers, radii[:, None])
@@ -73,9 +78,25 @@ def _around(centers: Floats, radii: Floats) -> Floats:
     return found
 
 
+def _cloud(centers: Floats, radii: Floats) -> Floats:
+    """(COUNT, 3) as ``_around``, but in each direction without the share STRAYS of farthest spheres.
+
+    More than AT_ONCE spheres are sampled at equal steps.
+    """
+    every = -(-len(centers) // AT_ONCE)
+    some, reach = centers[::every], radii[::every]
+    along = some @ DIRECTIONS.T + reach[:, None]
+    last = len(some) - 1 - int(STRAYS * len(some))
+    farthest = np.argpartition(along, last, axis=0)[last]
+    found: Floats = some[farthest] + reach[farthest, None] * DIRECTIONS
+    return found
+
+
 def _quadric(shape: Quadric) -> Floats:
-    """Points on an ellipsoid, a column or a block, cut at its box: the farthest ones (A A^T d/|A^T d|, A of the unit
-    ball, across the axes that it is round about; the end that d points to along the others). None of an endless one.
+    """The farthest points of an ellipsoid, cylinder or block, clipped at its box; none of an unbounded one.
+
+    In direction d: along the axes with a square term A A^T d / |A^T d|, where A maps the unit ball to the solid, and
+    along the other axes the end of the box that d points to.
     """
     squares = np.array(shape.squares)
     if not shape.constant < 0.0:
@@ -91,7 +112,7 @@ def _quadric(shape: Quadric) -> Floats:
 
 
 def _farthest(points: Floats, reach: Floats | float) -> NDArray[intp]:
-    """Indices (COUNT,) of the points (n, 3), each with a reach (n, 1) [m], that are farthest in each direction."""
+    """Indices (COUNT,) of the balls farthest in each direction, with centers (n, 3) and radii ``reach`` (n, 1) [m]."""
     best, far = np.zeros(COUNT, dtype=np.intp), np.full(COUNT, -np.inf)
     for start in range(0, len(points), AT_ONCE):
         some = slice(start, start + AT_ONCE)

@@ -25,12 +25,12 @@ class Triangulated(Protocol):
 
     @property
     def normals(self) -> Floats | None:
-        """(n, 3) unit, of one that is smooth."""
+        """(n, 3) unit normals of the vertices; None where triangles are shaded flat."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacedTriangles:
-    """Triangles as frame.Mesh has them."""
+    """Arrays of a frame.Mesh, in world coordinates."""
 
     vertices: Floats
     triangles: Ints

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 Scale = Annotated[Value, Quantity(dim.PLAIN, None)]
 """One factor, or three along the object's own axes."""
 UPRIGHT = Value(Vector((Number(1.0), Number(0.0), Number(0.0), Number(0.0)), Type((4,))))
-"""The rotation of what is not turned."""
+"""The identity rotation, as a quaternion [w, x, y, z]."""
 
 
 class Placed(Object):
@@ -30,7 +30,7 @@ class Placed(Object):
 
 
 def rotation_matrix(quaternion: Any) -> Floats:
-    """(3, 3) of a quaternion [w, x, y, z] of any length but 0. Raises ValueError for 0."""
+    """Rotation matrix (3, 3) of a quaternion [w, x, y, z] of any length but 0. Raises ValueError for 0."""
     import numpy as np
 
     q = np.asarray(quaternion, dtype=float)
@@ -56,7 +56,7 @@ def affine(position: Any, rotation: Any, scale: Any = 1.0) -> Floats:
 
 
 def unit_vector(vector: Any) -> Floats:
-    """(3,) the direction of a vector of any finite length but zero: no square of it overflows or vanishes."""
+    """Unit vector (3,) along a vector of any finite length but zero, scaled first so that no square overflows."""
     import numpy as np
 
     scaled = np.ldexp(np.asarray(vector, dtype=float), -np.frexp(np.abs(vector).max())[1])
@@ -105,7 +105,7 @@ def balls_box(place: Floats, centers: Any, radii: Any) -> tuple[Floats, Floats]:
 
     middle = apply(place, np.reshape(centers, (-1, 3)))
     reach = np.broadcast_to(radii, np.shape(centers)[:-1]).reshape(-1, 1) * np.linalg.norm(place[:, :3], axis=1)
-    # By columns, in a row of numbers each: a reduction along rows of three takes ten times as long.
+    # Reduced by contiguous columns: a numpy reduction along rows of three takes ten times as long.
     columns, reaches = np.ascontiguousarray(middle.T), np.ascontiguousarray(reach.T)
     return (columns - reaches).min(axis=1), (columns + reaches).max(axis=1)
 

@@ -1,4 +1,4 @@
-"""Triangles as a file has them, and its colors as light."""
+"""Triangles as read from a mesh file, with vertex colors in linear light."""
 
 from __future__ import annotations
 

@@ -21,31 +21,31 @@ if TYPE_CHECKING:
 
     from sceneql.shapes.mesh_header import Declared
 
-logging.getLogger("trimesh").addHandler(logging.NullHandler())  # what it misses in a file is told once, by an error
+logging.getLogger("trimesh").addHandler(logging.NullHandler())  # trimesh's complaints reach the user once, as an error
 MOST_SOLIDS = 10_000
-"""Parts of an STL that is text, each of which becomes a mesh of its own first."""
+"""Most solids of an ASCII STL: trimesh makes a mesh of each before they are joined."""
 TOLD = {
     "PLY is unexpected length!": "its rows are not as long as its header says, or its faces differ in their corners",
 }
-"""What the library's reasons mean, where they do not tell."""
+"""Plain text for messages of trimesh that do not explain themselves."""
 LINEAR = ("glb", "gltf")
 """Formats whose colors are linear (glTF 2.0, 3.7.2.1)."""
 
 
 def read_foreign(path: Path, found: Declared) -> RawMesh:
-    """All triangles of a file, moved by the nodes that hold them.
+    """All triangles of a file, in the coordinates of its scene.
 
-    Raises ValueError, also for what the library fails at, and its subclass Exceeds.
+    Raises ValueError, also where trimesh raises any exception, and its subclass Exceeds.
     """
     with path.open("rb") as stream, warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        # numpy tells by a warning that it stopped at what is no number
+        # numpy only warns where it stops at text that is no number
         warnings.filterwarnings("error", "string or file could not be read", DeprecationWarning)
         if found.format == "stl" and found.triangles is None:
             _few_solids(stream.read())
             stream.seek(0)
         try:
-            others: dict[str, bytes] = {}  # files that it may name: none
+            others: dict[str, bytes] = {}  # contents of the other files that it may refer to: none
             scene = trimesh.load_scene(
                 stream, file_type=found.format, resolver=others, skip_materials=True, process=False
             )
@@ -64,14 +64,14 @@ def read_foreign(path: Path, found: Declared) -> RawMesh:
 
 
 def _few_solids(text: bytes) -> None:
-    """Raise ValueError for an STL of many parts."""
+    """Raise ValueError for an ASCII STL of more than MOST_SOLIDS solids."""
     solids = text.lower().count(b"endsolid")
     if solids > MOST_SOLIDS:
         raise ValueError(f"it has {solids:,} solids, more than {MOST_SOLIDS:,}")
 
 
 def _placed(scene: Any) -> Iterator[RawMesh]:
-    """The meshes of a scene by its nodes, in the scene's coordinates, with their colors as they stand."""
+    """The mesh of each node of a scene, in the scene's coordinates, with colors as in the file (sRGB or linear)."""
     for node in scene.graph.nodes_geometry:
         place, name = scene.graph[node]
         mesh = scene.geometry[name]
@@ -90,7 +90,7 @@ def _placed(scene: Any) -> Iterator[RawMesh]:
 
 
 def _joined(parts: list[RawMesh], is_linear: bool) -> RawMesh:
-    """Meshes as one, with linear colors of all vertices or of none."""
+    """The meshes joined into one; colors are linear, or None unless all parts have colors."""
     firsts = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
     some = [part.colors for part in parts if part.colors is not None]
     colors: NDArray[float32] | None = None

@@ -1,4 +1,4 @@
-"""Mesh files to arrays, once for a file as it is; size and numbers of a file are checked before it is used."""
+"""Mesh files to arrays, cached until the file changes; sizes and numbers are checked before use."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from sceneql.shapes.raw_mesh import RawMesh
 
 FARTHEST = 1e100
-"""[m]; products of longer edges would not be finite."""
+"""[m] Largest coordinate: products of longer edges would overflow."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,7 +31,7 @@ class Loaded:
     normals: Floats
     """(n, 3) unit."""
     colors: Floats | None
-    """(n, 3) linear RGB, of a file that has colors of all its vertices."""
+    """(n, 3) linear RGB where the file has colors of all vertices, else None."""
 
 
 def load(file: str, crease: float) -> Loaded:
@@ -47,7 +47,7 @@ def load(file: str, crease: float) -> Loaded:
 
 @lru_cache(maxsize=16)
 def _load(file: str, crease: float, identity: tuple[int, ...]) -> Loaded:
-    """As ``load``, of a file that ``identity`` tells from others and from what it was before."""
+    """As ``load``; ``identity`` differs between files and between states of one file, and is the key of the cache."""
     from sceneql.shapes.creases import creased
 
     raw = _read(Path(file))
@@ -59,7 +59,7 @@ def _load(file: str, crease: float, identity: tuple[int, ...]) -> Loaded:
 
 
 def _read(path: Path) -> RawMesh:
-    """What the file has. Raises OSError and LimitRefused."""
+    """Triangles and colors of a file. Raises OSError and LimitRefused."""
     try:
         found = declared(str(path))
         if found.format == "obj":
@@ -80,7 +80,7 @@ def _read(path: Path) -> RawMesh:
 
 
 def _check(raw: RawMesh, name: str) -> None:
-    """Raise OSError for triangles that cannot be."""
+    """Raise OSError for indices or coordinates that no mesh can have."""
     import numpy as np
 
     if raw.triangles.min() < 0 or raw.triangles.max() >= len(raw.vertices):

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 BLOCK = 2**22
-"""Bytes that are read at once; no line is longer."""
+"""Bytes of a block, and of the longest line."""
 MOST_WORK = 10**8
-"""Tests of corners that polygons may take that are neither triangles nor fans: seconds."""
+"""Most tests of corners in the ear clipping of all polygons: they take seconds."""
 CONTINUED = (b"\\\n", b"\\\r\n")
 ERRORS = {
     obj.NOT_A_NUMBER: "'{}' is no number, or not finite",
@@ -36,7 +36,7 @@ ERRORS = {
 
 
 def read_obj(path: Path) -> RawMesh:
-    """The polygons of an OBJ file as triangles, and the colors of its vertices, where all have one.
+    """The polygons of an OBJ file as triangles, with vertex colors where all vertices have one.
 
     Raises ValueError for text that is no OBJ file, LimitRefused where it holds too much.
     """
@@ -58,9 +58,9 @@ def read_obj(path: Path) -> RawMesh:
 
 
 def _blocks(stream: BinaryIO) -> Iterator[bytes]:
-    """The text of a file in whole lines, those that a backslash joins together. Raises ValueError for endless ones."""
+    """Blocks of whole lines, not cut where a backslash continues a line. Raises ValueError for a line above BLOCK."""
     rest = b""
-    if (start := stream.read(3)) != b"\xef\xbb\xbf":  # a mark of UTF-8
+    if (start := stream.read(3)) != b"\xef\xbb\xbf":  # the byte order mark of UTF-8
         rest = start
     while block := stream.read(BLOCK):
         text = rest + block
@@ -77,7 +77,7 @@ def _blocks(stream: BinaryIO) -> Iterator[bytes]:
 
 
 class _Rows:
-    """What has been read so far."""
+    """Vertices, colors and faces of the blocks read so far."""
 
     def __init__(self) -> None:
         self.triangles = 0
@@ -89,7 +89,7 @@ class _Rows:
     def add(self, data: bytes, state: NDArray[int64]) -> None:
         """Read a block of whole lines. Raises ValueError."""
         text = np.frombuffer(data, dtype=np.uint8)
-        # A vertex takes eight bytes or more, "v 0 0 0" and a line's end, a face as many, a number two.
+        # Bytes at least: eight of a vertex, "v 0 0 0" and a line's end, eight of a face, two of an index.
         most = len(text) // 8 + 1
         places = np.empty((most, obj.WIDTH))
         sizes = np.empty(most, dtype=np.int32)
@@ -120,7 +120,7 @@ class _Rows:
         self.triangles += int(state[obj.CORNERS] - 2 * state[obj.FACES])
 
     def mesh(self, name: str) -> RawMesh:
-        """The triangles of all blocks, whose parts are given up. Raises LimitRefused."""
+        """The triangles of all blocks, polygons triangulated; frees the blocks' arrays. Raises LimitRefused."""
         places = _joined(self._places, np.zeros((0, 3)))
         corners = _joined(self._corners, np.zeros(0, dtype=np.int32))
         sizes = _joined(self._sizes, np.zeros(0, dtype=np.int32))
@@ -132,13 +132,13 @@ class _Rows:
             if obj.triangulate(places, corners, sizes, triangles, *room, MOST_WORK) < 0:
                 raise LimitRefused(f"{name} has polygons of too many corners that no fan of triangles fills")
             corners = triangles
-        if colors is not None:  # other numbers than 0 to 1 are something else
+        if colors is not None:  # numbers outside 0 to 1 are no colors
             colors = linear(colors) if len(colors) and colors.min() >= 0.0 and colors.max() <= 1.0 else None
         return RawMesh(places, corners.reshape(-1, 3), colors)
 
 
 def _joined(parts: list[NDArray[Any]], none: NDArray[Any]) -> NDArray[Any]:
-    """The parts one after another; the list is emptied."""
+    """The parts concatenated, or ``none`` where there is no part; empties the list."""
     whole = np.concatenate(parts) if parts else none
     parts.clear()
     return whole

@@ -22,17 +22,18 @@ Pairs = Annotated[Value, Quantity(dim.LENGTH, (None, 2, 3))]
 Numbers = Annotated[Value, Quantity(dim.PLAIN, (None, 3))]
 
 MOST = 200_000
-"""Most parts of a skeleton: beyond that a frame takes minutes and gigabytes."""
+"""Most parts of a skeleton: with more a frame takes minutes and gigabytes."""
 COARSEST = 1e-5
-"""Distance of neighboring float64 numbers, in parts of a curve's size, above which the search along a ray would cut it
-to ever shorter pieces, of which rounding lets it prove none."""
+"""Spacing of float64 numbers relative to a curve's size, above which the certified root search along a ray does not
+end: it would bisect the ray forever, since rounding prevents a proof on any piece."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shape:
-    """Some parts at an instant: corners (p, 3, 3) and radii (p, 2) [m], weights (p,), and groups (p,) from 0 on.
+    """Parts of a skeleton at an instant: corners (p, 3, 3) [m], radii (p, 2) [m], weights (p,) and groups (p,) from 0.
 
-    Curves have ``middles`` (p,) [m], the radii at their control points, which are their third corners.
+    Parts of one group are pieces of one line or surface. Quadratic curves have their control points as third corners,
+    and ``middles`` (p,) [m], the radii at these.
     """
 
     corners: Floats
@@ -68,7 +69,7 @@ class Part(Record):
     color: Color | None = field("Its color, mixed with the others' by their densities; by default the object's.", None)
 
     def problems(self) -> Iterator[Problem]:
-        """Several kinds of part or none, faces without points, and a part that cannot be closed."""
+        """Problems: more or less than one kind, triangles without points, a closed part that is no line."""
         given = [name for name in self.KINDS if getattr(self, name) is not None]
         if len(given) != 1:
             said = f", not {' and '.join(given)}" if given else ""
@@ -82,18 +83,19 @@ class Part(Record):
 
     @property
     def lone(self) -> bool:
-        """Whether it is points or segments, each a part of its own."""
+        """Whether the entry is points or segments, each of which is a part of its own."""
         return not (self.polyline or self.spline or self.polygon or self.triangles)
 
     def place(self) -> Value | None:
-        """The value that places it; None where several are given, or none."""
+        """The value of its points, of whichever kind; None unless exactly one is given."""
         given = [value for name in self.KINDS if (value := getattr(self, name)) is not None]
         return given[0] if len(given) == 1 else None
 
     def now(self, moment: Moment) -> Shape:
-        """Its geometry now; empty for a line or polygon whose number of points varies and is too small so far.
+        """Parts of the skeleton at a moment; empty for a line or polygon whose varying number of points is too small.
 
-        Raises RunFailure for lists of other lengths than the points', and too few points where their number is fixed.
+        Raises RunFailure for radii or weights of another number than the points, and where a fixed number of points is
+        too small.
         """
         import numpy as np
 
@@ -176,7 +178,7 @@ class Part(Record):
         return Shape(corners, np.stack([radii, radii], axis=1), *self._as_one(len(corners), moment))
 
     def _as_one(self, n: int, moment: Moment) -> tuple[Floats, Floats]:
-        """(weights, groups) of n pieces of one part."""
+        """Weights (n,) and groups (n,) of n pieces of one part. Raises RunFailure for a list of weights."""
         import numpy as np
 
         weight = numbers(self.weight, moment)
@@ -186,9 +188,9 @@ class Part(Record):
 
 
 def refuse_rounded(shape: Shape, place: Value, radius: Value, moment: Moment) -> None:
-    """Raise RunFailure for a curve or face so far away, or so wide for its length, that float64 cannot tell its points.
+    """Raise RunFailure for a curve or face that float64 does not resolve: too far away, or too wide for its length.
 
-    Points of their own are left: the density about one has no shape to lose.
+    Single points are not checked: their density is a ball wherever rounding puts them.
     """
     import numpy as np
 
@@ -214,9 +216,10 @@ def refuse_rounded(shape: Shape, place: Value, radius: Value, moment: Moment) ->
 
 
 def fixed_values(own: Collection[str], *records: BaseModel) -> tuple[list[Floats], Hashable] | None:
-    """(lists, all else) that records of fields hold, of the first record the fields ``own``, for ``OfHeld.get``.
+    """Arguments of ``OfHeld.get`` for a result that depends on the fields of some records: (arrays, key).
 
-    None where one of them may change with time, or where there is no list: then they are soon made.
+    Of the first record only the fields ``own`` count. None where a field may change with time, or where no field is a
+    list: the result is then cheap.
     """
     lists: list[Floats] = []
     rest: list[Hashable] = []
@@ -235,7 +238,7 @@ def fixed_values(own: Collection[str], *records: BaseModel) -> tuple[list[Floats
 
 
 def each(value: Value, n: int, what: str, moment: Moment) -> Floats:
-    """(n,) numbers, from one for all or one for each. Raises RunFailure for another count."""
+    """The value as (n,) numbers, a single number repeated. Raises RunFailure for a list of another length."""
     import numpy as np
 
     given = numbers(value, moment)
@@ -247,7 +250,7 @@ def each(value: Value, n: int, what: str, moment: Moment) -> Floats:
 
 
 def numbers(value: Value, moment: Moment) -> Floats:
-    """The numbers of a value now. Raises RunFailure where products of a few such numbers would overflow."""
+    """The value at a moment as an array. Raises RunFailure for a number above LARGEST, whose products overflow."""
     import numpy as np
 
     given = np.asarray(moment.at(value), dtype=float)
@@ -258,5 +261,5 @@ def numbers(value: Value, moment: Moment) -> Floats:
 
 
 def failure(message: str, value: Value, moment: Moment) -> RunFailure:
-    """A failure at the value's line of the script."""
+    """A RunFailure located at the value's line of the script."""
     return RunFailure(message, part="blobby", time=moment.time, span=value.span)

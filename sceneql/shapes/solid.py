@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 INFINITY = float("inf")
 LARGEST, SMALLEST = 1e100, 1e-100
-"""[m] Sizes of solids that can be drawn: products of a few lengths neither overflow nor vanish."""
+"""[m] Bounds of coordinates and sizes of drawn solids: products of a few lengths neither overflow nor underflow."""
 COARSEST = 1e-7
-"""Distance of neighboring float64 numbers, in parts of a traced solid's size, above which no ray meets its surface: the
-search would cut all its rays to ever shorter pieces, of which rounding lets it prove none."""
+"""Spacing of float64 numbers relative to a traced solid's size, above which the certified root search along a ray does
+not end: it would bisect the ray forever, since rounding prevents a proof on any piece."""
 MARGIN = 1e-6
-"""Margin of the box around a traced field, in parts of the solid's size."""
+"""Margin of the box around a traced field, relative to the solid's size."""
 CELLS = 96
 """Cells along the longest side of the box in which a solid is measured."""
 MEASURES: Mapping[str, Gives] = {
@@ -33,7 +33,7 @@ MEASURES: Mapping[str, Gives] = {
 
 
 class Solid(Placed):
-    """An object with a field in its own coordinates."""
+    """An object with an implicit field in its own coordinates."""
 
     gives: ClassVar[Mapping[str, Gives]] = MEASURES
 
@@ -51,15 +51,15 @@ class Solid(Placed):
         raise NotImplementedError
 
     def implicit(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
-        """Its field at a point of its parent's coordinates."""
+        """Register of its field; (x, y, z) are registers of a point in its parent's coordinates."""
         return self.inside(build, *build.affine(inverse(self.local(moment)), x, y, z), moment)
 
     def extent(self, place: Floats, moment: Moment) -> tuple[Floats, Floats]:
-        """The box around its own box."""
+        """Low and high corner (3,) of the box around its own box, which ``place`` maps to the world."""
         return mapped_box(compose(place, self.local(moment)), *self.reach(moment))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
-        """Its field as a tape."""
+        """The solid as a shape with its field as a tape."""
         return traced(self, name, place, moment)
 
     def read(self, output: str, moment: Moment) -> Any:
@@ -70,10 +70,10 @@ class Solid(Placed):
 def field_in_box(
     solid: Shaped, name: str, place: Floats, moment: Moment, verb: str
 ) -> tuple[frame.Tape, Corner, Corner] | None:
-    """The field of any object that has one, as a tape, in a box low..high a little larger than the object; None where
-    the box is empty. ``verb``: what it is to be, as ``drawn``.
+    """(tape of an object's field, low and high corner of its box with a margin); None where the box is empty.
 
-    Raises TypeError where it is unbounded, ValueError where it is too large, too small or too far away for float64.
+    ``verb``: a participle for messages, as ``drawn``. Raises TypeError for an unbounded object or one without an
+    inside, ValueError for one too large, too small or too far away for float64.
     """
     import numpy as np
 
@@ -95,7 +95,7 @@ def field_in_box(
 
 
 def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[frame.Implicit]:
-    """Any object with a field, as a tape in a box a little larger than itself; nothing where the box is empty.
+    """An object with a field as one frame.Implicit in its box with a margin; none where the box is empty.
 
     Raises as ``field_in_box``.
     """
@@ -114,7 +114,7 @@ def traced(solid: Shaped, name: str, place: Floats, moment: Moment) -> Iterable[
 
 
 def by_field(kind: Object, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
-    """An object with an inside as its field (`traced`), however it is drawn; any other object as it is drawn."""
+    """Shapes of an object: its implicit field (`traced`) where it has an inside, else the shapes it is drawn by."""
     from sceneql.field.tape.builder import TapeBuilder
     from sceneql.kinds import Object
 
@@ -126,7 +126,7 @@ def by_field(kind: Object, name: str, place: Floats, moment: Moment) -> Iterable
 
 
 def told_by_numbers(low: Floats, high: Floats) -> None:
-    """Raise ValueError where a solid in a box is so far from 1 m that its squares overflow or vanish."""
+    """Raise ValueError for a box beyond LARGEST or smaller than SMALLEST, where squares overflow or underflow."""
     import numpy as np
 
     farthest, size = float(np.abs([low, high]).max()), float((high - low).max())
@@ -137,7 +137,7 @@ def told_by_numbers(low: Floats, high: Floats) -> None:
 
 
 def _not_rounded_away(low: Floats, high: Floats) -> None:
-    """Raise ValueError where a solid in a box is so far from the origin that float64 does not resolve its surface."""
+    """Raise ValueError for a box so far from the origin that float64 does not resolve a surface in it (COARSEST)."""
     import numpy as np
 
     farthest, size = float(np.abs([low, high]).max()), float((high - low).max())
@@ -150,9 +150,9 @@ def _not_rounded_away(low: Floats, high: Floats) -> None:
 
 
 def measure(solid: Object, output: str, moment: Moment) -> Any:
-    """Number of closed surfaces or volume [m^3] of any object with a field; 0 where it is empty.
+    """The output ``pieces``, a number of closed surfaces, or ``volume`` [m^3] of an object with a field; 0 if empty.
 
-    Raises TypeError where it is unbounded.
+    By marching cubes with CELLS cells along the longest side. Raises TypeError for an unbounded object.
     """
     import numpy as np
 
@@ -178,7 +178,7 @@ def quadric(
     constant: float,
     half: tuple[float, float, float] = (INFINITY, INFINITY, INFINITY),
 ) -> frame.Quadric:
-    """A convex quadric solid within -half..half, both in the coordinates that ``place`` maps to the world.
+    """A convex quadric solid, clipped at the box -half..half; ``place`` (3, 4) maps its coordinates to the world.
 
     Raises ValueError where it is too large or too small for float64.
     """
@@ -205,7 +205,7 @@ def length(build: FieldBuilder, *registers: int) -> int:
 
 
 def less(build: FieldBuilder, register: int, number: float) -> int:
-    """Register of a value less a number."""
+    """Register of a value minus a number."""
     return build.op("sub", register, build.constant(number))
 
 
@@ -218,7 +218,7 @@ def largest(build: FieldBuilder, *registers: int) -> int:
 
 
 def block(build: FieldBuilder, registers: tuple[int, int, int], low: Any, high: Any) -> int:
-    """Register of the signed distance, in the maximum norm, to the box low..high; infinite sides are left out."""
+    """Register of the signed distance in the maximum norm to the box low..high, whose sides may be infinite."""
     sides = []
     for register, down, up in zip(registers, low, high, strict=True):
         if down == -up and up < INFINITY:

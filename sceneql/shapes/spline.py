@@ -1,4 +1,4 @@
-"""A smooth line through points, as a chain of quadratic curves that share their tangents where they meet."""
+"""A smooth line through points: a C1 chain of quadratic Bezier curves."""
 
 from __future__ import annotations
 
@@ -8,20 +8,21 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 OFF = 3e-4
-"""Largest deviation of the curves from the cubic, in parts of the radius there."""
+"""Largest deviation of the quadratic curves from the cubic, relative to the smaller radius at the piece's ends."""
 MOST = 64
 """Most pairs of curves between two points."""
 HELD = 0.5
-"""Lower bound of the radius between points, in parts of the least radius at the points."""
+"""Lower bound of the radius between points, relative to the least radius at the points."""
 
 
 def smooth(points: Floats, radii: Floats, closed: bool) -> tuple[Floats, Floats]:
-    """(corners (m, 3, 3), radii (m, 3)) of Bezier curves along the cubic through points (n, 3).
+    """(corners (m, 3, 3) [m], radii (m, 3) [m]) of quadratic Bezier curves along a cubic spline through points (n, 3).
 
-    Corners of a curve: first end, last end, control point. The cubic has the slopes of chords (Catmull & Rom 1974); its
-    parameter is the length of the polygon, as along the path of a `motion`. A pair of quadratic curves that meet in the
-    middle has position and slope of a piece of the cubic at both ends (Powell & Sabin 1977, in one dimension). Of a
-    closed line the last point is the first. The radius is interpolated likewise, with a lower bound (HELD).
+    Corners of a curve: first end, last end, control point. The spline's slopes are those of chords (Catmull & Rom
+    1974), its parameter is the chord length, as along the path of a `motion`. Each piece of it is replaced by a pair of
+    quadratic curves that meet in the middle, with the piece's positions and slopes at both ends (Powell & Sabin 1977,
+    in one dimension). A closed line's last point equals its first. Radii (n,) are interpolated by the same spline, with
+    a lower bound (HELD).
     """
     import numpy as np
 
@@ -36,13 +37,13 @@ def smooth(points: Floats, radii: Floats, closed: bool) -> tuple[Floats, Floats]
     if closed:
         slopes[0] = slopes[-1] = (data[1] - data[-2]) / (steps[0] + steps[-1])
         behind[0], ahead[-1] = steps[-1], steps[0]
-    # A cubic lies within its control points, which are a third of its slopes away from its ends.
+    # A cubic lies in the hull of its control points, and those are a third of its end slopes away from its ends.
     room = 3.0 * (radii - HELD * radii.min())
     slopes[:, 3] = np.clip(slopes[:, 3], -room / ahead, room / behind)
     found = []
     for k, h in enumerate(steps):
         a, b, p, q = data[k], data[k + 1], h * slopes[k], h * slopes[k + 1]
-        # The pair is off by t (1 - t)^2/48 times the third derivative, t from the middle to an end: 1/324 at most.
+        # The pair deviates by t (1 - t)^2/48 times the third derivative, t from the middle to an end: 1/324 at most.
         third = float(np.linalg.norm(12.0 * (a - b) + 6.0 * (p + q)))
         n = int(np.clip(np.ceil(np.cbrt(third / (324.0 * OFF * min(radii[k], radii[k + 1])))), 1, MOST))
         s = (np.arange(n + 1) / n)[:, None]

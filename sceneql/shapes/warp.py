@@ -29,19 +29,20 @@ class Warp(Solid):
     of: ObjectRef = field("The object, which needs an inside; several are one as a union or group.")
 
     def members(self) -> tuple[Ref, ...]:
-        """Its object."""
+        """Reference to the warped object."""
         return (self.of,)
 
     def joins(self) -> tuple[Ref, ...]:
-        """Its object."""
+        """Reference to the warped object."""
         return (self.of,)
 
     def back(
         self, build: FieldBuilder, point: Registers, low: Any, high: Any, moment: Moment
     ) -> tuple[Registers, int | None]:
-        """Registers of the preimage of a point, and of a factor on the field there (None: 1).
+        """Registers of the preimage of a point, and of a factor by which the field there is multiplied (None: 1).
 
-        low, high (3,): corners of the object's box, which is not empty. Raises ValueError where it cannot be warped.
+        low, high (3,): corners of the object's box, which is not empty. Raises ValueError for a box that the warp
+        cannot map.
         """
         raise NotImplementedError
 
@@ -50,13 +51,13 @@ class Warp(Solid):
         raise NotImplementedError
 
     def _box(self, moment: Moment) -> tuple[Floats, Floats]:
-        """The object's box in the coordinates before the map."""
+        """Low and high corner (3,) of the object's box, in the coordinates before the warp."""
         import numpy as np
 
         return moment.object(self.of).extent(np.eye(3, 4), moment)
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
-        """The object's field at the preimage of the point."""
+        """Register of the object's field at the preimage of the point, times the factor of ``back``."""
         low, high = self._box(moment)
         child = moment.object(self.of)
         if not (high > low).all():
@@ -66,7 +67,7 @@ class Warp(Solid):
         return value if factor is None else build.op("mul", value, factor)
 
     def hues(self, build: FieldBuilder, x: int, y: int, z: int, surface: Surface, moment: Moment) -> Registers | None:
-        """The object's colors at the preimage of the point, unless the warp has a color of its own."""
+        """Registers of the object's color at the preimage of the point; None where the warp has a color of its own."""
         child = moment.object(self.of)
         low, high = self._box(moment)
         own = self.material, self.color
@@ -86,7 +87,7 @@ class Warp(Solid):
         return super().extent(place, moment) if (high > low).all() else (low, high)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
-        """Its field as a tape; without a material of its own it has its object's."""
+        """The warped solid as a tape; a warp without material and color has those of its object."""
         child, own = moment.object(self.of), self
         if self.material is None and self.color is None:
             own = self.model_copy(update={"material": child.material, "color": child.color})
@@ -99,7 +100,7 @@ class Warp(Solid):
 
 
 def axes(name: AxisName) -> tuple[int, int, int]:
-    """Numbers of an axis and of the two that follow it, so that the three are right-handed."""
+    """Numbers 0..2 of an axis and of the two that follow it cyclically: a right-handed triple."""
     first = "xyz".index(name)
     return first, (first + 1) % 3, (first + 2) % 3
 

@@ -1,4 +1,4 @@
-"""World boxes of the closed set's shapes."""
+"""Axis-aligned boxes of a frame's shapes in world coordinates."""
 
 from __future__ import annotations
 
@@ -34,13 +34,16 @@ def box_of(shape: Shape) -> tuple[Floats, Floats]:
 
 
 FINE = 32
-"""Samples along a side of a field's box, between which a surface is not looked for."""
+"""Cells of the sampling lattice along each side of a field's box."""
 MOST_PARTS = 64
-"""Parts of a skeleton up to which its field is sampled."""
+"""Most parts of a skeleton whose field is sampled."""
 
 
 def surface_box(shape: Shape) -> tuple[Floats, Floats]:
-    """Likewise, of a formula's solid as samples see it: the box that a script gives a field may be far larger."""
+    """As ``box_of``, but of an implicit solid the box around the samples inside it, one step wider on each side.
+
+    The box that a script gives an implicit solid may be far larger than the solid.
+    """
     low, high = box_of(shape)
     found = inside_samples(shape)
     if found is None:
@@ -50,7 +53,11 @@ def surface_box(shape: Shape) -> tuple[Floats, Floats]:
 
 
 def inside_samples(shape: Shape) -> tuple[Floats, Floats] | None:
-    """Points (n, 3) of a lattice that lie in a formula's solid, and the lattice's steps (3,) [m]; None without any."""
+    """Lattice points (n, 3) [m] inside an implicit solid, and the lattice's steps (3,) [m].
+
+    A second, finer lattice is used where the points fill less than half of a side. None for other shapes, infinite
+    boxes, skeletons of more than MOST_PARTS parts, and where no point lies inside.
+    """
     if not isinstance(shape, Implicit) or shape.within is not None or len(shape.tape.parts) > MOST_PARTS:
         return None
     low, high = box_of(shape)
@@ -64,7 +71,7 @@ def inside_samples(shape: Shape) -> tuple[Floats, Floats] | None:
 
 
 def _sampled(shape: Implicit, low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """The points in the solid of a lattice that fills a box, and its steps."""
+    """Points (n, 3) inside the solid of a lattice that fills a box, and the lattice's steps (3,) [m]."""
     from sceneql.field.tape.tape_solid import field_values
 
     step = (high - low) / FINE
@@ -80,10 +87,10 @@ def _around(points: Floats, radii: Floats | float) -> tuple[Floats, Floats]:
 
 
 def _quadric(shape: Quadric) -> tuple[Floats, Floats]:
-    """The local box, where each square term bounds its own axis, carried to the world."""
+    """World box of a quadric: its local box, tightened along each axis with a square term, then mapped."""
     low, high = np.array(shape.low), np.array(shape.high)
     for k in range(3):
-        # a p^2 + b p + c <= 0 at best, with the other axes at their least.
+        # Necessary: a p^2 + b p + c <= 0, with the terms of the other axes at their minima in c.
         a, b = shape.squares[k], shape.linear[k]
         others = sum(_least(shape.squares[j], shape.linear[j], low[j], high[j]) for j in range(3) if j != k)
         c = shape.constant + others
@@ -103,7 +110,7 @@ def _quadric(shape: Quadric) -> tuple[Floats, Floats]:
 
 
 def _least(a: float, b: float, low: float, high: float) -> float:
-    """The least of a p^2 + b p over an interval."""
+    """Minimum of a p^2 + b p, a >= 0, over low..high."""
     if a == 0:
         return 0.0 if b == 0 else b * (low if b > 0 else high)
     at = min(max(-b / (2 * a), low), high)

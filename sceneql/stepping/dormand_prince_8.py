@@ -100,13 +100,13 @@ FIFTH = (
     0.08192320648511571,
     -0.022355307863886294,
 )
-"""Weights of the fifth-order estimate of the error."""
+"""Weights of the fifth-order error estimate."""
 
 THIRD = tuple(
     weight - other
     for weight, other in zip(_WEIGHTS, (31 / 127, *(0.0,) * 7, 0.7338466882816118, 0.0, 0.0, 3 / 136), strict=True)
 )
-"""Weights of the third-order estimate."""
+"""Weights of the third-order error estimate."""
 
 EXTRA = (
     (
@@ -158,7 +158,7 @@ EXTRA = (
         -9.15095847217987,
     ),
 )
-"""Rows of the three stages of dense output, after the step's twelve and the rate at its end."""
+"""Rows of the three further stages for dense output, after the step's twelve stages and the rate at its end."""
 
 BEND = (
     (

@@ -12,26 +12,27 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 DENSE = 240
-"""Unknowns up to which all modes are found."""
+"""Number of unknowns up to which all modes are computed."""
 SHIFT = 1e-7
-"""The shift, by the median of K_ii/M_ii: free bodies, whose K is singular, have a factorization by it."""
+"""The shift, relative to the median of K_ii/M_ii: with it K of a free body, which is singular, can be factored."""
 ZERO = 1e-12
-"""Squares below that part of the median are zero but for rounding."""
+"""Squared frequencies below this fraction of the median are zero up to rounding."""
 MORE = 4
-"""So many more are sought, so that the last ones of several equal squares are not missed."""
+"""Number of additional modes sought, so that the last of several equal frequencies are not missed."""
 LOOKS = 4
-"""After so many blocks the modes found are looked at."""
+"""Number of blocks between two checks of convergence."""
 EXACT, ALONE = 1e-9, 1e-20
-"""Relative error of shapes; squares of vectors' lengths, relative to the largest, that are rounding."""
+"""EXACT: relative error of shapes; ALONE: squares of vectors' lengths, relative to the largest, that count as
+rounding."""
 
 
 def lowest(stiffness: Any, mass: Any, count: int, points: Floats) -> tuple[Floats, Floats]:
     """Squared angular frequencies (k,) [1/s^2], ascending, and shapes (n, k) with s^T M s = 1 [kg^-1/2].
 
     ``stiffness`` [N/m] and ``mass`` [kg]: sparse symmetric (n, n), the latter positive definite; k is ``count`` or n.
-    ``points`` (n, 3): where the unknowns lie in space.
-    A square below 0 is of an unstable rest. The largest entry of a shape is above 0. Sources: Ericsson & Ruhe
-    (1980), Math. Comp. 35, 1251-1268; Grimes, Lewis & Simon (1994), SIAM J. Matrix Anal. Appl. 15, 228-272.
+    ``points`` (n, 3) [m]: position of each unknown. A square below 0 belongs to an unstable equilibrium. The largest
+    entry of a shape is positive. Sources: Ericsson & Ruhe (1980), Math. Comp. 35, 1251-1268; Grimes, Lewis & Simon
+    (1994), SIAM J. Matrix Anal. Appl. 15, 228-272.
     """
     n = mass.shape[0]
     count = min(count, n)
@@ -52,7 +53,7 @@ def lowest(stiffness: Any, mass: Any, count: int, points: Floats) -> tuple[Float
 
 
 def _sparse(stiffness: Any, mass: Any, count: int, points: Floats, shift: float) -> tuple[Floats, Floats]:
-    """By Lanczos' method in blocks, so that several equal squares are found, all vectors kept orthogonal."""
+    """Squares and shapes by block Lanczos iteration with full reorthogonalization; blocks find multiple eigenvalues."""
     from sceneql.stepping.eigenmodes_kernels import BLOCK
 
     n = mass.shape[0]
@@ -71,7 +72,7 @@ def _sparse(stiffness: Any, mass: Any, count: int, points: Floats, shift: float)
         found = solve(weighed[:, -width:])
         along = weighed.T @ found
         found -= basis @ along
-        again = weighed.T @ found  # once leaves what rounding put back
+        again = weighed.T @ found  # second pass, against rounding errors of the first
         found -= basis @ again
         along += again
         larger = np.zeros((whole, whole))
@@ -91,7 +92,10 @@ def _sparse(stiffness: Any, mass: Any, count: int, points: Floats, shift: float)
 
 
 def _ritz(stiffness: Any, mass: Any, shapes: Floats) -> tuple[Floats, Floats]:
-    """Squares and shapes within the span of shapes: errors of squares are then of second order in those of shapes."""
+    """Ritz values and vectors in the span of approximate shapes.
+
+    Errors of the squares are of second order in those of these.
+    """
     from scipy.linalg import eigh
 
     squares, ways = eigh(shapes.T @ (stiffness @ shapes), shapes.T @ (mass @ shapes))
@@ -99,7 +103,7 @@ def _ritz(stiffness: Any, mass: Any, shapes: Floats) -> tuple[Floats, Floats]:
 
 
 def _orthonormal(block: Floats, mass: Any) -> tuple[Floats, Floats]:
-    """Vectors that span a block with s^T M s = 1, and the block by these; what is no more than rounding is left out."""
+    """An M-orthonormal basis of a block's columns, and the block's coordinates in it; rounding is left out."""
     whole: Floats = np.eye(block.shape[1])
     for _ in range(2):
         gram = block.T @ (mass @ block)
@@ -112,7 +116,7 @@ def _orthonormal(block: Floats, mass: Any) -> tuple[Floats, Floats]:
 
 
 def _inverse(stiffness: Any, mass: Any, points: Floats, shift: float) -> Callable[[Floats], Floats]:
-    """The solutions with K + shift M of the columns (n, k), at most BLOCK of them."""
+    """Function that solves (K + shift M) x = b for the columns of b (n, k), at most BLOCK of them."""
     from scipy.sparse import csr_array
 
     from sceneql.linear.multifrontal import planning, systems_kernels

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 def elimination(system: System) -> NDArray[int64]:
-    """The plan for (mu - J) d = r: pairs, held masses and tallies are eliminated. The island has a pattern."""
+    """The plan for (mu - J) d = r, from which pairs, held masses and tallies are eliminated.
+
+    The system has a pattern.
+    """
     pattern = system.pattern
     assert pattern is not None
     n = len(system.y)
@@ -44,7 +47,7 @@ def elimination(system: System) -> NDArray[int64]:
 
 
 def _held(system: System) -> set[int]:
-    """Entries of masses whose inverse is 0: their rates are always 0."""
+    """The entries of masses with an inverse mass of 0, whose rates are always 0."""
     ints = system.ints
     found: set[int] = set()
     if system.pattern is None or not system.pattern.exact:

@@ -18,11 +18,10 @@ if TYPE_CHECKING:
 
 
 def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
-    """The plan and the scales before the first step.
+    """The plan (groups of entries) and the scales before the first step.
 
-    Positions of a model's masses share a scale, and so do their velocities, the cells of a field, and what words say is
-    alike; other entries have their own. Sums on which nothing depends, such as the energy lost by damping, have a scale
-    of at least 1 in SI.
+    Positions of a model's masses share a scale; so do their velocities, the cells of a field, and entries that words
+    declare alike. Other entries have their own. Tallies, on which nothing depends, have a scale of at least 1 in SI.
     """
     group = np.full(len(system.y), -1, dtype=np.int64)
     shared = 0
@@ -50,7 +49,7 @@ def error_scales(system: System) -> tuple[NDArray[int64], Floats]:
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """A tableau's step, its errors measured by the scales (runge_kutta_kernels.py)."""
+    """Prepare a tableau's step whose errors are measured by scales (runge_kutta_kernels.py)."""
     from sceneql.system import Prepared
 
     method = stepper.method
@@ -65,13 +64,13 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
 
 def alone(plan: NDArray[int64]) -> NDArray[bool_]:
-    """(n,) which entries have a scale of their own."""
+    """(n,) bool: entries with a scale of their own."""
     found: NDArray[bool_] = plan[GROUP_OF:] >= plan[SHARED]
     return found
 
 
 def _sums(system: System) -> NDArray[int64]:
-    """What models of masses and fields keep besides them, where nothing tells what it depends on."""
+    """(k,) all entries of models of masses and fields, among which those in no group yet are tallies."""
     found = np.zeros(len(system.y), dtype=bool)
     at = [velocity_at for velocity_at, _, _ in system.masses] + [grid.at for grid in system.grids]
     at += [first for first, _ in system.inertia]

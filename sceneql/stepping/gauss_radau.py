@@ -1,6 +1,6 @@
-"""Everhart's method of order 15: the coefficients that follow from its nodes, and its stability on linear systems.
+"""Everhart's method of order 15: coefficients derived from its nodes, and its stability on linear systems.
 
-Inside a step of length h, at s = (t - t0)/h, the rate is the polynomial f0 + b1 s + b2 s^2 + ... + b7 s^7 that meets
+In a step of length h, at s = (t - t0)/h, the rate is the polynomial f0 + b1 s + b2 s^2 + ... + b7 s^7 that interpolates
 the rate at eight Gauss-Radau nodes. Its Newton form f0 + g1 s + g2 s (s - s1) + ... is built up node by node.
 """
 
@@ -26,15 +26,16 @@ NODES = (
 """The roots of (P7 + P8)(2 s - 1) / s, P the Legendre polynomials; the first node is 0 (Radau 1880)."""
 DEGREE = len(NODES)
 CONTRACTION = 0.3
-"""Contraction per pass above which the iteration is taken not to converge: 12 passes at this factor gain 6 digits."""
+"""Contraction per pass above which the iteration counts as divergent: 12 passes at this factor gain 6 digits."""
 
 
 @cache
 def settings() -> tuple[float, ...]:
-    """The settings of the kernels: 8 ends of integration; the weights of the Newton form there, integrated once, twice.
+    """The settings of the kernels, in this order.
 
-    (8, 7) each, divided by the end and by its square. Then three (7, 7) matrices: inverse differences of the nodes,
-    Newton form to powers, powers to Newton form; and the binomials (7, 7) that shift a polynomial to the step after.
+    8 ends of integration; the weights of the Newton form there, (8, 7) each, integrated once and twice, divided by the
+    end and by its square; three (7, 7) matrices: inverse differences of the nodes, Newton form to powers, powers to
+    Newton form; and the binomials (7, 7) that shift a polynomial to the next step.
     """
     ends = (*NODES, 1.0)
     powers = range(1, DEGREE + 1)
@@ -50,7 +51,7 @@ def settings() -> tuple[float, ...]:
 
 
 def inverse_differences() -> list[list[float]]:
-    """Row i: 1/(s_i - s_j) for the nodes before, the one at 0 first."""
+    """Row i: 1/(s_i - s_j) for all earlier nodes s_j, beginning with the one at 0."""
     places = (0.0, *NODES)
     return [[1.0 / (places[i] - places[j]) if j < i else 0.0 for j in range(DEGREE)] for i in range(1, DEGREE + 1)]
 
@@ -64,7 +65,10 @@ def to_powers(number: type[Any] = float) -> list[list[Any]]:
 
 
 def integral(row: list[Fraction], end: float, times: int) -> Fraction:
-    """Of the polynomial with coefficients ``row`` at s, s^2, ... up to ``end``, divided by end^times; exact."""
+    """Exact integral of a polynomial up to ``end``, once or twice (``times``), divided by end^times.
+
+    ``row``: the coefficients at s, s^2, ...
+    """
     s = Fraction(end)
     return sum(
         (c * s**k * Fraction(1, k + 1 if times == 1 else (k + 1) * (k + 2)) for k, c in enumerate(row, 1)), Fraction()
@@ -72,7 +76,7 @@ def integral(row: list[Fraction], end: float, times: int) -> Fraction:
 
 
 def to_newton() -> list[list[float]]:
-    """Row i: s^(i+1) in the Newton form, the inverse of `to_powers`; all its numbers are sums of products of nodes."""
+    """Row i: s^(i+1) in the Newton form, the inverse of `to_powers`, by sums of products of nodes."""
     rows = [[1.0, *(0.0,) * (DEGREE - 1)]]
     for _ in range(DEGREE - 1):
         rows.append([(rows[-1][k - 1] if k else 0.0) + NODES[k] * rows[-1][k] for k in range(DEGREE)])
@@ -80,7 +84,7 @@ def to_newton() -> list[list[float]]:
 
 
 def growth(jacobian: Floats, partner: Any, step: float) -> float:
-    """Spectral radius of a converged step of y' = jacobian y, with pairs as `Solver.growth` has them.
+    """Spectral radius of a converged step of y' = jacobian y; ``partner``: pairs as in `Solver.growth`.
 
     Infinite where the iteration for the polynomial does not converge.
     """
@@ -93,7 +97,10 @@ def growth(jacobian: Floats, partner: Any, step: float) -> float:
     divisors, powers = np.array(inverse_differences()), np.array(to_powers())
 
     def state(s: float, y: Any, b: Any) -> Any:
-        """(n, columns) inside the step, from those at its start and the polynomial's (7, n, columns)."""
+        """(n, columns) states at s inside the step.
+
+        ``y`` (n, columns): at the step's start; ``b`` (7, n, columns): the polynomial's coefficients.
+        """
         f0 = pushed * (matrix @ y)
         change = f0 + sum(b[k] * s ** (k + 1) / (k + 2) for k in range(DEGREE))
         twice = f0 / 2 + sum(b[k] * s ** (k + 1) / ((k + 2) * (k + 3)) for k in range(DEGREE))
@@ -102,7 +109,7 @@ def growth(jacobian: Floats, partner: Any, step: float) -> float:
         return result
 
     def sweep(y: Any, b: Any) -> Any:
-        """The polynomial after one pass over the nodes."""
+        """The polynomial's coefficients after one pass over the nodes."""
         b = b.copy()
         newton = np.tensordot(np.array(to_newton()).T, b, 1)
         for i, s in enumerate(NODES):

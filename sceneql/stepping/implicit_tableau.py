@@ -1,4 +1,4 @@
-"""Diagonally implicit Runge-Kutta methods as data: the tableau, its stability function, preparation for an island."""
+"""Diagonally implicit Runge-Kutta methods as data: tableau, stability function, and preparation for an island."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ NEWTON = 1e-10
 """Relative and absolute tolerance of Newton's method where steps are fixed."""
 UNSOLVED = "Newton's method finds no solution, not even of a thousandth of this step: take shorter ones"
 NO_MEMORY = (0.0,) * 4
-"""What Newton's method remembers behind its tolerances, at the start (newton_kernels)."""
+"""Initial memory of Newton's method, which follows its tolerances in the settings (newton_kernels)."""
 SHARE = 0.02
-"""Part of the tolerance that Newton's method may leave as its own error."""
+"""Fraction of the tolerance that the error of Newton's method may use."""
 
 
 @dataclass(frozen=True)
 class ImplicitTableau:
     """Coefficients of a singly diagonally implicit method (SDIRK).
 
-    Row i of ``a`` has its i entries below the diagonal and the diagonal's own; the first may be empty: the stage is
-    the rate at the start (Alexander 1977; Kennedy & Carpenter 2016).
+    Row i of ``a`` has the i entries below the diagonal and the diagonal's own. The first row may be empty: that stage
+    is the rate at the start (Alexander 1977; Kennedy & Carpenter 2016).
     """
 
     a: tuple[tuple[float, ...], ...]
@@ -37,7 +37,7 @@ class ImplicitTableau:
     b_hat: tuple[float, ...] | None = None
     """Weights of the embedded method whose difference is the error."""
     error_order: int = 0
-    """The power of the step length by which the error estimate scales."""
+    """The order in the step length of the error estimate."""
     dense: str | None = None
 
     @property
@@ -57,11 +57,11 @@ class ImplicitTableau:
 
     @cached_property
     def c(self) -> tuple[float, ...]:
-        """Places of the stages inside the step: the row sums."""
+        """Nodes of the stages, as fractions of the step: the row sums."""
         return tuple(sum(row) for row in self.a)
 
     def fixed(self, step: float, newton: float = NEWTON) -> Stepper:
-        """Steps of one length [s]; ``newton``: relative and absolute tolerance of Newton's method in a stage."""
+        """Stepper of fixed length [s]; ``newton``: relative and absolute tolerance of Newton's method in a stage."""
         return self._stepper(first_step=step, newton=newton)
 
     def adaptive(
@@ -73,7 +73,7 @@ class ImplicitTableau:
         largest_step: float = inf,
         by_scale: bool = False,
     ) -> Stepper:
-        """Steps by the error of the embedded method. Raises ValueError where there is none."""
+        """Adaptive stepper by the error of the embedded method. Raises ValueError where there is none."""
         if self.b_hat is None:
             raise ValueError("a method without an embedded one has no error estimate")
         return self._stepper(tolerance, absolute, first_step=first_step, largest_step=largest_step, by_scale=by_scale)

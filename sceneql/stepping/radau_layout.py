@@ -1,4 +1,4 @@
-"""The layout of radau's work, numbers and settings (see radau_stages_kernels): indices by name."""
+"""The layout of radau's work, numbers and settings (see radau_stages_kernels), as named indices."""
 
 MEMORY = 16
 NEXT, START, LENGTH, BEFORE, GOOD_LENGTH, GOOD_ERROR, ERROR, CONVERGENCE, CONTRACTION, FACTORED = range(10)

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from sceneql.island.system import System
 
 FULL = 100
-"""Unknowns up to which full matrices are factored: the break-even with sparse ones."""
+"""Number of unknowns up to which full matrices are factored: the break-even with sparse ones."""
 LARGEST = 100_000
-"""Unknowns up to which `auto` considers radau: Jacobian, factors and stages take some 10 kB for each."""
+"""Number of unknowns up to which `auto` considers radau: Jacobian, factors and stages take some 10 kB for each."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,12 +25,12 @@ class Systems:
     """A linear solver and its data for radau_systems_kernels.py."""
 
     kernels: tuple[int, int, int]
-    """The numbers of its kernels factor, solve and filter."""
+    """Addresses (numbers) of its kernels factor, solve and filter."""
     plan: NDArray[int64]
     rows: Floats
     store: int
     contraction: float
-    """Contraction of Newton's iteration, given the accuracy of these solutions, below which a Jacobian is kept."""
+    """Contraction rate of Newton's iteration, given the accuracy of these solutions, below which a Jacobian is kept."""
     text: str
 
 
@@ -43,7 +43,7 @@ def radau_systems(system: System) -> Systems:
 
 
 def step_cost(unknowns: int) -> float:
-    """Steps of dopri5 that take as long as one of radau.
+    """Cost of a step of radau, in steps of dopri5.
 
     Full: 8 rates to 6, the Jacobian, a real and a complex factorization. Sparse: somewhat more than was measured on
     chains (40 to 75), nets (50 to 100 with up to 2,000 unknowns, 190 with 8,000) and lattices (tests/bench/
@@ -64,7 +64,7 @@ def likely_kernels(system: System) -> tuple[str, ...]:
 
 
 def _unknowns(system: System) -> int:
-    """Number of entries without positions of masses and others with a velocity, which are eliminated."""
+    """Number of entries of y without those that have a velocity, as positions of masses, which are eliminated."""
     return int((system.partner < 0).sum())
 
 

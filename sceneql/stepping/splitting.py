@@ -1,4 +1,4 @@
-"""Symplectic methods as data: kicks of the velocities by the forces, and drifts of the positions between them."""
+"""Symplectic splitting methods as data: kicks of the velocities by the forces, and drifts of the positions between."""
 
 from __future__ import annotations
 
@@ -15,22 +15,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Splitting:
-    """A kick first and last, a drift between each two: the exact flows of v' = a(x) and of x' = v, one after the other.
+    """Coefficients of a splitting: alternating kicks and drifts, the exact flows of v' = a(x) and of x' = v.
 
-    Each flow is symplectic where the forces have a potential, and so is the step (Yoshida 1990; McLachlan & Quispel
-    2002). A force that depends on the velocity is evaluated at one extrapolated by half a kick with the acceleration
-    before; entries of y without velocities change with the kicks. With either, the order is 2 and the step not
-    symplectic.
+    A step begins and ends with a kick. Each flow is symplectic where the forces have a potential, and so is the step
+    (Yoshida 1990; McLachlan & Quispel 2002). A force that depends on the velocity is evaluated at a velocity
+    extrapolated by half a kick with the previous acceleration; entries of y without velocities change with the kicks.
+    With either, the order is 2 and the step not symplectic.
     """
 
     kicks: tuple[float, ...]
-    """Shares of the step, one more than the drifts."""
+    """Kicks as fractions of the step, one more than the drifts."""
     drifts: tuple[float, ...]
     order: int
-    """The order for forces that depend on the positions alone."""
+    """The order for forces that depend on positions alone."""
 
     def fixed(self, step: float) -> Stepper:
-        """Steps of one length [s]; the rate at a step's end serves the next, so a drift costs one evaluation."""
+        """Stepper of fixed length [s].
+
+        The rate at a step's end serves the next step, so a drift costs one evaluation.
+        """
         return Stepper(
             Method(
                 step="sceneql.stepping.splitting_kernels:step",
@@ -44,7 +47,7 @@ class Splitting:
         )
 
     def growth(self, jacobian: Floats, partner: Any, step: float) -> float:
-        """Spectral radius of the step's linear map of (state, rate handed on), a (2n, 2n) matrix."""
+        """Spectral radius of the step's linear map of (state, rate passed on), a (2n, 2n) matrix."""
         import numpy as np
 
         j, of = np.asarray(jacobian, dtype=float), np.asarray(partner)
@@ -77,7 +80,7 @@ class Splitting:
         return half + sqrt(half * half - 1.0) if half > 1.0 else 1.0
 
     def _damped(self, frequency: float, damping: complex, step: float) -> float:
-        """As `growth`, for one mode's position, velocity and rate: eigenvalues of the step's change over its length."""
+        """As `growth`, for position, velocity and rate of a mode: eigenvalues of the step's change over its length."""
         columns = []
         for x0, v0, rate in ((1.0, 0.0, 0j), (0.0, 1.0, 0j), (0.0, 0.0, 1 + 0j)):
             moved, pushed, last = 0j, self.kicks[0] * rate, rate
@@ -91,7 +94,7 @@ class Splitting:
         return max(abs(1.0 + step * change) for change in changes)
 
     def leads(self) -> tuple[float, ...]:
-        """Parts of the step by which each evaluation extrapolates the velocity: to the middle of its kick."""
+        """Fractions of the step by which each evaluation extrapolates the velocity: to the middle of its kick."""
         return (*(0.5 * kick for kick in self.kicks[1:-1]), self.kicks[-1])
 
 

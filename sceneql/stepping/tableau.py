@@ -1,4 +1,4 @@
-"""Explicit Runge-Kutta methods as data: the tableau, its order by the order conditions, its growth factor."""
+"""Explicit Runge-Kutta methods as data: tableau, order by the order conditions, growth factor."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ if TYPE_CHECKING:
 KERNELS = "sceneql.stepping.runge_kutta_kernels"
 HIGHEST_ORDER = 8
 TOLERANCE = 1e-10
-"""Of an order condition: coefficients may be rounded decimals."""
+"""Tolerance of an order condition: coefficients may be rounded decimals."""
 
 Tree = tuple["Tree", ...]
-"""A rooted tree: the trees at its root."""
+"""A rooted tree, as the tuple of its branches."""
 
 
 @dataclass(frozen=True)
 class Tableau:
-    """Coefficients of an explicit method: row i of ``a`` has its i entries below the diagonal (Butcher 1964)."""
+    """Coefficients of an explicit method: row i of ``a`` has the i entries below the diagonal (Butcher 1964)."""
 
     a: tuple[tuple[float, ...], ...]
     b: tuple[float, ...]
     b_hat: tuple[float, ...] | None = None
     """Weights of the embedded method whose difference is the error."""
     dense: str | None = None
-    """Kernel of its own dense output."""
+    """Kernel of the method's own dense output; None: Hermite interpolation."""
 
     @property
     def stages(self) -> int:
@@ -41,12 +41,12 @@ class Tableau:
 
     @cached_property
     def c(self) -> tuple[float, ...]:
-        """Places of the stages inside the step: the row sums."""
+        """Nodes of the stages, as fractions of the step: the row sums."""
         return tuple(sum(row) for row in self.a)
 
     @cached_property
     def order(self) -> int:
-        """The order: up to it all order conditions hold (Hairer, Norsett & Wanner 1993, theorem II.2.13)."""
+        """The order up to which all order conditions hold (Hairer, Norsett & Wanner 1993, theorem II.2.13)."""
         for order in range(1, HIGHEST_ORDER + 1):
             for tree in trees(order):
                 total = sum(b * s for b, s in zip(self.b, self._elementary(tree), strict=True))
@@ -60,7 +60,7 @@ class Tableau:
         return len(self.a[-1]) > 0 and (*self.a[-1], 0.0) == self.b
 
     def fixed(self, step: float) -> Stepper:
-        """Steps of one length [s]."""
+        """Stepper of fixed length [s]."""
         from sceneql.system import Control, Stepper
 
         return Stepper(self._method(None, 0.0, 0.0), Control(first_step=step))
@@ -74,7 +74,7 @@ class Tableau:
         largest_step: float = inf,
         by_scale: bool = False,
     ) -> Stepper:
-        """Steps by the error of the embedded method. Raises ValueError where there is none."""
+        """Adaptive stepper by the error of the embedded method. Raises ValueError where there is none."""
         if self.b_hat is None:
             raise ValueError("a method without an embedded one has no error estimate")
         from sceneql.system import Control, Needs, Stepper
@@ -105,7 +105,7 @@ class Tableau:
 
     @cached_property
     def stability_function(self) -> tuple[float, ...]:
-        """Coefficients of R, that of z^0 first."""
+        """Coefficients of the stability function R(z), beginning with z^0."""
         powers = [1.0]
         stage = (1.0,) * self.stages
         for _ in range(self.stages):
@@ -143,7 +143,7 @@ class Tableau:
 
 
 def size(tree: Tree) -> int:
-    """Number of nodes."""
+    """Number of nodes of a tree."""
     return 1 + sum(size(branch) for branch in tree)
 
 
@@ -159,7 +159,7 @@ def trees(order: int) -> tuple[Tree, ...]:
 
 
 def _forests(nodes: int, largest: int) -> Iterator[Tree]:
-    """All multisets of trees with so many nodes in all, none larger than ``largest``."""
+    """All multisets of trees with ``nodes`` nodes in total, no tree larger than ``largest``."""
     if nodes == 0:
         yield ()
         return

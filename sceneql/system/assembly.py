@@ -32,29 +32,30 @@ class Assembly(Protocol):
     def state(
         self, initial: Any, spans: Sequence[Span | None] | None = None, named: Callable[[int], str] | None = None
     ) -> int:
-        """Reserve len(initial) entries of y with these values at the start; the offset of the first.
+        """Reserve len(initial) entries of y with these initial values; returns the offset of the first.
 
         ``spans``, one an entry or one for all, say which line of the script an entry comes from; ``named`` gives the
         name of each, for messages.
         """
 
     def displaced(self, at: int, values: Any) -> None:
-        """Let entries of y start with other values than they were reserved with, which are those of rest."""
+        """Set initial values of y[at : at + len(values)]; the values reserved before are kept as those at rest."""
 
     def pair(self, position_at: int, velocity_at: int, count: int) -> None:
-        """Say that y[velocity_at + k] is the velocity of y[position_at + k] (for methods that use it)."""
+        """Declare y[velocity_at + k], k < count, as the derivative of y[position_at + k], for methods that use it."""
 
     def floats(self, values: Any) -> int:
-        """Store numbers; the offset of the first."""
+        """Store numbers in the floats; returns the offset of the first."""
 
     def write(self, at: int, values: Any) -> None:
-        """Replace numbers that are stored from an offset on."""
+        """Overwrite floats[at : at + len(values)], which were stored before."""
 
     def value(self, value: Value) -> int:
-        """Store a value of the script, a varying one to be evaluated at stage times; the offset of its first float.
+        """Store a value of the script in the floats; returns its offset.
 
-        Terms and contacts of the word that is being assembled read it. Where it depends on the state, the derivatives
-        of these terms through it are part of the Jacobian (system.Slopes).
+        A varying value is evaluated at every stage time. Only terms and contacts of the word that is being assembled
+        read it. Where it depends on the state, the derivatives of these terms through it are part of the Jacobian
+        (system.Slopes).
         """
 
     def initial(self, value: Value) -> Any:
@@ -72,53 +73,50 @@ class Assembly(Protocol):
     ) -> None:
         """Add a term to the rate; ``kernel`` is ``"package.module:function"``.
 
-        ``jacobian``: its derivatives, or a function that gives them if a solver needs them; None: unknown, then the
-        island takes differences of the whole rate. ``apart``: its force on a body depends on that body and the time
-        alone, so that a large island may be solved in blocks of its bodies.
+        ``jacobian``: the term's derivatives, or a function that returns them if a solver needs them; None: unknown, and
+        the whole Jacobian of the island is then found by finite differences. ``apart``: the term's force on a body
+        depends on that body and the time alone, so that a large island may be solved in blocks of its bodies.
 
         ``energy``: ``"package.module:function"``, ``(t, y, floats, ints) -> float``, with the term's integers: the
-        potential energy [J] of its force, called where the rate has been evaluated at this t; empty: of a term that
-        adds no force to what moves; None: there is none. Newton's method searches along its updates for less of the sum
-        where all terms of an island tell theirs. ``damped``: the force depends on velocities besides, and has this
-        potential where they are 0.
+        potential energy [J] of its force, called after the rate has been evaluated at the same t. Empty: the term adds
+        no force to what moves. None: its force has no potential. Where every term of an island has one of the former,
+        Newton's method uses the total potential energy in its line search. ``damped``: the force also depends on
+        velocities, and ``energy`` is its potential at zero velocities.
         """
 
     def limit(self, kernel: str, ints: Ints) -> None:
-        """Add what keeps surfaces apart: the largest part of a change of the state that lets none pass another.
+        """Add a kernel that limits changes of the state, so that no surface passes through another.
 
-        ``kernel`` is ``"package.module:function"``, ``(t, y, changed, floats, ints) -> float``, 1 where the whole way
-        in a line from y to ``changed`` is free. Newton's method asks it of each update, from states where surfaces are
-        apart; other methods of their whole step, which a tolerance then shortens, and which fails where its length is
-        given.
+        ``kernel`` is ``"package.module:function"``, ``(t, y, changed, floats, ints) -> float``: the largest fraction of
+        the straight line from y to ``changed`` without interpenetration, 1 for all of it. Newton's method calls it for
+        each update, from states where surfaces are apart. Other methods call it for the whole step: an adaptive step is
+        then shortened, a step of given length fails.
         """
 
     def grows(self, grow: Callable[[Any], bool]) -> None:
-        """Say that the places of slopes may become more during a run, as what comes near depends on one another.
-
-        A slopes kernel that misses a place sets floats[channels.GROWS]. The march then calls ``grow`` with the floats;
-        it returns whether the slopes of its term, given by a function, have more places now. None are taken away.
-        """
+        """Declare that the sparsity pattern of a term's slopes may grow in a run, as more surfaces come near."""
 
     def tied_drift(self, kernel: str, ints: Ints) -> None:
-        """Add what changes the momenta before a splitting's drift, so that it ends where ties hold (RATTLE).
+        """Add a kernel that corrects a splitting's drift so that it ends where the constraints of ties hold (RATTLE).
 
-        ``kernel(functions, h, y0, kicked, y1, floats, all_ints, ints)``: y1 is the state that has drifted over h from
-        ``kicked``, whose places are those of y0; it writes both anew. ``all_ints`` are the island's.
+        ``kernel(functions, h, y0, kicked, y1, floats, all_ints, ints)``: ``kicked`` has the positions of y0 and the
+        momenta at the start of the drift; y1 is the state after drifting from ``kicked`` over h. The kernel rewrites
+        both. ``all_ints``: the island's integers; ``ints``: the kernel's own.
         """
 
     def alike(self, at: int, count: int) -> None:
-        """Say that y[at : at + count] are of one size: methods with a tolerance measure their errors by one scale."""
+        """Declare that y[at : at + count] have one magnitude: methods with a tolerance scale all their errors alike."""
 
     def inertia(self, velocity_at: int, inverse_at: int, count: int, matrix: Any = None) -> None:
-        """Say that a close term scales rate[velocity_at + 3k : +3], and so its slopes, by floats[inverse_at + k].
+        """Declare that a close term scales rate[velocity_at + 3k : +3], and so its slopes, by floats[inverse_at + k].
 
-        ``matrix``: the close term solves with it instead (bodies/consistent.py), a scipy sparse symmetric positive
-        definite matrix (3 count, 3 count) [kg]; floats[inverse_at + k] then are of lumped masses, for contacts. Entries
-        that are held have a row and a column of zeros.
+        ``matrix``: a consistent mass matrix with which the close term solves instead (bodies/consistent.py), scipy
+        sparse, symmetric positive definite, (3 count, 3 count) [kg]; floats[inverse_at + k] are then inverse lumped
+        masses, for contacts. Entries that are held have a row and a column of zeros.
         """
 
     def capacity(self, at: int, matrix: Any) -> None:
-        """Say that a close term solves with a matrix for the rates of y[at : at + n]: slopes are of what it solves for.
+        """Declare that the rates r of y[at : at + n] solve matrix r = b, in a close term; slopes are derivatives of b.
 
         ``matrix``: scipy sparse, symmetric and positive definite, (n, n).
         """
@@ -128,58 +126,61 @@ class Assembly(Protocol):
     ) -> None:
         """Add contacts: kernels (gap, impact) with the number of pairs for `exact`, (back_off,) for `local`.
 
-        ``apart``: as for a term; for local contacts only. ``help``: the advice of a run that ends because events of
-        the pairs have no end, which is then told at the contact's line.
+        ``apart``: as for a term; for local contacts only. ``help``: the advice, told at the contact's line, of a run
+        that ends because impacts of the pairs accumulate without end.
         """
 
     def after_step(self, kernel: str, ints: Ints, apart: bool = False, samples: bool = False) -> None:
         """Add a kernel that acts at the end of each accepted step: springs that tear, particles that are born.
 
         ``kernel`` is ``"package.module:function"``; it returns whether it changed anything. ``apart``: as for a term.
-        ``samples``: it takes away what errors have added, as the length of quaternions, and so acts after impacts and
-        on every state that is read off a step, too, with both times equal; what it returns is whether the rate at the
-        end of the step is to be evaluated anew.
+        ``samples``: the kernel removes accumulated errors, such as the drift of a quaternion's length. It then also
+        acts after impacts and on every state that is interpolated within a step, with both times equal, and returns
+        whether the rate at the end of the step must be evaluated anew.
         """
 
     def free_motion(self, kernel: str, ints: Ints, at: int, count: int) -> None:
-        """Add the exact motion without forces of y[at : at + count], which splittings use as their drift.
+        """Add the exact force-free motion of y[at : at + count], which splittings use as their drift.
 
-        ``kernel(h, y, floats, ints)`` changes these entries alone, from those of velocities and momenta. Of entries
-        named by `pair` it need not be told: x += h v.
+        ``kernel(h, y, floats, ints)`` changes these entries alone, by velocities and momenta in y. Entries named by
+        `pair` need no kernel: x += h v.
         """
 
     def grid(self, grid: Grid) -> None:
-        """Say that the entries of the state from grid.at on are a field, for solvers that know grids.
+        """Declare the entries of the state from grid.at on as a field, for solvers that know grids.
 
         Other entries of the model (tallies) must depend on the field alone, and nothing may depend on them.
         """
 
     def flow(self, flow: Flow) -> None:
-        """Say that entries of the state are an incompressible flow, the only one of the island."""
+        """Declare entries of the state as an incompressible flow, the only one of the island."""
 
     def flow_of(self, model: str | None = None) -> Flow | None:
         """The flow of a model, or by default the only one; None where this island has none."""
 
     def fluids(self, flow: str) -> tuple[tuple[float, float], ...]:
-        """Density and viscosity of each other fluid that skins in a flow hold (Model.fluid)."""
+        """Density [kg/m^3] and viscosity [Pa s] of each other fluid that skins in a flow enclose (Model.fluid)."""
 
     def carrier(self, model: str) -> Flow | None:
         """The flow that carries a model by a force (Interaction.carrier); None where none does."""
 
     def laden(self, flow: str) -> bool:
-        """Whether masses that a flow carries add to its inertia, or take some away (Model.burdens)."""
+        """Whether masses carried by a flow add to its inertia or reduce it (Model.burdens)."""
 
     def follows(self, at: int, count: int) -> None:
-        """Say that entries of y follow from others, written by a term or summed up: their errors are not measured."""
+        """Declare y[at : at + count] as functions or integrals of other entries: their errors are not measured."""
 
     def membrane(self, membrane: Membrane) -> None:
-        """Say that entries of the state are a skin that a flow carries."""
+        """Declare entries of the state as the vertices of a skin that a flow carries."""
 
     def membrane_of(self, model: str) -> Membrane | None:
         """The skin of a model; None where it has none."""
 
     def offer(self, output: str, grid: Grid) -> None:
-        """Name a field output of the model that is being assembled; its tally of inflow follows its cells in y."""
+        """Name a field output of the model that is being assembled.
+
+        In y the cells of ``grid`` are followed by its inflow tally.
+        """
 
     def field_of(self, link: Link) -> Grid | None:
         """The grid of the field that a link reads; None where this island has no such field."""
@@ -191,22 +192,25 @@ class Assembly(Protocol):
         """The group that an object of the script is a member of, and its kind; None where it is in none."""
 
     def changing(self, at: int, count: int) -> None:
-        """Say that bodies come and go, and that floats[at : at + count] change with them, alike in every block."""
+        """Declare that bodies appear and vanish, and floats[at : at + count] change with them, alike in every block."""
 
     def remember(self, *ints: int) -> None:
-        """Keep integers for the word's outputs: ModelState.ints (a force's for each model; a contact's for all)."""
+        """Keep integers for the word's outputs (ModelState.ints): a force's for each model, a contact's for all."""
 
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""
 
     def step_at_most(self, seconds: float) -> None:
-        """Bound the adaptive step [s], where something happens that the error estimate cannot see."""
+        """Bound the adaptive step [s], where the error estimate cannot see what happens."""
 
     def stop_at(self, time: float) -> None:
         """Add a breakpoint [s]: adaptive steps end there."""
 
     def stop_at_breakpoints(self, expr: Expr) -> None:
-        """Add the breakpoints of a formula of time: adaptive steps end there. (Those of each `value` are added.)"""
+        """Add the breakpoints of a formula of time: adaptive steps end there.
+
+        (`value` adds those of its values itself.)
+        """
 
     def start(self) -> Any:
         """The state reserved so far (n,), at the start of the run."""
@@ -221,24 +225,26 @@ class Assembly(Protocol):
         """Indices into y of a model's output, in an array of its shape; None where the output is computed."""
 
     def place(self, link: Link) -> Place | None:
-        """The mass, or the place on a body, whose position a link is; None where it is none of this island's."""
+        """The mass, or the point of a rigid body, whose position a link reads; None where it is not in this island."""
 
     def tie(self, tied: Tied) -> None:
-        """Hold two bodies to conditions; their forces are found together with those of all other ties."""
+        """Add constraints between two bodies; their forces are solved for together with those of all other ties."""
 
     ties: list[Tied]
-    """What ties hold."""
+    """The ties of the island so far."""
     tie_ints: tuple[int, ...]
-    """The integers of the term that finds all ties' forces (bodies/rigid/tie_kernels.py), once it is there."""
+    """The integers of the term that solves for all constraint forces (bodies/rigid/tie_kernels.py); empty before it is
+    added."""
     driven: bool
-    """Whether a step lets stops, motors and friction of ties act already."""
+    """Whether a contact's step already solves for the stops, motors and friction of ties."""
     went_on: Mapping[str, ModelState]
-    """By contact that has given way its state at that instant, from which the island goes on; empty at the start."""
+    """The state, by contact, at the instant at which the contact gave way and from which the island goes on; empty at
+    the start."""
     gives_way: bool
-    """Whether a contact of mode `exact` has another way for what is left, where it finds none or takes too much work:
-    the island is then assembled anew, and goes on from there."""
+    """Whether a contact of mode `exact` can go on in another mode where it finds no solution or takes too much work:
+    the island is then assembled anew and goes on from that instant."""
     by_tolerance: bool
-    """Whether the solver is explicit, and a tolerance chooses its steps."""
+    """Whether the solver is explicit with adaptive steps."""
     contact_why: str
     """Why contacts of rigid bodies have their mode, for `explain`."""
 

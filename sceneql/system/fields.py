@@ -13,25 +13,29 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cells:
-    """The cells of a regular grid: cell (i, j, k) is number i + nx (j + ny k); offsets are into the island's floats."""
+    """The cells of a regular grid: cell (i, j, k) has index i + nx (j + ny k).
+
+    ``..._at`` are offsets into the island's floats.
+    """
 
     shape: tuple[int, int, int]
     periodic: tuple[bool, bool, bool]
     outside: Any
-    """(cells,) bool: not part of the domain."""
+    """(cells,) bool: whether a cell lies outside the domain."""
     insides_at: int
-    """Volumes, 0 outside."""
+    """(cells,) volumes [m^3] of cells inside the domain; 0 outside."""
     box_at: int
-    """Low corner and sides of a cell, six numbers [m]."""
+    """Low corner of the grid and sides of a cell, six numbers [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
     """A finite volume field on a regular grid, V dc/dt = sum over faces of g (neighbor - c) - sink c + fed.
 
-    The value of cell n is y[at + n]; all other offsets are into the island's floats, one number per cell. A face's
-    conductance g [m^3/s] is stored with the cell on its high side; the first cell of a row has the face between the
-    row's last and first cells (0 where the field is not periodic). Cells outside the domain have V = 1 and no faces.
+    The value c of cell n is y[at + n]; all other offsets are into the island's floats, one number per cell. A face's
+    conductance g [m^3/s] is stored with the cell on its high side. In a periodic direction the first cell of a row
+    stores the face between the row's last and first cells; 0 if not periodic. Cells outside the domain have V = 1 and
+    no faces.
     """
 
     cells: Cells
@@ -41,9 +45,9 @@ class Grid:
     faces_at: tuple[int, int, int]
     """Conductances along x, y, z; those along z are not read where nz is 1."""
     varying: bool
-    """Whether g and sink depend on time or on the field: each evaluation of the rate then writes them."""
+    """Whether g and sink depend on time or on the field; each evaluation of the rate then rewrites them."""
     fed_at: int
-    """Sources fed into the cells, where these are constant; else -1."""
+    """Offset of the sources fed, where these are constant; else -1."""
     carried: bool
     """Whether a drift (advection) acts on it."""
     keeps: tuple[float, float] = (-math.inf, math.inf)
@@ -63,7 +67,7 @@ class Flow:
     components: tuple[Grid, ...]
     """Two in a flat flow, three in a deep one."""
     areas: tuple[float, ...]
-    """Of a face, by axis [m^2]."""
+    """Areas of a cell's faces, by axis [m^2]."""
     spacing: tuple[float, ...]
     """Sides of a cell [m]."""
     low: tuple[float, ...]
@@ -71,20 +75,21 @@ class Flow:
     ints: tuple[int, ...]
     """Integers of the projection (flows/projection_kernels.py)."""
     fractions: Any
-    """(cells,) the part of each that solids leave open; None where there are none."""
+    """(cells,) fraction of each cell that solids leave open; None without solids."""
     density: float
     """[kg/m^3]"""
     viscosity: float
-    """[Pa s]; 0 where it varies."""
+    """[Pa s]; 0 where it varies in space."""
     pressure: str
-    """How it is solved for, for `explain`."""
+    """How the pressure is solved for, as text for `explain`."""
     varying: tuple[int, ...] = ()
-    """Integers of the kernels of several fluids (flows/varying/fluid_layout.py); empty of one density and viscosity."""
+    """Integers of the kernels of several fluids (flows/varying/fluid_layout.py); empty for one density and
+    viscosity."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Membrane:
-    """Points, a closed skin without inertia or masses, that move as a flow does and hand it their forces."""
+    """Points that move with a flow and exert their forces on it: vertices of a closed massless skin, or masses."""
 
     count: int
     position_at: int
@@ -92,27 +97,28 @@ class Membrane:
     force_at: int
     """floats[force_at + 3k : +3] [N]: 0 after stage `velocity`, then what terms of `internal` and `force` add."""
     faces: NDArray[int64]
-    """(m, 2) the vertices of its sides, or (m, 3) of its triangles."""
+    """(m, 2) vertices of the skin's edges in a flat flow, or (m, 3) of its triangles in a deep one."""
     areas: NDArray[float64]
-    """(count,) of each vertex's share of it at the start [m^2]."""
+    """(count,) each vertex's share of the skin's area at the start [m^2]."""
     stiffness: float
-    """The pressure by which contacts push it off [Pa]: by none larger do they shorten steps that its waves allow."""
+    """Contact stiffness as a pressure [Pa], the largest that does not shorten the steps that the skin's own waves
+    allow."""
     cell: float
     """Side of a cell of the flow [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fields:
-    """The fields of an island: any number at centers of cells, and at most one flow."""
+    """The fields of an island: any number of cell-centered grids, and at most one flow."""
 
     grids: tuple[Grid, ...] = ()
     flow: Flow | None = None
     alone: bool = False
-    """Whether the island is these fields and nothing else, which nothing changes between steps."""
+    """Whether the island consists of these fields alone, and nothing changes them between steps."""
     on_elements: int = 0
-    """Unknowns of fields on elements, where the island is these and nothing else."""
+    """Number of unknowns of finite element fields, where the island consists of these alone; else 0."""
 
     @property
     def single(self) -> Grid | None:
-        """The field, where the island is one at centers of cells and nothing else."""
+        """The only field, where the island consists of one cell-centered grid; else None."""
         return self.grids[0] if self.alone and self.flow is None and len(self.grids) == 1 else None

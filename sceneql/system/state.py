@@ -12,32 +12,33 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Turning:
-    """How rigid bodies turn, as offsets: body k has the quaternion y[rotation_at + 4k : +4], [w, x, y, z].
+    """Orientation and inertia of rigid bodies, as offsets.
 
-    It turns the body's axes to the world's; only its direction counts.
+    Body k has the quaternion y[rotation_at + 4k : +4], [w, x, y, z], which rotates body axes to world axes. Only its
+    direction counts; its length may drift.
     """
 
     rotation_at: int
     momentum_at: int
-    """y[momentum_at + 3k : +3]: angular momentum about the center of mass, in the world's axes [kg m^2/s]."""
+    """y[momentum_at + 3k : +3]: angular momentum about the center of mass, in world axes [kg m^2/s]."""
     inverse_at: int
-    """floats[inverse_at + 6k : +6]: inverse of the inertia about the center of mass, in the body's axes, its xx, yy,
+    """floats[inverse_at + 6k : +6]: inverse inertia tensor about the center of mass in body axes, components xx, yy,
     zz, yz, xz, xy [1/(kg m^2)]; 0 for a fixed body."""
     principal_at: int
-    """floats[principal_at + 7k : +7]: principal moments of inertia [kg m^2], then the quaternion that turns their axes
-    to the body's; the moments of a body without a free motion of its own are 0."""
+    """floats[principal_at + 7k : +7]: principal moments of inertia [kg m^2], then the quaternion from principal to body
+    axes; the moments are 0 for a body that does not move freely."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Skin:
-    """The surface of a solid between its masses, which nothing passes."""
+    """The triangulated surface of a solid, whose vertices are masses; contacts let nothing pass through it."""
 
     triangles: Any
-    """(k, 3) int: bodies, counterclockwise from outside."""
+    """(k, 3) int: vertices of the triangles as numbers of bodies, counterclockwise from outside."""
     held: Any
-    """(bodies, 3) bool: components that do not move freely."""
+    """(bodies, 3) bool: components of the position that do not move freely."""
     stiffness: float
-    """Its elastic modulus [Pa]: the pressure at which a barrier lets through half a gap or so."""
+    """The solid's elastic modulus [Pa]: about the pressure at which a barrier contact closes half its gap."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,9 +48,9 @@ class Springs:
     ends: Any
     """(m, 2) int: the bodies at their ends."""
     strength: Any
-    """(2, m): stiffness [N/m], and damping [N s/m]."""
+    """(2, m): stiffness [N/m] and damping [N s/m] of each spring."""
     period: float
-    """Lower bound of the periods of oscillations [s]."""
+    """Lower bound of the oscillation periods [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +58,9 @@ class Immersed:
     """Masses that a flow carries."""
 
     points: Membrane
-    """What moves as the flow does, for contacts."""
+    """These masses as points that move with the fluid, for contacts."""
     excess_at: int
-    """floats[excess_at + k]: mass less that of the fluid whose place it takes [kg], which it weighs."""
+    """floats[excess_at + k]: mass minus that of the displaced fluid [kg], on which gravity acts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +73,7 @@ class Bodies:
     velocity_at: int
     """y[velocity_at + 3k : +3] [m/s]."""
     work_at: int
-    """y[work_at]: energy [J] that drag, damping and impacts have taken out so far."""
+    """y[work_at]: energy [J] dissipated so far by drag, damping and impacts."""
     mass_at: int
     """floats[mass_at + k] [kg]."""
     inverse_at: int
@@ -84,30 +85,34 @@ class Bodies:
     turning: Turning | None = None
     """How they turn; None for point masses."""
     skin: Skin | None = None
-    """The surface that they span; None for masses alone."""
+    """Their surface, where they are vertices of a solid; None for masses alone."""
     immersed: Immersed | None = None
-    """What a flow carries of them, whose velocities then are the flow's there; None where none does."""
+    """These masses as carried by a flow, whose velocity at their positions is theirs; None where no flow carries
+    them."""
 
     @property
     def weighed_at(self) -> int:
-        """floats[weighed_at + k]: what gravity acts on [kg]."""
+        """floats[weighed_at + k]: mass on which gravity acts [kg]; in a flow, less that of the displaced fluid."""
         return self.mass_at if self.immersed is None else self.immersed.excess_at
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a force acts: a mass, or a place on a rigid body."""
+    """Point of application of a force: a mass, or a point of a rigid body."""
 
     bodies: Bodies
     body: int
-    """Its number among these."""
+    """Index of the mass or body in ``bodies``."""
     arm_at: int = -1
-    """floats[arm_at : +3]: the place in the body's axes, from the center of mass [m]; -1: the center itself."""
+    """floats[arm_at : +3]: the point relative to the center of mass in body axes [m]; -1: the center of mass itself."""
 
     @property
     def ints(self) -> tuple[int, int, int, int, int, int, int, int]:
-        """For kernels (bodies/rigid/place_kernels.py): offsets of position and velocity in y, of the work in y, of the
-        inverse mass; of the quaternion and the angular momentum in y, of the inverse inertia, of the arm: or -1."""
+        """Offsets for kernels (bodies/rigid/place_kernels.py), eight in all.
+
+        Position, velocity and work in y, inverse mass in the floats; then quaternion and angular momentum in y, inverse
+        inertia and arm in the floats, each -1 where there is none.
+        """
         bodies, k, turning = self.bodies, self.body, self.bodies.turning
         center = (bodies.position_at + 3 * k, bodies.velocity_at + 3 * k, bodies.work_at, bodies.inverse_at + k)
         if turning is None:
@@ -122,7 +127,7 @@ class ModelState:
 
     t: float
     y: Floats
-    """(n,) the whole island."""
+    """(n,) state of the whole island."""
     rate: Floats
     """(n,) dy/dt."""
     floats: Floats

@@ -26,12 +26,14 @@ class Prepared:
     text: str = ""
     """How the method solves this island, for `explain`."""
     alone: Any = None
-    """(n,) bool: entries whose errors are measured by their own sizes; None: none are."""
+    """(n,) bool: entries whose errors are scaled by their own magnitude alone; None: none."""
     kept: int = 0
-    """Floats at the start of the scratch with which the method goes on where the island's Jacobian has more places;
-    then its settings and numbers too, but the first setting, its factored matrix's coefficient; 0: it starts anew."""
+    """Number of floats at the start of the scratch that the method keeps when the Jacobian's pattern grows, together
+    with its settings and numbers, except settings[0], the coefficient of its factored matrix; 0: the method starts
+    anew."""
     scales: tuple[int, int] = (0, 0)
-    """Where in the settings the sizes begin that entries have had, and how many; another method goes on with them."""
+    """Offset and number of the error scales in the settings (largest magnitudes that entries have had); another method
+    that takes over goes on with them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +49,9 @@ class Method:
     numbers: tuple[int, ...] = ()
     """Integers for the step (its stages)."""
     work: int = 1
-    """Arrays of the size of y that the step needs as scratch."""
+    """Scratch that the step needs, in arrays of the size of y."""
     last_stage: int = -1
-    """Index of the array of ``work`` with the rate at the step's end (first same as last); -1: none."""
+    """Index of the array of ``work`` that holds the rate at the step's end (first same as last); -1: none does."""
     extend: str | None = None
     """Function of the step's signature that adds the further stages of dense output to `work`; called once before a
     frame is read off a step. Where contacts are exact, `dense` is read after every step without this call, so the step
@@ -57,7 +59,7 @@ class Method:
     stability: tuple[float, ...] = ()
     """Coefficients of an explicit method's stability function, that of z^0 first."""
     name: str = ""
-    """Its name in `explain`, where the march switches methods."""
+    """The method's name in `explain`, where the march switches methods."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,9 +72,9 @@ class Control:
     tolerance: float = 0.0
     """Relative tolerance of an adaptive method."""
     absolute: float | tuple[float, ...] = 0.0
-    """Absolute tolerance, of all entries of y or one for each."""
+    """Absolute tolerance, one for all entries of y or one for each."""
     by_scale: bool = False
-    """Whether an adaptive method measures errors by scales in place of ``absolute``: by the sizes that entries have
+    """Whether an adaptive method scales errors by magnitudes instead of ``absolute``: by the largest that entries have
     had (stepping/error_scales_kernels.py), or on a grid by the largest value at the start."""
     largest_step: float = float("inf")
     """[s]"""
@@ -80,9 +82,9 @@ class Control:
     """Whether an adaptive step writes the next length to try [s] to work[0], after acceptance or rejection; else the
     march controls the step by its error."""
     unsolved: str = ""
-    """The message where a step of fixed length has no finite end; empty: that the step is unstable."""
+    """The message for a step of fixed length without a finite end; empty: the default, that the step is unstable."""
     halves: bool = False
-    """Whether such a step is first halved repeatedly."""
+    """Whether a step of fixed length that fails is first halved repeatedly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,15 +96,15 @@ class Needs:
     newton: bool = False
     """Whether linear/newton_kernels.py solves all its stages (Slopes.in_stages)."""
     at_rest: bool = False
-    """Whether it is for states of rest alone, where forces that are damped have their potentials, too."""
+    """Whether the method finds states of rest alone, where forces of damped terms also have their potentials."""
     prepare: str | None = None
-    """Called with (System, Stepper) -> Prepared, which replaces settings, numbers and work where these depend on the
-    island, as the ordering of a factorization does."""
+    """Function ``(System, Stepper) -> Prepared``; replaces settings, numbers and work where these depend on the island,
+    as the ordering of a factorization does."""
     linear: str = "auto"
     """The script's choice of linear solver, where `prepare` has several."""
     likely: str | None = None
-    """Called with the System: modules of kernels that `prepare` will need, to be compiled early; None: those of
-    linear/stage.py."""
+    """Function of the System that returns the modules of kernels that `prepare` will need, to be compiled early; None:
+    those of linear/stage.py."""
     beside: tuple[str, ...] = ()
     """Modules of kernels that `prepare` may need, compiled in the background and not waited for."""
     march: str | None = None
@@ -130,10 +132,10 @@ class IslandFacts:
     """Whether contacts of any kind, tears or births change its state between steps."""
     fields: Fields = field(default_factory=Fields)
     floats: Callable[[], Floats] | None = None
-    """The island's floats, which the offsets of fields are into."""
+    """Returns the island's floats, into which the offsets of ``fields`` point."""
     orbits: bool = False
-    """Whether it is masses that nothing but forces at a distance moves (Force.at_a_distance)."""
+    """Whether it consists of masses on which only forces at a distance act (Force.at_a_distance)."""
     apart: bool = False
-    """Whether a barrier keeps surfaces apart, towards which explicit steps would creep."""
+    """Whether a barrier keeps surfaces apart; explicit steps would become ever shorter near it."""
     in_solids: int = 0
-    """Velocities of the nodes of elastic solids: each is tied to so many others that factors fill up."""
+    """Number of velocity entries of elastic solids' nodes: their many couplings fill up the factors of the Jacobian."""

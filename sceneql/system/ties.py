@@ -16,7 +16,7 @@ Triple = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Led:
-    """A part that moves by itself, as offsets of its values in the floats."""
+    """An object whose motion is prescribed, as offsets of its values in the floats."""
 
     position_at: int
     rotation_at: int
@@ -24,21 +24,21 @@ class Led:
     spin_at: int
     acceleration_at: int
     twist_at: int
-    """Angular acceleration."""
+    """Angular acceleration (3,) [rad/s^2]."""
 
 
 Mover = Place | Led | None
-"""A body that is solved (its arm does not count), a part that is led, or the world."""
+"""A body of the state (its arm does not count), an object with a prescribed motion, or None for the world."""
 
 
 @dataclass(frozen=True, slots=True)
 class TieRow:
-    """A condition between two movers a and b, whose vectors are fixed in the axes of one of them.
+    """A scalar constraint between two movers a and b, with constant vectors in the axes of one of them.
 
-    `point`: n_b . (x_a + r_a - x_b - r_b) = 0, its vectors r_a, r_b, n_b; `angle`: u_a . w_b = constant, its vectors
-    u_a, w_b; `distance`: |x_a + r_a - x_b - r_b| = constant, its vectors r_a, r_b; `gear`: the angles of both about
-    axes of the world, times the constants, sum to full turns; its vectors are, of each, the axis, a direction across it
-    at the start, and that direction in its own axes. Places are from the movers' positions [m].
+    `point`: n_b . (x_a + r_a - x_b - r_b) = 0 with vectors r_a, r_b, n_b; `angle`: u_a . w_b = constant with vectors
+    u_a, w_b; `distance`: |x_a + r_a - x_b - r_b| = constant with vectors r_a, r_b; `gear`: the rotation angles of both
+    about axes of the world, times the constants, sum to full turns; the vectors are, for each mover, the axis, a
+    direction across it at the start, and that direction in its own axes. r are relative to the movers' positions [m].
     """
 
     kind: Literal["point", "angle", "distance", "gear"]
@@ -48,46 +48,47 @@ class TieRow:
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Stops, a motor and dry friction along the one motion that a tie leaves, as offsets in the floats (-1: none)."""
+    """Stops, motor and dry friction along the one motion that a tie leaves, as offsets in the floats (-1: none)."""
 
     along: tuple[int, ...]
-    """Integers of the motion (bodies/rigid/drive_kernels.py)."""
+    """Integers of the degree of freedom (bodies/rigid/drive_kernels.py)."""
     limits_at: int
-    """The least and the greatest that the motion goes [m or rad]."""
+    """Its lower and upper limit [m or rad]."""
     restitution_at: int
     follows: Literal["nothing", "speed", "place"]
     target: Value | None
-    """What the motor follows."""
+    """The set point of the motor: a speed or a place."""
     target_at: int
     most_at: int
-    """Its largest force or torque."""
+    """Largest force [N] or torque [N m] of the motor."""
     settling_at: int
-    """The time in which it takes an error of the place away [s]."""
+    """Time constant with which the motor corrects an error of the place [s]."""
     reached_at: int
-    """The place that it followed last."""
+    """The set point of the place in the previous step."""
     friction_at: int
-    """Largest force or torque of the friction."""
+    """Largest force [N] or torque [N m] of the friction."""
     effort_at: int
-    """What all of these do along the motion, on the first body; the steps in which that was not found exactly; the
-    energy that the motor gave; whether they are found with exact contacts (1), or by steps of velocities."""
+    """Four numbers: the resultant of stops, motor and friction on the first body; in how many steps it was not found
+    exactly; the energy that the motor gave [J]; whether it is solved with exact contacts (1), or by steps of
+    velocities."""
 
     @property
     def always(self) -> bool:
-        """Whether it acts in every step, and not at stops alone."""
+        """Whether the drive acts in every step, and not only at stops."""
         return self.follows != "nothing" or self.friction_at >= 0
 
 
 @dataclass(frozen=True, slots=True)
 class Tied:
-    """The rows of a tie."""
+    """A tie: its two movers, its constraint rows and its drive."""
 
     movers: tuple[Mover, Mover]
     rows: tuple[TieRow, ...]
     scratch_at: int
-    """Offset in the floats of what its rows write there (bodies/rigid/tie_rows_kernels.py)."""
+    """Offset in the floats of the rows' scratch (bodies/rigid/tie_rows_kernels.py)."""
     holds_at: int
     """floats[holds_at]: 1 while it holds, 0 once it is broken."""
     drive: Drive | None = None
-    """What acts along the motion that it leaves in bounds, found by the step."""
+    """Stops, motor and friction along its degree of freedom, solved within the step; None: none of these."""
     name: str = ""
     span: Span | None = None

@@ -1,4 +1,4 @@
-"""What an element is: its nodes, its functions, and the points at which its strain is looked at."""
+"""Base class of finite elements: nodes, shape functions, and integration points."""
 
 from __future__ import annotations
 
@@ -10,38 +10,38 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 Rule = tuple[tuple[tuple[float, ...], ...], tuple[float, ...]]
-"""Places by their barycentric coordinates, and weights of sum 1."""
+"""A quadrature rule: points by their barycentric coordinates, and weights of sum 1."""
 
 
 class Element:
-    """A tetrahedron with functions by which places between its nodes follow these.
+    """A tetrahedral element with shape functions.
 
-    Nodes are first the corners, then those on the edges in the order of filling.tetrahedra.ENDS.
+    Its nodes are first the corners, then one on each edge in the order of filling.tetrahedra.ENDS, if there are any.
     """
 
     edges: ClassVar[bool] = False
-    """Whether a node stands on each edge."""
+    """Whether each edge has a node."""
     mean: ClassVar[bool] = False
-    """Whether its dilatation is one number, the mean over the element."""
+    """Whether the dilatation is replaced by its mean over the element."""
     rule: ClassVar[Rule]
-    """The points at which the strain is looked at."""
+    """The integration points, at which strain and stress are evaluated, and their weights."""
 
     @classmethod
     def nodes(cls) -> int:
-        """How many it has."""
+        """Number of nodes."""
         return 10 if cls.edges else 4
 
     @classmethod
     def functions(cls, places: Any) -> Floats:
-        """(q, nodes) the functions at barycentric places (q, 4)."""
+        """Values (q, nodes) of the shape functions at points with barycentric coordinates (q, 4)."""
         raise NotImplementedError
 
     @classmethod
     def slopes(cls, places: Any) -> Floats:
-        """(q, nodes, 4) their derivatives by the barycentric coordinates."""
+        """Derivatives (q, nodes, 4) of the shape functions by the barycentric coordinates, at points (q, 4)."""
         raise NotImplementedError
 
 
 def elements() -> dict[str, type[Element]]:
-    """All of them by name."""
+    """All kinds of elements, by name."""
     return named("sceneql.bodies.elements", "Element")

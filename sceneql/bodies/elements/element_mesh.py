@@ -1,4 +1,7 @@
-"""Meshes of elements: nodes on edges, outer faces, and the numbers of their points. Imports numpy."""
+"""Meshes of finite elements: nodes, outer faces, Jacobians and mass matrices; elements with curved edges.
+
+Imports numpy.
+"""
 
 from __future__ import annotations
 
@@ -21,31 +24,31 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 FACE_EDGES = ((0, 1), (1, 2), (2, 0))
-"""The edges of a face by its corners; its further nodes stand on them in this order."""
+"""The edges of a face, by its corners; the face's further nodes are on them, in this order."""
 FINE: tuple[tuple[float, float], ...] = (
     (0.09273525031089123, 0.07349304311636194),
     (0.3108859192633006, 0.11268792571801585),
 )
-"""Of a rule exact to fifth order the points near corners and near faces: a coordinate and a weight; with those of
+"""Points of a quadrature rule of degree 5 near corners and near faces, (coordinate, weight); those near edges are
 FINE_EDGES (Walkington 2000)."""
 FINE_EDGES = (0.04550370412564964, 0.04254602077708147)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ElementMesh:
-    """Elements with their nodes."""
+    """A mesh of elements of one kind."""
 
     element: type[Element]
     points: Floats
-    """(n, 3) nodes [m], corners first: the places of the material."""
+    """(n, 3) [m] material positions of the nodes, corners first."""
     cells: Ints
-    """(e, nodes) those of each element."""
+    """(e, nodes) the nodes of each element."""
     corners: int
-    """How many nodes are corners."""
+    """Number of nodes that are corners of elements."""
 
     @property
     def faces(self) -> Ints:
-        """(f, 3 or 6) nodes of the outer faces: corners counterclockwise from outside, then those on FACE_EDGES."""
+        """(f, 3 or 6) nodes of the outer faces: corners counterclockwise from outside, then the nodes on FACE_EDGES."""
         faces = boundary(self.cells[:, :4])
         if not self.element.edges:
             return faces
@@ -59,12 +62,15 @@ class ElementMesh:
         return found
 
     def at(self, places: Any) -> Floats:
-        """(e, q, 3) where barycentric places (q, 4) of every element are."""
+        """Positions (e, q, 3) [m] of the points with barycentric coordinates (q, 4) in each element."""
         found: Floats = self.element.functions(places) @ self.points[self.cells]
         return found
 
     def _sides(self, places: Any) -> tuple[Floats, Floats]:
-        """(e, q, 3, 3) dX by three barycentric coordinates at places (q, 4), and these slopes of functions."""
+        """Jacobians (e, q, 3, 3) [m] of positions, and derivatives (q, nodes, 3) of shape functions, at points (q, 4).
+
+        Both by the last three barycentric coordinates.
+        """
         slopes = self.element.slopes(np.asarray(places, dtype=float))
         local = slopes[:, :, 1:] - slopes[:, :, :1]
         corner = self.points[self.cells] - self.points[self.cells[:, :1]]
@@ -72,25 +78,28 @@ class ElementMesh:
         return sides, local
 
     def sizes(self, places: Any) -> Floats:
-        """(e, q) volume over that of the barycentric coordinates, six times its own [m^3]; below 0 if turned."""
+        """Jacobian determinants (e, q) [m^3], six times the volume of a straight element; negative if inverted."""
         sides, _ = self._sides(places)
         a, b, c = (sides[..., k] for k in range(3))
         found: Floats = np.sum(a * np.cross(b, c), axis=-1)
         return found
 
     def gradients(self, places: Any) -> Floats:
-        """(e, q, nodes, 3) gradients of the functions [1/m] at barycentric places (q, 4) of upright elements."""
+        """Gradients (e, q, nodes, 3) [1/m] of the shape functions at points (q, 4); no element may be flat."""
         sides, local = self._sides(places)
         found: Floats = local @ np.linalg.inv(sides)
         return found
 
     def tables(self) -> tuple[Floats, Floats]:
-        """Gradients (e, q, nodes, 3) at the element's points, and the volumes (e, q) [m^3] that these stand for."""
+        """Gradients (e, q, nodes, 3) [1/m] at the integration points, and the points' shares of volume (e, q) [m^3]."""
         places, weights = self.element.rule
         return self.gradients(places), self.sizes(places) * np.asarray(weights) / 6.0
 
     def mass(self, density: Callable[[Floats], Floats]) -> Floats:
-        """(e, nodes, nodes) integrals of density [kg/m^3], a function of places (k, 3), times two functions [kg]."""
+        """Consistent mass matrices (e, nodes, nodes) [kg] of the elements.
+
+        ``density``: a function of positions (k, 3) [m], in kg/m^3.
+        """
         places, weights = fine_rule()
         shapes = self.element.functions(places)
         size = self.sizes(places)
@@ -101,7 +110,7 @@ class ElementMesh:
 
 
 def fine_rule() -> tuple[Floats, Floats]:
-    """(14, 4) places and (14,) weights, exact to fifth order."""
+    """Barycentric points (14, 4) and weights (14,) of a rule of degree 5 (Walkington 2000)."""
     places, weights = [], []
     for one, weight in FINE:
         for k in range(4):
@@ -116,18 +125,19 @@ def fine_rule() -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Onto:
-    """What moves places near the surface of an object onto it."""
+    """Projections of points near the surface of an object onto it."""
 
     surface: Callable[[Floats, Floats], Floats]
-    """Places (k, 3) along directions (k, 3)."""
+    """Moves points (k, 3) along unit normals (k, 3) onto the surface; points that do not reach it stay."""
     crease: Callable[[Floats, Floats, Floats], Floats]
-    """Places (k, 3) by the normals (k, 2, 3) of the two surfaces that meet there, and unit directions into these."""
+    """Moves points (k, 3) onto a crease, by normals (k, 2, 3) of the two surfaces that meet there and unit directions
+    (k, 2, 3) from it into these surfaces; NaN where the crease is not found."""
 
 
 def meshed(element: type[Element], points: Floats, tetrahedra: Ints, onto: Onto | None = None) -> ElementMesh:
     """The mesh of elements on tetrahedra (t, 4) of points (n, 3).
 
-    With ``onto`` outer edges are curved, where no element is turned by that.
+    With ``onto`` the nodes on outer edges are moved onto the object's surface, where no element is bent too much.
     """
     if not element.edges:
         return ElementMesh(element, points, tetrahedra.astype(np.int32), len(points))
@@ -139,11 +149,11 @@ def meshed(element: type[Element], points: Floats, tetrahedra: Ints, onto: Onto 
 
 
 LEAST_BENT = 0.2
-"""An element is bent no more than to this part of its straight size at any place that is looked at."""
+"""Least Jacobian determinant of a curved element at the tested points, relative to the straight element's."""
 
 
 def onto_object(straight: ElementMesh, onto: Onto) -> tuple[Floats, Creases]:
-    """Nodes (n, 3), those on outer edges moved onto the surface, and the edges among these that are creases."""
+    """Nodes (n, 3) [m] with those on outer edges moved onto the surface, and those outer edges that are creases."""
     faces, points = straight.faces, straight.points
     normals = np.zeros_like(points)
     across = across_faces(points, faces)
@@ -161,9 +171,9 @@ def onto_object(straight: ElementMesh, onto: Onto) -> tuple[Floats, Creases]:
 
 
 def curved(straight: ElementMesh, onto: Onto) -> tuple[ElementMesh, int]:
-    """With the nodes on outer edges moved onto the surface, but those that would bend an element too much: how many.
+    """The mesh with nodes on outer edges moved onto the surface, and the number of nodes that had to be moved back.
 
-    Of these the nodes on creases stay there where that is enough.
+    Moved back are nodes of elements bent beyond LEAST_BENT; nodes on creases only where the others do not suffice.
     """
     points, left = straight.points, 0
     moved, creases = onto_object(straight, onto)
@@ -184,14 +194,14 @@ def curved(straight: ElementMesh, onto: Onto) -> tuple[ElementMesh, int]:
 
 
 def across_faces(points: Floats, faces: Any) -> Floats:
-    """(f, 3) normals of faces by their corners, twice as long as their areas."""
+    """Normals (f, 3) [m^2] of faces, from their corners; their length is twice the face's area."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     found: Floats = np.cross(b - a, c - a)
     return found
 
 
 def unit(vectors: Floats) -> Floats:
-    """Vectors (..., 3) made of length 1, those of none left."""
+    """Vectors (..., 3) normalized; zero vectors stay zero."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     found: Floats = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
     return found
@@ -199,20 +209,20 @@ def unit(vectors: Floats) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Creases:
-    """Outer edges over which the outer faces turn."""
+    """Creases: outer edges with a large angle between the normals of their two faces (CREASE)."""
 
     nodes: Any
-    """(k,) the nodes on them."""
+    """(k,) the node on each edge."""
     ends: Any
-    """(k, 2) their corners."""
+    """(k, 2) the corners at its ends."""
     normals: Floats
-    """(k, 2, 3) of the faces beside them."""
+    """(k, 2, 3) unit normals of its two faces."""
     sides: Floats
-    """(k, 2, 3) unit directions from them into these faces."""
+    """(k, 2, 3) unit directions from the edge into these faces."""
 
     @classmethod
     def of(cls, points: Floats, faces: Ints) -> Creases:
-        """Those of faces (f, 6) of points (n, 3)."""
+        """The creases among the edges of outer faces (f, 6), nodes of ``points`` (n, 3)."""
         normals = unit(across_faces(points, faces))
         nodes = faces[:, 3:].ravel().astype(np.int64)
         twice = np.bincount(nodes)[nodes] == 2  # parts that touch along an edge have four faces there
@@ -229,14 +239,14 @@ class Creases:
 
 
 def gathered(cells: Ints, count: int) -> NDArray[int64]:
-    """For each of ``count`` nodes at which places of ``cells`` (e, nodes), flat, it stands: starts, then these."""
+    """For each of ``count`` nodes its occurrences in the flattened ``cells`` (e, nodes): starts, then indices (CSR)."""
     flat = cells.ravel().astype(np.int64)
     starts = np.concatenate([[0], np.cumsum(np.bincount(flat, minlength=count))])
     return np.concatenate([starts, np.argsort(flat, kind="stable")])
 
 
 def worst_angle(points: Floats, tetrahedra: Ints) -> tuple[float, float]:
-    """Least and largest angle [rad] between two faces of a tetrahedron."""
+    """Least and largest dihedral angle [rad] of the tetrahedra."""
     corner = points[tetrahedra]
     least, largest = np.pi, 0.0
     for a, b in ENDS:

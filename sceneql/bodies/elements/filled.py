@@ -1,4 +1,4 @@
-"""Meshes of elements in objects and blocks. Imports numpy."""
+"""Element meshes of objects, blocks and mesh files. Imports numpy."""
 
 from __future__ import annotations
 
@@ -37,23 +37,23 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 BYTES = {4: 4000, 10: 25000}
-"""[bytes] of an element by its nodes, with its part of the state, of an implicit solver's matrix and of the picture."""
+"""Memory [bytes] of an element by its number of nodes: with its share of state, implicit solver's matrix, picture."""
 PARTS = 10
-"""Spacings along the longest side of an object's box where the script tells none."""
+"""Default number of spacings along the longest side of an object's box."""
 A_PLACE = 6
-"""Tetrahedra for each corner and middle of the lattice."""
+"""Tetrahedra per node of the lattice, which has one at each cube's corner and center."""
 TOO_FINE = "take larger spacings under `finer`"
 THIN = 1.0
-"""What lies in the object farther than so many spacings from all nodes is lost."""
+"""Distance from all nodes, in spacings, beyond which a part of the object counts as missed by the mesh."""
 KEPT = 4
-"""Meshes that are kept, those last asked for."""
+"""Meshes in the cache, the last ones used."""
 _kept: dict[tuple[Any, ...], ElementMesh] = {}
 FINE, MOST_LOOKED_AT = 0.25, 3e6
-"""It is looked for at places so many spacings apart, and half a spacing where these are too many."""
+"""Spacing, in spacings of the mesh, of the test points for missed parts; half a spacing if these would be too many."""
 
 
 def bounded_by(spacing: float) -> Callable[[Floats, Floats], None]:
-    """A function of the corners of an object's box, that raises Exceeds where there are too many places to test."""
+    """A function (low, high) of a box's corners that raises Exceeds where its lattice has too many nodes to test."""
 
     def check(low: Floats, high: Floats) -> None:
         bounded(2.0 * float(np.prod(lattice_counts(low, high, spacing))), "places of a lattice", PLACE)
@@ -92,16 +92,17 @@ def _fitted(
     spacing: float = 0.0,
     turn: float | None = None,
 ) -> ElementMesh:
-    """The mesh, finer in places and in hollows.
+    """The mesh of elements on tetrahedra (t, 4), refined by ``finer`` and at concave curved surfaces.
 
-    Raises Exceeds for too many elements, ScriptError for a place that has none.
+    ``turn``: largest angle [rad] by which a concave surface may turn along an edge, None for any. Raises Exceeds for
+    too many elements, ScriptError for an entry of ``finer`` far from all elements.
     """
 
     def check(count: float) -> None:
         bounded(count, "elements", BYTES[element.nodes()])
 
     def made(wanted: list[Lengths]) -> tuple[ElementMesh, int]:
-        """The mesh, and how many of its outer nodes could not be moved onto the object."""
+        """The mesh refined to the wanted lengths, and how many of its outer nodes stay off the object's surface."""
         at, cells = points, tetrahedra
         if wanted:
             at, cells = refined(at, cells, lambda places: np.min([one(places) for one in wanted], axis=0), onto, check)
@@ -112,7 +113,7 @@ def _fitted(
     hollow = None if onto is None or turn is None else hollows(points, tetrahedra, onto, spacing, turn)
     mesh, flat = made(asked)
     if hollow is not None:
-        # Halves of elements may be too thin to be bent: more of that would cost more than smaller elements bring.
+        # Halved elements may be too thin to be curved; flat ones lose more accuracy than their smaller size gains.
         finest, more = made([*asked, hollow])
         mesh = finest if more <= flat else mesh
     for name, one in finer.items():
@@ -154,12 +155,12 @@ def of_file(file: str, element: type[Element], finer: Mapping[str, Finer], assem
 
 
 def _upright(points: Floats, cells: Ints, read: Read, name: str, line: Span | None) -> None:
-    """Raise ScriptError where elements of a file are turned inside out, or flat."""
+    """Raise ScriptError where elements of a file are inverted or flat, by the volumes of their corners."""
     _told(volumes(points, cells[:, :4]), points[cells[:, :4]], read, name, line)
 
 
 def _told(held: Floats, corners: Floats, read: Read, name: str, line: Span | None) -> None:
-    """Raise ScriptError where numbers (e,) of elements with corners (e, 4, 3) are not above 0."""
+    """Raise ScriptError where volumes or determinants ``held`` (e,) of elements with corners (e, 4, 3) are not > 0."""
     turned = np.flatnonzero(~(held > 0.0))
     if not len(turned):
         return
@@ -182,9 +183,8 @@ def filled(
 ) -> ElementMesh:
     """The mesh of an object. Raises ScriptError where it cannot be filled, LimitRefused for too many elements.
 
-    ``turn``: angle [rad] by which its surface turns along an edge at most, where it is hollow.
-
-    That of a field at a spacing is kept: variants, studies and twins fill the same again and again.
+    ``turn``: largest angle [rad] by which the object's concave surfaces turn along an edge; None for any. Meshes of
+    implicit objects without ``finer`` are cached, since variants, studies and twins fill the same object repeatedly.
     """
     inside, spacing = Inside(ref, assembly), spacing_of(ref, spacing, assembly)
     key = None
@@ -203,7 +203,7 @@ def filled(
 
 
 def spacing_of(ref: Ref, spacing: float | None, assembly: Assembly) -> float:
-    """Side of the cubes in an object [m]: what is given, or a part of its size."""
+    """Side [m] of the lattice's cubes in an object: the given spacing, or 1/PARTS of the longest side of its box."""
     if spacing is not None:
         return spacing
     box = Inside(ref, assembly)
@@ -236,7 +236,7 @@ def _filled(
     _whole(inside, spacing, points)
 
     def onto(places: Floats, normals: Floats) -> Floats:
-        # From inside to outside; what does not cross the surface on the way stays.
+        # Along the normal from inside to outside; places that do not cross the surface stay.
         inner, outer = places - 0.5 * spacing * normals, places + 0.5 * spacing * normals
         crosses = np.asarray(inside.holds(inner)) & ~np.asarray(inside.holds(outer))
         found = places.copy()
@@ -255,7 +255,7 @@ def _filled(
 
 
 def _whole(inside: Inside, spacing: float, points: Floats) -> None:
-    """Raise ScriptError where a part of the object is too thin for the lattice to have a node there."""
+    """Raise ScriptError where a part of the object is farther than THIN from all nodes, too thin for the lattice."""
     from scipy.spatial import cKDTree
 
     counts = np.ceil((inside.high - inside.low) / (FINE * spacing)).astype(int) + 1

@@ -1,4 +1,4 @@
-"""Parts of a solid that are held, in all components or some, and moved by keys."""
+"""Holds: prescribed motion of nodes of a solid, in all components or some."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Part(Record):
     object: kinds.ObjectRef | None = field("An object: what lies in it.", None)
 
     def problems(self) -> Iterator[Problem]:
-        """Several ways to say it or none, and a distance from nothing."""
+        """Problems: more or less than one of `where`, `near` and `object`; `within` without `near`."""
         given = [name for name in ("where", "near", "object") if getattr(self, name) is not None]
         if len(given) != 1:
             said = f", not {' and '.join(given)}" if given else ""
@@ -44,12 +44,12 @@ class Part(Record):
             yield Problem("a distance is from a place: say `near`", ("within",), at_key=True)
 
     def place(self) -> Span | None:
-        """Where it stands in the script."""
+        """Place in the script; None if unknown."""
         told = self.where or self.object
         return None if told is None else told.span
 
     def misses(self, low: Sequence[float], high: Sequence[float]) -> bool:
-        """Whether no place of a box can lie in it, as far as its own fields tell."""
+        """Whether its own fields show that no place of the box low..high [m] lies in it."""
         if self.where is not None:
             known = dict(zip(AXES, zip(low, high, strict=True), strict=True))
             return range_of(self.where.expr, known) == (0.0, 0.0)
@@ -59,7 +59,7 @@ class Part(Record):
         return hypot(*away) > self.within
 
     def holds(self, places: Floats, assembly: Assembly) -> Any:
-        """(n,) bool: which of places (n, 3) lie in it; by `near` alone the nearest."""
+        """(n,) bool: which of places (n, 3) [m] lie in the part; with `near` but no `within` only the nearest ones."""
         import numpy as np
 
         if self.where is not None:
@@ -83,24 +83,24 @@ class Hold(Part):
     )
 
     def problems(self) -> Iterator[Problem]:
-        """Those of a part; two motions at once."""
+        """Problems of a part; both a shift and an object to follow."""
         yield from super().problems()
         if self.follows is not None and self.shift.span is not None:
             yield Problem("what is held either has a shift or follows an object", ("shift",))
 
     def axes(self) -> list[int]:
-        """The numbers of its components."""
+        """The held components as numbers of axes, 0 to 2."""
         return [AXES.index(axis) for axis in self.components]
 
     def still(self, assembly: Assembly) -> bool:
-        """Whether it never moves what it holds."""
+        """Whether the prescribed motion is none."""
         if self.follows is not None:
             return False
         return self.shift.constant and not any(assembly.initial(self.shift))
 
 
 def chosen(name: str, hold: Part, places: Floats, assembly: Assembly, line: Span | None) -> Any:
-    """(k,) numbers of the nodes of places (n, 3) that a part holds. Raises ScriptError where there is none."""
+    """Numbers (k,) of the nodes, at places (n, 3) [m], that lie in a part. Raises ScriptError where there is none."""
     import numpy as np
 
     found = np.flatnonzero(hold.holds(places, assembly))
@@ -112,29 +112,29 @@ def chosen(name: str, hold: Part, places: Floats, assembly: Assembly, line: Span
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Held:
-    """What a hold holds."""
+    """The nodes of a hold, and the nodes that the mass matrix couples with them."""
 
     nodes: Any
-    """(k,) nodes."""
+    """(k,) the held nodes."""
     starts: Floats
-    """(k, 3) where they start [m]."""
+    """(k, 3) [m] their positions at the start."""
     near: Any
-    """(n,) nodes whose acceleration their inertia feels, themselves among them."""
+    """(n,) the nodes coupled with them by the mass matrix, the held ones included."""
     weights: Floats
-    """(n,) by how much [kg]."""
+    """(n,) [kg] the coupling: sums of the mass matrix over the held nodes."""
     free: Any
-    """(n, 3) bool: components of these that nothing holds."""
+    """(n, 3) bool: components of the coupled nodes that nothing holds."""
     rows: Any
-    """(k, all nodes) sparse, the rows of the inertia of what it holds [kg]."""
+    """(k, all nodes) sparse [kg], the held nodes' rows of the mass matrix."""
 
 
 def add_holds(
     holds: Mapping[str, Hold], held: Mapping[str, Held], assembly: Assembly, bodies: Bodies
 ) -> dict[str, int]:
-    """Add the terms of holds; the offset of each one's force [N] in the floats.
+    """Add the terms of holds to an island; returns by name the offset of the hold's force [N] in the floats.
 
-    The work that moves what is held is counted, with negative sign, among the dissipated energy. Velocity and
-    acceleration are central differences. Raises ScriptError for a shift that is no function of time.
+    The work of a hold on the solid is subtracted from the dissipated energy. Velocities and accelerations of the
+    prescribed motion are central differences. Raises ScriptError for a shift that is no function of time.
     """
     import numpy as np
 
@@ -165,7 +165,7 @@ def add_holds(
         if not still:
             assembly.term("internal", f"{folder}:feel_strain", ints, alone, energy="")
             assembly.after_step(f"{folder}:put", ints)
-        # The inertia of what is led pulls on its neighbors by a matrix of masses.
+        # A consistent mass matrix couples the prescribed accelerations with the neighboring nodes.
         assembly.term("tie", f"{folder}:feel", ints, alone, energy="" if still or alone_moved else None)
         assembly.term("constrain", f"{folder}:lead", ints, alone, energy="")
     for _, _, ints in each:
@@ -174,7 +174,7 @@ def add_holds(
 
 
 def start_velocity(hold: Hold, places: Floats, assembly: Assembly) -> Floats:
-    """(3,) or (k, 3) [m/s] of what it holds at places (k, 3) at the start."""
+    """Velocity (3,) or (k, 3) [m/s], at the start, of the held places (k, 3) [m]."""
     import numpy as np
 
     if hold.follows is not None:
@@ -186,7 +186,7 @@ def start_velocity(hold: Hold, places: Floats, assembly: Assembly) -> Floats:
 
 
 def _moved(shift: Value, by: float, assembly: Assembly) -> Value:
-    """The shift a little later."""
+    """The shift as a value at time t + ``by`` [s]. Raises ScriptError where it is no function of time."""
     try:
         return Value(later(shift.expr, by, assembly.formula), shift.span)
     except ValueError as error:
@@ -195,9 +195,9 @@ def _moved(shift: Value, by: float, assembly: Assembly) -> Value:
 
 
 def _add_turned(hold: Hold, part: Held, assembly: Assembly, bodies: Bodies) -> int:
-    """Add the terms of a hold that follows an object; the offset of its force [N] in the floats.
+    """Add the terms of a hold that follows an object; returns the offset of its force [N] in the floats.
 
-    Raises ScriptError for an object that follows what is solved.
+    Raises ScriptError for an object whose motion depends on the solved state.
     """
     import numpy as np
     from scipy.sparse import csr_array
@@ -231,7 +231,7 @@ def _add_turned(hold: Hold, part: Held, assembly: Assembly, bodies: Bodies) -> i
 
 
 def _turned_velocity(hold: Hold, places: Floats, assembly: Assembly) -> Floats:
-    """(k, 3) [m/s] of what it holds at places (k, 3) at the start."""
+    """Velocities (k, 3) [m/s], at the start, of places (k, 3) [m] that move rigidly with the followed object."""
     from sceneql.shapes.placement import rotation_matrix
 
     (x0, q0), (x, q), (x1, q1) = (_pose(hold, by, assembly) for by in (-APART, 0.0, APART))
@@ -243,10 +243,10 @@ def _turned_velocity(hold: Hold, places: Floats, assembly: Assembly) -> Floats:
 
 
 def _pose(hold: Hold, by: float, assembly: Assembly) -> tuple[int, int]:
-    """Offsets of the object's position and rotation a little later.
+    """Offsets in the floats of the followed object's position and rotation at time t + ``by`` [s].
 
-    Raises ScriptError for an object without a position, one that moves by another field or with a group that it is a
-    member of, or that follows what is solved.
+    Raises ScriptError for an object without a position, with a varying height, in a group that is moved itself, or
+    whose motion depends on the solved state.
     """
     ref = hold.follows
     assert ref is not None
@@ -264,7 +264,7 @@ def _pose(hold: Hold, by: float, assembly: Assembly) -> tuple[int, int]:
         for name, rest in (("position", (0.0, 0.0, 0.0)), ("rotation", (1.0, 0.0, 0.0, 0.0))):
             value = getattr(kind, name, None)
             if isinstance(value, Value):
-                # By a link: the kind tells where an object starts that a model moves, and the link that it is moved.
+                # By a link, which resolves to a model's motion of the object; the field alone is its start.
                 link = Link(ref.name, name, value.expr.type)
                 found.append(assembly.value(Value(later(link, by, assembly.formula), value.span)))
             else:
@@ -277,9 +277,9 @@ def _pose(hold: Hold, by: float, assembly: Assembly) -> tuple[int, int]:
 
 
 def _refuse_member(ref: kinds.Ref, assembly: Assembly) -> None:
-    """Raise ScriptError for a member of a group that is not where it would be without that.
+    """Raise ScriptError for a member of a group with a position, rotation or scale of its own.
 
-    Its own position and rotation are told in the group's coordinates.
+    The member's position and rotation are relative to the group's coordinates, so following them would be wrong.
     """
     found = assembly.holder(ref)
     if found is None:

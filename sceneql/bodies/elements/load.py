@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 HOW = ("traction", "pressure", "force", "torque")
 FOUND_AND_SCRATCH = 33
-"""Numbers behind the weights of a torque's nodes (load_kernels.turning, load_slopes_kernels.torque)."""
+"""Working memory [numbers] after the weights of a torque's nodes (load_kernels.turning, load_slopes_kernels.torque)."""
 LEAST_SHARE = 1e-9
-"""Of the largest share of a node, below which one is rounding."""
+"""Share of area, relative to the largest of a node, below which a node's share is rounding."""
 MOST_TURNED = 500
-"""Nodes of a part on which a torque acts: the slopes of its forces couple each with all."""
+"""Most nodes that a torque acts on, since its Jacobian couples each node with all others."""
 
 
 class Load(Part):
@@ -45,7 +45,7 @@ class Load(Part):
     )
 
     def problems(self) -> Iterator[Problem]:
-        """Several loads or none, and an area that is a point."""
+        """Problems: more or less than one load; a load on an area that is given as a point."""
         yield from super().problems()
         given = [name for name in HOW if getattr(self, name) is not None]
         if len(given) != 1:
@@ -56,7 +56,7 @@ class Load(Part):
             yield Problem(f"a {given[0]} acts on an area: say `within`, how far from there", ("near",), at_key=True)
 
     def spread(self, name: str, mesh: ElementMesh, assembly: Assembly, line: Span | None) -> Spread:
-        """Where it acts. Raises ScriptError where that is no part of the surface."""
+        """The quadrature points on the loaded faces. Raises ScriptError where no part of the surface is loaded."""
         import numpy as np
 
         from sceneql.bodies.elements.on_faces import nearest, spread
@@ -81,9 +81,9 @@ class Load(Part):
     def assemble(
         self, name: str, mesh: ElementMesh, held: Any, assembly: Assembly, bodies: Bodies, line: Span | None
     ) -> None:
-        """Add its term; ``held`` (n, 3) bool: components of nodes.
+        """Add the load's term to an island; ``held`` (n, 3) bool: components of nodes that are held.
 
-        Its work is counted, with negative sign, among the dissipated energy.
+        The work of the load is subtracted from the dissipated energy.
         """
         import numpy as np
 
@@ -114,7 +114,7 @@ class Load(Part):
 def _add_pressure(
     pressure: Value, where: Spread, faces: Any, held: Any, head: tuple[int, int, int], assembly: Assembly
 ) -> None:
-    """Add the term of a pressure that follows the surface."""
+    """Add the term of a pressure, which acts against the deformed surface, with its Jacobian."""
     import numpy as np
 
     from sceneql.bodies.elements.on_faces import functions, slopes
@@ -138,7 +138,7 @@ def _add_pressure(
 def _add_torque(
     torque: Value, weights: Any, held: Any, head: tuple[int, int, int], assembly: Assembly, name: str
 ) -> None:
-    """Add the term of a torque on nodes by their shares (n,) of the area. Raises LimitRefused for too many."""
+    """Add the term of a torque on nodes; ``weights`` (n,): shares of area. Raises LimitRefused for too many nodes."""
     import numpy as np
 
     from sceneql.failure import LimitRefused

@@ -1,4 +1,4 @@
-"""The elements and laws of a folder by their names: a file that defines the class that its name asks for."""
+"""Discovery of elements and laws: each file of a folder that defines the class of its own name."""
 
 from __future__ import annotations
 

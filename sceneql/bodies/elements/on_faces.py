@@ -1,4 +1,4 @@
-"""Places on the outer faces of a mesh of elements, for loads and pictures. Imports numpy."""
+"""Quadrature points on the outer faces of an element mesh, for loads and pictures. Imports numpy."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ PLACES = (
     (B, B, 1 - 2 * B),
 )
 WEIGHTS = (0.10995174365532187,) * 3 + (0.22338158967801147,) * 3
-"""Of a triangle of area 1: exact to fourth order (Dunavant 1985)."""
+"""Weights, of sum 1, of the rule of degree 4 on a triangle with the nodes PLACES (Dunavant 1985)."""
 PARTS = 12
-"""Into so many parts the sides of a face are cut where only a part of it may be loaded."""
+"""Parts of a face's sides where only a part of the face may be loaded."""
 
 
 def functions(places: Any, nodes: int) -> Floats:
-    """(q, nodes) the functions of a face's nodes at barycentric places (q, 3)."""
+    """Values (q, nodes) of the shape functions of a face's 3 or 6 nodes at barycentric points (q, 3)."""
     at = np.asarray(places, dtype=float)
     if nodes == 3:
         return at
@@ -38,7 +38,10 @@ def functions(places: Any, nodes: int) -> Floats:
 
 
 def slopes(places: Any, nodes: int) -> Floats:
-    """(q, nodes, 2) their derivatives by the second and the third coordinate, the first being what is left."""
+    """Derivatives (q, nodes, 2) of the shape functions by the second and third barycentric coordinate.
+
+    The first coordinate is 1 minus these two.
+    """
     at = np.asarray(places, dtype=float)
     own = np.zeros((len(at), nodes, 3))
     for k in range(3):
@@ -49,7 +52,7 @@ def slopes(places: Any, nodes: int) -> Floats:
 
 
 def small_triangles(parts: int) -> Floats:
-    """(parts^2, 3, 3) barycentric corners of the triangles that a triangle is cut into, all the same way round."""
+    """Barycentric corners (parts^2, 3, 3) of the triangles that a triangle is divided into, of the same orientation."""
     found = []
     for i in range(parts):
         for j in range(parts - i):
@@ -62,33 +65,33 @@ def small_triangles(parts: int) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spread:
-    """Places on faces, and the area of the material that each stands for."""
+    """Quadrature points on faces."""
 
     faces: NDArray[int64]
-    """(k,) which face each is on."""
+    """(k,) the face of each point."""
     places: Floats
-    """(k, 3) barycentric."""
+    """(k, 3) its barycentric coordinates in the face."""
     shares: Floats
-    """(k,) of the face's area in its own coordinates, half of which is that of the whole."""
+    """(k,) its weight: the area in the face's barycentric coordinates, 1/2 for a whole face."""
 
     def at(self, points: Floats, faces: Ints) -> Floats:
-        """(k, 3) where they are."""
+        """Positions (k, 3) [m], for faces (f, 3 or 6) with nodes ``points`` (n, 3) [m]."""
         found: Floats = np.einsum("kn,kni->ki", functions(self.places, faces.shape[1]), points[faces[self.faces]])
         return found
 
     def areas(self, points: Floats, faces: Ints) -> Floats:
-        """(k,) [m^2]."""
+        """The area (k,) [m^2] that each point stands for."""
         ends = np.einsum("kns,kni->ksi", slopes(self.places, faces.shape[1]), points[faces[self.faces]])
         found: Floats = self.shares * np.linalg.norm(np.cross(ends[:, 0], ends[:, 1]), axis=1)
         return found
 
     def some(self, which: Any) -> Spread:
-        """Those of them that a mask chooses."""
+        """The points that a mask (k,) selects."""
         return Spread(self.faces[which], self.places[which], self.shares[which])
 
 
 def spread(which: Any, finely: bool) -> Spread:
-    """Places on all of the faces ``which`` (f,); ``finely``: so many that a part of a face is seen."""
+    """Quadrature points on all faces ``which`` (f,): PARTS^2 on each if ``finely``, else Dunavant's six."""
     if finely:
         places = small_triangles(PARTS).mean(axis=1)
         shares = np.full(len(places), 0.5 / len(places))
@@ -99,7 +102,7 @@ def spread(which: Any, finely: bool) -> Spread:
 
 
 def nearest(points: Floats, faces: Ints, place: Floats) -> Spread:
-    """The place of the faces' triangles of corners that is nearest to one (3,)."""
+    """The single point on the faces, taken as flat triangles, that is nearest to a place (3,) [m]."""
     from trimesh import triangles
 
     on_triangles: Any = triangles

@@ -17,14 +17,14 @@ class P1(Element):
 
     @classmethod
     def functions(cls, places: Any) -> Floats:
-        """The barycentric coordinates themselves."""
+        """The shape functions (q, 4): the barycentric coordinates themselves."""
         import numpy as np
 
         return np.asarray(places, dtype=float)
 
     @classmethod
     def slopes(cls, places: Any) -> Floats:
-        """One each."""
+        """Derivatives (q, 4, 4): identity matrices."""
         import numpy as np
 
         return np.broadcast_to(np.eye(4), (len(places), 4, 4)).copy()

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 NEAR, FAR = 0.5854101966249685, 0.1381966011250105
-"""(5 + 3 sqrt(5))/20 and (5 - sqrt(5))/20: exact for quadratic functions (Hammer & Stroud 1956)."""
+"""(5 + 3 sqrt(5))/20 and (5 - sqrt(5))/20, barycentric coordinates of a rule of degree 2 (Hammer & Stroud 1956)."""
 
 
 class P2(Element):
@@ -21,7 +21,7 @@ class P2(Element):
 
     @classmethod
     def functions(cls, places: Any) -> Floats:
-        """Corners, then edges."""
+        """The shape functions (q, 10) at barycentric points (q, 4): of corners, then of edges."""
         import numpy as np
 
         from sceneql.bodies.filling.tetrahedra import ENDS
@@ -32,7 +32,7 @@ class P2(Element):
 
     @classmethod
     def slopes(cls, places: Any) -> Floats:
-        """Of corners by their own coordinate, of edges by those of both ends."""
+        """Derivatives (q, 10, 4): of corners by their own barycentric coordinate, of edges by those of both ends."""
         import numpy as np
 
         from sceneql.bodies.filling.tetrahedra import ENDS

@@ -1,4 +1,4 @@
-"""Meshes made finer: where a script asks for it, and in hollows that turn much along an edge. Imports numpy."""
+"""Local refinement of tetrahedral meshes: where a script asks for it, and at concave curved surfaces. Imports numpy."""
 
 from __future__ import annotations
 
@@ -28,23 +28,24 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 Lengths = Callable[["Floats"], "Floats"]
-"""The longest edges (k,) [m] that are wanted at places (k, 3)."""
+"""A size function: longest wanted edges (k,) [m] at places (k, 3) [m]."""
 GROWTH = 1.0
-"""How much the length that a hollow asks for grows by the distance."""
+"""Growth of the wanted edge length with the distance from a concave surface [m/m]."""
 LEAST_TURN = 0.05
-"""Angle [rad] from which on the turn of an edge is believed."""
+"""Angle [rad] below which the turn of the surface along an edge is not resolved."""
 LEAST_PART = 0.25
-"""Of the spacing: edges are not asked to be shorter for that."""
+"""Shortest edge wanted for a concave surface, relative to the spacing."""
 ALIKE = 8
-"""Lengths within 2^(1/8) of each other are looked up together, as the shortest of them."""
+"""Wanted lengths within a factor of 2^(1/8) are searched in one tree, as the shortest of them."""
 LEAST_LEFT = 0.4
-"""Part of its shape that a tetrahedron keeps where its new corners move onto the object."""
+"""Least shape of a tetrahedron whose new corners move onto the object, relative to its shape before."""
 
 
 def hollows(points: Floats, tetrahedra: Ints, onto: Onto, spacing: float, most: float) -> Lengths | None:
-    """Edges along which the surface turns by ``most`` [rad] in hollows, where these are below the spacing; else None.
+    """The size function by which concave surfaces turn at most ``most`` [rad] along an edge; None if all edges comply.
 
-    Stress rises beside holes and in fillets within a part of their radius, which ten nodes follow over half a radian.
+    Stress concentrates beside holes and in fillets within a fraction of their radius; ten-node elements follow it where
+    they span about half a radian.
     """
     straight = meshed(elements()["p2"], points, tetrahedra)
     bow = onto_object(straight, onto)[0] - straight.points
@@ -62,10 +63,10 @@ def hollows(points: Floats, tetrahedra: Ints, onto: Onto, spacing: float, most: 
 
 
 def _grown(places: Floats, lengths: Floats, within: Floats) -> Lengths:
-    """Lengths (k,) within distances (k,) of places (k, 3), from there on longer."""
+    """The size function with lengths (k,) [m] within distances (k,) of places (k, 3), growing by GROWTH beyond."""
     from scipy.spatial import cKDTree
 
-    # A ball of a length is one of a shorter length that begins earlier: each place has the length at its middle.
+    # The cone of lengths outside each ball, extended to the ball's center, has the value ``middle`` there.
     middle = lengths - GROWTH * within
     kinds = np.floor(ALIKE * np.log2(lengths)).astype(int)
     trees = []
@@ -86,10 +87,10 @@ def _grown(places: Floats, lengths: Floats, within: Floats) -> Lengths:
 def refined(
     points: Floats, tetrahedra: Ints, wanted: Lengths, onto: Onto | None, bounded: Callable[[float], None]
 ) -> tuple[Floats, Ints]:
-    """Points (n, 3) and tetrahedra (t, 4), none with longer edges than are wanted at its middle.
+    """Points (n, 3) and tetrahedra (t, 4) refined until no edge is longer than wanted at the tetrahedron's center.
 
-    New corners of outer edges stand on the object where no tetrahedron is spoilt by it, else on the curved elements
-    that they are parts of. ``bounded`` raises where there are too many tetrahedra.
+    New corners on outer edges are moved onto the object where no tetrahedron loses its shape (LEAST_LEFT), else onto
+    the curved element that they divide. ``bounded`` raises where the tetrahedra are too many.
     """
     straight, cells, parents = bisected(points, tetrahedra, wanted, bounded)
     if onto is None:
@@ -108,9 +109,9 @@ def refined(
 
 
 def _bent(coarse: ElementMesh, straight: Floats, cells: Ints, parents: NDArray[int64]) -> Floats:
-    """(n, 3) where corners of parts (t, 4) of elements numbered ``parents`` (t,) stand when these are bent.
+    """Positions (n, 3) [m] in the curved elements ``coarse`` of points ``straight`` (n, 3) in the straight ones.
 
-    ``straight`` (n, 3): where they stand in elements with straight edges.
+    ``cells`` (t, 4): tetrahedra between these points; ``parents`` (t,): the coarse element that each is a part of.
     """
     nodes, first = np.unique(cells, return_index=True)
     own = parents[first // 4]
@@ -126,7 +127,7 @@ def _bent(coarse: ElementMesh, straight: Floats, cells: Ints, parents: NDArray[i
 
 
 def _settled(start: Floats, straight: Floats, cells: Ints, old: int, onto: Onto) -> Floats:
-    """Points (n, 3), of which those from number ``old`` on are moved onto the surface, and creases, of the object."""
+    """Points (n, 3) with the outer ones from number ``old`` on moved onto the object's surface or its creases."""
     flat = meshed(elements()["p2"], straight, cells)
     creases = Creases.of(flat.points, flat.faces)
     faces = boundary(cells).astype(np.int64)

@@ -1,4 +1,7 @@
-"""Solids of elements in pictures: their outer faces, or the object's own polygons, carried along. Imports numpy."""
+"""Surfaces of element meshes in pictures: the outer faces, or the object's own polygons, deformed with the elements.
+
+Imports numpy.
+"""
 
 from __future__ import annotations
 
@@ -20,20 +23,21 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 CELLS = 3
-"""Cells of the object's own polygons along a spacing."""
+"""Cells of the object's polygonization along a spacing of the elements."""
 CANDIDATES, STEPS = 12, 6
-"""Elements whose middles are nearest, among which that of a vertex is looked for; steps of Newton's method to its place
-in a curved one."""
+"""Elements, those with the nearest centers, among which the one of a vertex is searched; Newton steps to the vertex's
+barycentric coordinates in a curved element."""
 INSIDE, BEYOND = 1e-6, 0.3
-"""Of elements in which a vertex lies it is in the middlest; how far out of an element these steps may look."""
+"""Bonus, relative to an element's size, for being far inside, which decides between elements that contain a vertex;
+largest distance outside an element, in barycentric coordinates, of Newton's iterates."""
 CREASE = 0.77
-"""Cosine of the largest angle [40 degrees] between triangles that are shaded as one surface."""
+"""Cosine of 40 degrees, the largest angle between triangles that are shaded as one smooth surface."""
 SIX = ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5))
-"""The triangles between the six nodes of a face."""
+"""The triangles that a face with six nodes is drawn by."""
 
 
 def triangles(mesh: ElementMesh) -> Ints:
-    """(k, 3) nodes of the outer triangles, counterclockwise from outside."""
+    """Nodes (k, 3) of the triangles of the outer faces, counterclockwise from outside."""
     faces = mesh.faces
     found: Ints = faces if faces.shape[1] == 3 else faces[:, SIX].reshape(-1, 3)
     return found
@@ -41,18 +45,18 @@ def triangles(mesh: ElementMesh) -> Ints:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Skin:
-    """The outer triangles of a mesh, whose creases at rest are kept."""
+    """The outer triangles of a mesh, with separate vertices on the sides of creases at rest."""
 
     nodes: NDArray[int64]
-    """(v,) the node of each vertex: one at a crease has several."""
+    """(v,) the node of each vertex; a node on a crease has several vertices."""
     triangles: Ints
     """(m, 3)."""
     rest: Floats
-    """(v, 3) where the material of each vertex stands at rest [m]; held."""
+    """(v, 3) [m] rest positions of the vertices; held (frame.held)."""
 
     @classmethod
     def of(cls, mesh: ElementMesh) -> Skin:
-        """That of the material at rest."""
+        """The skin of a mesh, with creases found at rest."""
         from scipy.sparse import coo_array
         from scipy.sparse.csgraph import connected_components
 
@@ -70,7 +74,7 @@ class Skin:
         one, two = order[pairs], order[pairs + 1]
         flat = np.sum(normals[one % count] * normals[two % count], axis=1) > CREASE
         one, two = one[flat], two[flat]
-        # Sides of two triangles run opposite ways.
+        # Two triangles have their common side in opposite directions.
         rows, columns = np.concatenate([starts[one], ends[one]]), np.concatenate([ends[two], starts[two]])
         _, group = connected_components(coo_array((np.ones(len(rows)), (rows, columns)), (3 * count,) * 2), False)
         _, first, which = np.unique(group, return_index=True, return_inverse=True)
@@ -78,38 +82,38 @@ class Skin:
         return cls(nodes, which.reshape(-1, 3).astype(np.int32), held(mesh.points[nodes]))
 
     def at_vertices(self, values: Floats) -> Floats:
-        """(v, ...) what nodes (n, ...) have, at the vertices."""
+        """Values (v, ...) at the vertices, from values (n, ...) at the nodes."""
         return values[self.nodes]
 
     def drawn(self, name: str, surface: Surface, places: Floats) -> Mesh:
-        """The triangles where nodes are at places (n, 3) [m], smooth but for creases."""
+        """The mesh for nodes at ``places`` (n, 3) [m], with normals that are smooth except across creases."""
         own = places[self.nodes]
         return Mesh(name, surface, own, self.triangles, vertex_normals(own, self.triangles), rest=self.rest)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Carried:
-    """Polygons whose vertices follow the elements that they lie in."""
+    """Polygons whose vertices move with the elements that contain them."""
 
     triangles: Ints
     """(m, 3)."""
     nodes: Ints
     """(v, k) nodes of each vertex's element."""
     weights: Floats
-    """(v, k) its functions there."""
+    """(v, k) shape functions of the element at the vertex."""
     gradients: Floats
-    """(v, k, 3) and their gradients [1/m]."""
+    """(v, k, 3) [1/m] gradients of the shape functions there."""
     normals: Floats
-    """(v, 3) of the polygons at rest; on a crease stand several vertices."""
+    """(v, 3) unit normals at rest; a point on a crease has several vertices."""
     rest: Floats
-    """(v, 3) the vertices at rest [m]; held."""
+    """(v, 3) [m] rest positions; held (frame.held)."""
 
     def at_vertices(self, values: Floats) -> Floats:
-        """(v, ...) what nodes (n, ...) have, at the vertices: within what those of their elements have."""
+        """Values (v, ...) at the vertices, from values (n, ...) at the nodes, clipped to the range in the element."""
         return within_elements(values[self.nodes], self.weights)
 
     def drawn(self, name: str, surface: Surface, places: Floats) -> Mesh:
-        """The polygons where nodes are at places (n, 3) [m]."""
+        """The mesh for nodes at ``places`` (n, 3) [m]; normals transformed by the cofactors of F."""
         nodes = places[self.nodes]
         vertices = np.einsum("vk,vki->vi", self.weights, nodes)
         f = np.einsum("vki,vkj->vij", nodes, self.gradients)
@@ -121,7 +125,7 @@ class Carried:
 
 
 def within_elements(values: Floats, weights: Floats) -> Floats:
-    """(v, ...) by nodes (v, k, ...) and their functions (v, k): no less and no more than at the nodes of an element."""
+    """Interpolated values (v, ...) from nodes (v, k, ...) by shape functions (v, k), clipped to the nodes' range."""
     found = np.einsum("vk,vk...->v...", weights, values)
     clipped: Floats = np.clip(found, values.min(axis=1), values.max(axis=1))
     return clipped
@@ -129,17 +133,17 @@ def within_elements(values: Floats, weights: Floats) -> Floats:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Inside:
-    """The elements of a solid at an instant, for what is seen of its inside."""
+    """The elements of a solid at an instant, for points inside it that a cut makes visible."""
 
     mesh: ElementMesh
-    """At rest."""
+    """The mesh at rest."""
     places: Floats
-    """(n, 3) its nodes in the drawing."""
+    """(n, 3) [m] deformed positions of its nodes, as drawn."""
     values: Floats | None
-    """(n,) what is shown of them."""
+    """(n,) values shown by color at the nodes, if any."""
 
     def __call__(self, points: Floats) -> tuple[Floats, Floats]:
-        """Places of the material (k, 3) at points (k, 3) of the drawing, and what is shown there (k, 1), or (k, 0)."""
+        """Rest positions (k, 3) [m] of drawn points (k, 3), and the values shown there (k, 1), or (k, 0)."""
         nodes, weights, _ = in_elements(replace(self.mesh, points=self.places), points)
         rest = np.einsum("vk,vki->vi", weights, self.mesh.points[nodes])
         if self.values is None:
@@ -148,7 +152,7 @@ class Inside:
 
 
 def carried(ref: Ref, spacing: float, mesh: ElementMesh, assembly: Assembly) -> Carried:
-    """The polygons of an object at the start of the run, as elements of its material carry them."""
+    """The polygons of an object at the start of the run, attached to the elements of ``mesh``."""
     vertices, triangles, normals = _polygons(ref, spacing, assembly)
     return Carried(triangles, *in_elements(mesh, vertices), normals, held(vertices))
 
@@ -179,16 +183,16 @@ def _polygons(ref: Ref, spacing: float, assembly: Assembly) -> tuple[Floats, Int
     found = polygonise_sharp(tape, low, high, cell)
     vertices, triangles, normals, _ = creased(RawMesh(found.vertices, found.triangles, None), np.arccos(CREASE))
     _, source = cKDTree(found.vertices).query(vertices)
-    smooth = np.einsum("vi,vi->v", found.normals[source], normals) > CREASE  # at creases the field has no slope
+    smooth = np.einsum("vi,vi->v", found.normals[source], normals) > CREASE  # at creases the field has no gradient
     normals[smooth] = found.normals[source[smooth]]
     return vertices, triangles, normals
 
 
 def in_elements(mesh: ElementMesh, vertices: Floats) -> tuple[Ints, Floats, Floats]:
-    """Of the element in which each vertex (v, 3) lies nodes (v, k), functions there (v, k), their gradients (v, k, 3).
+    """Nodes (v, k), shape functions (v, k) and their gradients (v, k, 3) of the element that contains each vertex.
 
-    A vertex outside of all elements is carried by the nearest, as if this went on from its nearest place without any
-    more change of its strain: its functions, which are squares, grow too large not far outside.
+    A vertex outside all elements belongs to the nearest one, extrapolated linearly from the nearest point of it:
+    quadratic shape functions grow too large not far outside.
     """
     from scipy.spatial import cKDTree
 
@@ -218,14 +222,14 @@ def in_elements(mesh: ElementMesh, vertices: Floats) -> tuple[Ints, Floats, Floa
 
 
 def _inward(at: Floats) -> Floats:
-    """Barycentric places (..., 4) of an element near those given, which may lie outside."""
+    """Barycentric coordinates (..., 4) moved into the element: negative ones set to 0, then scaled to sum 1."""
     inner = np.maximum(at, 0.0)
     found: Floats = inner / inner.sum(axis=-1, keepdims=True)
     return found
 
 
 def _sides(mesh: ElementMesh, at: Floats, nodes: Floats) -> Floats:
-    """(v, 3, 3) slopes of places by barycentric coordinates (v, 4) in elements with nodes (v, k, 3)."""
+    """Jacobians (v, 3, 3) of positions by three barycentric coordinates, at points (v, 4) of elements (v, k, 3)."""
     slopes = mesh.element.slopes(at)
     found: Floats = np.einsum("vki,vkj->vij", nodes, slopes[:, :, 1:] - slopes[:, :, :1])
     return found

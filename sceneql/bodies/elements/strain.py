@@ -1,4 +1,4 @@
-"""The strain of a solid in an island: the masses of its nodes, the term of its forces, its energy and stress."""
+"""An elastic solid in an island: mass matrix, term of the elastic forces, energy and stress."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState, Slopes
 
 POINTS_A_TILE = 2000
-"""Points in a tile: a thread evaluates the strains of one tile at a time."""
+"""Integration points of a tile, a task of one thread."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Inertia:
-    """The mass of a solid at its nodes."""
+    """Mass matrices of a solid."""
 
     matrix: Any
-    """Sparse, (n, n) [kg]: of elements with nodes on edges the consistent one (Archer 1963), else diagonal."""
+    """(n, n) sparse [kg]: consistent (Archer 1963) for elements with nodes on edges, else the lumped one."""
     lumped: Floats
-    """(n,) [kg] the diagonal of each element's matrix, scaled to what it holds (Hinton, Rock & Zienkiewicz 1976)."""
+    """(n,) [kg] sums of the elements' diagonals, scaled to the elements' masses (Hinton, Rock & Zienkiewicz 1976)."""
     least: Floats
-    """(e,) the least eigenvalue of each element's own matrix [kg]."""
+    """(e,) [kg] least eigenvalue of each element's own matrix."""
 
     @classmethod
     def of(cls, mesh: ElementMesh, density: Callable[[Floats], Floats]) -> Inertia:
-        """That of a mesh with a density [kg/m^3] by places (k, 3) of its material."""
+        """The mass matrices of a mesh; ``density``: a function of material positions (k, 3) [m], in kg/m^3."""
         from scipy.sparse import coo_array, diags_array
 
         whole, count, nodes = mesh.mass(density), len(mesh.points), mesh.cells.shape[1]
@@ -57,16 +57,16 @@ class Inertia:
 
     @property
     def consistent(self) -> bool:
-        """Whether it is more than a diagonal."""
+        """Whether the matrix has entries off its diagonal."""
         return bool(self.matrix.nnz > len(self.lumped))
 
     @property
     def sums(self) -> Floats:
-        """(n,) of its rows [kg]: what uniform gravity weighs at each node, which may be below 0 at corners."""
+        """Row sums (n,) [kg], the masses for uniform gravity; they may be negative at corners of quadratic elements."""
         return np.asarray(self.matrix.sum(axis=1)).ravel()
 
     def freed(self, held: Any) -> Any:
-        """(3 n, 3 n) sparse, with rows and columns of zeros where components (n, 3) bool are held."""
+        """The matrix of all components, (3 n, 3 n) sparse [kg]; rows and columns of held (n, 3) components are zero."""
         from scipy.sparse import csr_array, diags_array, eye_array, kron
 
         free = diags_array(1.0 * ~np.ravel(held))
@@ -75,30 +75,30 @@ class Inertia:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Strain:
-    """The term of a solid's strain, as it stands in an island."""
+    """The term of a solid's elastic forces in an island."""
 
     mesh: ElementMesh
     ints: NDArray[int64]
     volumes: Floats
-    """(e, q) that the points stand for [m^3]."""
+    """(e, q) [m^3] shares of volume of the integration points."""
     kept: tuple[Any, ...]
-    """Kernels that are called by their addresses."""
+    """Kernels called by their addresses, referenced here so that they are not freed."""
     squared: float
-    """Bound of the squared angular frequencies [1/s^2] of small motions: that of an element alone (Irons 1970)."""
+    """Bound [1/s^2] of squared angular frequencies of small motions: the largest of a single element (Irons 1970)."""
     stiffest: int
-    """The element that sets it."""
+    """The element with this largest bound."""
     inertia: Inertia
     slopes: Callable[[], Slopes]
-    """Those of its forces."""
+    """Makes the Jacobian of the forces."""
 
     def energy(self, state: ModelState) -> float:
-        """The energy of strain [J]."""
+        """Strain energy [J]."""
         from sceneql.bodies.elements.strain_energy_kernels import energy
 
         return float(energy(state.t, state.y, _writable(state.floats), self.ints))
 
     def looked_at(self, state: ModelState) -> tuple[Floats, Floats]:
-        """(e, q, 3, 3) the deformation gradients, and the first Piola stresses [Pa] of strain, at the points."""
+        """Deformation gradients and first Piola-Kirchhoff stresses [Pa] at integration points, each (e, q, 3, 3)."""
         from sceneql.bodies.elements.strain_energy_kernels import stresses
 
         found = np.zeros((*self.volumes.shape, 18))
@@ -121,10 +121,11 @@ def add_strain(
     held: Any,
     inertia: Inertia,
 ) -> Strain:
-    """Add the forces of strain from places (n, 3) of the nodes, which may be those of the mesh moved and turned.
+    """Add the term of a solid's elastic forces to an island.
 
-    ``held`` (n, 3) bool: components of nodes that do not move freely.
-    ``retardation`` [s], 0: none. Raises ScriptError for numbers out of their range.
+    ``places`` (n, 3) [m]: stress-free positions of the nodes, the mesh's moved and turned; ``held`` (n, 3) bool: held
+    components of nodes; ``retardation`` [s]: time constant of viscosity, 0 for none. Raises ScriptError for parameters
+    of the law out of range.
     """
     from sceneql.bodies.elements import strain_kernels, strain_slopes_kernels
     from sceneql.bodies.elements.laws import law_kernels
@@ -195,7 +196,10 @@ def add_strain(
 
 
 def density_of(formula: Formula | None, default: float) -> Callable[[Floats], Floats]:
-    """(k,) [kg/m^3] by places (k, 3) of the material. The function raises ScriptError where it is not above 0."""
+    """The density as a function from material positions (k, 3) [m] to (k,) [kg/m^3].
+
+    The function raises ScriptError where the density is not above 0.
+    """
 
     def at(places: Floats) -> Floats:
         if formula is None:
@@ -212,7 +216,7 @@ def density_of(formula: Formula | None, default: float) -> Callable[[Floats], Fl
 
 
 def add_mass_damping(assembly: Assembly, bodies: Bodies, damping: float, inertia: Any) -> None:
-    """Add a force against the momentum M v, ``damping`` [1/s] times; ``inertia`` M: sparse (n, n) [kg]."""
+    """Add mass-proportional damping -damping M v; ``damping`` [1/s]; ``inertia``: M, sparse (n, n) [kg]."""
     from sceneql.system import Slopes
 
     folder = "sceneql.bodies.elements.mass_damping_kernels"

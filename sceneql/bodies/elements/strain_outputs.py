@@ -1,4 +1,4 @@
-"""What a solid of elements tells of its strain and stress, at its nodes and at probes."""
+"""Outputs of a solid of elements: strain and stress at nodes and at probes, volume, momenta."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from sceneql.system import ModelState
 
 STEPS = 8
-"""Of Newton's method, by which a place is found in a curved element."""
+"""Newton steps to a probe's barycentric coordinates in a curved element."""
 BEYOND = 1.0
-"""How far outside of its element, in barycentric coordinates, a place is still told of: surfaces are curved."""
+"""Largest distance of a probe outside its element, in barycentric coordinates, since surfaces are curved."""
 NODES = "of each node, the mean of the elements there"
 OUTPUTS: Mapping[str, Gives] = {
     "displacements": Gives(
@@ -63,11 +63,11 @@ OF_HOLD: Mapping[str, Gives] = {
 
 
 BY_INERTIA = ("kinetic", "momentum", "angular_momentum")
-"""Outputs of all masses that are sums over pairs of nodes here."""
+"""Outputs of point masses that a consistent mass matrix makes sums over pairs of nodes."""
 
 
 def by_inertia(output: str, solid: Strain, state: ModelState) -> Any:
-    """An output of BY_INERTIA."""
+    """Value of an output of BY_INERTIA, by the mass matrix."""
     import numpy as np
 
     from sceneql.bodies.bodies import positions, velocities
@@ -84,7 +84,7 @@ def by_inertia(output: str, solid: Strain, state: ModelState) -> Any:
 
 
 def read(output: str, solid: Strain, state: ModelState) -> Any:
-    """An output of OUTPUTS."""
+    """Value of an output of OUTPUTS."""
     import numpy as np
 
     from sceneql.bodies.bodies import positions
@@ -117,7 +117,7 @@ def read(output: str, solid: Strain, state: ModelState) -> Any:
 
 
 def cauchy(gradients: Floats, stresses: Floats) -> Floats:
-    """(..., 3, 3) P F^T / J, made symmetric."""
+    """Cauchy stresses P F^T / J (..., 3, 3) [Pa], symmetrized, from F ``gradients`` and P ``stresses``."""
     import numpy as np
 
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -127,7 +127,7 @@ def cauchy(gradients: Floats, stresses: Floats) -> Floats:
 
 
 def principal(stress: Floats) -> Floats:
-    """(n, 3) principal values of stresses (n, 3, 3), falling; NaN where an element has no volume."""
+    """Principal stresses (n, 3), descending, of stresses (n, 3, 3); NaN where these are not finite."""
     import numpy as np
 
     found = np.full(stress.shape[:2], np.nan)
@@ -137,7 +137,7 @@ def principal(stress: Floats) -> Floats:
 
 
 def von_mises(stress: Floats) -> Any:
-    """(...) of stresses (..., 3, 3)."""
+    """Von Mises stresses (...) of stresses (..., 3, 3)."""
     import numpy as np
 
     mean = np.trace(stress, axis1=-2, axis2=-1)[..., None, None] / 3.0
@@ -145,7 +145,10 @@ def von_mises(stress: Floats) -> Any:
 
 
 def at_nodes(solid: Strain, values: Floats) -> Floats:
-    """(n, ...) numbers of points (e, q, ...) at the nodes: linear in each element, then the mean of those around."""
+    """Values (n, ...) at nodes from values (e, q, ...) at integration points.
+
+    Extrapolated linearly in each element, then averaged over the elements at a node, weighted by volume.
+    """
     import numpy as np
 
     from sceneql.bodies.filling.tetrahedra import ENDS
@@ -168,9 +171,9 @@ def at_nodes(solid: Strain, values: Floats) -> Floats:
 
 
 def probe(name: str, mesh: ElementMesh, place: Floats, line: Span | None) -> tuple[Any, Floats]:
-    """Nodes (k,) and weights (k,) of a place of the material; a little outside that of the nearest element.
+    """Nodes (k,) and shape functions (k,) at a material position (3,) [m], in the element that contains it.
 
-    Raises ScriptError where the place is farther outside.
+    A place slightly outside (BEYOND) is extrapolated from the nearest element. Raises ScriptError for one farther out.
     """
     import numpy as np
 
@@ -193,7 +196,7 @@ def probe(name: str, mesh: ElementMesh, place: Floats, line: Span | None) -> tup
 
 
 def read_probe(what: str, nodes: Any, weights: Floats, solid: Strain, state: ModelState) -> Any:
-    """An output of OF_PROBE, of a probe by its nodes (k,) and weights (k,)."""
+    """Value of an output of OF_PROBE, interpolated from the probe's nodes (k,) by its weights (k,)."""
     from sceneql.bodies import bodies as masses
 
     bodies = state.bodies

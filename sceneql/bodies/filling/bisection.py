@@ -1,4 +1,4 @@
-"""Finer tetrahedra where these are wanted, by halving longest edges: meshes stay conforming. Imports numpy."""
+"""Refinement of tetrahedral meshes by longest edge bisection, which keeps them conforming. Imports numpy."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 ALIKE = 1e-9
-"""Relative difference of the lengths of edges that counts as none: their numbers decide then."""
+"""Relative difference below which edges count as equally long, so that their numbers decide which is longest."""
 
 
 def bisected(
     points: Floats, tetrahedra: Ints, wanted: Callable[[Floats], Floats], bounded: Callable[[float], None]
 ) -> tuple[Floats, Ints, NDArray[int64]]:
-    """Points (n, 3) [m] and tetrahedra (t, 4) none of whose longest edges exceeds what is wanted at their middle; the
-    tetrahedron (t,) that each is a part of.
+    """Refined points (n, 3) [m], tetrahedra (t, 4), and for each (t,) the original tetrahedron that it is a part of.
 
-    ``wanted``: lengths [m] at places (k, 3); ``bounded`` raises where there are too many tetrahedra. An edge is halved
-    when it is the longest of all tetrahedra around it, these others first (Rivara 1984, 1991).
+    No longest edge exceeds ``wanted`` (k,) [m] at its tetrahedron's center (k, 3). An edge is bisected when it is the
+    longest of all tetrahedra around it; longer edges of these are bisected before (Rivara 1984, 1991). ``bounded``
+    raises where the tetrahedra are too many.
     """
     parents = np.arange(len(tetrahedra))
     while True:
@@ -59,7 +59,7 @@ def bisected(
 
 
 def _longest(points: Floats, ends: NDArray[int64], which: NDArray[int64]) -> Any:
-    """(t,) the longest edge of each tetrahedron."""
+    """Number (t,) of the longest edge of each tetrahedron; ``ends`` (e, 2), ``which`` (t, 6): its edges."""
     length = np.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1)
     rank = np.empty(len(ends), dtype=np.int64)
     rank[np.lexsort((np.arange(len(ends)), np.round(np.log(length) / ALIKE)))] = np.arange(len(ends))

@@ -1,4 +1,4 @@
-"""Blocks: mapped bricks cut into tetrahedra."""
+"""Blocks: structured grids in a hexahedron, each cell cut into tetrahedra."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 TETRAHEDRON = 500
-"""[bytes] of one in its mesh; its elements take more (solid.ELEMENT)."""
+"""Memory [bytes] of a tetrahedron in a mesh; an element on it takes more (elements.filled.BYTES)."""
 Corners = Annotated[tuple[tuple[float, float, float], ...], Quantity(dim.LENGTH, (None, 3))]
 UPRIGHT = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
-"""The eight corners in their order, by x, y and z."""
+"""The eight corners of a block in the order of its field `corners`, by x, y and z."""
 ROUNDING = 1e-9
-"""Part of a block's places by which a probe may lie outside."""
+"""Distance by which a probe may lie outside a block, relative to the block's largest coordinate."""
 CUT = {"six": 6, "five": 5}
 
 
@@ -42,7 +42,7 @@ class Block(Record):
     )
 
     def problems(self) -> Iterator[Problem]:
-        """Size and corners, not eight, too many cells."""
+        """Problems: both or neither of size and corners; not eight corners; too many cells."""
         if (self.size is None) == (self.corners is None):
             yield Problem("a block has either a `size` or eight `corners`")
         if self.corners is not None and len(self.corners) != 8:
@@ -53,7 +53,7 @@ class Block(Record):
             yield Problem(str(error), ("cells",), code="limit-refused")
 
     def box(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Low and high corner (3,) [m] of the box around it."""
+        """Low and high corner (3,) [m] of the block's bounding box."""
         if self.corners is not None:
             rows = [*zip(*self.corners, strict=True)]
             return tuple(map(min, rows)), tuple(map(max, rows))
@@ -61,18 +61,18 @@ class Block(Record):
         return tuple(x - 0.5 * side for x, side in sides), tuple(x + 0.5 * side for x, side in sides)
 
     def may_hold(self, place: tuple[float, float, float]) -> bool:
-        """Whether a place [m] lies inside; of corners, in the box around them."""
+        """Whether a place (3,) [m] lies in the block's bounding box."""
         low, high = self.box()
         room = ROUNDING * max(map(abs, (*low, *high)))
         return all(a - room <= x <= b + room for x, a, b in zip(place, low, high, strict=True))
 
     @property
     def finest(self) -> float:
-        """The least side of a cell [m] of a block of even cells; else 0."""
+        """Shortest side [m] of the cells of a block with a `size`; 0 for one with `corners`."""
         return min(s / n for s, n in zip(self.size, self.cells, strict=True)) if self.size is not None else 0.0
 
     def made(self) -> tuple[Floats, Ints]:
-        """(n, 3) points and (t, 4) tetrahedra, upright where the corners are."""
+        """Points (n, 3) [m] and tetrahedra (t, 4), of positive volume where the corners are in their order."""
         import numpy as np
 
         count = np.array(self.cells) + 1
@@ -101,11 +101,11 @@ FIVE = (
     ((0, 1, 1), (1, 1, 1), (0, 0, 1), (0, 1, 0)),
     ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)),
 )
-"""Four corners of a cell and what is left between them."""
+"""Tetrahedra of a cell cut in five: four at corners, and the one between them."""
 
 
 def _path(order: tuple[int, ...]) -> list[tuple[int, ...]]:
-    """The corners on the way from one corner of a cell to the opposite one along its sides (Kuhn 1960)."""
+    """The three corners after (0, 0, 0) on the path along a cell's sides in an order of axes (Kuhn 1960)."""
     place, found = [0, 0, 0], []
     for axis in order:
         place[axis] = 1
@@ -114,14 +114,14 @@ def _path(order: tuple[int, ...]) -> list[tuple[int, ...]]:
 
 
 def _turned(four: Any) -> list[tuple[int, ...]]:
-    """Corners of a tetrahedron, two of them swapped where it would be inside out."""
+    """Corners of a tetrahedron, with two of them swapped if its volume would be negative."""
     (a, b, c), (d, e, f), (g, h, i) = ([p - q for p, q in zip(corner, four[0], strict=True)] for corner in four[1:])
     upright = a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) > 0
     return list(four) if upright else [four[0], four[2], four[1], four[3]]
 
 
 def _numbered(cells: Any, fours: Any, count: Any) -> Ints:
-    """(t, 4) tetrahedra of every cell, by the numbers of a grid's points, z fastest."""
+    """Tetrahedra (t, 4) of all cells (c, 3), as numbers of the grid's points, z fastest; ``count`` (3,): its points."""
     import numpy as np
 
     strides = np.array([count[1] * count[2], count[2], 1])

@@ -1,4 +1,4 @@
-"""Triangles in clusters, with the moments by which far ones wind around a point (winding_kernels). Imports numpy."""
+"""Hierarchical clusters of triangles, with multipole moments for winding numbers (winding_kernels). Imports numpy."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
 
 LEAF = 8
 TILE = 512
-"""Points, segments or clusters of one task of a thread."""
+"""Points, segments or clusters in one task of a thread."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Clusters:
-    """Triangles in the order of a tree of boxes around them."""
+    """Triangles in the order of a bounding volume hierarchy, and the moments of its nodes."""
 
     arrays: tuple[Floats, NDArray[int64], Floats]
-    """Corners (m, 9), links of the tree (b, 3) and moments (b, MOMENTS)."""
+    """Corners (m, 9) [m], links of the hierarchy (b, 3) (BoxTree) and moments (b, MOMENTS), as kernels take them."""
     boxes: Floats
-    """(b, 6) low and high corners."""
+    """(b, 6) [m] low and high corner of each node."""
 
     @classmethod
     def of(cls, corners: Floats) -> Clusters:
-        """Of triangles (m, 3, 3). Raises ValueError where there are none."""
+        """The clusters of triangles (m, 3, 3) [m]. Raises ValueError where there is none."""
         tree = box_tree(corners, LEAF)
         ordered = np.ascontiguousarray(corners[tree.order].reshape(-1, 9))
         moments = np.empty((len(tree.links), winding_kernels.MOMENTS))
@@ -43,7 +43,7 @@ class Clusters:
 
     @classmethod
     def none(cls) -> Clusters:
-        """No triangle at all, which winds around nothing."""
+        """Clusters without triangles: the winding number is 0 everywhere."""
         return cls(
             (np.zeros((0, 9)), np.zeros((0, 3), np.int64), np.zeros((0, winding_kernels.MOMENTS))), np.zeros((0, 6))
         )

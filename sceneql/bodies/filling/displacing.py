@@ -1,4 +1,4 @@
-"""Masses that a flow carries: their velocities are the flow's, and their inertia is part of its."""
+"""Masses immersed in a flow: they move with its velocity, and their inertia is added to the fluid's."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Flow
 
 LIGHTEST = 0.2
-"""Of the density of a fluid: lighter solids would leave cells without inertia, as masses do not fill them evenly."""
+"""Least mass of a solid relative to the displaced fluid's. Masses do not fill cells evenly, so lighter ones would leave
+cells without inertia."""
 WITHIN = 1e-9
-"""Of a cell: how far off the plane of a flat flow masses stand by rounding."""
+"""Distance from the plane of a flat flow that counts as rounding, in cells."""
 
 
 def reserve(
@@ -29,11 +30,11 @@ def reserve(
     pull: float,
     flow: Flow,
 ) -> Bodies:
-    """Put n masses into the state that a flow carries; forces on them are handed to it where they are immersed.
+    """Put n masses that move with a flow into the state; forces on them are spread to the fluid around them.
 
-    ``velocities`` (n, 3) [m/s], of those that are held; ``masses`` (n,) [kg]; ``radii`` (n,) [m]; ``fixed`` (n,) bool;
-    ``pull``: sum of stiffness times length squared of its springs [J]. Raises ScriptError where they do not fit the
-    flow.
+    ``velocities`` (n, 3) [m/s], not zero only for fixed masses; ``masses`` (n,) [kg]; ``radii`` (n,) [m]; ``fixed``
+    (n,) bool; ``pull`` [J]: sum of stiffness times squared length of the springs. Raises ScriptError for masses that
+    are too light, too far apart, outside the flow, or in its obstacles.
     """
     import numpy as np
 
@@ -56,7 +57,7 @@ def reserve(
     faces = np.asarray(net.pairs if net.triangles is None else net.triangles, dtype=np.int64)
     across = net.apart or cell
     shares = np.full(n, across * flow.spacing[2] if len(flow.areas) == 2 else across * across)
-    # As much as the springs' own modulus, in a layer of a cell where they fill nothing; or as they weigh.
+    # Pressure scale: the springs' modulus, over a layer of one cell if the net fills no volume; else the weight.
     pressure = 0.5 * pull / (fills.sum() or shares.sum() * cell) or 9.81 * masses.sum() / shares.sum()
     return Bodies(
         model=name,
@@ -75,7 +76,7 @@ def reserve(
 
 
 def must_hold(pins: Any, assembly: Assembly) -> None:
-    """Raises ScriptError for pins (of a model's field) that let go."""
+    """Raise ScriptError for pins (of a model's field) that release their masses during the run."""
     for pin, how in pins.items() if isinstance(pins, dict) else ():
         if how.until is not None:
             text = f"the pin '{pin}' lets go of masses that a flow carries, which would move at once as it does"
@@ -83,7 +84,7 @@ def must_hold(pins: Any, assembly: Assembly) -> None:
 
 
 def _fills(name: str, net: Net, flow: Flow, assembly: Assembly) -> Floats:
-    """(n,) the volume whose fluid each mass displaces [m^3]. Raises ScriptError for a solid in a flat flow."""
+    """Volumes (n,) [m^3] of fluid that the masses displace. Raises ScriptError for masses off a flat flow's plane."""
     import numpy as np
 
     if len(flow.areas) == 3:
@@ -96,7 +97,7 @@ def _fills(name: str, net: Net, flow: Flow, assembly: Assembly) -> Floats:
 
 
 def _must_fit(name: str, net: Net, flow: Flow, cell: float, assembly: Assembly) -> None:
-    """Raises ScriptError where masses stand outside their flow, or so far apart that fluid passes between them."""
+    """Raise ScriptError where masses are outside their flow or in its obstacles, or farther apart than a cell."""
     import numpy as np
 
     if net.apart > cell * (1.0 + WITHIN):

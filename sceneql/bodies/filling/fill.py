@@ -1,4 +1,4 @@
-"""Places inside an object: where the particles and lattices that fill it start."""
+"""Sample points inside an object, at which particles and lattices that fill it start."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 CHUNK = 1 << 18
 EMPTIEST = 2000
-"""An object that holds fewer than one in so many random points of its box counts as empty."""
+"""An object that contains fewer than 1/EMPTIEST of its box's random points counts as empty."""
 
 
 class Fill(Record):
@@ -37,14 +37,14 @@ class Fill(Record):
     seed: int = field("Another number, other places.", 0, at_least=0)
 
     def problems(self) -> Iterator[Problem]:
-        """Two measures or none, or not that of a grid."""
+        """Problems: both or neither of `count` and `spacing`; a grid without `spacing`."""
         if (self.count is None) == (self.spacing is None):
             yield Problem("a filling has either `count` or `spacing`")
         elif self.pattern == "grid" and self.spacing is None:
             yield Problem("a grid needs a `spacing`", ("pattern",))
 
     def bounded(self, low: Floats, high: Floats) -> None:
-        """Raise Exceeds where the filling of an object in a box at a spacing is sure to be too much."""
+        """Raise Exceeds where filling an object in the box low..high [m] is certain to take too many points."""
         import numpy as np
 
         assert self.spacing is not None
@@ -55,7 +55,7 @@ class Fill(Record):
 
 
 class Inside:
-    """The box around an object at the start of the run, and which places lie in the object."""
+    """An object at the start of the run: its bounding box, and tests for points inside."""
 
     def __init__(self, ref: Ref, assembly: Assembly) -> None:
         """Raises ScriptError for an object without an inside or without an end."""
@@ -80,14 +80,14 @@ class Inside:
         return ScriptError([Diagnostic("not-filled", f"'{self.name}' cannot be filled: {why}", self.span)])
 
     def bounded(self, bound: Callable[..., object], *arguments: Any) -> None:
-        """Raise LimitRefused where a function of the arguments (as memory.bounded) raises Exceeds."""
+        """Call ``bound(*arguments)`` (as memory.bounded); raise LimitRefused where it raises Exceeds."""
         try:
             bound(*arguments)
         except Exceeds as error:
             raise LimitRefused(str(error), self.span, "use a larger spacing") from None
 
     def random(self, first: int, count: int, key: int) -> Floats:
-        """(m, 3) the random points of its box, numbers first to first + count - 1, that lie in the object."""
+        """Those (m, 3) of the box's random points number first to first + count - 1 that lie in the object."""
         import numpy as np
 
         index = np.arange(first, first + count, dtype=np.uint64)
@@ -98,7 +98,7 @@ class Inside:
 
 
 def draws(index: Any, draw: int, key: int) -> Floats:
-    """Uniform numbers in [0, 1) of the counters (index, draw): index (n,) uint64."""
+    """Uniform random numbers (n,) in [0, 1) for counters (index, draw); ``index`` (n,) uint64."""
     import numpy as np
 
     numbers: Floats = unit(*philox(index, np.full_like(index, draw), np.full_like(index, key)))
@@ -106,17 +106,17 @@ def draws(index: Any, draw: int, key: int) -> Floats:
 
 
 def chance_key(name: str, seed: int) -> int:
-    """The key of a part's stream of chance."""
+    """The key of a part's stream of counter-based random numbers."""
     import zlib
 
     return zlib.crc32(f"{seed}:{name}".encode())
 
 
 def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[Floats, Floats], Floats], Tape | None]:
-    """places (n, 3) -> (n,) bool, whether they lie in the object; inner and outer ends (n, 3) of segments -> (n,)
-    fractions at which these leave it; and the field that is below 0 there, which meshes have not.
+    """(holds, crossing, tape of the field or None for a mesh) of an object.
 
-    Raises TypeError where it has no inside.
+    ``holds``: places (n, 3) -> (n,) bool, whether they lie inside. ``crossing``: inner and outer ends (n, 3) of
+    segments -> (n,) parameters at which these leave the object. Raises TypeError for an object without an inside.
     """
     import numpy as np
 
@@ -135,7 +135,7 @@ def _test(kind: Object, start: Any) -> tuple[Callable[[Floats], Any], Callable[[
 
 
 def filled(fill: Fill, name: str, assembly: Assembly) -> Floats:
-    """(n, 3) places [m]. Raises ScriptError where the object holds none, LimitRefused where too many."""
+    """Points (n, 3) [m] of a filling. Raises ScriptError where the object contains none, LimitRefused for too many."""
     with doing(f"filling {fill.object.name}"):
         return _filled(fill, name, assembly)
 
@@ -171,7 +171,7 @@ def _filled(fill: Fill, name: str, assembly: Assembly) -> Floats:
 
 
 def _even(inside: Inside, trial: Floats, wanted: int, apart: float, key: int, spread: Any) -> Floats:
-    """Poisson disk samples; their distance shrinks when no more fit (McCool & Fiume 1992, section 3)."""
+    """Poisson disk samples (wanted, 3); their distance shrinks when no more fit (McCool & Fiume 1992, section 3)."""
     import numpy as np
 
     room = np.ascontiguousarray(inside.high - inside.low)
@@ -186,7 +186,7 @@ def _even(inside: Inside, trial: Floats, wanted: int, apart: float, key: int, sp
 
 
 def grid_counts(low: Floats, high: Floats, spacing: float) -> Floats:
-    """(3,) places along the sides of a box. Raises Exceeds where a grid of them cannot be looked at."""
+    """Points (3,) of a cubic grid along the sides of a box. Raises Exceeds for too many points in all."""
     import numpy as np
 
     count: Floats = np.floor(np.maximum(high - low, 0.0) / spacing + 1e-9) + 1
@@ -195,9 +195,9 @@ def grid_counts(low: Floats, high: Floats, spacing: float) -> Floats:
 
 
 def grid(inside: Inside, spacing: float) -> tuple[Floats, Any]:
-    """Places (n, 3) of a cubic grid about the middle of an object's box, and their whole numbers (n, 3).
+    """Points (n, 3) [m] inside an object of a cubic grid about the middle of its box, and their grid indices (n, 3).
 
-    Raises ScriptError where the object holds none, LimitRefused where too many were to be looked at.
+    Raises ScriptError where no point lies inside, LimitRefused where the grid has too many points to test.
     """
     import numpy as np
 

@@ -1,4 +1,4 @@
-"""Places of a solid where its elements are smaller."""
+"""Regions of a solid with smaller elements."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 GROWTH = 0.5
-"""How much the wanted length of edges grows by the distance."""
+"""Growth of the wanted edge length with the distance from a region [m/m]."""
 
 
 class Finer(Record):
@@ -27,7 +27,7 @@ class Finer(Record):
     )
 
     def reaches(self, places: Floats) -> bool:
-        """Whether any of places (n, 3) is so near that it is of smaller elements."""
+        """Whether any of the places (n, 3) [m] lies within `within` + `spacing` of `near`."""
         import numpy as np
 
         away = np.linalg.norm(places - np.asarray(self.near), axis=1)
@@ -35,7 +35,7 @@ class Finer(Record):
 
 
 def lengths(finer: Mapping[str, Finer]) -> Callable[[Floats], Floats]:
-    """A function of places (k, 3) of the longest edges (k,) that are wanted there [m]."""
+    """The size function: from places (k, 3) [m] to the longest wanted edges (k,) [m]; inf without any region."""
     import numpy as np
 
     def wanted(places: Floats) -> Floats:

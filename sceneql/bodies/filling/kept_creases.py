@@ -1,9 +1,9 @@
-"""Creases and corners of an object kept in the tetrahedra that fill it. Imports numpy.
+"""Sharp edges (creases) and corners of an object, kept by the tetrahedra that fill it. Imports numpy.
 
-Stuffing puts the outer corners of tetrahedra on the surface, wherever the lattice cuts that, so an edge of the object
-is cut off between them. Here those next to an edge move onto it: first the nearest to each corner, a place where three
-surfaces meet, then others to where two do. The planes of the surface at the ends of outer edges tell about where, as in
-dual contouring (Ju, Losasso, Schaefer & Warren 2002); Newton's method goes on from there with the surfaces themselves.
+Isosurface stuffing puts outer vertices on the surface where the lattice crosses it, so tetrahedra cut off the object's
+sharp edges. Here outer vertices near them are moved: first the nearest one to each corner, a point where three surfaces
+meet, then others to creases, where two meet. Tangent planes at neighboring vertices give a first estimate, as in dual
+contouring (Ju, Losasso, Schaefer & Warren 2002), which Newton's method improves with the surfaces themselves.
 """
 
 from __future__ import annotations
@@ -24,31 +24,32 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 CREASE = 0.77
-"""Cosine of the angle [40 degrees] between planes from which on their line is a crease."""
+"""Cosine of 40 degrees: planes with a larger angle between their normals meet in a crease."""
 FARTHEST = 0.6
-"""Spacings that a corner may move."""
+"""Largest move of a vertex onto a crease, in spacings."""
 BESIDE, REACH = 1e-3, 0.25
-"""Spacings from a corner at which the surface is met again to know its plane, and from there along its normal."""
+"""Distances, in spacings, of the four surface points around a vertex that give its normal, and of the search for them
+along the normal."""
 FLAT = 0.02
-"""Part of that distance by which the surface bows there at most: a place that is as near to a crease has no plane."""
+"""Largest curvature there, as sag relative to BESIDE: a vertex so near to a crease has no normal."""
 LEAST_SHAPE, LEAST_LEFT = 0.08, 0.4
-"""A tetrahedron keeps this shape, volume over that of the regular one of its mean side, or this part of its own."""
+"""Least shape of a tetrahedron after a move (``shapes``): absolute, or relative to its shape before."""
 LEAST_CORNER = 0.3
-"""Of the volume that three normals span, from which on their planes meet in a corner."""
+"""Least determinant of three unit normals whose planes meet in a corner."""
 FARTHEST_CORNER, MOST_KINDS = 1.0, 5
-"""Spacings that a point may move to a corner, and how many surfaces are looked at around a point."""
+"""Largest move of a vertex to a corner, in spacings; most different surfaces considered around a vertex."""
 PASSES = 4
 FIRST, LAST, LAST_MISSED, NEARER, STEPS = (0.2, 0.4, 0.8, 0.1), 1e-5, 0.01, (0.05, 0.5), 32
-"""Spacings beside a crease at which its surfaces are met, first and last; below which they are not looked for nearer
-when they are missed; the factors from one step to the next, and the most steps."""
+"""Of Newton's method onto a crease, distances beside it in spacings: first ones tried, last one, the one below which a
+missed surface ends the search; then range of the factor from one step to the next, most steps."""
 FARTHEST_MET = 0.5
-"""Spacings along their normals at which surfaces beside a crease are met at most."""
+"""Largest distance along a normal, in spacings, at which a surface beside a crease is searched."""
 FARTHEST_STEP = 2.0
-"""A step moves no farther than so many times the distance of the places that it is found by."""
+"""Largest Newton step, relative to the distance beside the crease."""
 WITHIN = (0.3, 1.0, 3.0, 10.0)
-"""How many times that far they are looked for along their normals, the nearest first."""
+"""Distances along a normal at which a surface is searched in turn, relative to the distance beside the crease."""
 LEAST_TURNED = 0.8
-"""Cosine of the angle by which a plane turns at most in one step."""
+"""Cosine of the largest angle by which a plane may turn in a Newton step."""
 
 Holds = Callable[["Floats"], "NDArray[bool_]"]
 Crossing = Callable[["Floats", "Floats"], "Floats"]
@@ -56,16 +57,16 @@ Crossing = Callable[["Floats", "Floats"], "Floats"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kept:
-    """Points of which some have moved onto creases."""
+    """Points after some have been moved onto creases and corners."""
 
     points: Floats
-    """(n, 3)."""
+    """(n, 3) [m]."""
     normals: Floats
-    """(n, 3, 3) of the surfaces that a point is on, of which a corner has three; NaN for others, and where unsure."""
+    """(n, 3, 3) unit normals of the one to three surfaces that a point is on; NaN for missing and uncertain ones."""
 
 
 def creases_kept(points: Floats, tetrahedra: Ints, spacing: float, holds: Holds, crossing: Crossing) -> Kept:
-    """The points, of which those near creases have moved onto these where no tetrahedron is spoilt by it.
+    """The points (n, 3), those near creases and corners moved onto them where tetrahedra keep their shape.
 
     ``holds`` and ``crossing`` as of ``stuffed``.
     """
@@ -114,7 +115,7 @@ def creases_kept(points: Floats, tetrahedra: Ints, spacing: float, holds: Holds,
 def _corners(
     points: Floats, sides: Any, normals: Floats, spacing: float, holds: Holds, crossing: Crossing
 ) -> tuple[Floats, Floats]:
-    """(c, 3) places where three surfaces meet that stand around an outer point, and their normals (c, 3, 3) nearby."""
+    """Corners (c, 3) [m] where three surfaces near an outer point meet, and normals (c, 3, 3) of these nearby."""
     beside: dict[int, set[int]] = {}
     for a, b in sides.tolist():
         beside.setdefault(a, set()).add(b)
@@ -138,7 +139,7 @@ def _corners(
     planes, at, places = planes[close], at[close], places[close]
     middles, ways = at.mean(axis=1), convex(at, planes)
     flat, places = places, onto_crease(places, planes, ways, spacing, holds, crossing)
-    # Where round surfaces turn much to there, their planes meet too far out: from halfway to their points.
+    # Tangent planes of strongly curved surfaces meet too far outside: try again from halfway to their points.
     left = np.isnan(places[:, 0])
     nearer = 0.5 * (flat + middles)[left]
     places[left] = onto_crease(nearer, planes[left], ways[left], spacing, holds, crossing)
@@ -151,7 +152,7 @@ def _corners(
 
 
 def _nearest(points: Floats, corners: Floats, spacing: float) -> list[tuple[int, int]]:
-    """Which points may move to which corners, the least moves first."""
+    """Pairs (point, corner) within FARTHEST_CORNER of each other, the nearest first."""
     away = np.linalg.norm(points[:, None] - corners[None], axis=2)
     pairs = np.argwhere(away <= FARTHEST_CORNER * spacing)
     order = np.argsort(away[tuple(pairs.T)], kind="stable")
@@ -159,7 +160,7 @@ def _nearest(points: Floats, corners: Floats, spacing: float) -> list[tuple[int,
 
 
 def _normals(points: Floats, faces: Any, spacing: float, holds: Holds, crossing: Crossing) -> Floats:
-    """(n, 3) outward normals of the surface at the points of its triangles (f, 3); NaN for others, and where unsure."""
+    """Outward unit normals (n, 3) of the object at vertices of outer faces (f, 3); NaN for others, and near creases."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
     normals = np.zeros_like(points)
@@ -191,17 +192,17 @@ def _normals(points: Floats, faces: Any, spacing: float, holds: Holds, crossing:
 
 
 def around(tetrahedra: Ints, count: int) -> tuple[Any, Any]:
-    """The tetrahedra around points, one after another, and where those of each of ``count`` points begin."""
+    """Numbers of the tetrahedra around each of ``count`` points, and the starts of each point's (CSR)."""
     flat = tetrahedra.ravel()
     starts = np.concatenate([[0], np.cumsum(np.bincount(flat, minlength=count))])
     return np.argsort(flat, kind="stable") // 4, starts
 
 
 def _targets(points: Floats, normals: Floats, sides: Any) -> Any:
-    """(m, 3) points that may move onto creases, and the two by whose planes: itself and one beyond, the nearest line.
+    """(m, 3) numbers of a point that may move onto a crease, and of the two points whose tangent planes meet there.
 
-    One that has no plane itself, on a crease but for less than BESIDE, takes those of two around it. ``sides`` (s, 2):
-    outer edges.
+    The two are the point itself and a neighbor, for the nearest crease; for a point without a normal, which is already
+    almost on a crease, two of its neighbors. ``sides`` (s, 2): outer edges.
     """
     beside: dict[int, list[int]] = {}
     for a, b in sides.tolist():
@@ -220,16 +221,17 @@ def _targets(points: Floats, normals: Floats, sides: Any) -> Any:
 
 
 def onto_planes(points: Floats, through: Floats, normals: Floats) -> Floats:
-    """(m, 3) the shortest moves of points (m, 3) onto planes through places (m, k, 3) with normals (m, k, 3)."""
+    """Shortest moves (m, 3) of points (m, 3) onto k planes each, through places (m, k, 3) with normals (m, k, 3)."""
     heights = np.einsum("mki,mki->mk", through - points[:, None], normals)
     moves: Floats = np.einsum("mik,mk->mi", np.linalg.pinv(normals), heights)
     return moves
 
 
 def convex(at: Floats, planes: Floats) -> Floats:
-    """(m, k, 3) unit directions from where planes with normals (m, k, 3) through places (m, k, 3) meet, along each.
+    """Unit directions (m, k, 3) from the intersection of k planes along each plane, to the object's side of it.
 
-    They point to where the object has its surface: away from the planes that lie below it, else into them.
+    Planes through places ``at`` (m, k, 3) with normals (m, k, 3); whether an edge is convex or concave is decided by
+    the places.
     """
     sides = np.zeros_like(planes)
     for i in range(planes.shape[1]):
@@ -245,10 +247,10 @@ def convex(at: Floats, planes: Floats) -> Floats:
 def onto_crease(
     places: Floats, normals: Floats, sides: Floats, spacing: float, holds: Holds, crossing: Crossing
 ) -> Floats:
-    """(m, 3) places near creases, moved onto these: where surfaces of about the normals (m, k, 3) meet.
+    """Places (m, 3) moved onto creases or corners, where k surfaces with normals near (m, k, 3) meet; NaN if not found.
 
-    ``sides`` (m, k, 3): unit directions from the crease into each surface. NaN where none is met. Newton's method on
-    planes through three places of each surface beside the crease, which come nearer as it converges.
+    ``sides`` (m, k, 3): unit directions from the crease into each surface. Newton's method on planes through three
+    points of each surface beside the crease, which approach it as the method converges.
     """
     found = np.full_like(places, np.nan)
     for first in FIRST:
@@ -261,7 +263,7 @@ def onto_crease(
 def _by_newton(
     places: Floats, normals: Floats, sides: Floats, first: float, spacing: float, holds: Holds, crossing: Crossing
 ) -> Floats:
-    """As of `onto_crease`, from planes met so many spacings beside the places at first."""
+    """As `onto_crease`, with surface points at first ``first`` spacings beside the crease."""
     found, normals, sides = places.copy(), normals.copy(), sides.copy()
     beside = np.full(len(places), first)
     whole = np.ones(len(places), dtype=bool)
@@ -273,7 +275,7 @@ def _by_newton(
         heights = np.einsum("mki,mki->mk", planes, hits - found[some][:, None])
         move = np.einsum("mik,mk->mi", np.linalg.pinv(planes), heights)
         far = np.linalg.norm(move, axis=1) / (beside[some] * spacing)
-        # What meets no surface is looked for nearer, and what moves much is looked at from as far again.
+        # A missed surface, or too long a step: halve the distance beside the crease and try again.
         missed = ~crosses | (far > FARTHEST_STEP)
         beside[some[missed]] *= 0.5
         whole[some[missed & (beside[some] < LAST_MISSED)]] = False
@@ -294,7 +296,7 @@ def _by_newton(
 def _beside(
     places: Floats, normals: Floats, sides: Floats, beside: Floats, spacing: float, holds: Holds, crossing: Crossing
 ) -> tuple[Floats, Floats, Any]:
-    """Planes of surfaces beside creases: normals (m, k, 3), places (m, k, 3) on them, and whether all (m,) are met."""
+    """Planes of surfaces beside creases: normals (m, k, 3), points (m, k, 3) on them, (m,) whether all were found."""
     apart = (beside * spacing)[:, None, None]
     across = np.cross(normals, sides)
     met = []
@@ -322,14 +324,14 @@ def _beside(
 
 
 def _tangent(sides: Floats, normals: Floats) -> Floats:
-    """Directions (..., 3) made tangent to surfaces with normals (..., 3), unit."""
+    """Unit vectors (..., 3): directions projected onto the tangent planes of normals (..., 3)."""
     found: Floats = sides - np.sum(sides * normals, axis=-1, keepdims=True) * normals
     found /= np.maximum(np.linalg.norm(found, axis=-1, keepdims=True), 1e-300)
     return found
 
 
 def _bear(points: Floats, own: Ints, vertex: int, place: Floats) -> bool:
-    """Whether the tetrahedra ``own`` (t, 4) around a point keep a good shape where it moves to a place."""
+    """Whether the tetrahedra ``own`` (t, 4) around a vertex keep their shape when it moves to ``place`` (3,)."""
     before = points[own]
     after = np.where((own == vertex)[:, :, None], place, before)
     old, new = shapes(before), shapes(after)
@@ -337,7 +339,7 @@ def _bear(points: Floats, own: Ints, vertex: int, place: Floats) -> bool:
 
 
 def shapes(corners: Floats) -> Floats:
-    """(t,) volume of tetrahedra (t, 4, 3) over that of the regular one of their mean side; below 0 where turned."""
+    """Shapes (t,) of tetrahedra (t, 4, 3): volume over a regular one's of the same rms edge; negative if inverted."""
     a, b, c, d = (corners[:, k] for k in range(4))
     held = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6.0
     i, j = np.array(ENDS).T

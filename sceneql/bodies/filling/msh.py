@@ -1,4 +1,4 @@
-"""Tetrahedra of Gmsh's text files, .msh of version 2 or 4 (Geuzaine & Remacle 2009). Imports numpy."""
+"""Reader of tetrahedra in Gmsh's text files, .msh of version 2 or 4 (Geuzaine & Remacle 2009). Imports numpy."""
 
 from __future__ import annotations
 
@@ -18,32 +18,32 @@ if TYPE_CHECKING:
 MOST = 2**28
 """Largest file [bytes]."""
 TETRAHEDRON, QUADRATIC = 4, 11
-"""Gmsh's numbers of tetrahedra of 4 and of 10 nodes."""
+"""Gmsh's element types of tetrahedra with 4 and with 10 nodes."""
 CORNERS = {TETRAHEDRON: 4, QUADRATIC: 10}
 ORDER = (0, 1, 2, 3, 4, 6, 7, 5, 9, 8)
-"""Places among Gmsh's ten nodes of ours, whose edges are tetrahedra.ENDS."""
+"""For each of our ten nodes, with edges in the order of tetrahedra.ENDS, its place among Gmsh's ten."""
 MOST_NUMBER = 2.0**53
-"""Largest whole number that is read."""
+"""Largest integer that is read: float64 represents it exactly."""
 TAGS_FIRST = 4.05
-"""Versions of 4 above this, 4.1, have the numbers of a block's nodes in lines before their places."""
+"""Version 4.1, above this, lists the numbers of a block's nodes before their positions; 4.0 on the same lines."""
 OTHERS = (5, 6, 7, 12, 13, 14, 17, 18, 19, 29, 30, 31)
-"""Solids that are no tetrahedra of 4 or 10 nodes."""
+"""Gmsh's element types of other solids, which are refused."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Read:
-    """What a file holds."""
+    """The mesh of a file."""
 
     points: Floats
-    """(n, 3)."""
+    """(n, 3) positions of the nodes that elements use."""
     cells: NDArray[int64]
-    """(e, 4 or 10) of the points, those on edges behind the corners."""
+    """(e, 4 or 10) nodes of the elements, corners before nodes on edges."""
     numbers: NDArray[int64]
     """(e,) the elements' numbers in the file."""
 
 
 def read_msh(path: Path) -> Read:
-    """The nodes and tetrahedra of a file. Raises ValueError that says what is wrong and in which line, OSError."""
+    """The nodes and tetrahedra of a file. Raises ValueError with the fault and its line, and OSError."""
     if path.stat().st_size > MOST:
         raise ValueError(f"{path.name} has more than {MOST // 2**20} MiB")
     lines = _Lines(path.name, path.read_bytes())
@@ -83,7 +83,7 @@ def read_msh(path: Path) -> Read:
 
 
 class _Lines:
-    """Lines of a file, with their numbers."""
+    """The lines of a file, read one after another, with line numbers for messages."""
 
     def __init__(self, name: str, text: bytes) -> None:
         self.name = name
@@ -91,7 +91,7 @@ class _Lines:
         self._at = 0
 
     def sections(self) -> Iterator[str]:
-        """The names of the sections, each where its content begins."""
+        """Yields the name of each section, with the first line of its content as the next line."""
         while self._at < len(self._lines):
             name = self._lines[self._at].strip()
             self._at += 1
@@ -99,15 +99,15 @@ class _Lines:
                 yield name
 
     def row(self, least: int = 1) -> list[float]:
-        """The numbers of the next line. Raises ValueError where there are fewer, or none."""
+        """The numbers of the next line. Raises ValueError for fewer than ``least`` numbers."""
         return [float(one) for one in self.rows(1, least)[0]]
 
     def counts(self, least: int = 1) -> list[int]:
-        """The whole numbers of the next line. Raises ValueError where there are fewer, or others."""
+        """The integers of the next line. Raises ValueError for fewer than ``least``, or for other numbers."""
         return [int(one) for one in self.whole(1, least)[0]]
 
     def whole(self, count: int, least: int) -> NDArray[int64]:
-        """(count, k) the whole numbers of the next lines. Raises ValueError as `rows`, and for other numbers."""
+        """The integers (count, k) of the next lines. Raises ValueError as `rows`, and for other numbers."""
         first = self._at
         found = self.rows(count, least)
         other = np.flatnonzero(((np.abs(found) > MOST_NUMBER) | (found != np.floor(found))).any(axis=1))
@@ -116,7 +116,7 @@ class _Lines:
         return np.asarray(found, dtype=np.int64)
 
     def rows(self, count: int, least: int) -> Any:
-        """(count, k) the numbers of the next lines, which have as many, at least so many."""
+        """The numbers (count, k) of the next ``count`` lines, k >= ``least``. Raises ValueError for unequal lengths."""
         some = self._lines[self._at : self._at + count]
         if count < 0 or len(some) < count or not count:
             raise ValueError(f"{self.name} ends too soon, in line {len(self._lines)}")
@@ -131,12 +131,12 @@ class _Lines:
         return found
 
     def ragged(self, count: int) -> Iterator[list[int]]:
-        """The whole numbers of the next lines, however many each has."""
+        """Yields the integers of each of the next ``count`` lines, of any lengths from 3 on."""
         for _ in range(count):
             yield self.counts(3)
 
     def _wrong(self, some: list[str], least: int) -> tuple[int, int]:
-        """The number, from 1, of the first of some lines that is not like the first; how many numbers that has."""
+        """(number from 1 of the first line of ``some`` with another length, the expected length)."""
         wide = max(least, len(some[0].split()))
         for k, line in enumerate(some):
             try:
@@ -148,7 +148,7 @@ class _Lines:
 
 
 def _nodes(lines: _Lines, version: float) -> tuple[Any, Floats]:
-    """Their numbers (n,) and places (n, 3)."""
+    """Numbers (n,) and positions (n, 3) of the section of nodes."""
     if version < 4:
         rows = lines.rows(lines.counts()[0], 4)
         return rows[:, 0].astype(np.int64), rows[:, 1:4]
@@ -168,7 +168,7 @@ def _nodes(lines: _Lines, version: float) -> tuple[Any, Floats]:
 
 
 def _elements(lines: _Lines, version: float) -> Iterator[tuple[int, Any, Any]]:
-    """The kind of solids, their numbers (e,) and their nodes (e, k)."""
+    """Yields (element type, numbers (e,), nodes (e, k)) of the blocks of solids in the section of elements."""
     if version >= 4:
         for _ in range(lines.counts(2)[0]):
             _, _, kind, count = lines.counts(4)[:4]
@@ -191,9 +191,9 @@ def _elements(lines: _Lines, version: float) -> Iterator[tuple[int, Any, Any]]:
 
 
 def _have_nodes(lines: _Lines, kind: int, number: int, lengths: set[int]) -> None:
-    """Raise ValueError for tetrahedra, the first of them of this number, that have more or fewer nodes than they may.
+    """Raise ValueError for tetrahedra with a wrong number of nodes.
 
-    ``lengths``: how many numbers their lines have, each its own and its nodes'.
+    ``number``: of the first one; ``lengths``: the lengths of their lines, element number and nodes.
     """
     if kind in CORNERS and lengths != {1 + CORNERS[kind]}:
         text = f"{lines.name}: element {number} and others of kind {kind} should have {CORNERS[kind]} nodes"

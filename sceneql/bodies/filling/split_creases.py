@@ -1,9 +1,9 @@
-"""Notches that outer edges of tetrahedra leave in a crease are filled, or the edges split on it. Imports numpy.
+"""Repair of creases that tetrahedra still cut off: notches are filled, or edges split. Imports numpy.
 
-What `creases_kept` cannot move onto a crease without spoiling a tetrahedron leaves notches there. Between two outer
-triangles with such an edge, whose other corners are both on the crease, one more tetrahedron fills the notch. Any other
-outer edge whose ends stand on no surface of the object together gets a new corner where two of theirs meet, and each
-tetrahedron around it becomes two.
+`creases_kept` leaves notches where no vertex could be moved onto the crease. An outer edge whose ends lie on different
+surfaces cuts off a crease. If the opposite corners of its two outer triangles are both on the crease, one more
+tetrahedron between these triangles fills the notch. Otherwise the edge is split at a new vertex on the crease, and each
+tetrahedron around the edge becomes two.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
 
 PASSES = 12
 FARTHEST_NEW = 1.5
-"""Spacings from the middle of an edge at most to its new corner."""
+"""Largest distance of a new vertex from the midpoint of its edge, in spacings."""
 NOWHERE = [np.nan] * 3
 LEAST_SHAPES = (0.08, 0.06, 0.04)
-"""Of each tetrahedron that a split makes: its volume over that of the regular one of its mean side. The next holds
-where no edge is left that can be split by the last."""
+"""Least shapes (kept_creases.shapes) of tetrahedra that a split makes: the next one is used where the last allows no
+more splits."""
 
 
 def creases_split(
     kept: Kept, tetrahedra: Ints, spacing: float, holds: Holds, crossing: Crossing
 ) -> tuple[Floats, Ints]:
-    """Points (n, 3) and tetrahedra (t, 4), with more of them where creases were cut off."""
+    """Points (n, 3) [m] and tetrahedra (t, 4), with new ones where creases were cut off."""
     points, planes = kept.points, kept.normals
     cells: Any = tetrahedra.astype(np.int64)
     level = 0
@@ -93,7 +93,8 @@ def creases_split(
 
 
 def _cut_off(points: Floats, planes: Floats, sides: Any) -> tuple[Any, Floats]:
-    """The outer edges (s, 2) whose ends are on no surface together, and of each the nearest two of theirs (s, 2, 3)."""
+    """Outer edges (s, 2) whose ends have no surface in common, and normals (s, 2, 3) of the two surfaces, one of each
+    end, that meet nearest to the edge."""
     cosines = np.einsum("sai,sbi->sab", planes[sides[:, 0]], planes[sides[:, 1]])
     known = ~np.isnan(cosines)
     which = np.flatnonzero(known.any(axis=(1, 2)) & ~(known & (cosines >= CREASE)).any(axis=(1, 2)))
@@ -109,9 +110,9 @@ def _cut_off(points: Floats, planes: Floats, sides: Any) -> tuple[Any, Floats]:
 
 
 def _filling(points: Floats, planes: Floats, cells: Any, faces: Any, sides: Any, chosen: Floats) -> Any:
-    """(m, 4) tetrahedra that fill notches: over outer edges (s, 2) that cut off a crease, between two of the faces.
+    """Tetrahedra (m, 4) that fill notches, each between the two outer faces at one of the edges ``sides`` (s, 2).
 
-    ``chosen`` (s, 2, 3): normals of the surfaces that meet in the crease.
+    ``chosen`` (s, 2, 3): normals of the surfaces that meet in the crease that the edge cuts off.
     """
     size = np.array([len(points), 1])
     ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1) @ size
@@ -135,13 +136,13 @@ def _filling(points: Floats, planes: Floats, cells: Any, faces: Any, sides: Any,
 
 
 def _is_on(planes: Floats, normals: Floats) -> bool:
-    """Whether a point that is on surfaces with normals ``planes`` (3, 3) is on those of about the normals (k, 3)."""
+    """Whether a point on surfaces with normals ``planes`` (3, 3) is on all k surfaces with normals near (k, 3)."""
     with np.errstate(invalid="ignore"):
         return bool((planes @ normals.T >= CREASE).any(axis=0).all())
 
 
 def _places(ends: Floats, planes: Floats, spacing: float, holds: Holds, crossing: Crossing) -> tuple[Floats, Any]:
-    """Where the creases over outer edges from and to ends (s, 2, 3) are (s, 3), and which of them (s,) are sure."""
+    """Points (s, 3) on the creases that edges with ends (s, 2, 3) cut off, and (s,) whether each is near its edge."""
     middle = ends.mean(axis=1)
     flat = middle + onto_planes(middle, ends, planes)
     places = onto_crease(flat, planes, convex(ends, planes), spacing, holds, crossing)

@@ -1,8 +1,9 @@
-"""Tetrahedra inside an object, their outer corners on its surface: isosurface stuffing on a body-centred lattice.
+"""Tetrahedral meshes of objects by isosurface stuffing on a body-centred cubic lattice. Imports numpy.
 
-Labelle & Shewchuk, Isosurface stuffing: fast tetrahedral meshes with good dihedral angles (2007). Corners and middles
-of cubes are masses; two middles across a face and an edge of the face make a tetrahedron (Fuchs 1998). Where an edge
-leaves the object near one of its ends, the end moves there; tetrahedra still crossed are cut. Imports numpy.
+Labelle & Shewchuk, Isosurface stuffing: fast tetrahedral meshes with good dihedral angles (2007). Lattice points are
+the corners and centers of cubes; the centers on both sides of a face and an edge of the face make a tetrahedron (Fuchs
+1998). Where an edge crosses the surface near one of its ends, the end moves to the crossing; tetrahedra that the
+surface still crosses are cut.
 """
 
 from __future__ import annotations
@@ -22,28 +23,28 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 NEAR = (0.41189, 0.24999)
-"""An end of a short (a long) edge moves to where the surface cuts it within this part of the edge (table 1 there).
-Angles between faces were then from 17 to 150 degrees in smooth objects, from 10 to 160 in any that were tried."""
+"""The end of a short (a long) edge moves to a crossing within this share of the edge's length (their table 1). Dihedral
+angles were then 17 to 150 degrees in smooth objects, 10 to 160 degrees in all objects tried."""
 TOUCHING = 1e-7
-"""Spacings from a side of the box within which a place of the lattice lies on it: it is taken as inside by as much, so
-that rounding does not decide whether a flat side of the object has its lattice there."""
+"""Distance in spacings within which a lattice point lies on a side of the box. It is then tested as far inside, so that
+rounding does not decide whether a flat side of the object gets the lattice points on it."""
 OUT, ON, IN = 0, 1, 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stuffing:
-    """Tetrahedra with their masses."""
+    """A tetrahedral mesh."""
 
     points: Floats
     """(n, 3) [m]."""
     tetrahedra: Ints
-    """(t, 4) of positive volume."""
+    """(t, 4) corners, in the order that makes volumes positive."""
     whole: NDArray[bool_]
-    """(t,) those of the lattice that neither have a corner moved nor are cut."""
+    """(t,) whether it is a tetrahedron of the lattice, not cut and with no corner moved."""
 
 
 def lattice_counts(low: Floats, high: Floats, spacing: float) -> Floats:
-    """(3,) corners of cubes along the sides of a box, so many that the outermost lie outside."""
+    """Number (3,) of cubes' corners along each side of a box low..high, the outermost ones outside the box."""
     counts: Floats = np.floor(np.maximum(high - low, 0.0) / spacing + TOUCHING) + 3
     return counts
 
@@ -55,10 +56,10 @@ def stuffed(
     holds: Callable[[Floats], NDArray[bool_]],
     crossing: Callable[[Floats, Floats], Floats],
 ) -> Stuffing:
-    """Tetrahedra inside an object in a box, of cubes of side ``spacing`` [m]; none where no corner or middle is inside.
+    """Tetrahedra that fill an object in the box low..high, with cubes of side ``spacing`` [m].
 
-    ``holds`` says which of places (n, 3) lie inside; ``crossing`` at which fraction (0..1) segments from places
-    inside to places outside, each (n, 3), leave.
+    No tetrahedra where no lattice point is inside. ``holds``: which of places (n, 3) lie inside; ``crossing``: the
+    parameters (n,) in 0..1 at which segments from places inside to places outside, each (n, 3), leave the object.
     """
     counts = lattice_counts(low, high, spacing).astype(np.int64)
     start = 0.5 * (low + high) - 0.5 * spacing * (counts - 1)
@@ -85,18 +86,18 @@ def stuffed(
 
 
 def _grid(counts: NDArray[int64]) -> NDArray[int64]:
-    """(n, 3) whole coordinates of a grid, z fastest."""
+    """Integer coordinates (n, 3) of a grid, z fastest."""
     return np.stack(np.meshgrid(*(np.arange(c) for c in counts), indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def _within(places: Floats, low: Floats, high: Floats, near: float) -> Floats:
-    """Places (n, 3), those within ``near`` of a side of the box as far inside."""
+    """Places (n, 3), with those within ``near`` of a side of the box moved to that distance inside it."""
     found: Floats = np.where(np.abs(places - low) < near, low + near, places)
     return np.where(np.abs(found - high) < near, high - near, found)
 
 
 def _lattice(counts: NDArray[int64], inside: NDArray[bool_]) -> Ints:
-    """(t, 4) the tetrahedra with a corner inside; corners of cubes are counted first, then middles."""
+    """The lattice's tetrahedra (t, 4) with a corner inside; points are numbered cubes' corners first, then centers."""
     corner = np.arange(np.prod(counts)).reshape(counts)
     middle = corner.size + np.arange(np.prod(counts - 1)).reshape(counts - 1)
     found = []
@@ -104,7 +105,7 @@ def _lattice(counts: NDArray[int64], inside: NDArray[bool_]) -> Ints:
         lower = np.moveaxis(middle, axis, 0)[:-1]
         upper = np.moveaxis(middle, axis, 0)[1:]
         face = np.moveaxis(corner, axis, 0)[1:-1]
-        # Counterclockwise seen from the upper middle, as the axes behind moveaxis are right-handed but for y.
+        # Counterclockwise seen from the upper center: after moveaxis the axes are right-handed except for y.
         ring = [face[:, :-1, :-1], face[:, 1:, :-1], face[:, 1:, 1:], face[:, :-1, 1:]]
         ring = ring[::-1] if axis == 1 else ring
         for k in range(4):
@@ -114,7 +115,7 @@ def _lattice(counts: NDArray[int64], inside: NDArray[bool_]) -> Ints:
 
 
 def _compact(tetrahedra: Any) -> tuple[NDArray[int64], Any]:
-    """Indices of the points in use, and the tetrahedra renumbered by them."""
+    """Numbers of the points in use, and the tetrahedra renumbered to these."""
     used, which = np.unique(tetrahedra, return_inverse=True)
     return used.astype(np.int64), which.reshape(-1, 4)
 
@@ -122,14 +123,14 @@ def _compact(tetrahedra: Any) -> tuple[NDArray[int64], Any]:
 def _moved(
     points: Floats, state: Ints, ends: NDArray[int64], share: Floats, surface: Floats, near: Floats
 ) -> tuple[Floats, Ints]:
-    """Snap points to the nearest cut within reach (NEAR), which puts them ON the surface."""
+    """Snap points to the nearest crossing within reach (NEAR); they are then ON the surface."""
     vertex = np.concatenate([ends[:, 0], ends[:, 1]])
     away = np.concatenate([share, 1.0 - share])
     close = np.flatnonzero(away < np.concatenate([near, near]))
     length = np.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1)
     order = close[np.argsort(-(away * np.concatenate([length, length]))[close], kind="stable")]
     points, state = points.copy(), state.copy()
-    points[vertex[order]] = surface[order % len(ends)]  # of several cuts the last assignment stays: the nearest
+    points[vertex[order]] = surface[order % len(ends)]  # of several crossings the last assignment, the nearest, remains
     state[vertex[order]] = ON
     return points, state
 
@@ -137,7 +138,10 @@ def _moved(
 def _cut(
     points: Floats, state: Ints, tetrahedra: Ints, ends: NDArray[int64], surface: Floats, kind: NDArray[int64]
 ) -> Stuffing:
-    """The tetrahedra's parts inside. ``kind`` (n,): 2 of middles, and 1 where the sum of the coordinates is odd."""
+    """The parts of the tetrahedra inside the object, again cut into tetrahedra.
+
+    ``kind`` (n,): 2 for cubes' centers, plus 1 for points whose integer coordinates have an odd sum.
+    """
     size = len(points)
     keys = ends @ (size, 1)
     order = np.argsort(keys)
@@ -145,11 +149,11 @@ def _cut(
     points = np.concatenate([points, surface[order]])
 
     def meet(inner: Ints, outer: Ints) -> Ints:
-        """Points where edges leave the object: the outer ends themselves where they are ON."""
+        """Points at which edges from inner to outer points cross the surface; an outer point ON it is its own."""
         found: Ints = np.where(state[outer] == ON, outer, size + np.searchsorted(keys, inner * size + outer))
         return found
 
-    # Corners inside first, then those on the surface, then those outside; an odd order swaps two of the same kind.
+    # Corners sorted: inside, on the surface, outside. Where the permutation is odd, two of one state are swapped.
     states = state[tetrahedra]
     by = np.argsort(-states, axis=1, kind="stable")
     inner, outer = (states == IN).sum(axis=1), (states == OUT).sum(axis=1)
@@ -169,7 +173,7 @@ def _cut(
     a, b, o, p = fours[(inner == 2) & (outer == 2)].T
     top, bottom = np.stack([a, meet(a, o), meet(a, p)], axis=1), np.stack([b, meet(b, o), meet(b, p)], axis=1)
     first, second = _first(kind, a, b, o), _first(kind, a, b, p)
-    # On the surface the shorter diagonal, where the other two diagonals leave both possible.
+    # On the surface the shorter diagonal, unless the diagonals of the other two quads determine it.
     shorter = _apart(points, top[:, 1], bottom[:, 2]) < _apart(points, top[:, 2], bottom[:, 1])
     pieces += _prism(top, bottom, np.stack([first, second, np.where(first == second, shorter, ~first)], axis=1))
     used, tetrahedra = _compact(np.concatenate(pieces))
@@ -179,7 +183,7 @@ def _cut(
 
 
 def _swapped(fours: Ints, where: NDArray[bool_], i: int, j: int) -> Ints:
-    """Tetrahedra (t, 4), of some of which two corners are swapped."""
+    """Tetrahedra (t, 4), with corners i and j swapped where the mask is true."""
     order = np.arange(4)
     order[[i, j]] = j, i
     swapped: Ints = np.where(where[:, None], fours[:, order], fours)
@@ -199,10 +203,10 @@ def _odd(order: Any) -> NDArray[bool_]:
 
 
 def _first(kind: NDArray[int64], a: Ints, b: Ints, out: Ints) -> NDArray[bool_]:
-    """Whether the cut face of a, b inside and one outside is halved from a, and not from b: alike on its both sides.
+    """Whether the quad that remains of a face with a, b inside and ``out`` outside is halved from a, else from b.
 
-    Where a and b are both corners or both middles, from the one whose coordinates have an even sum; else from the one
-    that is of another kind than the one outside.
+    The rule depends on the face alone, so both its tetrahedra agree. If a and b are both cubes' corners or both
+    centers: from the one whose coordinates have an even sum. Else from the one that is not of the kind of ``out``.
     """
     alike = kind[a] // 2 == kind[b] // 2
     chosen: NDArray[bool_] = np.where(alike, kind[a] % 2 == 0, kind[a] // 2 != kind[out] // 2)
@@ -210,9 +214,10 @@ def _first(kind: NDArray[int64], a: Ints, b: Ints, out: Ints) -> NDArray[bool_]:
 
 
 def _prism(top: Ints, bottom: Ints, wins: NDArray[bool_]) -> list[Ints]:
-    """Three tetrahedra of each prism between triangles (n, 3).
+    """Three tetrahedra of each prism between triangles ``top`` and ``bottom`` (n, 3).
 
-    ``wins`` (n, 3): whether of the sides 01, 02 and 12 the diagonal leaves the top at the first, not the second.
+    ``wins`` (n, 3): for each of the quads over the sides 01, 02 and 12, whether its diagonal begins at the side's first
+    top corner, else at the second.
     """
     one, two, three = wins.T.astype(np.int64)
     order = np.argsort(np.stack([2 - one - two, 1 + one - three, two + three], axis=1), axis=1)

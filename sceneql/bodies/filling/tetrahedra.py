@@ -1,4 +1,4 @@
-"""Tetrahedra of masses: volumes, edges, angles and boundary triangles. Imports numpy."""
+"""Tetrahedral meshes: volumes, edges and boundary triangles. Imports numpy."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 ENDS = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
-"""The edges of a tetrahedron by its corners; edges k and 5 - k are opposite."""
+"""The edges of a tetrahedron, by its corners; edges k and 5 - k are opposite."""
 FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
-"""Its faces, counterclockwise from outside, each across from the corner of its number."""
+"""The faces of a tetrahedron, counterclockwise from outside; face k is opposite to corner k."""
 
 
 def volumes(points: Floats, tetrahedra: Ints) -> Floats:
-    """(t,) [m^3] of tetrahedra (t, 4) of points (n, 3); below 0 where one is turned inside out."""
+    """Signed volumes (t,) [m^3] of tetrahedra (t, 4) of points (n, 3) [m]; negative for an inverted one."""
     a, b, c, d = points[tetrahedra].transpose(1, 0, 2)
     held: Floats = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6.0
     return held
 
 
 def edges(tetrahedra: Ints) -> tuple[NDArray[int64], NDArray[int64]]:
-    """(e, 2) the edges, each once, its lower end first; (t, 6) which one is the k-th of ENDS."""
+    """Unique edges (e, 2), the lower end first; and for each tetrahedron (t, 6) their numbers in the order of ENDS."""
     ends = np.sort(tetrahedra[:, ENDS].astype(np.int64), axis=2).reshape(-1, 2)
     size = int(ends.max(initial=0)) + 1
     keys, which = np.unique(ends @ (size, 1), return_inverse=True)
@@ -34,7 +34,7 @@ def edges(tetrahedra: Ints) -> tuple[NDArray[int64], NDArray[int64]]:
 
 
 def boundary(tetrahedra: Ints) -> Ints:
-    """(k, 3) the faces that belong to one tetrahedron alone, counterclockwise from outside."""
+    """Outer faces (k, 3), those of only one tetrahedron, counterclockwise from outside."""
     faces = tetrahedra[:, FACES].reshape(-1, 3)
     low, middle, high = np.sort(faces.astype(np.int64), axis=1).T
     size = int(high.max(initial=0)) + 1

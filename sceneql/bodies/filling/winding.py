@@ -1,4 +1,4 @@
-"""Whether points lie inside a mesh, closed or with holes, and where segments leave it."""
+"""Inside tests for meshes, closed or with holes, by winding numbers; crossings of segments with the surface."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 MANY = 20_000
-"""Places that are asked for at once from which on it is sooner to know the cells around them."""
+"""Number of places in a call from which on precomputed cells (winding_cells) are faster."""
 ROOM = 1e-8
-"""What is added around boxes, in parts of the mesh's size: more than the tolerance at triangles' edges."""
+"""Padding of boxes, relative to the mesh's size: more than the tolerance at triangles' edges."""
 
 
 class Winding:
-    """Triangles, and how often they wind around points: 1 inside a closed mesh, 0 outside, near holes between.
+    """Generalized winding numbers of triangles around points: 1 inside a closed mesh, 0 outside, in between near holes.
 
-    Where they wind by more than half is inside: the surface that closes a flat hole is the plane of it.
+    A point counts as inside where the number exceeds 1/2; a flat hole is thereby closed by its plane.
     """
 
     def __init__(self, corners: Floats) -> None:
-        """``corners`` (m, 3, 3), counterclockwise from one side: if that is the inside they are turned.
+        """``corners`` (m, 3, 3) [m], all counterclockwise seen from one side; reversed if this is the inside.
 
-        Raises ValueError where there are none.
+        Raises ValueError for no triangles.
         """
         if _volume(corners) < 0.0:
             corners = corners[:, ::-1]
@@ -45,7 +45,7 @@ class Winding:
         self._left: OfContents[Floats] = OfContents(1)
 
     def holds(self, places: Floats) -> NDArray[bool_]:
-        """(n,) whether places (n, 3) lie inside."""
+        """Whether each (n,) of places (n, 3) [m] lies inside."""
         places = np.ascontiguousarray(places)
 
         def ask() -> NDArray[bool_]:
@@ -64,7 +64,7 @@ class Winding:
         return Cells.around(self._clusters)
 
     def exits(self, inner: Floats, outer: Floats) -> Floats:
-        """(n,) fractions (0..1) at which segments from places inside to places outside, each (n, 3), leave."""
+        """Parameters (n,) in 0..1 at which segments from places inside to places outside, each (n, 3), leave."""
         inner, outer = np.ascontiguousarray(inner), np.ascontiguousarray(outer)
 
         def ask() -> Floats:
@@ -77,7 +77,7 @@ class Winding:
 
 
 def winding(corners: Floats) -> Winding:
-    """The winding numbers of triangles (m, 3, 3). Raises ValueError where there are none."""
+    """The Winding of triangles (m, 3, 3), cached by their contents. Raises ValueError for no triangles."""
     return _KNOWN.get((corners,), lambda: Winding(corners))
 
 
@@ -85,6 +85,6 @@ _KNOWN: OfContents[Winding] = OfContents()
 
 
 def _volume(corners: Floats) -> float:
-    """Six times what triangles (m, 3, 3) enclose, from the middle of their corners."""
+    """Six times the volume [m^3] enclosed by triangles (m, 3, 3), summed relative to the mean of their corners."""
     a, b, c = (corners[:, k] - corners.mean(axis=(0, 1)) for k in range(3))
     return float(np.einsum("ij,ij", a, np.cross(b, c)))

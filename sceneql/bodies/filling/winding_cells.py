@@ -1,8 +1,8 @@
-"""Cells around a mesh: how often it winds around all the points of a cell that no triangle crosses.
+"""A grid of cells around a mesh with the winding number of each cell that no triangle crosses. Imports numpy.
 
-With lids on its holes a mesh is a closed surface, which winds a whole number of times around a point, the same all over
-a region that it does not cross. So one point of each region is asked for; the mesh alone winds around a point as often
-but for the lids, which are few. Imports numpy.
+A mesh with lids on its holes is a closed surface, whose winding number is an integer and constant on each connected
+region of cells that it does not cross: it is computed at one point of each region. The mesh's own winding number at a
+point is this integer minus that of the lids, which are few.
 """
 
 from __future__ import annotations
@@ -23,30 +23,30 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 ALONG = 80
-"""Cells along the longest side of the box around a mesh: a ball's surface then crosses six in a hundred of them."""
+"""Cells along the longest side of a mesh's bounding box; a ball's surface then crosses six percent of all cells."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cells:
-    """Cubes that fill the box around a mesh."""
+    """Cubic cells that fill the bounding box of a mesh."""
 
     lids: Clusters
     """Triangles that close the mesh's holes."""
     low: Floats
-    """(1, 3) [m] their lowest corner."""
+    """(1, 3) [m] lowest corner of the grid."""
     side: float
-    """[m]"""
+    """[m] side of a cell."""
     turns: NDArray[int32]
-    """(nx, ny, nz) how often the mesh with its lids winds around a cell, or MIXED where one of them crosses it."""
+    """(nx, ny, nz) winding number in each cell of mesh and lids together; MIXED where a triangle crosses the cell."""
 
     @property
     def arrays(self) -> tuple[Any, ...]:
-        """As `hold_in_cells` takes them."""
+        """Arguments of the kernel `hold_in_cells`."""
         return *self.lids.arrays, self.low, self.side, self.turns
 
     @classmethod
     def around(cls, mesh: Clusters) -> Cells:
-        """Of the triangles of a mesh, which may have holes."""
+        """The cells of a mesh, which may have holes."""
         from scipy.ndimage import label
 
         corners = mesh.arrays[0]
@@ -67,7 +67,7 @@ class Cells:
 
 
 def _lids(corners: Floats) -> Clusters:
-    """Triangles that close what triangles (m, 9) leave open."""
+    """Triangles that close the holes of triangles (m, 9)."""
     places, triangles = welded(corners.reshape(-1, 3), np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3))
     sides = open_sides(triangles) if len(triangles) else np.zeros((0, 2), np.int64)
     if not len(sides):

@@ -1,4 +1,4 @@
-"""A rigid body as a script describes it: its object, its mass and how that is spread, how it starts, its points."""
+"""Script fields of a rigid body: object, mass, inertia, initial motion and named points."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ if TYPE_CHECKING:
 INERTIA = dim.MASS * dim.LENGTH**2
 Triple = tuple[float, float, float]
 WATER = 1000.0
-"""Density of a body of which the script tells none [kg/m^3]."""
+"""Default density of a body [kg/m^3]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """A body at the start of the run."""
+    """Mass properties and pose of a rigid body at the start of the run."""
 
     mass: float
     """[kg]"""
     center: Floats
-    """(3,) center of mass in its own axes, from its origin [m]."""
+    """(3,) [m] center of mass in the body's axes, relative to its origin."""
     inertia: Floats
-    """(3, 3) about the center of mass, in its own axes [kg m^2]."""
+    """(3, 3) [kg m^2] inertia tensor about the center of mass, in the body's axes."""
     error: float
-    """Bound of the relative error of these where they are integrals over cells."""
+    """Estimated relative error of mass and inertia; 0 where they are exact or given."""
     position: Floats
-    """(3,) of the center of mass in the world [m]."""
+    """(3,) [m] center of mass in the world."""
     rotation: Floats
-    """(4,) unit quaternion that turns its axes to the world's."""
+    """(4,) unit quaternion [w, x, y, z] that maps the body's axes to the world's."""
 
 
 class Body(Record):
@@ -76,7 +76,7 @@ class Body(Record):
     )
 
     def problems(self) -> Iterator[Problem]:
-        """A mass said twice or not at all, an inertia that no body has, and motion of what is fixed."""
+        """Problems: mass given twice or not at all; an impossible inertia; motion of a fixed body; a bad point name."""
         if self.density is not None and self.mass is not None:
             yield Problem("a body has either a `density` or a `mass`", ("mass",), at_key=True)
         if self.inertia is not None and self.mass is None:
@@ -141,7 +141,7 @@ class Body(Record):
         return Made(mass, center, inertia, error, place + rotation_matrix(turn) @ center, turn)
 
     def _uniform(self, ref: Ref, kind: Any, assembly: Assembly) -> MassProperties:
-        """The mass properties of its object as it stands. Raises ScriptError where it has none."""
+        """Mass properties, for density 1, of its object at the start. Raises ScriptError where it has none."""
         from sceneql.bodies.rigid.mass_properties import properties
         from sceneql.island.start import Start
 

@@ -1,4 +1,4 @@
-"""The one motion that a hinge or a slider leaves: its outputs, and what acts along it."""
+"""The single degree of freedom of a hinge or slider: motor, limits, friction, spring, and outputs along it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Follows = Literal["nothing", "speed", "place"]
 
 @dataclass(frozen=True, slots=True)
 class Motor:
-    """What a motor does: a largest force at which it follows a speed or a place, or a force alone."""
+    """A motor: its largest force and the speed or place that it follows; or, following nothing, its force alone."""
 
     most: Value
     follows: Follows
@@ -27,7 +27,7 @@ class Motor:
 
 
 class Driven(Joint):
-    """A tie that leaves one motion, with the fields that all of these have."""
+    """A tie with one degree of freedom, and the fields common to all such ties."""
 
     if TYPE_CHECKING:
         limits: tuple[float, float] | None
@@ -38,15 +38,15 @@ class Driven(Joint):
         damping: Value | None
 
     def motion(self, first: Side, second: Side, assembly: Assembly) -> tuple[str, tuple[Any, ...]]:
-        """Its kind, `turn` or `shift`, and its vectors (drive_kernels)."""
+        """The kind of its degree of freedom, `turn` or `shift`, and the vectors of its row (drive_kernels)."""
         raise NotImplementedError
 
     def driver(self) -> Motor | None:
-        """Its motor."""
+        """Motor of the tie; None without one."""
         raise NotImplementedError
 
     def problems(self) -> Iterator[Problem]:
-        """Those of a tie; limits between which it does not start."""
+        """Problems of a tie; limits that do not include the start."""
         yield from super().problems()
         if self.limits is not None and not self.limits[0] <= 0.0 <= self.limits[1]:
             yield Problem("it starts at 0, which must lie between the limits", ("limits",))
@@ -54,7 +54,7 @@ class Driven(Joint):
     def assemble_motion(
         self, first: Side, second: Side, holds: int, assembly: Assembly
     ) -> tuple[tuple[int, ...], Drive | None]:
-        """Add what acts along the motion."""
+        """Add forces, motor, limits and friction along the motion (as of Joint)."""
         import numpy as np
 
         from sceneql.bodies.rigid.tie_rows_kernels import ANGLE, MOVED, POINT, ROW
@@ -82,7 +82,7 @@ class Driven(Joint):
         return (effort, *ints), self._bounds(ints, motor, effort, assembly)
 
     def _bounds(self, motion: tuple[int, ...], motor: Motor | None, effort: int, assembly: Assembly) -> Drive | None:
-        """What acts in bounds; None for nothing."""
+        """The bounded forces along the motion: limits, motor and friction; None where there are none."""
         from sceneql.system import Drive
 
         limits, friction = self.limits, self.friction
@@ -109,7 +109,7 @@ class Driven(Joint):
         )
 
     def read(self, output: str, state: ModelState) -> Any:
-        """How far and how fast it has gone; force and torque."""
+        """Value of an output: displacement and speed of the motion, effort, energy given, and those of Joint."""
         if output == "effort":
             return self._effort(state)
         if output == "given":
@@ -120,7 +120,7 @@ class Driven(Joint):
         return fast if output == "speed" else far
 
     def remark(self, state: ModelState) -> str:
-        """Whether stops, motor and friction make steps of order 1."""
+        """Text on the order of accuracy with which limits, motor and friction act."""
         from sceneql.bodies.rigid.drive_kernels import LAST_AT
 
         motor = self.driver()
@@ -136,7 +136,7 @@ class Driven(Joint):
         return f"{' and '.join(parts)} {acts} {told}" if parts else ""
 
     def trouble(self, state: ModelState) -> str:
-        """That of a tie; steps whose stops, motors and friction were not solved to rounding."""
+        """Trouble of a tie, or the number of steps in which limits, motors and friction were not solved to rounding."""
         from sceneql.bodies.rigid.drive_kernels import LAST_AT
 
         told, loose = super().trouble(state), float(state.floats[state.ints[-(LAST_AT + 2)] + 1])
@@ -145,7 +145,7 @@ class Driven(Joint):
         return f"in {loose:.0f} steps stops, motors and friction were not solved to rounding"
 
     def _effort(self, state: ModelState) -> float:
-        """What motor, stops and friction do along the motion."""
+        """Force [N] or torque [N m] of motor, limits and friction along the motion."""
         from sceneql.bodies.rigid.drive_kernels import FORCE_AT, LAST_AT
 
         own = state.ints[-(LAST_AT + 1) :]
@@ -153,7 +153,7 @@ class Driven(Joint):
         return force + float(state.floats[state.ints[-(LAST_AT + 2)]])
 
     def _given(self, state: ModelState) -> float:
-        """The energy that its motor has given to the bodies."""
+        """Energy [J] that its motor has given to the bodies."""
         from sceneql.bodies.rigid.drive_kernels import GIVEN_AT, LAST_AT
 
         at = state.ints[-(LAST_AT + 1) :][GIVEN_AT]
@@ -169,7 +169,7 @@ class Driven(Joint):
         return float(far), float(fast)
 
     def potential(self, bodies: Bodies, state: ModelState) -> float:
-        """Half stiffness (s - rest)^2 [J], counted with one of the bodies."""
+        """Energy stiffness (s - rest)^2 / 2 [J] of its spring, counted for the model of one of its bodies alone."""
         from sceneql.bodies.rigid.drive_kernels import LAST_AT, REST_AT, STIFFNESS_AT, WORK_AT
 
         own = state.ints[-(LAST_AT + 1) :]

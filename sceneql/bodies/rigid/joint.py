@@ -1,4 +1,4 @@
-"""What the words of ties share: the two bodies and where they are at the start, and the force between them."""
+"""Base of the words of ties: the two bodies, their poses at the start, the constraint rows, forces between them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from sceneql.system.ties import Triple
 
 APART = 1e-9
-"""How far a mass may be from where it is held, against the numbers of that place."""
+"""Largest distance of a mass from the place where it is held, relative to 1 m plus the place's coordinates."""
 FORCES = {
     "broken": Gives(Type(), "1 once it is gone, else 0."),
     "force": Gives(quantity_type(dim.FORCE, (3,)), "Its force on the first body."),
@@ -31,25 +31,25 @@ FORCES = {
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """One of the two bodies of a tie at the start of the run."""
+    """One of the two bodies of a tie, at the start of the run."""
 
     mover: Mover
     position: Floats
-    """(3,) [m]"""
+    """(3,) [m] center of mass, or position of an object."""
     axes: Floats
-    """(3, 3) rotation of its axes to the world's."""
+    """(3, 3) rotation matrix from the body's axes to the world's."""
 
     @property
     def turns(self) -> bool:
-        """Whether it has axes: a mass has none."""
+        """Whether it can rotate: false for a point mass."""
         return not (isinstance(self.mover, Place) and self.mover.bodies.turning is None)
 
     def place(self, point: Any) -> Triple:
-        """A point of the world, in its axes from its position."""
+        """A point of the world in body coordinates, relative to its position."""
         return _triple(self.axes.T @ (point - self.position))
 
     def direction(self, vector: Any) -> Triple:
-        """A direction of the world in its axes."""
+        """A vector of the world in body axes."""
         return _triple(self.axes.T @ vector)
 
 
@@ -59,10 +59,10 @@ def _triple(vector: Floats) -> Triple:
 
 
 class Joint(Tie):
-    """A tie of rows that a word gives."""
+    """A tie made of constraint rows, which its word defines."""
 
     def problems(self) -> Iterator[Problem]:
-        """The world twice; a place or an axis that moves by itself, which is that at the start alone."""
+        """Problems of a tie; a place or an axis that depends on time, since only its value at the start is used."""
         yield from super().problems()
         for name in ("at", "from_", "to", "axis", "other_axis"):
             value = getattr(self, name, None)
@@ -71,11 +71,11 @@ class Joint(Tie):
                 yield Problem(text, (written_name(name),))
 
     def rows(self, first: Side, second: Side, assembly: Assembly) -> list[TieRow]:
-        """The conditions that hold, all of them at the start."""
+        """The constraint rows of the tie, all satisfied at the start."""
         raise NotImplementedError
 
     def assemble_together(self, name: str, assembly: Assembly, everyone: Sequence[Bodies]) -> None:
-        """Add the conditions. Raises ScriptError for what cannot be held."""
+        """Add the tie's constraints to an island. Raises ScriptError for bodies that cannot be tied."""
         import numpy as np
 
         from sceneql.bodies.rigid.tie_rows_kernels import ROW
@@ -98,11 +98,11 @@ class Joint(Tie):
     def assemble_motion(
         self, first: Side, second: Side, holds: int, assembly: Assembly
     ) -> tuple[tuple[int, ...], Drive | None]:
-        """Add what acts along a motion that it leaves; the integers of that, as drive_kernels has them, and bounds."""
+        """Add forces along its degree of freedom, by default none: (integers of drive_kernels, bounded forces)."""
         return (), None
 
     def read(self, output: str, state: ModelState) -> Any:
-        """Force, torque, and whether it is gone."""
+        """Value of an output of FORCES."""
         import numpy as np
 
         from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_J, AT_PUSH, ROW
@@ -118,7 +118,7 @@ class Joint(Tie):
         return parts[:, 3:].sum(axis=0) - np.cross(self._arm(state), force)
 
     def trouble(self, state: ModelState) -> str:
-        """How far it has come open, where it could not be held."""
+        """Text on the distance or angle by which the tie was violated; empty if it was held."""
         from sceneql.bodies.rigid.tie_rows_kernels import AT_OPEN, ROW
 
         at, count = state.ints[:2]
@@ -128,7 +128,7 @@ class Joint(Tie):
         return f"it came open by {opened:.2g} (m or rad): other ties, or what leads its bodies, ask for something else"
 
     def _arm(self, state: ModelState) -> Floats:
-        """From the position of the first body to where the tie is (3,) [m]."""
+        """Vector (3,) [m] from the position of the first body to the tie's point on it."""
         from sceneql.bodies.rigid.tie_rows_kernels import ROTATION, TURN
         from sceneql.shapes.placement import rotation_matrix
 
@@ -140,13 +140,13 @@ class Joint(Tie):
 
 
 def sides_of(refs: Sequence[Ref], assembly: Assembly) -> tuple[Side, Side]:
-    """The two bodies of a tie. Raises ScriptError where there is none."""
+    """The two bodies of a tie. Raises ScriptError for a reference to no body."""
     first, second = (_side(ref, assembly) for ref in refs)
     return first, second
 
 
 def _side(ref: Ref, assembly: Assembly) -> Side:
-    """A body of a tie. Raises ScriptError where there is none."""
+    """A body of a tie; without a name the world. Raises ScriptError for a reference to no body."""
     import numpy as np
 
     from sceneql.shapes.placement import rotation_matrix
@@ -167,9 +167,9 @@ def _side(ref: Ref, assembly: Assembly) -> Side:
 
 
 def led_side(ref: Ref, kind: Object, assembly: Assembly) -> Side:
-    """An object that moves by itself; one that does not move is part of the world.
+    """The side of a tie at an object with prescribed motion; an object at rest is part of the world.
 
-    Raises ScriptError for one without a place of its own, or whose velocity cannot be found.
+    Raises ScriptError for an object without position and rotation, or whose velocity is not a function of time.
     """
     import numpy as np
 
@@ -201,7 +201,7 @@ def led_side(ref: Ref, kind: Object, assembly: Assembly) -> Side:
 
 
 def across(axis: Any) -> tuple[Floats, Floats]:
-    """Two unit vectors that make a right-handed triple with a unit vector (3,)."""
+    """Two unit vectors u, v orthogonal to a unit vector ``axis`` (3,), with axis x u = v."""
     import numpy as np
 
     least = np.zeros(3)
@@ -212,7 +212,7 @@ def across(axis: Any) -> tuple[Floats, Floats]:
 
 
 def together(first: Side, second: Side, point: Any) -> list[TieRow]:
-    """A point of both stays one."""
+    """Three rows: a common point of both bodies stays common."""
     import numpy as np
 
     ends = first.place(point), second.place(point)
@@ -220,7 +220,7 @@ def together(first: Side, second: Side, point: Any) -> list[TieRow]:
 
 
 def parallel(first: Side, second: Side) -> list[TieRow]:
-    """Both keep the directions that they have to each other."""
+    """Three rows: the relative rotation of both bodies stays as it is."""
     import numpy as np
 
     one, two, three = np.eye(3)
@@ -231,9 +231,9 @@ def parallel(first: Side, second: Side) -> list[TieRow]:
 def point_of(
     value: Value | None, refs: Sequence[Ref], sides: Sequence[Side], assembly: Assembly, center: bool = False
 ) -> Floats:
-    """Where a tie is at the start (3,) [m]: as the script says, or where a mass is, or with ``center`` the first body.
+    """The point (3,) [m] of a tie at the start: the given value, else a tied mass, else with ``center`` the first body.
 
-    Raises ScriptError where none is told, and for a place away from a mass that is to be held there.
+    Raises ScriptError where none of these is known, and for a point away from a mass that is tied there.
     """
     import numpy as np
 
@@ -262,7 +262,7 @@ def _named(ref: Ref) -> str:
 
 
 def must_turn(refs: Sequence[Ref], sides: Sequence[Side]) -> None:
-    """Raise ScriptError for a mass, which has no axes."""
+    """Raise ScriptError for a point mass among the sides, which cannot be held by axes."""
     for ref, side in zip(refs, sides, strict=True):
         if not side.turns:
             message = f"'{_named(ref)}' is a mass, which has no axes to be held by"
@@ -270,7 +270,7 @@ def must_turn(refs: Sequence[Ref], sides: Sequence[Side]) -> None:
 
 
 def axis_of(value: Value, assembly: Assembly) -> Floats:
-    """A unit vector of the world at the start."""
+    """Unit vector (3,), in the world, along a value at the start."""
     from sceneql.shapes.placement import unit_vector
 
     return unit_vector(assembly.initial(value))

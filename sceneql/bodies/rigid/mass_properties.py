@@ -1,4 +1,4 @@
-"""Volume, center and inertia of objects for a density of 1, with what is known of their errors."""
+"""Volume, center and inertia of objects of density 1, with estimates of their errors."""
 
 from __future__ import annotations
 
@@ -17,64 +17,64 @@ if TYPE_CHECKING:
     from sceneql.mesh.bounded import Corner
 
 CELLS = 64
-"""Cells along the longest side of an object that is measured by its field."""
+"""Cells along the longest side of an object whose moments are integrated by its field."""
 SAFE = 2.0
-"""Error over the difference of two runs."""
+"""Estimated error relative to the difference of the results with two cell sizes."""
 DOUBT = 0.01
-"""What cells leave undecided, in parts of the volume, from which on it counts as an error; in less, as where fields
-touch, there is mostly nothing."""
+"""Volume of unresolved cells, relative to the object's, above which it counts as an error. Less is mostly empty, as
+where fields touch 0."""
 BROKEN = 1e-9
-"""By how much of itself the largest principal value may exceed the sum of the others: rounding in a script."""
+"""Largest relative excess of the largest principal moment over the sum of the others: rounding in a script."""
 
 
 class Errors(NamedTuple):
-    """Estimated errors; zero where the values are exact but for rounding."""
+    """Estimated absolute errors; zero where the values are exact except for rounding."""
 
     volume: float
     """[m^3]"""
     center: float
     """Distance [m]."""
     inertia: float
-    """In the Frobenius norm [m^5]."""
+    """Frobenius norm of the error of the inertia tensor [m^5]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MassProperties:
-    """Of a solid whose density is 1: times a density [kg/m^3], volume is mass [kg] and inertia is in kg m^2."""
+    """Mass properties of a solid of density 1: multiply volume and inertia by a density [kg/m^3]."""
 
     volume: float
     """[m^3]"""
     center: Floats
     """(3,) [m], in the coordinates that the object stands in."""
     inertia: Floats
-    """(3, 3) about the center, along the axes of these coordinates [m^5]."""
+    """(3, 3) [m^5] inertia tensor about the center, in the axes of these coordinates."""
     error: Errors
 
     @property
     def exact(self) -> bool:
-        """Whether they were found in closed form."""
+        """Whether they are exact except for rounding."""
         return not any(self.error)
 
 
 def properties(solid: Shaped, moment: Moment, cells: int = CELLS) -> MassProperties:
-    """Of an object now, placed as it is in its parent, or in the world where it has none.
+    """Mass properties of an object at a moment, in the coordinates of its parent, or of the world without one.
 
-    Exact where it has moments of its own (``Object.volume_moments``), else by its field with so many cells along it.
-    Raises TypeError for one without an inside or without an end, ValueError for one that is empty, for a mesh that is
-    open or turned inside out, and for too many cells.
+    Exact where the object has moments in closed form (``Object.volume_moments``), else integrated by its field with
+    ``cells`` cells along the longest side. Raises TypeError for an object without an inside or an unbounded one,
+    ValueError for an empty one, for a mesh that is open or inside out, and for too many cells.
     """
     return of_moments(moments_of(solid, moment, cells))
 
 
 def of_moments(moments: VolumeMoments) -> MassProperties:
-    """Mass properties by second moments. Raises ValueError where there is no volume."""
+    """Mass properties from second moments. Raises ValueError for a volume that is not positive."""
     import numpy as np
 
     if not (moments.volume > 0.0 and np.isfinite(moments.second).all()):
         raise ValueError(f"it has no volume: {moments.volume:g} m^3")
     inertia = np.trace(moments.second) * np.eye(3) - moments.second
     volume, center, second = moments.error
-    # The trace is at most sqrt(3) of the norm, so that of tr(C) 1 - C is at most twice that of C.
+    # |tr C| <= sqrt(3) |C| in the Frobenius norm, so the norm of tr(C) 1 - C is at most twice that of C.
     return MassProperties(moments.volume, moments.center, inertia, Errors(volume, center, 2.0 * second))
 
 
@@ -85,17 +85,17 @@ def moments_of(solid: Shaped, moment: Moment, cells: int = CELLS) -> VolumeMomen
 
 
 def by_field(solid: Shaped, moment: Moment, cells: int = CELLS) -> VolumeMoments:
-    """As ``moments_of``, by the field alone: with cells and with half as many.
+    """As ``moments_of``, integrated by the field, with ``cells`` and with half as many cells for an error estimate.
 
-    The largest relative difference of the two, times SAFE, is the error of all three: at edges errors are as by chance,
-    so one alone may be small by luck.
+    The largest relative difference of the two results, times SAFE, is the relative error of volume, center and second
+    moments alike: along edges errors are erratic, so a single difference may be small by chance.
     """
     import numpy as np
 
     from sceneql.shapes.placement import Placed, affine
     from sceneql.shapes.solid import field_in_box
 
-    # In its own axes, along which its sides may lie: then its place changes nothing but rounding.
+    # In its own axes, with which its sides may be aligned; the result then depends on its pose by rounding only.
     place = np.eye(3, 4)
     if isinstance(solid, Placed):
         place = affine(moment.at(solid.position), moment.at(solid.rotation))
@@ -116,11 +116,11 @@ def _constant(*numbers: float) -> Value:
 
 
 _KNOWN: OfContents[VolumeMoments] = OfContents(64)
-"""Equal bodies are measured once, wherever they are: a field in an object's own axes does not tell its place."""
+"""Cache of moments by field in an object's own axes, so that equal bodies in different poses are integrated once."""
 
 
 def _in_cells(tape: Tape, low: Corner, high: Corner, cells: int) -> VolumeMoments:
-    """Of the solid {tape < 0} in a box, with the error as of ``by_field``."""
+    """Moments of the solid {tape < 0} in the box low..high, with the error estimate of ``by_field``."""
     import numpy as np
 
     from sceneql.mesh.cubes.unresolved import unresolved
@@ -139,15 +139,15 @@ def _in_cells(tape: Tape, low: Corner, high: Corner, cells: int) -> VolumeMoment
         turned = np.linalg.norm(fine.second - coarse.second) / whole
         share = SAFE * float(max(abs(1.0 - coarse.volume / fine.volume), away, turned))
     doubt = unresolved(tape, low, high, cell).volume / fine.volume
-    if doubt > DOUBT:  # as of walls thinner than cells, which neither run sees
+    if doubt > DOUBT:  # such as walls thinner than cells, which both cell sizes miss
         share = max(share, doubt)
     return VolumeMoments(fine.volume, fine.center, fine.second, (share * fine.volume, share * length, share * whole))
 
 
 def principal(inertia: Floats) -> tuple[Floats, Floats]:
-    """Principal values (3,), rising, and the axes (3, 3), which are columns and right-handed, of an inertia tensor.
+    """Principal moments (3,) of an inertia tensor, ascending, and its axes as columns of a rotation matrix (3, 3).
 
-    Of the axes' two directions each has the one whose largest component is positive, but for the last.
+    The first two axes are directed so that their largest component is positive.
     """
     import numpy as np
 
@@ -159,9 +159,9 @@ def principal(inertia: Floats) -> tuple[Floats, Floats]:
 
 
 def impossible(values: Sequence[float]) -> str:
-    """Why no body has three principal values of inertia [kg m^2]; empty where one has.
+    """The message on three principal moments of inertia [kg m^2] that no body has; empty for possible ones.
 
-    None is below 0, and none above the sum of the others, since each is the integral of two squares of three.
+    None is negative or exceeds the sum of the others: each is the integral of the sum of two of the three squares.
     """
     if not all(0.0 <= value < float("inf") for value in values) or not max(values) > 0.0:
         return "principal values of inertia are finite numbers above 0"

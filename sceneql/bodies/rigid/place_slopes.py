@@ -1,4 +1,4 @@
-"""Where the derivatives of forces at places of bodies stand in the Jacobian (place_slopes_kernels.py)."""
+"""Sparsity of the Jacobian of forces at places on bodies (place_slopes_kernels.py)."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ if TYPE_CHECKING:
 
 
 def force_places(pairs: Sequence[tuple[Sequence[int], Sequence[int]]]) -> Places:
-    """Rows and columns for pairs of Place.ints: the one the force acts at, and the one by whose motion it changes.
+    """Rows and columns of the Jacobian's entries, for pairs of Place.ints (acted, moving).
 
-    What a place with no arm lacks has an entry, always 0, among those that it has.
+    The force acts at the first place and depends on the motion of the second. Rotation and angular momentum of a place
+    without an arm do not exist; their entries, always 0, are put at its position and velocity.
     """
     import numpy as np
 
@@ -33,7 +34,7 @@ def force_places(pairs: Sequence[tuple[Sequence[int], Sequence[int]]]) -> Places
 
 
 def torque_places(place: Sequence[int]) -> Places:
-    """Rows and columns of a torque on the body of Place.ints, by its place and velocity."""
+    """Rows and columns of the Jacobian of a torque on a body by the position and velocity of a place (Place.ints)."""
     import numpy as np
 
     row = [place[5] + k for k in range(3)]

@@ -1,5 +1,4 @@
-"""Whether ties are singular at the start: motions that they leave to first order they forbid to second, all of these or
-some."""
+"""Detection of singular ties at the start: motions that they allow to first order but forbid to second order."""
 
 from __future__ import annotations
 
@@ -13,20 +12,20 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Tied
 
 DEPENDENT = 1e-9
-"""Singular value, in parts of the largest, of rows that the others imply."""
+"""Singular value of the constraint Jacobian, relative to the largest, below which rows are dependent."""
 FORBIDDEN = 1e-6
-"""Part of the acceleration by speeds that such rows ask for and nothing gives."""
+"""Part of the velocity-dependent acceleration, relative to all of it, that counts as infeasible."""
 TRIES = 32
-"""Velocities that are tried, of those that ties leave."""
+"""Random velocities that are tried, among those that the ties allow."""
 
 
 def singular(assembly: Assembly) -> tuple[list[Tied], list[Tied]]:
-    """The ties that hold each other in a singular position at the start: that nothing leaves, as a taut chain; and that
-    is left in more than one way, as by a parallelogram folded flat.
+    """Ties in a singular position at the start: (those that cannot leave it, those that can in more than one way).
 
-    Rows that others imply have forces s that hold each other, J^T s = 0. With a velocity v that all rows leave,
-    J v = 0, accelerations must meet J a + bias(v) = 0: there are none unless s . bias(v) = 0 (Pellegrino & Calladine
-    1986). Where this takes both signs, velocities between these go on.
+    Examples: a taut chain, a parallelogram folded flat. Dependent rows have self-stresses s, J^T s = 0. For a velocity
+    v that all rows allow, J v = 0, the acceleration a must satisfy J a + bias(v) = 0, which has no solution unless
+    s . bias(v) = 0 (Pellegrino & Calladine 1986). Where this product takes both signs, it vanishes for some velocities
+    in between, and the mechanism can move. No ties where a body has a prescribed motion, or rows exceed MOST.
     """
     import numpy as np
 
@@ -75,7 +74,7 @@ def singular(assembly: Assembly) -> tuple[list[Tied], list[Tied]]:
 
 
 def _moving(assembly: Assembly, bodies: dict[tuple[int, ...], tuple[int, Place]], speeds: Floats) -> Floats:
-    """The state at the start, of bodies that move at these velocities and angular velocities (6 each)."""
+    """The state at the start with the bodies' velocities and angular velocities replaced by ``speeds`` (6 a body)."""
     import numpy as np
 
     from sceneql.bodies.rigid.turning import unpacked

@@ -1,4 +1,4 @@
-"""Where the derivatives of ties stand in the Jacobian and on its border (tie_slopes_kernels.py)."""
+"""Sparsity of the Jacobian of ties, bordered by their multipliers (tie_slopes_kernels.py)."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ if TYPE_CHECKING:
 
 
 def tie_slopes(ints: Sequence[int], spare: int, entries: int) -> Slopes:
-    """The slopes of `tie_kernels.hold` with the integers ``ints``, on a state of so many ``entries``.
+    """The Jacobian of the term `tie_kernels.hold` with the integers ``ints``, for a state of ``entries`` numbers.
 
-    ``spare``: offset of floats for one mover.
+    ``spare``: offset of working memory for one mover.
     """
     from sceneql.bodies.rigid import tie_kernels as ties
     from sceneql.bodies.rigid.tie_rows_kernels import FIRST, MOVER, ROW_INTS, SECOND
@@ -34,7 +34,7 @@ def tie_slopes(ints: Sequence[int], spare: int, entries: int) -> Slopes:
 
 
 def drive_slopes(ints: Sequence[int]) -> Slopes:
-    """The slopes of `drive_kernels.drive` with the integers ``ints``."""
+    """The Jacobian of the term `drive_kernels.drive` with the integers ``ints``."""
     from sceneql.bodies.rigid.tie_rows_kernels import MOVER
 
     moved, acting = _numbers([ints[:MOVER], ints[MOVER : 2 * MOVER]])
@@ -44,8 +44,10 @@ def drive_slopes(ints: Sequence[int]) -> Slopes:
 
 
 def _numbers(movers: Sequence[Sequence[int]]) -> tuple[list[int], list[int]]:
-    """Entries of y of movers' positions and quaternions (7 each), of velocities and angular momenta (6); -1 for what
-    one has not."""
+    """Indices in y of the movers' positions and quaternions (7 a mover), and of velocities and angular momenta (6).
+
+    -1 for quantities that a mover lacks.
+    """
     from sceneql.bodies.rigid.tie_rows_kernels import MOMENTUM, POSITION, ROTATION, VELOCITY
 
     def of(*parts: tuple[int, int]) -> list[int]:
@@ -60,7 +62,7 @@ def _numbers(movers: Sequence[Sequence[int]]) -> tuple[list[int], list[int]]:
 
 
 def _slopes(kernel: str, places: Sequence[tuple[int, int]], ints: Sequence[int], border: int) -> Slopes:
-    """Slopes with an entry for each of the places, of which those with -1 are none."""
+    """Slopes with one entry a place (row, column), without the places that contain -1."""
     import numpy as np
 
     from sceneql.system import Slopes

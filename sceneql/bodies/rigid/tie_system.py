@@ -1,4 +1,4 @@
-"""All ties of an island together: the term that finds their forces, and the closing of what errors have opened."""
+"""All ties of an island together: the term that solves for their forces, and the correction of constraint drift."""
 
 from __future__ import annotations
 
@@ -18,20 +18,23 @@ KERNELS = "sceneql.bodies.rigid.tie_kernels"
 KINDS = ("point", "angle", "distance", "gear")
 
 IMPLIED, ROUNDING = 1e-10, 1e-13
-"""Square of a condition's part that the others do not imply, of all of it, below which it is one that they do; what is
-added to such squares for their factorization."""
+"""Pivot of a normalized row, the square of its part independent of the rows before, below which the row counts as
+dependent; regularization added to the diagonal before the factorization."""
 MOST = 600
-"""Conditions above which it is not looked whether they contradict each other at the start."""
+"""Most constraint rows for which contradictions at the start are searched."""
 APART = 1e-6
-"""Speed of a tie that comes apart at the start from which it is told."""
+"""Speed [m/s or rad/s] of a violated tie at the start above which ties contradict each other."""
 WHOLE = 24
-"""Rows up to which their matrix is whole: as quick as one of fronts, and compiled in a tenth of the time."""
+"""Most rows whose matrix is dense: as fast as a multifrontal one, and compiled in a tenth of the time."""
 LEAST = 7
-"""Numbers of a row, of which the last may be left out where it is 0."""
+"""Least numbers stored of a row; missing ones are 0."""
 
 
 def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
-    """Add the forces of ties, once all other forces are there."""
+    """Add the term of the ties' constraint forces to an island, which acts after all other forces.
+
+    Raises ScriptError where ties contradict each other at the start.
+    """
     import numpy as np
     from scipy.sparse import csr_array
 
@@ -56,7 +59,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         for side, mover in enumerate(pair):
             if solved[mover]:
                 of_mover.setdefault(mover, []).append((first, count, scratch + 6 * side))
-    # Ties of as many rows each make a matrix of blocks, which a plan has in a small part of the integers.
+    # If all ties have equally many rows, the matrix is stored in blocks, whose plan takes far fewer integers.
     counts, few = {len(tie.rows) for tie in ties}, len(rows) <= WHOLE
     unit = counts.pop() if len(counts) == 1 and not few else 1
     parts = {
@@ -74,7 +77,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     starts = [unit * (unit * int(pattern.indptr[k // unit]) + k % unit) for k in range(len(rows))]
 
     def along(row: int, column: int) -> int:
-        """Where values of a column begin, counted from the first one of the row."""
+        """Offset of the value at a column from the first value of the row."""
         first, end = pattern.indptr[row // unit : row // unit + 2]
         return unit * unit * int(np.searchsorted(columns[first:end], column // unit)) + column % unit
 
@@ -120,12 +123,12 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     assembly.term("tie", f"{KERNELS}:hold", ints, slopes)
     assembly.tie_ints = ints
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
-    if free:  # else where parts are led to is known at the end of a step alone
+    if free:  # a prescribed motion is known at the end of a step only
         assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
 
 
 def _must_agree(ties: Sequence[Tied], floats: Floats) -> None:
-    """Raise ScriptError where ties ask for velocities at the start that no motion has, by their evaluation there."""
+    """Raise ScriptError where no velocities satisfy all ties at the start, where ``floats`` hold their evaluation."""
     import numpy as np
 
     from sceneql.bodies.rigid.tie_rows_kernels import AT_J, AT_SPEED, ROW
@@ -152,7 +155,7 @@ def _must_agree(ties: Sequence[Tied], floats: Floats) -> None:
 
 
 def _add_pivots(assembly: Assembly, ties: Sequence[Tied]) -> None:
-    """The exact motion of bodies that a single ball holds to a point of the world."""
+    """Add the exact free rotation of bodies whose only tie is a ball joint to a fixed point of the world."""
     import numpy as np
 
     from sceneql.bodies.rigid.turning import packed, principal_axes, quaternion, unpacked
@@ -186,7 +189,7 @@ def _add_pivots(assembly: Assembly, ties: Sequence[Tied]) -> None:
 
 
 def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int]:
-    """Conditions of ties, and how many of them the others imply, by their last evaluation."""
+    """(number of constraint rows, number of dependent ones among them), from the last evaluation in ``floats``."""
     import numpy as np
     from scipy.sparse import csc_array, csr_array
     from scipy.sparse.linalg import splu
@@ -206,13 +209,13 @@ def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int]:
     six = np.arange(6)
     rows, columns, places = (np.array([part[k] for part in parts], dtype=np.int64)[:, None] for k in range(3))
     values = floats[places + six]
-    # Lengths against angles: by the longest arm. Masses do not matter.
+    # Angular columns are scaled by the longest arm to compare with lengths; masses do not matter.
     values[:, 3:] /= max(1e-300, np.abs(values[:, 3:]).max(initial=0.0))
     shape = (row, 6 * len(movers))
     whole = csr_array((values.ravel(), (np.repeat(rows, 6), (columns + six).ravel())), shape=shape)
     sizes = np.sqrt((whole * whole).sum(axis=1))
     whole = csr_array(whole.multiply(1.0 / np.where(sizes > 0, sizes, 1.0)[:, None]))
-    # A pivot is the square of what the rows before leave of a row of length 1.
+    # A pivot is the squared part of a unit row that is orthogonal to the rows before.
     squares = csc_array(whole @ whole.T)
     squares.setdiag(squares.diagonal() + ROUNDING)
     pivots = splu(squares, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -220,7 +223,7 @@ def redundant(ties: Sequence[Tied], floats: Floats) -> tuple[int, int]:
 
 
 def integers(mover: Mover) -> tuple[int, ...]:
-    """The integers of a mover (tie_rows_kernels)."""
+    """The 12 integers of a mover, -1 for missing ones (tie_rows_kernels)."""
     if isinstance(mover, Place):
         position, velocity, _, inverse, rotation, momentum, inertia, _ = mover.ints
         return (position, velocity, inverse, rotation, momentum, inertia, *(6 * (-1,)))

@@ -1,4 +1,4 @@
-"""Ties in a step of velocities: which bodies they bring in, their rows in the cone program, the integers of both."""
+"""Ties in the velocity step of contacts: the bodies that they add, their rows in the cone program, kernel integers."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, Drive, Mover, Tied
 
 OFTEN = 1 / 240
-"""Longest step that a tolerance chooses [s]."""
+"""Longest step [s] that an adaptive solver takes."""
 FOLLOWS = ("nothing", "speed", "place")
-"""What a motor follows, by the kernel's number."""
+"""Targets of a motor, in the order of the kernel's numbers."""
 
 
 @dataclass(frozen=True, slots=True)
 class TiedStep:
-    """The ties of the bodies of a step."""
+    """Bodies and constraint rows of the ties in a velocity step."""
 
     bodies: list[tuple[int, ...]]
-    """The integers of all its bodies (velocity_step_kernels): those given first, then those that ties bring in."""
+    """Integers of all bodies (velocity_step_kernels): the given ones first, then those that ties add."""
     pairs: list[tuple[int, int]]
-    """Of each bounded row its bodies, the smaller number first, -1 for what is fixed or led."""
+    """The two bodies of each row, the smaller number first; -1 for a fixed one or one with prescribed motion."""
     joined: list[tuple[int, int]]
-    """Position offsets of the bodies that ties join."""
+    """Pairs of position offsets of the bodies that a tie joins."""
     _ties: tuple[int, ...]
     _sides: list[int]
     _groups: list[int]
@@ -37,7 +37,7 @@ class TiedStep:
     _first: bool
 
     def ints(self, assembly: Assembly) -> list[int]:
-        """The integers of tied_rows_kernels."""
+        """The integers that tied_rows_kernels read."""
         import numpy as np
 
         from sceneql.bodies.rigid.moved_bodies_kernels import HEAD
@@ -54,18 +54,18 @@ class TiedStep:
 
 
 def moves(mover: Mover, assembly: Assembly) -> bool:
-    """Whether forces move it."""
+    """Whether a mover is a body or mass that forces accelerate."""
     return isinstance(mover, Place) and float(assembly.numbers()[mover.bodies.inverse_at + mover.body]) > 0.0
 
 
 def body_integers(bodies: Bodies, k: int, assembly: Assembly) -> tuple[int, ...]:
-    """The integers of a body that moves (velocity_step_kernels)."""
+    """The integers of body k, which is not fixed (velocity_step_kernels)."""
     import numpy as np
 
     from sceneql.bodies.rigid.turning import packed, unpacked
 
     x, v, turning, numbers = bodies.position_at + 3 * k, bodies.velocity_at + 3 * k, bodies.turning, assembly.numbers()
-    if turning is None:  # a mass, which nothing turns: any inertia does
+    if turning is None:  # a point mass does not rotate: any inertia will do
         inertia = numbers[bodies.mass_at + k] * np.eye(3)
         return (x, v, -1, -1, bodies.mass_at + k, assembly.floats(packed(inertia)), bodies.work_at)
     inertia = np.asarray(np.linalg.inv(unpacked(numbers[turning.inverse_at + 6 * k :][:6])))
@@ -74,8 +74,11 @@ def body_integers(bodies: Bodies, k: int, assembly: Assembly) -> tuple[int, ...]
 
 
 def tied_step(assembly: Assembly, bodies: Sequence[tuple[int, ...]], drives: bool) -> TiedStep | None:
-    """The ties of bodies, given by their integers, and of all that ties hold to these; with ``drives`` all that stops,
-    motors and friction move, too, and these. None without any."""
+    """The ties of the given bodies and of all bodies connected with them by ties; None where there are none.
+
+    ``bodies``: by their integers. With ``drives`` also the bodies connected with limits, motors or friction, and the
+    rows of these.
+    """
     ties = assembly.ties
     root: dict[int, int] = {}
 
@@ -118,7 +121,7 @@ def tied_step(assembly: Assembly, bodies: Sequence[tuple[int, ...]], drives: boo
             body_movers[known[which[0]]] = number
 
     def side(tie: Tied) -> tuple[tuple[int, int], tuple[int, int]]:
-        """The pair of a tie, and its group and whether it is flipped."""
+        """(numbers of the two bodies of a tie in order, (group, 1 where the order is reversed))."""
         one, other = (known.get(integers(mover)[0], -1) for mover in tie.movers)
         flipped = one < 0 or (0 <= other < one)
         pair = (other, one) if flipped else (one, other)
@@ -143,14 +146,14 @@ def tied_step(assembly: Assembly, bodies: Sequence[tuple[int, ...]], drives: boo
 
 
 def drive_integers(drive: Drive) -> tuple[int, ...]:
-    """The integers of stops, motor and friction (drive_kernels)."""
+    """The integers of limits, motor and friction (drive_kernels)."""
     follows = FOLLOWS.index(drive.follows)
     motor = (follows, drive.target_at, drive.most_at, drive.settling_at, drive.reached_at)
     return (*drive.along, drive.limits_at, drive.restitution_at, *motor, drive.friction_at, drive.effort_at)
 
 
 def add_bounded_step(assembly: Assembly) -> None:
-    """Let stops, motors and friction act, on an island whose rigid bodies touch nothing."""
+    """Add limits, motors and friction of ties as a velocity step, for an island whose rigid bodies have no contacts."""
     from sceneql.bodies.rigid.bounded_step_kernels import HEAD
 
     step = tied_step(assembly, (), True)

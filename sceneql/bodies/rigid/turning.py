@@ -1,4 +1,4 @@
-"""How rigid bodies turn: their state, its terms, and what is read of it."""
+"""Rotation of rigid bodies: its state, terms and outputs."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ KERNELS = "sceneql.bodies.rigid.rigid_kernels"
 
 
 def reserve(assembly: Assembly, bodies: Bodies, rotations: Floats, spins: Floats, inertias: Floats) -> Bodies:
-    """The bodies with a rotation: its state, its closing term and its exact free motion.
+    """Add rotation to bodies: quaternions and angular momenta in the state, their closing term, exact free motion.
 
-    ``rotations`` (n, 4): unit quaternions that turn the bodies' axes to the world's; ``spins`` (n, 3) [rad/s] in the
-    world's axes; ``inertias`` (n, 3, 3) [kg m^2] about the centers of mass, in the bodies' axes. A body with the
-    inverse mass 0 does not turn.
+    ``rotations`` (n, 4): unit quaternions that map the bodies' axes to the world's; ``spins`` (n, 3) [rad/s] in the
+    world's axes; ``inertias`` (n, 3, 3) [kg m^2] about the centers of mass, in the bodies' axes. A body with inverse
+    mass 0 does not rotate. Returns ``bodies`` with ``turning``.
     """
     import numpy as np
 
@@ -57,9 +57,9 @@ def reserve(assembly: Assembly, bodies: Bodies, rotations: Floats, spins: Floats
 
 
 def principal_axes(inertia: Floats) -> tuple[Floats, Floats]:
-    """Principal moments of inertia (3,), ascending, and their axes as the columns of a rotation (3, 3).
+    """Principal moments of inertia (3,), ascending, and their axes as the columns of a rotation matrix (3, 3).
 
-    A diagonal inertia keeps its axes and their order, so that nothing is rounded.
+    A diagonal inertia keeps its axes and their order, without rounding.
     """
     import numpy as np
 
@@ -70,12 +70,12 @@ def principal_axes(inertia: Floats) -> tuple[Floats, Floats]:
 
 
 def packed(matrix: Floats) -> Floats:
-    """The xx, yy, zz, yz, xz, xy (6,) of a symmetric matrix (3, 3)."""
+    """Components xx, yy, zz, yz, xz, xy (6,) of a symmetric matrix (3, 3)."""
     return matrix[[0, 1, 2, 1, 0, 0], [0, 1, 2, 2, 2, 1]]
 
 
 def unpacked(numbers: Floats) -> Floats:
-    """The symmetric matrices (..., 3, 3) of their xx, yy, zz, yz, xz, xy (..., 6)."""
+    """Symmetric matrices (..., 3, 3) from their components xx, yy, zz, yz, xz, xy (..., 6)."""
     import numpy as np
 
     return np.asarray(numbers)[..., [0, 5, 4, 5, 1, 3, 4, 3, 2]].reshape(*np.shape(numbers)[:-1], 3, 3)
@@ -86,7 +86,7 @@ def quaternion(matrix: Floats) -> Floats:
     import numpy as np
 
     m = matrix
-    # The eigenvector of the greatest eigenvalue (Bar-Itzhack 2000), as good whatever the rotation is.
+    # The eigenvector of the largest eigenvalue (Bar-Itzhack 2000), equally accurate for all rotations.
     symmetric = np.array(
         [
             [m[0, 0] + m[1, 1] + m[2, 2], m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1]],
@@ -100,7 +100,7 @@ def quaternion(matrix: Floats) -> Floats:
 
 
 def rotations(turning: Turning, count: int, state: ModelState) -> Floats:
-    """(n, 4) unit quaternions."""
+    """Unit quaternions (n, 4) [w, x, y, z] from the bodies' axes to the world's."""
     import numpy as np
 
     q = state.y[turning.rotation_at : turning.rotation_at + 4 * count].reshape(-1, 4)
@@ -109,7 +109,7 @@ def rotations(turning: Turning, count: int, state: ModelState) -> Floats:
 
 
 def matrices(turning: Turning, count: int, state: ModelState) -> Floats:
-    """(n, 3, 3) rotations of the bodies' axes to the world's."""
+    """Rotation matrices (n, 3, 3) from the bodies' axes to the world's."""
     import numpy as np
 
     from sceneql.shapes.placement import rotation_matrix
@@ -118,18 +118,18 @@ def matrices(turning: Turning, count: int, state: ModelState) -> Floats:
 
 
 def momenta(turning: Turning, count: int, state: ModelState) -> Floats:
-    """(n, 3) angular momenta about the centers of mass, in the world's axes [kg m^2/s]."""
+    """Angular momenta (n, 3) [kg m^2/s] about the centers of mass, in the world's axes."""
     return state.y[turning.momentum_at : turning.momentum_at + 3 * count].reshape(-1, 3)
 
 
 def own_momentum(turning: Turning, count: int, state: ModelState) -> Floats:
-    """(3,) the sum of the angular momenta about the centers of mass [kg m^2/s]."""
+    """Sum (3,) [kg m^2/s] of the angular momenta about the bodies' own centers of mass."""
     found: Floats = momenta(turning, count, state).sum(axis=0)
     return found
 
 
 def body_spins(turning: Turning, count: int, state: ModelState) -> Floats:
-    """(n, 3) angular velocities in the bodies' axes [rad/s]."""
+    """Angular velocities (n, 3) [rad/s] in the bodies' axes."""
     import numpy as np
 
     inverses = unpacked(state.floats[turning.inverse_at : turning.inverse_at + 6 * count].reshape(-1, 6))
@@ -139,7 +139,7 @@ def body_spins(turning: Turning, count: int, state: ModelState) -> Floats:
 
 
 def spins(turning: Turning, count: int, state: ModelState) -> Floats:
-    """(n, 3) angular velocities in the world's axes [rad/s]."""
+    """Angular velocities (n, 3) [rad/s] in the world's axes."""
     import numpy as np
 
     found: Floats = np.einsum("nij,nj->ni", matrices(turning, count, state), body_spins(turning, count, state))
@@ -147,7 +147,7 @@ def spins(turning: Turning, count: int, state: ModelState) -> Floats:
 
 
 def rotation_energy(turning: Turning, count: int, state: ModelState) -> float:
-    """Kinetic energy of the rotation [J]: half the sum of spin times angular momentum."""
+    """Kinetic energy [J] of the rotation: half the sum of angular velocity times angular momentum."""
     import numpy as np
 
     return 0.5 * float(np.sum(spins(turning, count, state) * momenta(turning, count, state)))

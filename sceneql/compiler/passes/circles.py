@@ -1,4 +1,4 @@
-"""Values and objects that need themselves: refused before anything runs."""
+"""Check for circular links: values and objects that depend on themselves."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
 Place = tuple[str, str]
-"""A part and one of its fields or outputs; "" is the part as a whole."""
+"""(part, one of its fields or outputs); "" is the part as a whole."""
 
 
 def report_circles(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report links, and objects that hold objects, that lead back to where they start.
+    """Report links, and objects that contain objects, that lead back to where they start.
 
     The outputs of a solved model come from its state: no circle goes through one.
     """
@@ -30,7 +30,7 @@ def report_circles(tasks: Mapping[str, Task], found: Diagnostics) -> None:
 
 
 def _walk(start: Place, needs: _Needs, done: set[Place], found: Diagnostics) -> None:
-    """Depth first, without recursion: a chain of links may be long."""
+    """Depth-first search for circles, without recursion: a chain of links may be long."""
     path: list[Place] = []
     stack: list[tuple[Place, Span | None, bool]] = [(start, None, False)]
     while stack:
@@ -40,15 +40,21 @@ def _walk(start: Place, needs: _Needs, done: set[Place], found: Diagnostics) -> 
             done.add(place)
         elif place in path:
             circle = " -> ".join(".".join(part for part in one if part) for one in [*path[path.index(place) :], place])
-            found.error("circular-link", f"this needs itself: {circle}", span)
+            found.error("circular-link", f"this needs itself: {circle}", span, help=_way_out(place))
         elif place not in done:
             path.append(place)
             stack.append((place, span, True))
             stack += [(other, where, False) for other, where in needs.of(place)]
 
 
+def _way_out(place: Place) -> str:
+    if not place[1]:
+        return "an object holds no part that it is in: leave one of these names out"
+    return f"write one of these values without the others: a number for `{'.'.join(place)}`, or a formula of `time`"
+
+
 class _Needs:
-    """What places read. A kinematic model's outputs all read what the model does, looked up once."""
+    """The dependences of places. All outputs of a kinematic model read what the model does, looked up once."""
 
     def __init__(self, tasks: Mapping[str, Task]) -> None:
         self.tasks = tasks

@@ -1,4 +1,4 @@
-"""Contacts that cannot act as the script has them, on what they act on: refused before anything runs."""
+"""Check of contacts: whether they can act on their models as the script says."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sceneql.quantities.diagnostic import Diagnostics
 
 
 def report_contacts(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
-    """Report what contacts ask of models that do not have it, and rigid bodies with contacts in two words."""
+    """Report contacts whose models lack what they require, and rigid bodies with contacts in two words."""
     for island in groups:
         acting: dict[str, list[str]] = {}
         for contact, model, _ in island.contacts:
@@ -29,10 +29,10 @@ def report_contacts(tasks: Mapping[str, Task], groups: Iterable[Island], found: 
 def _report_shared(
     acting: Mapping[str, list[str]], island: Island, tasks: Mapping[str, Task], found: Diagnostics
 ) -> None:
-    """Report a contact of rigid bodies that have theirs in an earlier word, or that ties hold to such bodies.
+    """Report a contact of rigid bodies that, or whose tied bodies, have an earlier contact word.
 
-    Contacts and ties of a body are one problem. Of two that are solved one after the other, a body between two surfaces
-    would have the forces of neither.
+    Contacts and ties of a body are solved as one problem. If two were solved one after the other, a body between two
+    surfaces would have the forces of neither.
     """
     held = _held(island, tasks)
     before: dict[str, tuple[str, str]] = {}
@@ -57,7 +57,7 @@ def _report_shared(
 
 
 def _held(island: Island, tasks: Mapping[str, Task]) -> dict[str, str]:
-    """By a model of an island the first of those that ties hold it to."""
+    """For each model of an island, the first of the models that ties connect it with."""
     first = {name: name for name in island.models}
     for force in dict.fromkeys(force for force, _ in island.forces):
         if isinstance(tasks[force].kind, Tie):

@@ -1,4 +1,4 @@
-"""Warnings of what models and objects themselves find doubtful in their fields."""
+"""Warnings of doubtful settings that models and objects find in their own fields."""
 
 from __future__ import annotations
 

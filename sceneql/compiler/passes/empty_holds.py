@@ -1,4 +1,4 @@
-"""Parts of solids that hold nothing, as the box around the solid tells: refused before anything runs."""
+"""Check of held parts of solids: whether they can select any place in the solid's box."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from sceneql.kinds import Model, Ref
 from sceneql.quantities.diagnostic import Diagnostics
 
 ROOM = 1e-3
-"""How far outside of the box a place still counts as in it, in parts of its size: it may be rounded."""
+"""Tolerance around the box, relative to its size: positions may be rounded."""
 
 
 def report_empty_holds(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report each part that is sure to hold no place."""
+    """Report each held part that certainly selects no place."""
     start: Any = Beginning(tasks)
     for task in tasks.values():
         for part in task.kind.held_parts() if isinstance(task.kind, Model) else ():

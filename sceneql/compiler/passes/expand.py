@@ -1,4 +1,4 @@
-"""Defaults as parts: what a script leaves unsaid (output, camera, light, floor, solver) is added by name."""
+"""Default parts: an output, camera, light, floor and solver are added by name where the script has none."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ def expand(
     implied: Collection[str] = (),
     background: bool = False,
 ) -> dict[str, Task]:
-    """The parts with those that the defaults add; objects that a model drives are linked to it.
+    """The parts, with default parts added; objects that a model drives are linked to it.
 
-    ``without``: names of defaults that the script does not want; ``implied``: that it names and does not write, such as
-    a floor, which then lies where the default does. ``background``: it has one of its own.
+    ``without``: names of default parts that the script declines; ``implied``: names of those that it refers to without
+    writing them, such as a floor, which is then put at the default height. ``background``: whether the script has a
+    background of its own.
     """
     result = dict(tasks)
     for name in implied:
@@ -48,13 +49,14 @@ def expand(
         add("film", "outputs", "video")
     if has(Picture) and not has(Camera):
         add("camera", "cameras", "auto")
-    if has(Picture) and not has(Light):
-        add("light", "lights", "studio")
+    unlit = has(Picture) and not has(Light)
     if "floor" not in without and not any(isinstance(t.kind, Object) and t.kind.grounds for t in result.values()):
         if any(isinstance(t.kind, Contact) and not t.kind.ties() for t in result.values()):
             add("floor", "objects", "plane", height=_level(result))
         elif not background and _staged(result):
             add("floor", "objects", "ground")
+    if unlit:
+        add("light", "lights", "studio", backdrop="dark" if not background and _in_the_dark(result) else "light")
     if any(isinstance(t.kind, Model) and not t.kind.kinematic for t in result.values()) and (
         not any(isinstance(t.kind, Solver) and t.kind.on is None for t in result.values())
     ):
@@ -65,7 +67,7 @@ def expand(
 
 
 def _level(tasks: Mapping[str, Task]) -> Value:
-    """The height of the ground that is hit: 0, or where the lowest model, or object that a model drives, starts."""
+    """The height of the ground for contacts: 0, or the lowest start of a model or of an object that a model drives."""
     models = [task.kind for task in tasks.values() if isinstance(task.kind, Model)]
     lows = [model.lowest() for model in models]
     lows += [_bottom(tasks[name].kind) for model in models for name in model.drives() if name in tasks]
@@ -73,7 +75,7 @@ def _level(tasks: Mapping[str, Task]) -> Value:
 
 
 def _bottom(kind: Kind) -> float | None:
-    """The height [m] of an object's position less its radius, where its fields alone tell it."""
+    """The height [m] of an object's position minus its radius, as far as its fields alone determine it; else None."""
     position, radius = (getattr(kind, name, None) for name in ("position", "radius"))
     if not isinstance(position, Value) or not position.constant:
         return None
@@ -82,7 +84,7 @@ def _bottom(kind: Kind) -> float | None:
 
 
 def _staged(tasks: Mapping[str, Task]) -> bool:
-    """Whether pictures show a ground that nothing hits: what is seen falls, or nothing is simulated."""
+    """Whether pictures show a ground without contact: where something falls, or nothing is simulated."""
     kinds = [task.kind for task in tasks.values()]
     lights = [kind for kind in kinds if isinstance(kind, Light)]
     if not any(isinstance(kind, Picture) for kind in kinds) or not all(light.stages for light in lights):
@@ -91,13 +93,20 @@ def _staged(tasks: Mapping[str, Task]) -> bool:
     return any(isinstance(kind, Interaction) and kind.weighs for kind in kinds) or not solved
 
 
+def _in_the_dark(tasks: Mapping[str, Task]) -> bool:
+    """Whether the picture has no ground, and something that is seen before the dark."""
+    kinds = [task.kind for task in tasks.values()]
+    grounded = any(isinstance(kind, Object) and kind.grounds for kind in kinds)
+    return not grounded and any(kind.darkens() for kind in kinds)
+
+
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
-    """A map of each field that no object reads, in the name of its model, and in place of what would hide it."""
+    """Add a field map for each model of fields that no object reads; objects that would hide it are hidden."""
     read = {need for task in tasks.values() if isinstance(task.kind, Object) for need in task.needs}
     carriers = [task.kind.carrier() for task in tasks.values() if isinstance(task.kind, Interaction)]
     shown = [tasks[name] for name in read if name in tasks and isinstance(tasks[name].kind, Model)]
     carried = {need for task in shown for need in task.needs} | {flow.name for flow in carriers if flow is not None}
-    for name in sorted(carried & set(tasks)):  # a map of a deep flow's box would hide skins in it, and what it carries
+    for name in sorted(carried & set(tasks)):  # a map of a 3D flow's box would hide skins and masses in it
         kind = tasks[name].kind
         if getattr(kind, "flows", False) and len(getattr(kind, "size", None) or ()) == 3:
             read.add(name)

@@ -1,4 +1,4 @@
-"""Ties that hold a body by a place far outside of it: a warning, as places are often told in wrong coordinates."""
+"""Warnings of ties that hold a body at a point far outside of it, as in wrong coordinates."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from sceneql.kinds import Model, Ref, Tie
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 
 FAR, FAR_OF_BOB = 1.0, 20.0
-"""Distance from the body's box, in diagonals of it, from which on a place is far: a bob may hang on an arm."""
+"""Distance from the body's box, relative to its diagonal, from which on a point is far; a compact bob may hang on a
+long arm."""
 BOB = 2.0
-"""Longest by shortest side of the box around a bob, at most."""
+"""Largest ratio of the sides of a bob's box."""
 
 
 def warn_of_far_joints(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Warn of each tie that holds a body far outside of its object, as far as the script tells both at the start."""
+    """Warn of each tie whose point is far outside of its body's object, if the script determines both at the start."""
     ties = [task for task in tasks.values() if isinstance(task.kind, Tie)]
     start: Any = Beginning(tasks)
     for task in ties:
@@ -37,13 +38,13 @@ def warn_of_far_joints(tasks: Mapping[str, Task], found: Diagnostics) -> None:
 
 
 def _outside(place: Any, ref: Ref, tasks: Mapping[str, Task], start: Any) -> Iterator[tuple[float, str]]:
-    """How far [m] a place is from the box of a body's object, and that box in words; nothing where it is near."""
+    """The distance [m] of a point from the box of a body's object, and that box in words; nothing where it is near."""
     import numpy as np
 
     model: Any = tasks[ref.name].kind if ref.name else None
     for name, fields in model.drives().items() if isinstance(model, Model) else ():
         body = (getattr(model, "bodies", None) or {}).get(ref.within, model)
-        placed = getattr(body, "position", None) is not None  # elsewhere than its object stands
+        placed = getattr(body, "position", None) is not None  # not where its object stands
         if placed or fields.get("position", "").rpartition(".")[0] != ref.within:
             continue
         kind: Any = tasks[name].original or tasks[name].kind

@@ -1,4 +1,4 @@
-"""Models that fill an object with more than memory allows, or too coarsely, found by the object's box at the start."""
+"""Check of models that fill an object, by the object's box at the start: too many particles, or too coarse."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Beginning:
         return kind
 
     def kept(self, name: str, key: Hashable, make: Callable[[], Any]) -> Any:
-        """What is made for a part once."""
+        """The result of ``make`` for a part and key, made once."""
         if (name, key) not in self._kept:
             self._kept[name, key] = make()
         return self._kept[name, key]
@@ -51,7 +51,7 @@ class Beginning:
 
 
 def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report models that fill more than memory allows, or nothing; the run refuses boxes that only it knows."""
+    """Report fillings that exceed memory or are empty; boxes that only a run knows are left to the run."""
     start: Any = Beginning(tasks)
     for task in tasks.values():
         for ref, bounds in task.kind.fillings() if isinstance(task.kind, Model) else ():
@@ -68,7 +68,7 @@ def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
 
 
 def _finite(low: Any, high: Any) -> bool:
-    """Whether a box has sides."""
+    """Whether a box has finite sides."""
     import numpy as np
 
     with np.errstate(over="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""Objects made of the insides of others need objects that have one: refused before anything runs."""
+"""Check of objects made of the insides of others: each of these must have one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ HELP = "primitives, formulas and skeletons have one, and what is joined or warpe
 
 
 def report_hollow(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report objects without an inside that others are made of."""
+    """Report objects without an inside of which others are made."""
     for task in tasks.values():
         for ref in task.kind.joins() if isinstance(task.kind, Object) else ():
             hollow = without_inside(tasks[ref.name], tasks)
@@ -24,7 +24,7 @@ def report_hollow(tasks: Mapping[str, Task], found: Diagnostics) -> None:
 
 
 def without_inside(task: Task, tasks: Mapping[str, Task]) -> Task | None:
-    """The first of an object and its members, at any depth, that has no field; None where all have one."""
+    """The first of an object and its members, at any depth, without an implicit field; None where all have one."""
     stack, seen = [task], set[str]()
     while stack:
         one = stack.pop()

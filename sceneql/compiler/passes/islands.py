@@ -1,4 +1,4 @@
-"""Which models are solved together, by which solver, and why."""
+"""Grouping of models into islands: which are solved together, by which solver, and why."""
 
 from __future__ import annotations
 
@@ -114,13 +114,13 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
 
 
 def _body(model: str, led: Mapping[str, str]) -> str:
-    """The body of a model that leads an object by these of its outputs: ``stones.first``, or the model that is one."""
+    """The body of a model whose outputs drive an object, as ``stones.first``; the model itself where it is one body."""
     body = led.get("position", "").rpartition(".")[0]
     return f"{model}.{body}" if body else model
 
 
 def pivots(ties: Sequence[str], tasks: Mapping[str, Task]) -> bool:
-    """Whether ties leave each body just its turning about one point of the world: that motion is known exactly."""
+    """Whether ties leave each body only rotation about a fixed point of the world, which is integrated exactly."""
     kinds = [kind for name in ties if isinstance(kind := tasks[name].kind, Tie)]
     bodies = {(ref.name, ref.within) for kind in kinds if (ref := kind.pivot()) is not None}
     return len(bodies) == len(kinds)
@@ -136,7 +136,7 @@ def acts_on(force: Task, models: list[Task], tasks: Mapping[str, Task]) -> tuple
 
 
 def _has_mass(kind: Kind, weighed: bool) -> bool:
-    """Whether a model has masses, or, where these are ``weighed``, holds a fluid of its own."""
+    """Whether a model has masses or, for a weight, encloses a fluid of its own."""
     return isinstance(kind, Model) and (kind.has_bodies or (weighed and kind.fluid() is not None))
 
 

@@ -1,4 +1,4 @@
-"""Keys whose times go far beyond the clock: a warning, since they are seconds, and most likely frames were meant."""
+"""Warnings of keyframes far beyond the clock: their times are seconds, and most likely frames were meant."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from sceneql.kinds import Clock
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Expr, Keys, Number, each_once
 
-FEWEST = 10.0
-"""Times that the clock lasts, from which on a second key is far beyond it."""
+FEWEST = 2.0
+"""Time of the second key, relative to the clock's end, from which on it is far beyond."""
 
 
 def warn_of_keys(tasks: Mapping[str, Task], clock: Clock, found: Diagnostics) -> None:
-    """Warn of keyframes of which all but the first key, whole numbers without unit, are far beyond the clock's end."""
+    """Warn of keyframes whose second time is a whole number without unit far beyond the clock's end."""
     known: set[int] = set()
     for task in tasks.values():
         for value in values_of(task.kind):
@@ -24,9 +24,10 @@ def warn_of_keys(tasks: Mapping[str, Task], clock: Clock, found: Diagnostics) ->
                     second = float(node.keys[1].time.value)  # type: ignore[union-attr]
                     text = f"the second of these keys is at {second:g} s, and the clock ends at {clock.end:g} s"
                     help = f"times of keys are seconds: frame {second:g} of {clock.fps:g} a second is at"
-                    found.warning("keys-beyond", text, node.span, help=f"{help} `{second / clock.fps:.4g} s`")
+                    help += f" `{second / clock.fps:.4g} s`; if {second:g} s is meant write it so, `{second:g} s`"
+                    found.warning("keys-beyond", text, node.span, help=help)
             known.add(id(value.expr))
 
 
 def _in_frames(time: Expr, clock: Clock) -> bool:
-    return isinstance(time, Number) and time.bare and time.value.is_integer() and time.value >= FEWEST * clock.end
+    return isinstance(time, Number) and time.bare and time.value.is_integer() and time.value > FEWEST * clock.end

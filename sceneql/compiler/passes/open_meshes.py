@@ -1,4 +1,4 @@
-"""Meshes with holes that are filled, collided with or spread in: told, since what closes them is a guess."""
+"""Warnings of meshes with holes whose inside is needed (filled, collided with, spread in): the closing is a guess."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ HELP = "what closes a hole is guessed from its edge: where it is wide, close it 
 
 
 def warn_of_open_meshes(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
-    """Warn of each object with holes whose inside is asked for, where that is asked first."""
+    """Warn of each object with holes whose inside is needed, at the first place that needs it."""
     told: set[str] = set()
     for user, name, span in _asked(tasks, groups):
         kind = tasks[name].kind
@@ -30,7 +30,7 @@ def warn_of_open_meshes(tasks: Mapping[str, Task], groups: Iterable[Island], fou
 
 
 def _asked(tasks: Mapping[str, Task], groups: Iterable[Island]) -> Iterator[tuple[str, str, Span | None]]:
-    """Who asks for the inside of which object, and where."""
+    """(user, object, span) of each part that needs an object's inside."""
     for task in tasks.values():
         for ref in task.kind.insides() if isinstance(task.kind, Model) else ():
             yield task.name, ref.name, ref.span

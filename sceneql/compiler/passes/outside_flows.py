@@ -1,4 +1,4 @@
-"""Skins that stand wholly outside of the flow that carries them: refused before anything runs."""
+"""Check of skins in flows: none may start wholly outside of the flow that carries it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sceneql.quantities.diagnostic import Diagnostics
 
 
 def report_outside_flows(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report each skin whose object is sure to be nowhere in its flow's box; what is cut by it is left to the run."""
+    """Report each skin whose object is certainly outside of its flow's box; partial overlaps are left to the run."""
     start: Any = Beginning(tasks)
     for force in [task.kind for task in tasks.values() if isinstance(task.kind, Force)]:
         carrier = force.carrier()
@@ -33,7 +33,7 @@ def report_outside_flows(tasks: Mapping[str, Task], found: Diagnostics) -> None:
 
 
 def _beyond(shape: Any, flow: Any, start: Any) -> str:
-    """The side of a flow's box that a shape is beyond, but no periodic one; empty where it is beyond none."""
+    """The side of a flow's box beyond which a shape lies, periodic ones excepted, as text; empty for none."""
     import numpy as np
 
     low, high = shape.extent(np.eye(3, 4), start)

@@ -1,13 +1,13 @@
-"""What starts inside what it collides with, as far as the script alone tells it: refused before anything runs.
+"""Check of initial overlaps: bodies that start inside an object or body that they collide with.
 
-Places of a lattice are asked whether they lie deep in both, by the fields of both; what overlaps less than the run
-allows, or where only a run knows shapes, is left to that.
+The implicit fields of both are evaluated on a lattice in the intersection of their boxes. Smaller overlaps than the run
+allows, and shapes that only a run knows, are left to the run.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import islice, product
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from sceneql.compiler.passes.fillings import Beginning
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 SIDE = 5
-"""Places along each axis of the box that two objects share."""
+"""Number of lattice points along each axis of the box shared by two objects."""
 DEEP = 0.02
-"""How deep a place lies in both, at least, in parts of the smaller one's size: what touches is apart."""
+"""Least depth of an overlap, relative to the smaller object's size: touching objects do not overlap."""
 MOST_PAIRS = 100
-"""Pairs of boxes from which on none is compared: the run does."""
+"""Number of pairs above which none is compared; the run does it."""
 UNKNOWN = (TypeError, ValueError, ArithmeticError, RunFailure, LimitRefused, ScriptError)
 
 
 def report_overlaps(tasks: Mapping[str, Task], groups: Sequence[Island], found: Diagnostics) -> None:
-    """Report each body that is sure to start inside an object or another body that it collides with."""
+    """Report each body that certainly starts inside an object or another body that it collides with."""
     start: Any = Beginning(tasks)
     pairs = [*islice((pair for island in groups for pair in _pairs(island, tasks)), MOST_PAIRS + 1)]
     for body, other, whole in pairs if len(pairs) <= MOST_PAIRS else ():
@@ -44,9 +44,11 @@ def report_overlaps(tasks: Mapping[str, Task], groups: Sequence[Island], found: 
 
 
 def _pairs(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, str, bool]]:
-    """The objects of bodies that start where they stand, each with an object that it collides with, and whether all of
-    its shape does: of a mass the center. What ties hold is left out, and a default floor beside other objects: the
-    run puts it under them."""
+    """Pairs (body's object, object that it collides with, whether its whole shape collides or only its center).
+
+    Only bodies that start where their objects stand are included. Bodies held by ties are left out, and so is a default
+    floor beside other objects, which the run puts under them.
+    """
     tied = {ref.name for task in tasks.values() if isinstance(task.kind, Tie) for ref in task.kind.between}
     turning: dict[str, list[str]] = {}
     for contact, model, others in island.contacts:
@@ -67,7 +69,10 @@ def _pairs(island: Island, tasks: Mapping[str, Task]) -> Iterator[tuple[str, str
 
 
 def _overlap(body: str, other: str, whole: bool, tasks: Mapping[str, Task], start: Any) -> float:
-    """How deep [m] a place lies in both, at least; 0 where none was found, or it is less than is told."""
+    """Largest depth [m] of a lattice point in both objects.
+
+    0 where none was found, or where it is below the threshold.
+    """
     import numpy as np
 
     shapes: list[Any] = [tasks[body].original, tasks[other].original or tasks[other].kind]
@@ -82,19 +87,20 @@ def _overlap(body: str, other: str, whole: bool, tasks: Mapping[str, Task], star
         return 0.0
     sizes = [float((box[1] - box[0]).max()) for box in boxes[0 if whole else 1 :]]
     least = DEEP * min(size for size in [*sizes, 1.0] if np.isfinite(size))
-    deepest = 0.0
-    for place in product(*(np.linspace(a, b, SIDE) for a, b in zip(low, high, strict=True))):
-        depth = -_field(shapes[0], np.array(place), start)
-        if depth > deepest:
-            deepest = max(deepest, min(depth, -_field(shapes[1], np.array(place), start)))
-    return deepest if deepest > least else 0.0
+    axes = [np.linspace(a, b, SIDE) for a, b in zip(low, high, strict=True)]
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    depths = -np.maximum(*(_field(shape, places, start) for shape in shapes))
+    return float(depths[depths > least].max(initial=0.0))
 
 
-def _field(shape: Object, place: Floats, start: Any) -> float:
-    """An object's field at a place (3,): at most its distance from the surface, where it is negative."""
+def _field(shape: Object, places: Floats, start: Any) -> Floats:
+    """(n,) implicit field of an object at places (n, 3); where it is negative, -field is at most the depth."""
+    import numpy as np
+
     from sceneql.field.tape.builder import TapeBuilder
+    from sceneql.field.tape.plain_values import plain_values
 
     build = TapeBuilder()
-    x, y, z = (build.constant(float(c)) for c in place)
-    value = build.number(shape.implicit(build, x, y, z, start))
-    return 1.0 if value is None else value
+    tape = build.finish(shape.implicit(build, build.x, build.y, build.z, start))
+    values = plain_values(tape, places)
+    return np.ones(len(places)) if values is None else values

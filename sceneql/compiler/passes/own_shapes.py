@@ -1,4 +1,4 @@
-"""An object that is the shape of several bodies: each but the first drives a copy of it."""
+"""Objects that are the shape of several bodies: each body but the first drives a copy."""
 
 from __future__ import annotations
 

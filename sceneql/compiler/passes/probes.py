@@ -1,7 +1,7 @@
-"""Probes outside of the objects that fields spread in and solids fill: refused before anything runs.
+"""Check of probes: each must lie inside the object in which a field spreads or which a solid fills.
 
-Objects are asked at the start, as far as the script alone tells them, by their polygons, their formulas or their boxes.
-What only a run knows, as places within a cell of the boundary, is refused by the run.
+The objects at the start are tested as far as the script determines them, by polygons, formulas or boxes. What only a
+run knows, as points within a cell of the boundary, is left to the run.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from sceneql.language.script import Script
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 
 SIDE = 5
-"""Places that are looked at along each axis, from one end of the room around a probe to the other."""
+"""Number of sample points along each axis across the tolerance around a probe."""
 
 
 def report_probes(script: Script, tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report each probe that is sure to lie outside."""
+    """Report each probe that certainly lies outside."""
     start: Any = Beginning(tasks)
     for task in tasks.values():
         for one in task.kind.probed() if isinstance(task.kind, Model) else ():
@@ -39,7 +39,7 @@ def report_probes(script: Script, tasks: Mapping[str, Task], found: Diagnostics)
 
 
 def _outside(probe: Probed, start: Any) -> str:
-    """Where its object is, in words, for a probe that is farther than its room away; else nothing."""
+    """A text that says where the object is, for a probe farther outside than tolerated; else empty."""
     import numpy as np
 
     from sceneql.field.tape.builder import TapeBuilder

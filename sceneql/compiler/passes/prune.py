@@ -1,4 +1,4 @@
-"""Pruning and scheduling are one walk: from the outputs to what they need, in the order it must run."""
+"""Pruning and scheduling in one walk: from the outputs to what they need, in the order in which it must run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def prune(
     drawn: Mapping[str, tuple[str, ...]],
     cameras: Mapping[str, str],
 ) -> tuple[dict[str, Task], dict[str, tuple[str, ...]], tuple[LeftOut, ...]]:
-    """The needed tasks, each after its needs; for each the outputs that need it; and the other tasks with reasons."""
+    """The needed tasks, each after its needs; by task the outputs that need it; the other tasks with reasons."""
     seen_by_all = [t.name for t in tasks.values() if isinstance(t.kind, Light | Overlay)]
     island_of = {name: island for island in islands for name in island.models}
     order: dict[str, Task] = {}

@@ -1,4 +1,4 @@
-"""Values of what is solved that read what is not solved but worked out from it, as an energy."""
+"""Check of values in solved systems: they may not read outputs that are computed from the state, as energies."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from sceneql.quantities.span import Span
 
 
 def report_unreadable(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
-    """Refuse values of an island's parts that read such an output of its models; of its colors nothing is solved.
+    """Report values of an island's parts that read computed outputs of its models; colors may.
 
-    What stands in the state in some scenes alone, as the center of one mass, is left to the run.
+    Outputs that are part of the state only in some scenes, as the center of a single mass, are left to the run.
     """
     for island in groups:
         acting = (*(name for name, _ in island.forces), *(name for name, _, _ in island.contacts))
@@ -34,12 +34,12 @@ def report_unreadable(tasks: Mapping[str, Task], groups: Iterable[Island], found
 
 
 def _solved_values(part: Any) -> Iterator[Value]:
-    """The values below a kind, record, list or dict, but for colors."""
+    """The values in a kind, record, list or dict at any depth, without colors."""
     if isinstance(part, BaseModel):
         for name, info in type(part).model_fields.items():
             mark = grammar_of(info)[0]
             of_cells = isinstance(mark, Quantity) and mark.shape == (None,) and mark.dimension is None
-            if not isinstance(mark, Paint) and not of_cells:  # of a field on a grid the part tells itself what fits
+            if not isinstance(mark, Paint) and not of_cells:  # values by cell are checked by the part itself
                 yield from _solved_values(getattr(part, name))
     elif isinstance(part, dict):
         for item in part.values():
@@ -52,7 +52,7 @@ def _solved_values(part: Any) -> Iterator[Value]:
 
 
 def _read(value: Value, tasks: Mapping[str, Task]) -> Iterator[Link]:
-    """The outputs that a value reads, and those that these are made of where they are formulas themselves."""
+    """The outputs that a value reads, including those read by formulas behind these."""
     stack, known = list(value.links), set[Link]()
     while stack:
         link = stack.pop()
@@ -62,7 +62,7 @@ def _read(value: Value, tasks: Mapping[str, Task]) -> Iterator[Link]:
         yield link
         kind = tasks[link.task].kind
         if isinstance(kind, Model):
-            with suppress(ScriptError):  # a velocity that the run will tell of
+            with suppress(ScriptError):  # a velocity; the run reports it
                 stack += Value(kind.formula(link.output)).links if kind.kinematic else ()
         elif isinstance(made := getattr(kind, link.output, None), Value):
             stack += made.links

@@ -1,4 +1,4 @@
-"""Lists whose length is known before the run, and too great for their object."""
+"""Check of lists whose length is known before the run and is too large for their object."""
 
 from __future__ import annotations
 

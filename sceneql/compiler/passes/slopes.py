@@ -1,4 +1,4 @@
-"""Values that an implicit solver cannot take, because they read too much of the state."""
+"""Warnings of values without derivatives, which implicit solvers need."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from sceneql.quantities.expression import Link, Symbol, each_once
 
 
 def warn_of_values(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
-    """Warn of values without derivatives: they read more than MOST_READ numbers of the state, or a sum over the run."""
+    """Warn of values without derivatives: they read more than MOST_READ entries of the state, or a tally."""
     for island in groups:
         parts = dict.fromkeys((*island.models, *(force for force, _ in island.forces)))
         solver = tasks[island.solver]
@@ -40,7 +40,7 @@ def warn_of_values(tasks: Mapping[str, Task], groups: Iterable[Island], found: D
 
 
 def _read(value: Value, tasks: Mapping[str, Task], solved: Iterable[str]) -> int | None:
-    """Count of the state's numbers that a value reads; None where a model's fields do not determine it."""
+    """Number of entries of the state that a value reads; None where a model's fields do not determine it."""
 
     def symbols(name: str, shape: tuple[int, ...]) -> Any:
         return [symbols(f"{name}.{k}", shape[1:]) for k in range(shape[0])] if shape else Symbol(name)

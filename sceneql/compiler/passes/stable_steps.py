@@ -1,4 +1,4 @@
-"""Fixed steps that the script's own numbers show to be unstable, or far too many, before anything runs."""
+"""Check of fixed steps by the script's numbers alone: unstable ones, and far too many."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ Growth = Callable[[float, float, float, float], float | None]
 """`Solver.oscillation`."""
 SLACK = 1.0 + 1e-6
 NOTABLE = 10.0
-"""Growth over the whole run from which a method that is stable at no step gives a warning."""
+"""Growth over the run from which on a method that is stable at no step gives a warning."""
 
 
 def warn_of_steps(
     script: Script, tasks: Mapping[str, Task], groups: Iterable[Island], end: float, found: Diagnostics
 ) -> None:
-    """Warn of an island's step beyond the bound that its parts' fields give; refuse more than MOST_STEPS steps.
+    """Warn of steps beyond the stability bounds of an island's parts; report more than MOST_STEPS steps.
 
-    ``end`` [s] of the run.
+    ``end``: of the run [s].
     """
     for island in groups:
         solver = tasks[island.solver]
@@ -60,9 +60,9 @@ def warn_of_steps(
 
 
 def later_bound(island: Island, tasks: Mapping[str, Task], end: float) -> tuple[float, str] | None:
-    """The largest step [s] that a solver bears of what comes after the start, and what that is; None: nothing is known.
+    """The largest stable step [s] for modes that appear only after the start, and their cause.
 
-    What the spectrum of the start tells is not among it.
+    None where none is known. Modes in the spectrum at the start are not included.
     """
     stable = _stable_steps(cast(Solver, tasks[island.solver].kind).oscillation)
     found = []
@@ -79,7 +79,7 @@ def later_bound(island: Island, tasks: Mapping[str, Task], end: float) -> tuple[
 
 
 def _modes(island: Island, tasks: Mapping[str, Task], end: float) -> Iterator[tuple[str, tuple[Oscillation, ...]]]:
-    """Each model and force by name, with bounds on its fastest oscillations."""
+    """Bounds on the fastest oscillations of each model and force, by name."""
     models = {name: cast(Model, tasks[name].kind) for name in island.models}
     scene = StaticScene({name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}, end)
     carrying = {force: cast(Interaction, tasks[force].kind).carrier() for force, _ in island.forces}
@@ -99,7 +99,7 @@ def _modes(island: Island, tasks: Mapping[str, Task], end: float) -> Iterator[tu
 
 
 def _known(modes: Callable[[], Iterable[Oscillation]]) -> tuple[Oscillation, ...]:
-    """The bounds that can be computed; where numbers over- or underflow, the run reports more."""
+    """The bounds, or none where numbers over- or underflow; the run reports more."""
     try:
         return tuple(modes())
     except ArithmeticError:
@@ -107,7 +107,7 @@ def _known(modes: Callable[[], Iterable[Oscillation]]) -> tuple[Oscillation, ...
 
 
 def _stable_steps(growth: Growth) -> Callable[[float, float, float], float]:
-    """The stable step [s] of a method by frequency, decay and turn [1/s], computed once for equal arguments."""
+    """Function that returns the stable step [s] by frequency, decay and turn [1/s]; cached."""
 
     @cache
     def stable(frequency: float, decay: float, turn: float) -> float:
@@ -125,9 +125,9 @@ def _wrong(
     end: float,
     damped: bool,
 ) -> tuple[str, bool] | None:
-    """The error of a step, None where it is stable, and whether a smaller step would be stable.
+    """The text of a warning for an unstable step, and whether a smaller one would be stable.
 
-    ``damped``: other terms may damp the oscillation.
+    None where it is stable.
     """
     scale = fastest.size
     if scale == 0.0 or not math.isfinite(scale):

@@ -1,4 +1,4 @@
-"""Models that stand in place of the objects that they are made of: a soft body is seen, and hit, not its mold."""
+"""Models that stand in place of the objects that they are made of: a soft body is seen and hit, not its mold."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ LOOKS = ("material", "color")
 
 
 def stand_ins(tasks: Mapping[str, Task]) -> dict[str, Task]:
-    """The parts, objects hidden that models alone are made of; these look like them where they do not say otherwise."""
+    """The parts, with objects hidden that only models are made of; these models take over their material and color."""
     made = {task.name: _shapes(task) for task in tasks.values() if isinstance(task.kind, Model)}
     others = {need for task in tasks.values() if not made.get(task.name) for need in task.needs}
     result = dict(tasks)
@@ -33,6 +33,6 @@ def stand_ins(tasks: Mapping[str, Task]) -> dict[str, Task]:
 
 
 def _shapes(task: Task) -> tuple[Ref, ...]:
-    """The objects that a model is made of that draws itself: maps of fields stand in place where they are added."""
+    """The objects of which a model is made that draws itself; for models shown by field maps none."""
     assert isinstance(task.kind, Model)
     return () if task.kind.shows(task.name) is not None else tuple(task.kind.shown_in_place_of())

@@ -15,10 +15,11 @@ PLACE = ("position", "rotation")
 
 
 def touchable(tasks: Mapping[str, Task], found: Diagnostics | None = None) -> tuple[str, ...]:
-    """Names of the objects with an inside that no model drives; ``found`` gets a warning for each that is left out.
+    """Names of the objects that a contact touches by default; ``found`` gets a warning for each that is left out.
 
-    Left out without a warning: members of others, hidden objects that models or objects are made of, and objects that
-    have no inside or are drawn where a model is (a trail, the surface of a liquid).
+    They have an inside, and no model drives them. Left out without a warning: members of others, hidden objects that
+    models or objects are made of, and objects that have no inside or are drawn where a model is (a trail, the surface
+    of a liquid).
     """
     objects = [t for t in tasks.values() if isinstance(t.kind, Object)]
     models = [t for t in tasks.values() if isinstance(t.kind, Model)]
@@ -53,7 +54,10 @@ def touchable(tasks: Mapping[str, Task], found: Diagnostics | None = None) -> tu
 
 
 def no_collider(task: Task, tasks: Mapping[str, Task]) -> str | None:
-    """Why an object that a contact names cannot be collided with, as far as the script tells; None where it can."""
+    """The reason why an object that a contact names cannot be collided with, as far as the script tells.
+
+    None where it can.
+    """
     if not isinstance(task.kind, Object) or type(task.kind).collider is not Object.collider:
         return None
     hollow = without_inside(task, tasks)
@@ -72,7 +76,7 @@ def _members(task: Task, tasks: Mapping[str, Task]) -> list[Task]:
 
 
 def _has_inside(task: Task, tasks: Mapping[str, Task]) -> bool:
-    """Whether it has a collider of its own, or it and all of its members have a field."""
+    """Whether an object has a collider of its own, or it and all of its members have an implicit field."""
 
     kind = task.kind
     assert isinstance(kind, Object)
@@ -80,7 +84,10 @@ def _has_inside(task: Task, tasks: Mapping[str, Task]) -> bool:
 
 
 def _changes_shape(task: Task, tasks: Mapping[str, Task]) -> bool:
-    """Whether values vary that a contact cannot follow: all but those of its placement, unless the word `collides`."""
+    """Whether an object changes in time in a way that contacts cannot follow: other than by its placement.
+
+    Never where its word `collides`.
+    """
 
     def varying(one: Task) -> set[str]:
         return {name for name, value in one.kind if isinstance(value, Value | Formula) and not value.constant}

@@ -1,4 +1,4 @@
-"""What a flow carries moves as that flow: refused before anything runs where there is none, or what it cannot carry."""
+"""Check of models carried by flows: whether there is such a flow, only one, and it can carry them."""
 
 from __future__ import annotations
 
@@ -12,10 +12,9 @@ from sceneql.quantities.diagnostic import Diagnostics, Note
 def report_carried(
     models: Iterable[Task], forces: Mapping[str, Sequence[str]], tasks: Mapping[str, Task], found: Diagnostics
 ) -> None:
-    """Report skins that no force has a flow carry, what two have, such forces on other models, and ties on what they
-    carry.
+    """Report skins without a flow, models with two, models that no flow can carry, and ties on carried models.
 
-    ``forces``: by force and tie the models that it acts on.
+    ``forces``: the models that each force and tie acts on.
     """
     carriers: dict[str, list[Task]] = {}
     for name, targets in forces.items():
@@ -43,7 +42,7 @@ def report_carried(
     for task in models:
         by = carriers.get(task.name, [])
         skin = isinstance(task.kind, Model) and task.kind.carried
-        if skin and not by and not found.errors:  # a force that is refused is not among these
+        if skin and not by and not found.errors:  # refused forces are missing in `by`
             text = f"no flow carries '{task.name}', and by itself it does not move"
             help = f"write `forces: [{{immersion: {{on: [{task.name}], in: ...}}}}]` with the name of a flow"
             found.error("not-carried", text, task.span, help=help)

@@ -1,4 +1,4 @@
-"""Objects whose shape a model takes as it is at the start must not change it: refused before anything runs."""
+"""Check of objects whose shape at the start a model takes: the shape must not change."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PLACES = ("position", "rotation")
 
 
 def report_moving(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Report values that vary in time of objects whose shape a model takes, and of their members; and bodies there."""
+    """Report time-varying values of objects whose shape a model takes, and of their members; and bodies there."""
     for task in tasks.values():
         if not isinstance(task.kind, Model):
             continue
@@ -39,7 +39,7 @@ def report_moving(tasks: Mapping[str, Task], found: Diagnostics) -> None:
 
 
 def _varying(task: Task, tasks: Mapping[str, Task]) -> Iterator[tuple[str, str, Value]]:
-    """The object, field and value of each that varies in time, but of fields that all objects have (how they look)."""
+    """(object, field, value) of each value that varies in time, except fields that all objects have (their look)."""
     stack, seen = [task], set[str]()
     while stack:
         one = stack.pop()

@@ -1,4 +1,4 @@
-"""Models that are left out since all of their objects are hidden: most likely somebody wanted to see them."""
+"""Warnings of models that are left out because all of their objects are hidden."""
 
 from __future__ import annotations
 

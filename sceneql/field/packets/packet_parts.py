@@ -1,4 +1,4 @@
-"""The parts of a tape in float32, in the layout of packet_rows.
+"""The parts of a tape converted to float32 columns, in the layout of packet_rows.
 
 Imports numpy: to be imported by the function that needs it.
 """
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 BLUR = 4.0e-7
-"""Rounding of a place in float32, six half units in the last place of the terms of the sum."""
+"""Rounding error of a position in float32, relative to the sum of its terms: six half units in the last place."""
 MORE = 1.0 + 8.0e-6
-"""Factor that makes upper bounds safe from rounding."""
+"""Factor that keeps upper bounds valid after rounding to float32."""
 
 
 def density_columns(parts: Floats) -> NDArray[float32]:
-    """(PART, p) of the rows (p, 8) of a DENSITY."""
+    """Columns (PART, p) of the p parts of an operation DENSITY, from its rows (p, 8)."""
     out = np.zeros((rows.PART, len(parts)))
     a, b, radius = parts[:, :3], parts[:, 3:6], parts[:, 6]
     _place(out, a, b - a, radius, BLUR * (np.abs(a) + np.abs(b - a)).sum(axis=1))
@@ -37,7 +37,7 @@ def density_columns(parts: Floats) -> NDArray[float32]:
 
 
 def skeleton_columns(parts: Floats) -> NDArray[float32]:
-    """(PART, r) of the rows (r, 8) of a SKELETON: two columns a part. Nodes get no reach."""
+    """Columns (PART, r) of an operation SKELETON, two a part, from its rows (r, 8). The REACH of nodes is -1."""
     first, second = parts[::2], parts[1::2]
     shape = second[:, 6]
     a, b, c = first[:, :3], first[:, 3:6], second[:, :3]
@@ -49,7 +49,7 @@ def skeleton_columns(parts: Floats) -> NDArray[float32]:
     last = np.where(~curved & ((along**2).sum(axis=1) == 0.0), first[:, 6], second[:, 3])
     radii = np.stack([first[:, 6], last, np.where(curved, second[:, 7], first[:, 6])])
     small, large = radii.min(axis=0), radii.max(axis=0)
-    with np.errstate(all="ignore"):  # nodes
+    with np.errstate(all="ignore"):  # rows of nodes give inf and NaN, overwritten below
         worse = np.where(flat, second[:, 7], 1.0)
         _place(one, a, along, small, BLUR * worse * (np.abs(a) + np.abs(along) + np.abs(across)).sum(axis=1))
         one[rows.WEIGHT] = first[:, 7]
@@ -79,7 +79,7 @@ def skeleton_columns(parts: Floats) -> NDArray[float32]:
 
 
 def point_blocks(parts: Floats) -> NDArray[float32]:
-    """The points of a SKELETON of nothing else, rows (r, 8), as point_blocks_kernels has them."""
+    """Columns, in the layout of point_blocks_kernels, of a SKELETON whose parts are all points; ``parts`` (r, 8)."""
     places = np.flatnonzero(parts[1::2, 6] != NODE) * 2
     points = parts[places]
     reach = points[:, 6] + blocks.ROUNDED * (np.abs(points[:, :3]).sum(axis=1) + points[:, 6])
@@ -100,7 +100,7 @@ def point_blocks(parts: Floats) -> NDArray[float32]:
 
 
 def _place(out: Floats, a: Floats, along: Floats, radius: Floats, blur: Floats) -> None:
-    """Fill the rows of ends a, axes (p, 3), radii and rounding."""
+    """Fill the rows of ends a (p, 3), axes ``along`` (p, 3), radii (p,) and rounding errors ``blur`` (p,)."""
     length2 = (along**2).sum(axis=1)
     out[rows.AX : rows.AX + 3], out[rows.SX : rows.SX + 3] = a.T, along.T
     out[rows.INVERSE], out[rows.RADIUS], out[rows.BLUR] = 1.0 / radius**2, radius, blur
@@ -108,7 +108,7 @@ def _place(out: Floats, a: Floats, along: Floats, radius: Floats, blur: Floats) 
 
 
 def _enclose(out: Floats, corners: Floats, radius: Floats) -> Floats:
-    """Fill the rows of bounding boxes of corners (k, p, 3) and of REACH; returns the square root of REACH."""
+    """Fill the rows of the bounding boxes of corners (k, p, 3) and of REACH; returns the square root of REACH (p,)."""
     for axis in range(3):
         out[rows.LOW_X + 2 * axis] = corners[:, :, axis].min(axis=0)
         out[rows.HIGH_X + 2 * axis] = corners[:, :, axis].max(axis=0)
@@ -118,7 +118,7 @@ def _enclose(out: Floats, corners: Floats, radius: Floats) -> Floats:
 
 
 def _single(out: Floats) -> NDArray[float32]:
-    """As float32; numbers too large for it become infinite, and nothing is then claimed."""
+    """The array as float32. Too large numbers become infinite, for which the kernels claim no bound."""
     with np.errstate(over="ignore"):
         single: NDArray[float32] = out.astype(np.float32)
     return single

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 def single_parts(tape: Tape) -> NDArray[float32]:
-    """The parts of a tape in float32, padded by some columns, since vectors are loaded whole."""
+    """The parts of a tape as columns of packet_rows, padded by VECTOR columns, since kernels load whole vectors."""
     out = lined((PART, len(tape.parts) + VECTOR), np.float32)
     for op, start, stop, _ in tape.code.tolist():
         if op in OF_PARTS:
@@ -42,10 +42,10 @@ def single_parts(tape: Tape) -> NDArray[float32]:
 
 
 def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: Floats) -> Floats:
-    """(4, n): c0, c1, e and the status of f on segments o + t d, t in [t0, t1] (n,), of rays (n, 3).
+    """(4, n) enclosures c0, c1, e and status of f on segments o + t d, t in [t0, t1] (n,), of n rays.
 
-    f lies in c0 + c1 tau +- e, t = (t0 + t1)/2 + tau (t1 - t0)/2, wherever it is defined there; status is WHOLE,
-    PARTIAL or NOWHERE. Nothing is claimed where c0, c1 or e is not finite.
+    f lies in c0 + c1 tau +- e wherever it is defined, with t = (t0 + t1)/2 + tau (t1 - t0)/2, |tau| <= 1. The status is
+    WHOLE, PARTIAL or NOWHERE. Where c0, c1 or e is not finite, there is no bound.
     """
     from sceneql.field.enclose.enclosures_kernels import enclose_rays
 
@@ -58,17 +58,17 @@ def enclosures(tape: Tape, origins: Floats, directions: Floats, t0: Floats, t1: 
 
 
 def plan_of(tape: Tape) -> NDArray[int64]:
-    """How packets find roots of a tape f, max(f, g) or a positive multiple: its form, as their kernels read it.
+    """The form of a tape f or max(f, g), up to positive factors, by which packet kernels find its roots.
 
-    (row of the density D, index of c, row of g, row of the polynomial p), -1 for rows that the form has not; then for p
-    the degrees of the rows up to it and the offsets of their coefficients. For a tape of another form ``Memory``
-    appends the rows by which rays are clipped.
+    (row of the density D, index of its constant c, row of g, row of the polynomial p), -1 for rows that the form lacks:
+    f is c - D or p. For a polynomial follow the degrees of the rows up to p, and the offsets of their coefficients. To
+    the plan of any other tape ``Memory`` appends the rows by which rays are clipped.
     """
     last = without_factor(tape, len(tape.code) - 1)
     rows = [last]
     if tape.code[last, 0] == MAX:
         rows = [without_factor(tape, int(row)) for row in tape.code[last, 1:3]]
-    # Only one row of parts can be gathered for a bundle.
+    # The kernels gather the parts near a bundle for one row only.
     alone = sum(int(op) in OF_PARTS for op in tape.code[:, 0]) == 1
     turns = list(zip(rows, [*rows[1:], *rows[:1]] if len(rows) > 1 else [-1], strict=True))
     for row, other in turns:
@@ -82,14 +82,14 @@ def plan_of(tape: Tape) -> NDArray[int64]:
 
 
 def others_of(plan: NDArray[int64]) -> list[int]:
-    """The rows of a tape that must be negative at the roots of its plan."""
+    """The rows of a tape that must be negative at a root of the plan's form for it to be a root of the tape."""
     if plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0:
         return [int(row) for row in plan[POLYNOMIAL + 1 :]]
     return [int(row) for row in plan[[density_roots_kernels.OTHER]] if row >= 0]
 
 
 def room_for(plan: NDArray[int64]) -> int:
-    """Numbers of working memory for the polynomials of a plan: see polynomial_steps_kernels."""
+    """Size of the working memory [numbers] for the polynomials of a plan: see polynomial_steps_kernels."""
     rows = int(plan[POLYNOMIAL]) + 1
     if rows == 0:
         return ROWS
@@ -98,15 +98,15 @@ def room_for(plan: NDArray[int64]) -> int:
 
 
 CACHE_LINE = 64
-"""Bytes: a vector across two cache lines is read and written at half the speed."""
+"""[bytes]; a vector that crosses a cache line is read and written at half the speed."""
 
 
 STAGGER = 8
-"""Unused columns: rows whose starts are powers of two apart would evict each other from the first-level cache."""
+"""Unused columns of an array, since rows a power of two apart would evict each other from the first-level cache."""
 
 
 def lined(shape: tuple[int, ...] | int, dtype: Any = np.float64) -> NDArray[Any]:
-    """Zeros that start at a cache line."""
+    """An array of zeros aligned to a cache line."""
     size = int(np.prod(shape)) * np.dtype(dtype).itemsize
     raw = np.zeros(size + CACHE_LINE, dtype=np.uint8)
     first = -raw.ctypes.data % CACHE_LINE
@@ -117,13 +117,13 @@ def lined(shape: tuple[int, ...] | int, dtype: Any = np.float64) -> NDArray[Any]
 class Memory:
     """One thread's working memory for bundles of up to ``count`` rays against a tape.
 
-    Rays are expected to be clipped by the rows ``cut`` of the tape (see ``clips.clip_rows``); since clipping rounds,
-    these rows are tested at each root. Rays that are not clipped are correct as well, but take the certified routine.
+    Rays should be clipped by the rows ``cut`` of the tape (see ``clips.clip_rows``); since clipping rounds, these rows
+    are tested at each root. Roots of rays that are not clipped are correct too, but take the slower certified search.
     """
 
     def __init__(self, tape: Tape, count: int, cut: Sequence[int] = ()) -> None:
         whole = OCTET * GROUP
-        count = -(-count // whole) * whole  # lanes beyond the rays are computed too
+        count = -(-count // whole) * whole  # whole vectors: lanes beyond the rays are computed too
         rows = len(tape.code)
         self.tape = tape
         self.rays = lined((ray_rows.RAY, count))
@@ -139,10 +139,10 @@ class Memory:
         self.asked, self.queue = lined((ray_rows.ASK, count), single), lined(count, np.int64)
         plan = plan_of(tape)
         enclosed = plan[density_roots_kernels.ROW_OF] < 0 and plan[POLYNOMIAL] < 0
-        # A tape of an exact form needs no enclosures.
+        # Roots of a density or polynomial are found without enclosures of all parts.
         self.singles = single_parts(tape) if enclosed else lined((PART, VECTOR), single)
         self.blocks: NDArray[float32] | None = None
-        """Of a skeleton of points, as point_blocks_kernels has it."""
+        """Columns of point_blocks_kernels where the tape's form is a skeleton of points."""
         own = plan[density_roots_kernels.ROW_OF]
         if own >= 0 and tape.code[own, 0] == SKELETON:
             self.singles = self.blocks = point_blocks(tape.parts)
@@ -168,7 +168,7 @@ class Memory:
         return *packet, self.rays, self.asked, self.queue
 
     def settle(self, count: int, anywhere: bool) -> tuple[int, int]:
-        """First roots of the first ``count`` of ``rays`` into ``found``: see packet_roots_kernels.first_roots."""
+        """Write first roots of the first ``count`` of ``rays`` to ``found``: see packet_roots_kernels.first_roots."""
         counts: tuple[int, int] = packet_roots_kernels.first_roots(
             *self.bundle, count, anywhere, self.found, *self.rest
         )

@@ -19,6 +19,9 @@ SLABS = 8
 """Slabs of a beam."""
 FEW = 8
 """Up to this number beams are not joined for a first test."""
+STEADY, TURNS = 1e-9, 8
+"""Change of a root, relative to the length of its search, at which its polish ends; steps after which the certified
+routine takes over."""
 
 
 @inlined
@@ -42,17 +45,19 @@ def enqueue(rays, count, groups, asked, found, queue):
 
 @inlined
 def polish(code, constants, parts, registers, points, rays, queue, count, found, values, ways):
-    """A Newton step on all queued hits, in float64, and a secant step.
+    """A Newton step on all queued hits, in float64, and secant steps until they are STEADY; the order of hits changes.
 
-    The slope of the first is that of the last enclosure, a mean over its segment. ``values`` and ``ways`` (n,) are
-    working memory.
+    The slope of the first is that of the last enclosure, a mean over its segment. Across an edge, where a part's
+    density ends or one of two solids takes over, a secant's slope is a mean too: the next step tells. ``values`` and
+    ``ways`` (n,) are working memory.
     """
     width = points.shape[1]
     for start in range(0, count, width):
-        n = min(width, count - start)
+        moving = min(width, count - start)
         own, times = queue[start:], registers[0]
-        for turn in range(2):
-            begins, roots = rays[6], found[FOUND_ROOT]
+        begins, ends, roots = rays[6], rays[7], found[FOUND_ROOT]
+        for turn in range(TURNS):
+            n = moving
             for i in range(n):
                 j = np.uint64(own[i])
                 times[i] = begins[j] + roots[j]
@@ -63,20 +68,26 @@ def polish(code, constants, parts, registers, points, rays, queue, count, found,
                     place[i] = o[j] + times[i] * d[j]
             evaluate(code, constants, parts, registers, points, n)
             last = registers[code.shape[0] - 1]
+            moving = 0
             for i in range(n):
-                j = np.uint64(queue[start + i])
+                j = np.uint64(own[i])
                 step = last[i] / found[FOUND_SLOPE, j]
                 rise = last[i] - values[j]
-                if turn == 1 and ways[j] != ZERO and rise * ways[j] * found[FOUND_SLOPE, j] > 0.0:
+                if turn > 0 and ways[j] != ZERO and rise * ways[j] * found[FOUND_SLOPE, j] > 0.0:
                     step = last[i] * ways[j] / rise
-                root = min(max(found[FOUND_ROOT, j] - step, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
-                values[j], ways[j] = last[i], root - found[FOUND_ROOT, j]
+                root = min(max(roots[j] - step, found[FOUND_LOW, j]), found[FOUND_HIGH, j])
+                values[j], ways[j] = last[i], root - roots[j]
+                roots[j] = root
                 left = min(abs(step), found[FOUND_HIGH, j] - found[FOUND_LOW, j])
-                if turn == 1 and not (
-                    left <= ray_rows.SETTLED * (rays[7, j] - rays[6, j]) and rays[6, j] + root < rays[7, j]
-                ):
+                if turn == 0 or not left <= STEADY * (ends[j] - begins[j]):
+                    own[i], own[moving] = own[moving], own[i]
+                    moving += 1
+                elif not begins[j] + root < ends[j]:
                     found[FOUND_STATUS, j] = ops.UNDECIDED
-                found[FOUND_ROOT, j] = root
+            if moving == 0:
+                break
+        for i in range(moving):
+            found[FOUND_STATUS, np.uint64(own[i])] = ops.UNDECIDED
 
 
 @inlined

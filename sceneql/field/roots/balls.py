@@ -1,4 +1,4 @@
-"""A ball outside of which a field is proved to be positive, so that tiles of a picture beside it are passed at once.
+"""Bounding balls of solids {f < 0}, so that a renderer skips the tiles of a picture outside the ball.
 
 Imports numpy: to be imported by the function that needs it.
 """
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Tape
 
 ROUNDED = 1e-9
-"""Share of its size by which a ball is larger than computed."""
+"""Relative enlargement of a ball, for rounding."""
 
 
 def ball_around(tape: Tape) -> Floats:
-    """(4,) center and radius [m] of the smallest known ball with the solid {f < 0}; the radius is inf where none is."""
+    """(4,) center and radius [m] of the smallest ball found that contains the solid {f < 0}; radius inf without any."""
     found = [ball for clip in clips_of(tape) if (ball := _of_quadric(clip)) is not None]
     own, matrix = in_own_coordinates(tape)
     for branch in branches(own):
@@ -38,7 +38,7 @@ def ball_around(tape: Tape) -> Floats:
 
 
 def _of_quadric(clip: Floats) -> Floats | None:
-    """The ball around an ellipsoid {q < 0}; None for other quadrics."""
+    """Center and radius (4,) of the ball around an ellipsoid {q < 0}; None for another quadric. ``clip`` (10,): q."""
     form = np.diag(clip[:3])
     form[[0, 1, 2], [1, 2, 0]] = form[[1, 2, 0], [0, 1, 2]] = 0.5 * clip[3:LINEAR]
     least, *_, most = np.linalg.eigvalsh(form)
@@ -49,7 +49,10 @@ def _of_quadric(clip: Floats) -> Floats | None:
 
 
 def _of_points(tape: Tape, row: int, matrix: Floats) -> Floats:
-    """The ball around all points' reach; ``matrix`` (3, 4) maps the world to their coordinates."""
+    """Center and radius (4,), in the world, of a ball around the supports of a density's points.
+
+    ``row``: of the density; ``matrix`` (3, 4) maps the world to the points' coordinates.
+    """
     kind, start, stop, _ = tape.code[row]
     parts = tape.parts[start:stop]
     points = parts if kind == DENSITY else plain_points(parts)

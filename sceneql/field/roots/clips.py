@@ -1,4 +1,4 @@
-"""Quadrics outside of which a field is proved to be positive, so that rays are clipped to them before the search.
+"""Bounding quadrics of solids {f < 0}, to which rays are clipped before roots are searched.
 
 Imports numpy: to be imported by the function that needs it.
 """
@@ -17,32 +17,32 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Tape
 
 PRODUCTS = (0, 1, 2, 0, 1, 2), (0, 1, 2, 1, 2, 0)
-"""Pairs of axes of the first six coefficients: squares, then xy, yz and zx."""
+"""Axes of the first six coefficients: x^2, y^2, z^2, xy, yz, zx."""
 LINEAR, LAST = 6, 9
-"""Index of the coefficient of x, followed by y and z; index of the constant."""
+"""Indices of the coefficient of x, which y and z follow, and of the constant."""
 LARGEST = 1e100
-"""Largest coefficient of a clip, so that its values stay finite wherever solids can be."""
+"""Largest coefficient of a clip, so that its values stay finite at all places where solids may lie."""
 
 
 def clips_of(tape: Tape) -> Floats:
-    """(k, 10) coefficients of polynomials q of degree 1 or 2 with q < 0 wherever the tape is negative.
+    """(k, 10) coefficients of k polynomials q of degree 1 or 2, with q < 0 wherever f < 0.
 
-    They are the coefficients of x^2, y^2, z^2, xy, yz, zx, x, y, z and 1, with rounding errors.
+    In the order x^2, y^2, z^2, xy, yz, zx, x, y, z, 1; computed with rounding errors.
     """
     return np.array([quadric for quadric, _ in _clips(tape)]).reshape(-1, LAST + 1)
 
 
 def clip_rows(tape: Tape) -> list[int]:
-    """Rows of convex clips: they are negative on rays clipped by ``clips_of``, but for rounding at the rays' ends.
+    """Rows of the tape that are convex clips: negative on rays clipped by ``clips_of``, but for rounding at the ends.
 
-    At least one other row of the tape's max is left.
+    At least one branch of the tape is not among them.
     """
     rows = [row for quadric, row in _clips(tape) if _convex(quadric)]
     return rows if len(rows) < len(branches(tape)) else rows[1:]
 
 
 def branches(tape: Tape) -> list[int]:
-    """Rows whose max is the tape, up to positive factors."""
+    """Rows of a tape that is the maximum of several: those operands, up to positive factors; else its last row."""
     found = []
     rows = [len(tape.code) - 1]
     while rows:
@@ -57,7 +57,7 @@ def branches(tape: Tape) -> list[int]:
 
 @lru_cache(maxsize=16)
 def _clips(tape: Tape) -> list[tuple[Floats, int]]:
-    """Polynomials as of ``clips_of``, each with the row whose sign it has."""
+    """Polynomials (10,) as of ``clips_of``, each with the row of the tape whose sign it has."""
     found = []
     for branch in branches(tape):
         row, radius = root_of(tape, without_factor(tape, branch))
@@ -71,7 +71,7 @@ def _clips(tape: Tape) -> list[tuple[Floats, int]]:
 
 
 def _convex(quadric: Floats) -> bool:
-    """Whether the region where a polynomial of degree 2 is negative is convex."""
+    """Whether a polynomial of degree 2 is convex, and so the region where it is negative."""
     form = np.diag(quadric[:3])
     form[[0, 1, 2], [1, 2, 0]] = form[[1, 2, 0], [0, 1, 2]] = 0.5 * quadric[3:LINEAR]
     values = np.linalg.eigvalsh(form)
@@ -79,7 +79,7 @@ def _convex(quadric: Floats) -> bool:
 
 
 def _expanded(tape: Tape, row: int) -> Floats | None:
-    """Coefficients (10,) of a row; None unless it is a polynomial of degree 2 or less."""
+    """Coefficients (10,) of a row as a polynomial in x, y, z; None unless it is one of degree 2 or less."""
     op, left, right, _ = map(int, tape.code[row])
     if op == ops.CONSTANT or op in (ops.X, ops.Y, ops.Z):
         plain: Floats = np.zeros(LAST + 1)
@@ -102,7 +102,7 @@ def _expanded(tape: Tape, row: int) -> Floats | None:
 
 
 def _product(a: Floats, b: Floats) -> Floats | None:
-    """Product of two polynomials, one a constant or both of degree 1; else None."""
+    """Product (10,) of two polynomials (10,); None if its degree might exceed 2."""
     if not b[:LAST].any():
         a, b = b, a
     if not a[:LAST].any():

@@ -1,4 +1,4 @@
-"""Builds tapes: straight-line code with common subexpressions shared, constants folded and powers lowered."""
+"""A builder of tapes, straight-line code of a field: shares common subexpressions, folds constants, lowers powers."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ COMMUTATIVE = {ops.ADD, ops.MUL, ops.MIN, ops.MAX}
 WHOLE_OF_WHOLE = {ops.ADD, ops.SUB, ops.MUL, ops.MIN, ops.MAX, ops.NEG, ops.ABS, ops.SQUARE}
 """Operations that map whole numbers to whole numbers."""
 LARGEST_POWER = 1024
-"""Integer powers up to this one become multiplications."""
+"""Largest integer exponent of a power that is lowered to multiplications."""
 FEW = 128
-"""Up to this number plain parts are evaluated one by one; more go into a hierarchy of boxes."""
+"""Most plain parts that are evaluated one by one (DENSITY); more are put into a hierarchy of boxes (SKELETON)."""
 
 
 def computes(name: str) -> bool:
@@ -31,7 +31,7 @@ def computes(name: str) -> bool:
 
 
 class TapeBuilder:
-    """A tape in the making. Registers are integers; ``x``, ``y``, ``z`` hold the point where f is asked."""
+    """A tape under construction. Registers are integers; ``x``, ``y``, ``z`` hold the point at which f is evaluated."""
 
     def __init__(self) -> None:
         self._rows: list[Row] = [(ops.X, 0, 0, 0), (ops.Y, 0, 0, 0), (ops.Z, 0, 0, 0)]
@@ -63,11 +63,11 @@ class TapeBuilder:
         return self._constants[index] if op == ops.CONSTANT else None
 
     def op(self, name: str, *registers: int) -> int:
-        """Register of a scalar operation on registers. ValueError for a name that no tape can compute.
+        """Register of a scalar operation on registers. Raises ValueError for a name that no tape can compute.
 
-        `min` and `max` take any number. The comparisons, `step` and `where` are made by arithmetic, hence undefined
-        where any of their arguments is, also in the branch not taken. `a^b` with an exponent that varies is defined
-        where a > 0, for a < 0 too if only whole numbers can be its exponent.
+        `min` and `max` take any number of registers. Comparisons, `step` and `where` are lowered to arithmetic, hence
+        undefined where any argument is, even in the branch not taken. `a^b` with a varying exponent is defined for
+        a > 0, and for a < 0 only where the exponent is known to be an integer.
         """
         if name in LOWERED:
             return LOWERED[name](self, *registers)
@@ -96,7 +96,7 @@ class TapeBuilder:
         return self._emit((code, a, b, 0))
 
     def _whole(self, register: int) -> bool:
-        """Whether a register holds whole numbers wherever it is defined."""
+        """Whether a register is known to hold integers wherever it is defined."""
         left, seen = [register], set()
         while left:
             k = left.pop()
@@ -111,7 +111,7 @@ class TapeBuilder:
         return True
 
     def _folded(self, name: str, registers: tuple[int, ...]) -> int | None:
-        """The constant register of an operation on constants, where it has a finite value."""
+        """Register of the value of an operation on constants; None for other operands or a value that is not finite."""
         known = [value for value in map(self.number, registers) if value is not None]
         if len(known) < len(registers):
             return None
@@ -122,7 +122,7 @@ class TapeBuilder:
         return self.constant(value) if math.isfinite(value) else None
 
     def _simplified(self, name: str, a: int, b: int) -> int | None:
-        """The register of a simpler expression equal to a op b, also for NaN and infinity; None without one."""
+        """Register of a simpler expression equal to a op b, also for NaN and infinity; None where there is none."""
         left, right = self.number(a), self.number(b)
         if name == "mul" and a == b:
             return self.op("square", a)
@@ -141,7 +141,7 @@ class TapeBuilder:
         return None
 
     def _power(self, a: int, exponent: float | None) -> int | None:
-        """Integer exponents as squares and products, half-integer ones with a square root; None for all others."""
+        """Register of a power by squares and products, with a root for half-integers; None for other exponents."""
         if exponent is None or self.number(a) is not None or abs(exponent) > LARGEST_POWER:
             return None
         if exponent < 0.0:
@@ -163,7 +163,7 @@ class TapeBuilder:
     def expression(self, expr: Expr, symbols: Mapping[str, int]) -> int:
         """Register of a bound scalar expression whose symbols have registers in ``symbols``.
 
-        ValueError for an expression that is not scalar, KeyError for a symbol without a register.
+        Raises ValueError for an expression that is not scalar, KeyError for a symbol without a register.
         """
 
         def register(node: Expr) -> Generator[Expr, int, int]:
@@ -183,7 +183,7 @@ class TapeBuilder:
         return found
 
     def affine(self, matrix: Floats, x: int, y: int, z: int) -> tuple[int, int, int]:
-        """Registers of matrix (3, 4) applied to a point."""
+        """Registers of the point (x, y, z) mapped by an affine matrix (3, 4)."""
 
         def row(numbers: Sequence[float]) -> int:
             total = self.constant(numbers[3])
@@ -204,7 +204,7 @@ class TapeBuilder:
         return self._of_parts(ops.DENSITY, parts, x, y, z)
 
     def skeleton(self, skeleton: Skeleton, x: int, y: int, z: int) -> int:
-        """Register of the density of a skeleton at a point; a few plain parts become the cheaper operation DENSITY."""
+        """Register of the density of a skeleton at a point; up to FEW plain parts become the cheaper DENSITY."""
         plain = skeleton.plain()
         if plain.sum() > FEW:
             plain[:] = False
@@ -232,7 +232,7 @@ class TapeBuilder:
         return len(self._rows) - 1
 
     def finish(self, *registers: int) -> Tape:
-        """The tape whose last rows are the registers given (one for f, several for paint); unneeded operations go."""
+        """The tape whose last rows are the given registers: one for f, three for paint. Drops unused operations."""
         import numpy as np
 
         from sceneql.frame import Tape
@@ -274,7 +274,7 @@ class TapeBuilder:
         )
 
     def _twin(self, register: int, place: Mapping[int, int]) -> int:
-        """Row in the finished tape of an earlier cosine of a sine's angle, or sine of a cosine's; 0 for none."""
+        """For a sine (cosine), the finished tape's row of an earlier cosine (sine) of the same angle; 0 for none."""
         op, left, right, third = self._rows[register]
         if op not in (ops.SIN, ops.COS):
             return 0

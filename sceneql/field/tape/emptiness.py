@@ -1,4 +1,4 @@
-"""Proofs that a tape's solid {f < 0} or surface {f = 0} has nothing in a box, for Python callers.
+"""Proofs that a box contains no point of a tape's solid {f < 0} or surface {f = 0}, for Python callers.
 
 Imports numpy and numba: to be imported by the function that needs it.
 """
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
     from sceneql.frame import Tape
 
 BOXES = 4096
-"""Boxes that a proof may look at; after them the property counts as not proved."""
+"""Most boxes that a proof evaluates; beyond that the property counts as not proved."""
 SHALLOW = 1e-12
-"""Depth, relative to the lesser of the box's size and the median |f| in it, below which a solid counts as empty."""
+"""Largest -f of a solid that counts as empty, relative to the smaller of the box's size and the median |f| in it."""
 PLACES = 500
-"""At which it is asked what rounding does."""
+"""Random points at which bounds of rounding errors are evaluated."""
 RAYS = 16
-"""Along an axis, in each of the others, by which what is shallow is looked for."""
+"""Rays parallel to an axis, along each of the other two axes, by which shallow solids are searched."""
 
 Corner = tuple[float, float, float]
 
 
 def proved_empty(tape: Tape, low: Corner, high: Corner) -> bool:
-    """Whether f is proved to be nowhere negative, where it is defined at all, in the box low..high [m].
+    """Whether f is proved to be nowhere negative, where it is defined, in the box low..high [m].
 
-    f may fall below 0 by SHALLOW, for rounding where it touches 0 from above.
+    Values down to -SHALLOW count as 0: rounding may cause them where f touches 0 from above.
     """
     slack = SHALLOW * _depth(tape, low, high)
     return _all_settled(
@@ -48,12 +48,12 @@ def proved_empty(tape: Tape, low: Corner, high: Corner) -> bool:
 
 
 def _negative(value: float, status: int) -> bool:
-    """Whether f in the middle of a box refutes that it is nowhere negative."""
+    """Whether the value of f at the center of a box is a counterexample to f >= 0."""
     return value < 0.0
 
 
 def why_empty(tape: Tape, low: Corner, high: Corner) -> str:
-    """What is proved of f where rays along the axes meet no solid in the box low..high [m]; "" where nothing is."""
+    """Why the box low..high [m] shows no solid, as a clause about f; "" where nothing is proved, or a ray meets one."""
     if not proved_empty(tape, low, high):
         return ""
     if _all_settled(tape, low, high, lambda least, most, status: status == NOWHERE or least >= 0.0, _negative):
@@ -111,7 +111,7 @@ def bottomless(tape: Tape, low: tuple[float, ...], high: tuple[float, ...]) -> b
 
 
 def blurred(tape: Tape, low: Corner, high: Corner) -> float:
-    """Share of places in the box low..high [m] at which bounds of rounding leave the sign of f open."""
+    """Share of PLACES points in the box low..high [m] at which bounds of rounding errors leave the sign of f open."""
     places = np.random.default_rng(0).uniform(low, high, (PLACES, 3)).tolist()
     program = (tape.code, tape.constants, tape.parts, scratch(tape))
     bounds = [interval_kernels.box(*program, x, x, y, y, z, z) for x, y, z in places]
@@ -119,7 +119,7 @@ def blurred(tape: Tape, low: Corner, high: Corner) -> float:
 
 
 def _depth(tape: Tape, low: Corner, high: Corner) -> float:
-    """The size [m] of the box low..high, or the median of |f| in it where that is less."""
+    """The smaller of the size [m] of the box low..high and the median of |f| on a lattice in it."""
     values = np.abs(field_values(tape, lattice(low, high)))
     values = values[np.isfinite(values)]
     size = max(b - a for a, b in zip(low, high, strict=True))
@@ -133,10 +133,11 @@ def _all_settled(
     settled: Callable[[float, float, int], bool],
     refuted: Callable[[float, int], bool],
 ) -> bool:
-    """Branch and bound (Land and Doig 1960): whether all boxes are proved, by halving the one of lowest bound first.
+    """Whether a property is proved in the whole box, by branch and bound (Land and Doig 1960).
 
-    ``settled`` (bounds of f in a box, status) says whether a box is proved, ``refuted`` (f in its middle, status)
-    whether it is a counterexample; status is WHOLE, PARTIAL or NOWHERE.
+    The box with the lowest bound is bisected first. ``settled`` (lower and upper bound of f in a box, status) tells
+    whether the property is proved in a box, ``refuted`` (f at its center, status) whether that is a counterexample. The
+    status is WHOLE, PARTIAL or NOWHERE.
     """
     program = (tape.code, tape.constants, tape.parts, scratch(tape))
     boxes: list[tuple[float, int, Corner, Corner]] = [(0.0, 0, low, high)]

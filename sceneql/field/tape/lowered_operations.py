@@ -1,4 +1,4 @@
-"""Operations that a tape expresses by others, and the functions that fold operations on constants."""
+"""Scalar operations that a tape computes by other operations, and the functions that fold operations on constants."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FOLD: dict[str, Callable[..., float]] = {
     "floor": math.floor,
     "sign": _sign,
 }
-"""Tape operations on numbers, to fold constants; domain errors are raised."""
+"""Tape operations as Python functions of numbers, to fold constants; they raise errors outside their domains."""
 
 
 def _times(name: str, factor: float) -> Callable[[FieldBuilder, int], int]:
@@ -57,7 +57,7 @@ def _hyperbolic(tape: FieldBuilder, a: int, join: str) -> int:
 
 
 def _tanh(tape: FieldBuilder, a: int) -> int:
-    """1 - 2/(exp(2 a) + 1); from |a| = 20 on that is +-1 in float64, and exp(2 a) need not overflow."""
+    """1 - 2/(exp(2 a) + 1); a is clamped to -20..20, beyond which tanh is +-1 in float64, so exp(2 a) is finite."""
     held = tape.op("clamp", a, tape.constant(-20.0), tape.constant(20.0))
     grown = tape.op("exp", tape.op("mul", tape.constant(2.0), held))
     less = tape.op("div", tape.constant(2.0), tape.op("add", grown, tape.constant(1.0)))
@@ -122,4 +122,4 @@ LOWERED: dict[str, Callable[..., int]] = {
     "step": lambda tape, edge, a: _not(tape, _above(tape, edge, a)),
     "where": _where,
 }
-"""From the name in ``quantities.operations`` to a function (tape, *registers) -> register."""
+"""By name in ``quantities.operations``, a function (tape, *registers) -> register that emits the operation."""

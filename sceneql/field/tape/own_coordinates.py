@@ -1,6 +1,6 @@
-"""Tapes in coordinates of their own, where a tape reads x, y, z only through three affine forms of the place.
+"""A tape's own coordinates: three affine forms of x, y, z, if f depends on the point through these alone.
 
-Rays are then transformed once, in float64, instead of every point on them: a moved object costs as much as one at rest,
+Rays are then transformed once, in float64, instead of each point on them: a moved object costs as much as one at rest,
 and float32 resolves small objects far from the origin.
 
 Imports numpy: to be imported by the function that needs it.
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Tape
 
 LEAST = 1e-9
-"""Volume of three directions, relative to the product of their lengths, below which they count as coplanar."""
+"""Determinant of three unit vectors below which they count as coplanar."""
 
 
 @lru_cache(maxsize=16)
 def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
-    """(tape g, A (3, 4)) with f(p) = g(A (p, 1)); the tape itself and the identity where it has no such coordinates.
+    """(tape g, A (3, 4)) with f(p) = g(A (p, 1)); the tape itself and the identity where f has no such coordinates.
 
-    Of an object that moves as a whole g is the same at all times, number by number.
+    For an object in rigid motion g is the same at all times, with the same constants.
     """
     same = tape, np.eye(3, 4)
     forms = _affine_rows(tape)
@@ -51,14 +51,14 @@ def in_own_coordinates(tape: Tape) -> tuple[Tape, Floats]:
 
 
 def _with_its_own_constants(tape: Tape) -> Tape:
-    """A tape without the constants that its code does not read."""
+    """The tape with its unused constants removed."""
     code, of_constants = tape.code.copy(), tape.code[:, 0] == ops.CONSTANT
     read, code[of_constants, 1] = np.unique(code[of_constants, 1], return_inverse=True)
     return replace(tape, code=code, constants=tape.constants[read])
 
 
 def _affine_rows(tape: Tape) -> dict[int, Floats]:
-    """Rows that are affine in the place, a x + b y + c z + d, as (a, b, c, d)."""
+    """By row, the coefficients (a, b, c, d) of each row that is affine in the point: a x + b y + c z + d."""
     forms: dict[int, Floats] = {}
     for k, (op, left, right, _) in enumerate(tape.code.tolist()):
         if op == ops.CONSTANT:

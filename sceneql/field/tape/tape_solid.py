@@ -26,7 +26,7 @@ def scratch(tape: Tape) -> Floats:
 
 
 def field_values(tape: Tape, points: Floats) -> Floats:
-    """f at points (n, 3) [m]: (n,)."""
+    """Values (n,) of f at points (n, 3) [m]."""
     points = np.ascontiguousarray(points, dtype=np.float64)
     out = np.empty(len(points))
     tape_kernels.values(tape.code, tape.constants, tape.parts, scratch(tape), points, out)
@@ -34,7 +34,7 @@ def field_values(tape: Tape, points: Floats) -> Floats:
 
 
 def exits(tape: Tape, inner: Floats, outer: Floats) -> Floats:
-    """(n,) fractions (0..1) at which segments from inside to outside, ends (n, 3) [m], leave the solid."""
+    """Parameters (n,) in 0..1 at which segments from ``inner`` to ``outer`` points (n, 3) [m] leave the solid."""
     from sceneql.field.tape.exits_kernels import leave
 
     inner, outer = (np.ascontiguousarray(ends, dtype=np.float64) for ends in (inner, outer))
@@ -44,7 +44,7 @@ def exits(tape: Tape, inner: Floats, outer: Floats) -> Floats:
 
 
 def field_gradients(tape: Tape, points: Floats) -> Floats:
-    """Gradient of f at points (n, 3) [m]: (n, 3) [1/m]."""
+    """Gradients (n, 3) [1/m] of f at points (n, 3) [m]."""
     from sceneql.field.tape.gradient_kernels import gradient
 
     room = scratch(tape)
@@ -53,7 +53,7 @@ def field_gradients(tape: Tape, points: Floats) -> Floats:
 
 
 def many_gradients(tape: Tape, points: Floats) -> Floats:
-    """``field_gradients``, bit for bit, by the kernels of meshing, compiled by then: faster from a few points on."""
+    """As ``field_gradients``, with the same bits, by the kernels that meshing has compiled: faster for many points."""
     from sceneql.field.tape.batch_gradient_kernels import differentiate
     from sceneql.field.tape.batch_kernels import LANES
 
@@ -74,9 +74,9 @@ def cast(
     *,
     surface: bool = False,
 ) -> tuple[NDArray[np.int64], Floats]:
-    """(status, t), each (n,): the first entry of rays o + t d, t in [t0, t1], as of isolation_kernels.first_root.
+    """(status, t), each (n,), of the first entry of rays o + t d, t in [t0, t1], into the solid.
 
-    ``surface``: the first root of f instead, as of sheet_roots_kernels.surface_root.
+    By isolation_kernels.first_root; with ``surface`` of the first root of f, by sheet_roots_kernels.surface_root.
     """
     first: Any
     if surface:
@@ -97,7 +97,7 @@ def cast(
 
 
 def paint_values(tape: Tape, points: Floats) -> Floats:
-    """The last three registers of a tape at points (n, 3) [m]: (n, 3)."""
+    """Values (n, 3) of a tape's last three registers, the linear RGB of paint, at points (n, 3) [m]."""
     out = np.empty((len(points), 3))
     for start, n, registers in _by_lanes(tape, points):
         out[start : start + n] = registers[-3:, :n].T
@@ -105,7 +105,7 @@ def paint_values(tape: Tape, points: Floats) -> Floats:
 
 
 def _by_lanes(tape: Tape, points: Floats) -> Iterator[tuple[int, int, Floats]]:
-    """Registers (rows, LANES) of points (n, 3) [m], LANES at a time: (first point, number of points, registers)."""
+    """Evaluate a tape at points (n, 3) [m], LANES at a time: yields (first point, number, registers (rows, LANES))."""
     from sceneql.field.tape.batch_kernels import LANES, evaluate
 
     registers, block = np.empty((len(tape.code), LANES)), np.zeros((3, LANES))

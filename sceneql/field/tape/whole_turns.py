@@ -1,6 +1,6 @@
-"""Finds angles (ATAN2) whose cut, the jump from pi to -pi, makes no jump of the field.
+"""Angles (operation ATAN2) whose branch cut, the jump from pi to -pi, causes no jump of the field.
 
-The third operand of their rows is 1, else 0.
+The third operand of their rows is 1, that of other angles 0.
 """
 
 from __future__ import annotations
@@ -10,17 +10,17 @@ from collections.abc import Iterable, Mapping, Sequence
 from sceneql.field.tape import tape_ops as ops
 
 NEVER_BELOW = (ops.SQRT, ops.SQUARE, ops.ABS, ops.EXP)
-"""Operations with no value below zero."""
+"""Operations without negative values."""
 
 
 def up_to_whole_turns(
     rows: Sequence[tuple[int, int, int, int]], constants: Mapping[int, float], values: Iterable[int]
 ) -> set[int]:
-    """The rows of ATAN2 whose cut is no jump of the rows ``values``.
+    """The rows of ATAN2 whose branch cut causes no jump of the rows ``values``.
 
-    Either the angle may be off by a whole turn, since it reaches ``values`` only through sines and cosines, after sums,
-    negations and products with whole numbers (``constants``: row to number); or its first argument is never negative,
-    so that the angle ends at the cut instead of crossing it.
+    Either the angle affects ``values`` only through sines and cosines, with sums, negations and products with integers
+    in between (``constants``: number by row), so that a whole turn changes nothing. Or its first argument is never
+    negative, so that the angle ends at the cut instead of crossing it.
     """
     free = set(range(len(rows))) - set(values)
     for k in range(len(rows) - 1, -1, -1):

@@ -12,16 +12,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ColorKey:
-    """A map of colors, the values at its ends and those of its contours, in SI."""
+    """A color scale: color map, values [SI] at its ends and of contours, the field's name (empty for a formula)."""
 
     colors: str
     low: float
     high: float
     dimension: Dimension
     marks: tuple[float, ...]
+    name: str
 
     def ramp(self, places: Any) -> Floats:
-        """Linear RGB (n, 3) at places (n,) from 0 to 1."""
+        """Linear RGB (n, 3) at parameters (n,) from 0 (low end) to 1 (high end)."""
         from sceneql.grids.maps.colors import colored
 
         return colored(places, (0.0, 1.0), self.colors)

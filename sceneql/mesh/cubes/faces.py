@@ -1,4 +1,4 @@
-"""Curves of the surface on faces between coarse and fine cells, on either side. Imports numpy."""
+"""Where coarse and fine cells share a face: the surface's curves on it, from either side. Imports numpy."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ if TYPE_CHECKING:
 
 
 class Sides(NamedTuple):
-    """Sides of coarse triangles that lie on faces to fine cells."""
+    """Sides of coarse triangles that lie on faces shared with fine cells."""
 
     triangles: Keys
-    """(s,)"""
+    """(s,) row of the coarse triangle."""
     turns: Keys
-    """(s,) which side of the triangle: from vertex k to vertex k + 1."""
+    """(s,) number k of the side, which runs from the triangle's vertex k to vertex k + 1."""
     cells: Keys
-    """(s, 3) the coarse cell."""
+    """(s, 3) place of the coarse cell."""
     ends: Keys
-    """(s,) key of the pair of edges that it connects."""
+    """(s,) key of the pair of coarse edges that the side connects."""
 
 
 class Curves(NamedTuple):
-    """Curves of fine triangles on faces to coarse cells, directed like the sides of the coarse triangles."""
+    """Border curves of the fine triangles on faces shared with coarse cells, directed like the coarse sides there."""
 
     paths: Keys
-    """(c, n) vertices along the curve, the last repeated."""
+    """(c, n) fine vertices along the curve, padded with the last one."""
     cells: Keys
-    """(c, 3) the coarse cell."""
+    """(c, 3) place of the coarse cell."""
     ends: Keys
-    """(c,) key of the pair of coarse edges that it connects; -1 where it does not connect two."""
+    """(c,) key of the pair of coarse edges that the curve connects; -1 if it ends on one edge, or is closed."""
 
 
 def among(keys: Keys, ascending: Keys) -> NDArray[np.bool_]:
-    """(n,) whether keys are among the ascending ones, of which there must be at least one."""
+    """(n,) whether each key is in ``ascending``, a sorted array that is not empty."""
     import numpy as np
 
     at = np.minimum(np.searchsorted(ascending, keys), len(ascending) - 1)
@@ -57,7 +57,7 @@ def pair(numbers: Numbering, first: Keys, second: Keys) -> Keys:
 
 
 def face_sides(coarse: Level, kept: NDArray[np.bool_], numbers: Numbering, chosen: Keys, group: int) -> Sides:
-    """The sides of kept coarse triangles that lie on faces of the chosen groups."""
+    """The sides of the ``kept`` coarse triangles on faces of the refined groups; ``chosen``: sorted keys of these."""
     import numpy as np
 
     rows = np.flatnonzero(kept)
@@ -78,7 +78,7 @@ def face_sides(coarse: Level, kept: NDArray[np.bool_], numbers: Numbering, chose
 
 
 def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, group: int) -> Curves:
-    """The curves along the border of the fine triangles; a coarse cell's side is cut into ``parts``."""
+    """The curves along the border of the fine triangles, of which ``parts`` cells fill a coarse cell's side."""
     import numpy as np
 
     starts, stops = border(fine.triangles)
@@ -91,7 +91,7 @@ def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, gro
     cells = np.where(among(numbers.of(high // group), chosen)[:, None], low, high)
     on_edge = (fine.doubled % (2 * parts) == 0).sum(axis=1) == 2
     following = np.full(len(fine.doubled), -1)
-    # On a vertex inside a face one curve goes on; on a coarse edge several may end.
+    # Through a vertex inside a coarse face one curve passes; on a coarse edge several may end.
     through = ~on_edge[starts]
     following[starts[through]] = stops[through]
     begins = on_edge[starts]
@@ -111,7 +111,7 @@ def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, gro
 
 
 def _ends(numbers: Numbering, first: Keys, second: Keys) -> Keys:
-    """As ``pair``, but -1 where both ends are on one edge."""
+    """Numbers from ``pair``, but -1 for two ends on the same edge."""
     import numpy as np
 
     return np.where((first == second).all(axis=1), -1, pair(numbers, first, second))
@@ -126,7 +126,7 @@ def _coarse(doubled: Keys, parts: int) -> Keys:
 
 
 def border(triangles: Ints) -> tuple[Keys, Keys]:
-    """(starts, stops) of the sides that belong to one triangle, reversed: as a neighbor would have them."""
+    """(starts, stops) vertices of the sides with a triangle on one side only, reversed as the missing one has them."""
     import numpy as np
 
     starts = triangles[:, [0, 1, 2]].ravel().astype(np.int64)

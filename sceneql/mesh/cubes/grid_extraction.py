@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from sceneql.mesh.cubes.grid import Grid
 
 BATCH = 32
-"""Blocks that a thread takes at a time."""
+"""Blocks of one task of a thread."""
 
 
 class Room:
@@ -51,23 +51,23 @@ class Room:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
-    """The surface in some blocks; block b's vertices on edges begin at begin[b], its cubes at cube_at[b]."""
+    """The surface in b blocks; a block's vertices on edges begin at ``begin``, its cubes at ``cube_at``."""
 
     blocks: Ints
     """(b, 3) places of the blocks."""
     beyond: Ints
-    """(b, 8) the neighboring block along the axes whose bits are set; -1 where it was not extracted."""
+    """(b, 8) row of the block one step up along the axes whose bits are set; -1 where it was not extracted."""
     begin: Ints
     cube_at: Ints
     triangle_at: Ints
     own_at: Ints
     """(b + 1,) first inner vertex of each block, counted after the vertices on edges."""
     keys: Ints
-    """(v,) edge of each vertex, ascending within a block."""
+    """(v,) number of each vertex's edge in its block, ascending within a block."""
     cubes: Ints
-    """(c, 2) place in the block and variant."""
+    """(c, 2) of each cube that the surface meets: number in its block, and variant (cases.py)."""
     place: Floats
-    """(v + own, 3) [m] vertices; inner ones are zero until they are placed."""
+    """(v + own, 3) [m] positions of the vertices; of inner vertices zero until ``connected`` places them."""
     normal: Floats
     """(v + own, 3) unit gradients, or zero."""
 
@@ -88,7 +88,7 @@ class GridExtraction:
         return found
 
     def met(self) -> Ints:
-        """(b, 3) blocks that the surface may meet."""
+        """(b, 3) places of the blocks that the surface may meet, the others proved empty or full."""
         import numpy as np
 
         grid = self.grid

@@ -1,4 +1,4 @@
-"""Triangles of cells of one size, and keys of a grid's cells, groups and edges. Imports numpy and numba."""
+"""Marching cubes' triangles for one size of cells, and keys of a grid's cells and edges. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Level:
-    """Triangles of the cells of one size."""
+    """Vertices and triangles of the cells of one size."""
 
     places: Floats
     normals: Floats
     triangles: Ints
     """(t, 3)"""
     doubled: Keys
-    """(v, 3) middles of the edges on which vertices lie, in half cells."""
+    """(v, 3) midpoints of the grid edges on which vertices lie, in half cells."""
     cells: Keys
-    """(t, 3) cell of each triangle."""
+    """(t, 3) place of each triangle's cell."""
     bent: NDArray[np.bool_]
-    """(t,) whether the normals in the triangle's cell turn too much for it."""
+    """(t,) whether the normals in the triangle's cell vary too much for a cell of this size."""
 
 
 def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
@@ -54,7 +54,7 @@ def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
 
 
 def _within(place: Keys) -> Keys:
-    """(n, 3) places of cells from their index (n,) in a block."""
+    """(n, 3) places of cells within a block, from their numbers (n,) in it."""
     import numpy as np
 
     return np.stack([place % BLOCK, place // BLOCK % BLOCK, place // BLOCK**2], axis=1)
@@ -70,6 +70,9 @@ class Numbering:
         self.strides = np.array([1, size[0], size[0] * size[1]])
 
     def of(self, places: Keys) -> Keys:
-        """(n,) keys of places (n, 3), distinct among cells, groups, or middles of edges in half cells."""
+        """(n,) keys of integer places (n, 3), of cells, of groups, or of edges' midpoints in half cells.
+
+        Keys of different places of one of the three kinds differ.
+        """
         found: Keys = (places + 1) @ self.strides
         return found

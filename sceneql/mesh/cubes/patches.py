@@ -1,7 +1,7 @@
-"""Triangulations of the closed curves of a cube, without chords in its faces, which a neighbor could draw too.
+"""Triangulations of a cube's closed curves that have no chord in a face, since the neighboring cube might have it too.
 
-An edge of the mesh then belongs to exactly two triangles: a curve on a face to one of each cube, a chord inside to two
-of one cube. A curve that has no such triangulation gets an inner vertex in its middle.
+Each edge of the mesh then belongs to exactly two triangles: a segment on a face to one of each cube, a chord to two of
+one cube. A curve without such a triangulation gets an inner vertex in its middle.
 """
 
 from __future__ import annotations
@@ -58,9 +58,9 @@ def fan(polygon: Loop, center: int) -> list[Triangle]:
 
 
 def band(first: Loop, second: Loop) -> tuple[Loop, Loop]:
-    """Two polygons that make a tube between two curves, cut open along two bridges that lie in no face.
+    """Two polygons that form a tube between two curves, cut open along two chords that lie in no face.
 
-    The bridges are short, and halve both curves as evenly as they can.
+    The two chords minimize the sum of their lengths and of how unevenly they halve the curves.
     """
     n, m = len(first), len(second)
     bridges = [(i, j) for i, j in product(range(n), range(m)) if chord(first[i], second[j]) < INFINITY]

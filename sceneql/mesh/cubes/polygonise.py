@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def connected(shop: GridExtraction, found: Found, blocks: int) -> tuple[Ints, NDArray[np.int8]]:
-    """Triangles of the first ``blocks`` blocks, and for each cube 1 where its normals turn too much for it, else 0.
+    """Triangles (t, 3) of the first ``blocks`` blocks, and (c,) 1 for each cube whose normals vary too much, else 0.
 
-    Places the inner vertices, with their normals.
+    Writes positions and normals of the inner vertices into ``found``.
     """
     import numpy as np
 
@@ -41,7 +41,7 @@ def connected(shop: GridExtraction, found: Found, blocks: int) -> tuple[Ints, ND
 
 
 def polygonise(tape: Tape, low: Corner, high: Corner, cell: float) -> Polygons:
-    """Triangles of the solid {tape < 0} cut at the box low..high, by cells of a size [m].
+    """Triangles of the solid {tape < 0} clipped at the box low..high, from cells with side ``cell`` [m].
 
     The bytes do not depend on the number of threads. Raises ValueError as ``grid_around``.
     """

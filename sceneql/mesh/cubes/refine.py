@@ -1,7 +1,8 @@
-"""Marching cubes with finer cells where cells are too coarse for the surface, without gaps. Imports numpy and numba.
+"""Adaptive marching cubes: cells too coarse for the surface are subdivided, without cracks. Imports numpy and numba.
 
-Cells are refined by groups, on whose faces to other groups the curves of coarse and fine cells must match: a group
-whose neighbor shows more curves than it does is refined too. The coarse triangles then follow the fine curves there.
+Cells are refined in groups. On a face between a refined group and a coarse one, the fine and the coarse curves of the
+surface must connect the same edges; a coarse group where they do not is refined too. The sides of the coarse triangles
+there are then replaced by the fine curves.
 """
 
 from __future__ import annotations
@@ -30,29 +31,30 @@ if TYPE_CHECKING:
     Keys = NDArray[np.int64]
 
 MANY_GROUPS = 2**12
-"""With more groups, fine cells are not halved further to prove them empty, nor are cells cut in FINEST."""
+"""Above this number of groups, cells are not subdivided by FINEST, nor fine cells bisected to prove them empty."""
 FINE, FINEST = 4, 8
-"""Parts of a cell's side after a cut, and after one for a tolerance that FINE misses."""
+"""Factors of subdivision along a cell's side: the usual one, and one for a tolerance that FINE would miss."""
 SAFE = 0.5
-"""Share of the tolerance that a cut in FINE is expected to reach at creases."""
+"""Share of the tolerance to be reached along creases, where the error falls with the factor of subdivision."""
 FEW = 0.25
-"""Largest share of triangles, as along creases, for which cutting only their cells is better than shorter cells."""
+"""Largest share of triangles beyond the tolerance for which subdividing their cells is better than a finer grid."""
 AT_CREASE = 5 / 16
-"""Distance of two planes that meet at 60 degrees from a side between them, over the difference of their normals along
-it: tan(30 deg) / 2 of its length. For an arc that is more than twice too much."""
+"""Bound of a side's distance from a crease of 60 degrees, in units of the side times the difference of its normals:
+tan(30 deg) / 2. For a circular arc the bound is more than twice too large."""
 MOST_GROUPS = 2**15
-"""Most groups that are refined; more come from noise, or from a grid far too coarse."""
+"""Most groups that are refined; more arise from noise, or from a grid far too coarse."""
 
 
 def refined(
     tape: Tape, low: Corner, high: Corner, cell: float, tolerance: float | None = None
 ) -> tuple[Polygons, Unresolved]:
-    """Triangles of the solid {tape < 0} cut at the box low..high, by cells of a size [m]; and the unresolved cells.
+    """Triangles of the solid {tape < 0} clipped at the box low..high, from cells with side ``cell`` [m], and the
+    unresolved cells.
 
-    Cut are cells in which the normals turn too much, and cells with corners of one sign without a proof that f keeps it
-    inside; none if these are more than MOST_GROUPS. With a ``tolerance`` [m] also cells with triangles farther off the
-    surface, if they are FEW, as at creases: else all cells are too long. Closed and 2-manifold; the bytes do not depend
-    on the number of threads. Raises ValueError as ``grid_around``.
+    Subdivided are cells in which the normals vary too much, and cells with corners of one sign for which no proof was
+    found that f has it throughout; with a ``tolerance`` [m] also cells with triangles farther from the surface, unless
+    these are more than FEW. No cell is subdivided if their groups are more than MOST_GROUPS. The mesh is a closed
+    2-manifold; its bytes do not depend on the number of threads. Raises ValueError as ``grid_around``.
     """
     import numpy as np
 
@@ -61,7 +63,7 @@ def refined(
     blocks = shop.met()
     coarse, doubt = level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks)
     for cells, parts in _to_cut(whole, coarse, tolerance):
-        group = BLOCK // parts  # cells along a group, which is one block of the fine grid
+        group = BLOCK // parts  # coarse cells along a group, which is one block of the fine grid
         groups = np.unique(np.concatenate([cells, doubt.where]).astype(np.int64) // group, axis=0)
         if len(groups) <= (MANY_GROUPS if parts == FINEST else MOST_GROUPS):
             break
@@ -83,7 +85,7 @@ def refined(
 
 
 def _to_cut(tape: Tape, coarse: Level, tolerance: float | None) -> list[tuple[Keys, int]]:
-    """Choices of cells (n, 3) to be cut, and into how many parts a side, from the most accurate to the cheapest."""
+    """Choices (cells (n, 3) to subdivide, factor of subdivision), from the most accurate to the cheapest."""
     bent = coarse.cells[coarse.bent]
     if tolerance is None:
         return [(bent, FINE)]
@@ -108,7 +110,7 @@ def _off(tape: Tape, found: Level, tolerance: float) -> Floats:
 
 
 def _with_owners(groups: Keys) -> Ints:
-    """The groups, followed by the neighbors that own some of their edges."""
+    """The groups, followed by those of their upper neighbors not among them, which own edges on the groups' borders."""
     import numpy as np
 
     steps = np.array([[bits & 1, bits >> 1 & 1, bits >> 2] for bits in range(1, 8)])
@@ -119,7 +121,7 @@ def _with_owners(groups: Keys) -> Ints:
 
 
 def _unmatched(sides: Sides, curves: Curves) -> Keys:
-    """(n, 3) cells whose curves on faces to the other size of cells do not match."""
+    """(n, 3) coarse cells at whose faces coarse sides and fine curves do not connect the same edges."""
     import numpy as np
 
     return np.concatenate(

@@ -1,4 +1,4 @@
-"""Coarse and fine triangles joined to a closed mesh. Imports numpy and numba."""
+"""Coarse and fine triangles joined into a closed mesh. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ if TYPE_CHECKING:
 
 
 def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, sides: Sides, curves: Curves) -> Polygons:
-    """The kept coarse triangles and the fine ones; sides of coarse triangles follow the fine curves that they meet."""
+    """The mesh of the ``kept`` coarse and of all fine triangles.
+
+    A coarse triangle with sides on the border is replaced by a fan whose border follows the fine curves.
+    """
     import numpy as np
 
     offset = len(coarse.places)

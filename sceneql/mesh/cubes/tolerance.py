@@ -1,4 +1,4 @@
-"""Cells short enough for a tolerance of the distance between the triangles and the surface. Imports numpy and numba."""
+"""Meshes within a tolerance of the surface: the cell size is reduced until it is met. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -16,44 +16,44 @@ if TYPE_CHECKING:
 
 Method = Callable[["Tape", Corner, Corner, float], tuple[Polygons, Unresolved]]
 PROBES = 10_000
-"""Triangles at which a distance is measured."""
+"""Most triangles, or cells, at which a distance is measured."""
 BETWEEN = 16.0 / 15.0
-"""Largest distance of a smooth surface from a triangle relative to that at its center and the middles of its edges: it
-is sum d_ij l_i l_j in barycentric coordinates, whose maximum is off these places for d = (1, 1, 1/4)."""
+"""Largest distance of a smooth surface from a triangle, relative to the largest at its center and midpoints of edges.
+To second order the distance is sum d_ij l_i l_j in barycentric coordinates l; the worst case is d = (1, 1, 1/4)."""
 TRIES = 8
 SAFETY = 0.9
 LONGEST = 0.7
-"""Longest next cell, relative to the last."""
+"""Largest next cell size, relative to the last."""
 MOST = 2**23
-"""Triangles up to which cells are shortened for missed surface; more take minutes and all of the memory."""
+"""Most triangles of meshes whose cells are reduced for missed surface; more take minutes and all of the memory."""
 LANDED = 1.0e-3
-"""Largest distance from the surface, in cells, of a point that Newton's method has brought onto it."""
+"""Largest distance from the surface, in cells, at which Newton's method counts as converged."""
 
 
 class Within(NamedTuple):
-    """Triangles within a tolerance, and the cells that made them."""
+    """A mesh within a tolerance, the unresolved cells of its grid, and how it was reached."""
 
     polygons: Polygons
     hidden: Unresolved
     cell: float
-    """[m]"""
+    """[m] side of the cells."""
     missed: float
-    """[m] as of ``missed``; above the tolerance if a smaller one takes too many cells."""
+    """[m] the result of ``missed``; above the tolerance if meeting it would take too many triangles."""
 
 
 def distance(tape: Tape, polygons: Polygons) -> float:
-    """The largest distance [m] of the triangles from the surface, by their centers and the middles of their edges.
+    """The largest distance [m] of the triangles from the surface, estimated at centers and midpoints of edges.
 
-    There it is |f| / |grad f|, right to first order; BETWEEN them a surface that is smooth across a triangle is nearer
-    to second order, one with an edge or a corner there may be farther. Surface without a triangle near it, as a piece
-    missed by all cells, is left to ``missed``. Of more than PROBES triangles only every so many-th is measured.
+    The distance there is |f| / |grad f|, correct to first order. The factor BETWEEN bounds it, to second order, over a
+    triangle on which the surface is smooth; an edge or corner of the solid may be farther. Surface far from all
+    triangles is measured by ``missed``. Meshes of more than PROBES triangles are sampled at equal steps.
     """
     triangles = polygons.triangles[:: max(1, len(polygons.triangles) // PROBES)]
     return float(distances_off(tape, polygons.vertices[triangles]).max(initial=0.0))
 
 
 def distances_off(tape: Tape, corners: Floats) -> Floats:
-    """(t,) distances [m] of triangles (t, 3, 3), as by ``distance``."""
+    """(t,) distances [m] of triangles (t, 3, 3) from the surface, as ``distance`` estimates them."""
     import numpy as np
 
     middles = 0.5 * (corners + np.roll(corners, 1, axis=1))
@@ -65,11 +65,11 @@ def distances_off(tape: Tape, corners: Floats) -> Floats:
 
 
 def missed(tape: Tape, polygons: Polygons, hidden: Unresolved) -> float:
-    """The largest distance [m] from the triangles of surface that passes between the corners of unresolved cells.
+    """The largest distance [m] from the mesh of surface found in unresolved cells, whose corners have one sign.
 
-    Newton's method from the middles of these cells finds it; cells from which it does not end in the cell or next to it
-    are left to ``Unresolved``. Of more than PROBES cells only every so many-th is tried. Infinite where there is
-    surface, but no triangle.
+    Newton's method starts at the centers of these cells; where it converges less than a cell away along each axis, the
+    point found is measured, other cells are ignored. More than PROBES cells are sampled at equal steps. Infinite where
+    such a point is found, but there is no triangle.
     """
     import numpy as np
 
@@ -88,11 +88,11 @@ def missed(tape: Tape, polygons: Polygons, hidden: Unresolved) -> float:
 
 
 def polygonise_within(tape: Tape, low: Corner, high: Corner, tolerance: float, cell: float, method: Method) -> Within:
-    """Triangles within ``tolerance`` [m] of the surface, as by ``distance``, from cells [m] <= ``cell``.
+    """A mesh by ``method`` whose ``distance`` is at most ``tolerance`` [m], from cells of side <= ``cell`` [m].
 
-    And the surface within it of the triangles, as by ``missed``, unless that takes more than MOST triangles. The
-    distance falls with the square of the cell, at edges and corners that are not kept with the cell itself: the cell is
-    shortened by the measured distance. Raises ValueError as ``method``, and if TRIES cells do not reach the tolerance.
+    Its ``missed`` is within the tolerance too, unless that would take more than MOST triangles. The cell size is
+    reduced by the measured distance, which is of second order in it, of first order at edges and corners that are not
+    kept. Raises ValueError as ``method``, and if TRIES cell sizes do not reach the tolerance.
     """
     import numpy as np
 
@@ -102,7 +102,7 @@ def polygonise_within(tape: Tape, low: Corner, high: Corner, tolerance: float, c
     for left in reversed(range(TRIES)):
         polygons, hidden = method(tape, low, high, cell)
         found, unseen = distance(whole, polygons), missed(whole, polygons, hidden)
-        # A wall thinner than a cell will have two triangles on either side; they grow with the square of 1 / cell.
+        # Each hidden cell will give about four triangles, two on each side of a thin wall, times (1 / cell)^2.
         count = len(polygons.triangles) + 4 * hidden.cells * (hidden.grid.cell / cell) ** 2
         shortest = float(np.sqrt(count / MOST))
         if found <= tolerance and (unseen <= tolerance or shortest > LONGEST or not left):

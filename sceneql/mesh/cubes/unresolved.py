@@ -1,4 +1,4 @@
-"""Cells that a grid could not prove empty or full: reported, not dropped. Imports numpy and numba."""
+"""Cells that interval bounds could not prove empty or full: they are reported. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Unresolved:
-    """Cells with corners of one sign, for which no proof was found that f keeps it inside."""
+    """Cells whose corners have one sign, without a proof that f has this sign throughout."""
 
     where: Ints
     """(n, 3) places of the cells, counted from the grid's first node."""
     volumes: Floats
-    """(n,) [m^3] of the parts of the cells without a proof."""
+    """(n,) [m^3] volume of the parts of each cell that have no proof."""
     grid: Grid
     """The grid of these cells."""
 
@@ -34,18 +34,18 @@ class Unresolved:
 
     @property
     def volume(self) -> float:
-        """Their volume [m^3] in all."""
+        """Total volume [m^3] without a proof."""
         return float(self.volumes.sum())
 
     @property
     def middles(self) -> Floats:
-        """(n, 3) [m] middles of the cells."""
+        """(n, 3) [m] centers of the cells."""
         found: Floats = self.grid.low + (self.where + 0.5) * self.grid.cell
         return found
 
 
 def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved:
-    """Cells of ``polygonise`` that may hide surface: walls and drops that pass between their corners.
+    """Cells of ``polygonise`` that may hide surface: thin walls and drops between their corners.
 
     Raises ValueError as ``grid_around``.
     """
@@ -56,8 +56,8 @@ def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved
 def hidden_in(shop: GridExtraction, blocks: Ints, deepest: int = DEEPEST) -> Unresolved:
     """Cells of some blocks that may hide surface.
 
-    A cell is halved up to ``deepest`` times, each part proved by the interval of f or by the mean value theorem (Moore
-    1966).
+    A cell is bisected up to ``deepest`` times. Each part is proved empty or full by an interval enclosure of f or by
+    the mean value form (Moore 1966).
     """
     import numpy as np
 

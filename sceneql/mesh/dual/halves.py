@@ -1,4 +1,4 @@
-"""Quads around crossed edges, each cut into two triangles. Imports numpy and numba."""
+"""Dual contouring's quads, each cut into two triangles. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -11,18 +11,19 @@ if TYPE_CHECKING:
 
 
 def halved(tape: Tape, places: Floats, quads: Ints, ways: Ints) -> Ints:
-    """(2 n, 3) two triangles for each of the quads (n, 4), cut along the diagonal by which neither folds over.
+    """(2 n, 3) two triangles for each of the quads (n, 4), cut along the diagonal with which neither is turned over.
 
-    Both must face outward along the edge that the quad surrounds, whose axis is 1, 2 or 3 in ``ways`` (n,), negative if
-    outward is against it: at least one diagonal does that if the vertices lie in the four cells around the edge. If
-    both do, or none, the one whose middle is nearer to the surface is taken, so that it follows an edge of the solid.
+    A quad surrounds a grid edge; ``ways`` (n,) holds the edge's axis 1, 2 or 3, negative if outward is against it. Both
+    triangles must face outward along that axis; with vertices in the four cells around the edge, at least one diagonal
+    satisfies this. If both or neither does, the diagonal whose midpoint has the smaller |f| is taken, since it follows
+    an edge of the solid.
     """
     import numpy as np
 
     corners = places[quads]
     with np.errstate(all="ignore"):
         off = [np.abs(field_values(tape, 0.5 * (corners[:, k] + corners[:, k + 2]))) for k in (0, 1)]
-    # Twice the areas of the four triangles that the diagonals cut off, projected along the edge.
+    # Twice the signed areas of the triangles that the diagonals cut off at each corner, projected along the grid edge.
     axes = np.abs(ways)
     across = [np.take_along_axis(corners, ((axes + k) % 3)[:, None, None], axis=2)[:, :, 0] for k in (0, 1)]
     x, y = (np.roll(seen, -1, axis=1) - seen for seen in across)

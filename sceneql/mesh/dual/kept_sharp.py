@@ -1,4 +1,4 @@
-"""Edges and corners kept, with the topology that meshes have without them. Imports numpy, numba and scipy."""
+"""Meshes with sharp edges and corners, and the topology of ``refined``. Imports numpy, numba and scipy."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 def kept_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> tuple[Polygons, Unresolved]:
-    """As ``refined``, but with edges and corners kept; the topology is that of ``refined``.
+    """A mesh as of ``refined``, but with edges and corners kept sharp, and its unresolved cells.
 
-    Where a solid touches itself, or a passage is narrower than a cell, the polygons of ``polygonise_sharp`` may join
-    what finer cells tell apart, or the other way round; pieces of other Euler characteristics show that. Then the
-    triangles of ``refined`` are cut along the solid's edges instead. Raises ValueError as ``grid_around``.
+    By dual contouring. Where a solid touches itself, or a passage is narrower than a cell, its mesh may differ from
+    ``refined`` in topology; then the Euler characteristics of the pieces differ, and the mesh of ``refined`` is used,
+    cut along the solid's edges (``sharpened``). Raises ValueError as ``grid_around``.
     """
     found, left = refined(tape, low, high, cell)
     dual = polygonise_sharp(tape, low, high, cell)

@@ -14,16 +14,17 @@ if TYPE_CHECKING:
 
 TURNS = 3
 NEARER = 0.05
-"""Factor by which planes move towards the points in each further turn: on curved faces the points converge."""
+"""Distance of the planes' points from the moved point, relative to the turn before; converges on curved faces."""
 TRUNCATION = 0.1
-"""Singular values below this part of the largest count as zero, as in ``dual``."""
+"""Singular values below this share of the largest count as zero, as in the kernel ``dual``."""
 
 
 def onto_planes(tape: Tape, points: Floats, given: NDArray[np.bool_], crossings: Floats, slopes: Floats) -> Floats:
-    """Points (n, 3) moved the least that brings them onto the planes of the surface at ``crossings`` (n, k, 3).
+    """Points (n, 3) moved onto the surface's tangent planes at ``crossings`` (n, k, 3), by least squares.
 
-    ``given`` (n, k) masks the crossings in use, ``slopes`` (n, k, 3) are the unit gradients there. So a point goes onto
-    a face, an edge or a corner of the solid, by the rank of its planes.
+    ``given`` (n, k) masks the crossings in use, ``slopes`` (n, k, 3) are the unit gradients there. The move is the
+    shortest one (truncated pseudoinverse): by the rank of its planes a point moves onto a face, an edge or a corner of
+    the solid.
     """
     import numpy as np
 

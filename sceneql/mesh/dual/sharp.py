@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Tape
 
 AROUND = [0, 1, 3, 2]
-"""The four cubes around an edge, counterclockwise seen against its axis, by the last two bits of their edge."""
+"""The four cubes around a grid edge, counterclockwise seen against its axis; each by the edge's number in it, mod 4."""
 
 
 def polygonise_sharp(tape: Tape, low: Corner, high: Corner, cell: float) -> Polygons:
-    """Triangles of the solid {tape < 0} cut at the box low..high, by cells of a size [m]; edges and corners are kept.
+    """Triangles of the solid {tape < 0} clipped at the box low..high, with sharp edges and corners, from cells [m].
 
-    Closed and 2-manifold; passages that are narrower than a cell may be closed. The bytes do not depend on the number
-    of threads. Raises ValueError as ``grid_around``.
+    A closed 2-manifold; passages narrower than a cell may be closed. The bytes do not depend on the number of threads.
+    Raises ValueError as ``grid_around``.
     """
     import numpy as np
 
@@ -73,7 +73,7 @@ def _vertices(shop: GridExtraction, found: Found) -> tuple[Floats, Floats, Ints,
 
 
 def _means(rings: Ints, crossings: Floats) -> Floats:
-    """(v, 3) [m] means of the crossings (e, 3) in each vertex's ring."""
+    """(v, 3) [m] for each dual vertex the mean of the crossings (e, 3) in its ring."""
     import numpy as np
 
     given = rings >= 0

@@ -1,7 +1,8 @@
-"""Triangles cut along the edges and corners of a solid: its topology stays. Imports numpy and numba.
+"""Triangles subdivided along sharp edges and corners of a solid, without a change of topology. Imports numpy and numba.
 
-The sides of triangles that pass from face to face get a vertex where the faces meet, a triangle with three such sides
-one at the corner (Attene, Falcidieno, Rossignac & Spagnuolo 2003), here from the gradients at the vertices.
+A side whose ends lie on two faces of the solid gets a vertex where the faces meet; a triangle with three such sides
+gets one at the corner (Attene, Falcidieno, Rossignac & Spagnuolo 2003). Faces are told apart by the gradients at the
+vertices.
 """
 
 from __future__ import annotations
@@ -24,36 +25,36 @@ if TYPE_CHECKING:
     Mask = NDArray[np.bool_]
 
 ALIKE = 0.9
-"""Cosine of the angle of two normals from which on they are of one face: 26 degrees."""
+"""Cosine of 26 degrees: normals with a smaller angle belong to one face."""
 OFF = 1.0e-3
-"""Distance from the surface, in lengths of a side, up to which faces meet there: where a smooth surface only bends,
-its tangent planes meet farther off."""
+"""Largest distance from the surface, relative to the side, of a cut's vertex. Where a smooth surface only bends, its
+tangent planes meet farther away from it."""
 REACH = 1.0
-"""Distance of a cut from the middle of its side, in lengths of the side, up to which it is made."""
+"""Largest distance of a cut's vertex from the midpoint of its side, relative to the side."""
 ROUNDS = 16
 WIDENED = 2
-"""Rounds after which cuts one ring of triangles farther off are taken back too."""
+"""Rounds after which the cuts one ring of triangles farther away are undone too."""
 
 
 class Cuts(NamedTuple):
-    """Vertices to be put on sides and into triangles."""
+    """Vertices to be inserted on sides and in triangles."""
 
     side_of: Rows
-    """(t, 3) side from vertex k to vertex k + 1 of each triangle, as a row of ``places``."""
+    """(t, 3) number of the side from vertex k to vertex k + 1 of each triangle."""
     cut: Mask
-    """(s,) which sides are cut."""
+    """(s,) which sides get a vertex."""
     places: Floats
-    """(s, 3) [m] where."""
+    """(s, 3) [m] positions of these vertices."""
     corner: Mask
-    """(t,) which triangles have a corner of the solid inside; all their sides are cut."""
+    """(t,) which triangles get a vertex at a corner of the solid; all their sides get one, too."""
     corners: Floats
-    """(t, 3) [m] where."""
+    """(t, 3) [m] positions of these vertices."""
 
 
 def sharpened(tape: Tape, polygons: Polygons) -> Polygons:
-    """The polygons with vertices on the edges and corners that their sides cut off; a cut that folds is not made.
+    """The mesh with vertices inserted on the solid's edges and corners; insertions that would fold it are left out.
 
-    Cuts of sides and triangles keep the topology, closed 2-manifolds stay such. New vertices have normals of zero.
+    The topology stays the same, so a closed 2-manifold remains one. New vertices have normals of zero.
     """
     import numpy as np
 
@@ -74,7 +75,7 @@ def sharpened(tape: Tape, polygons: Polygons) -> Polygons:
 
 
 def _turned(tape: Tape, made: Polygons, parents: Rows, cuts: Cuts) -> Rows:
-    """(n,) rows of triangles, parts of cut ones, that face against the gradient at their center."""
+    """(n,) rows of those parts of subdivided triangles that face against the gradient at their center."""
     import numpy as np
 
     some = cuts.cut[cuts.side_of].sum(axis=1) > 0
@@ -84,7 +85,7 @@ def _turned(tape: Tape, made: Polygons, parents: Rows, cuts: Cuts) -> Rows:
 
 
 def _cuts(tape: Tape, polygons: Polygons) -> Cuts:
-    """All cuts that the normals ask for."""
+    """The vertices to insert: on sides whose ends have normals of two faces, and in triangles with three such sides."""
     import numpy as np
 
     vertices, normals, triangles = polygons.vertices, polygons.normals, polygons.triangles.astype(np.int64)
@@ -107,7 +108,10 @@ def _cuts(tape: Tape, polygons: Polygons) -> Cuts:
 
 
 def _met(tape: Tape, points: Floats, normals: Floats) -> tuple[Floats, Mask]:
-    """(n, 3) [m] where the faces at points (n, k, 3) with unit normals meet; and whether they do, near the points."""
+    """(n, 3) [m] where the tangent planes at points (n, k, 3) with unit normals meet, and (n,) whether near the points.
+
+    Near: within REACH of the points' mean and within OFF of the surface.
+    """
     import numpy as np
 
     if not len(points):
@@ -122,7 +126,7 @@ def _met(tape: Tape, points: Floats, normals: Floats) -> tuple[Floats, Mask]:
 
 
 def _made(polygons: Polygons, cuts: Cuts) -> tuple[Polygons, Rows]:
-    """The polygons with the cuts, and (n,) the triangle that each is a part of."""
+    """The mesh with the vertices inserted, and for each of its triangles (n,) the original one that it is a part of."""
     import numpy as np
 
     triangles = polygons.triangles.astype(np.int64)

@@ -1,8 +1,7 @@
-"""Separates sheets that share a side of dual polygons, so that the mesh is a 2-manifold. Imports numpy.
+"""Splits sides that four dual polygons share, so that the mesh is a 2-manifold. Imports numpy.
 
-Of two cubes that share a face with two curves on it, each may join these in one curve of its own, and so have one
-vertex; the single side between the two vertices would be shared by four polygons. A new vertex on each of the face's
-curves makes two sides of it.
+Two cubes share a face with two curves on it. If in each cube both curves belong to one dual vertex, the side between
+the two dual vertices is shared by four polygons. A new vertex on each of the face's curves splits it into two sides.
 """
 
 from __future__ import annotations
@@ -22,10 +21,10 @@ Side = tuple[int, int]
 def split_nonmanifold(
     quads: Ints, rings: Ints, crossings: Floats, fresh: int
 ) -> tuple[NDArray[np.int64], Floats, Ints]:
-    """(manifold quads, vertices to be added (n, 3) [m], triangles that replace the other quads).
+    """(rows of quads without a shared side, new vertices (n, 3) [m], triangles that replace the other quads).
 
-    ``quads`` (e, 4) are the dual vertices around each crossed edge, ``rings`` (v, 12) the crossed edges around each
-    dual vertex, -1 after the last, ``crossings`` (e, 3) [m] the points where the surface crosses; new vertices count
+    ``quads`` (e, 4): dual vertices around each crossed grid edge; ``rings`` (v, 12): crossed edges around each dual
+    vertex, -1 after the last; ``crossings`` (e, 3) [m]: where the surface crosses the edges. New vertices are numbered
     from ``fresh`` on.
     """
     import numpy as np
@@ -66,7 +65,7 @@ def split_nonmanifold(
 
 
 def _beside(ring: Ints, edge: int, among: set[int]) -> int:
-    """The neighbor of an edge in a ring that is among some edges."""
+    """One of an edge's two neighbors in a ring: the one in the set ``among``."""
     members = [int(other) for other in ring if other >= 0]
     at = members.index(edge)
     before, after = members[at - 1], members[(at + 1) % len(members)]

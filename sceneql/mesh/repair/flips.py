@@ -1,4 +1,4 @@
-"""Flips edges of triangles that face inward. Imports numpy and numba."""
+"""Edge flips that turn inward facing triangles outward. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 ROUNDS = 8
 SLIVER = 1.0e-6
-"""Height of a triangle over its longest side below which its normal is noise."""
+"""Twice a triangle's area over its squared longest side, below which its normal is rounding noise."""
 
 
 def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -> Ints:
     """The triangles (t, 3) with edges flipped where one of the rows ``doubtful`` (n,) faces against the gradient.
 
-    The edge of two triangles is replaced by the other diagonal of their four vertices if both then face the gradient
-    better and that is no edge yet: a closed 2-manifold stays one.
+    The edge of two triangles is replaced by the other diagonal of their four vertices if that raises the smaller
+    cosine between a normal and the gradient, and is no edge of the mesh yet: a closed 2-manifold stays one.
     """
     import numpy as np
 
@@ -45,7 +45,7 @@ def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -
 def facing(tape: Tape, corners: Floats) -> Floats:
     """(t,) cosine of the angle between the normals of triangles (t, 3, 3) and the gradients at their centers.
 
-    0 where there is no gradient, and for a SLIVER, as along a sharp edge.
+    0 where the gradient vanishes, and for a triangle thinner than SLIVER, as along a sharp edge.
     """
     import numpy as np
 
@@ -60,13 +60,13 @@ def facing(tape: Tape, corners: Floats) -> Floats:
 
 
 def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[int, tuple[int, int, int]]:
-    """New vertices of some triangles (t, 3), by row: the flips of edges of the triangles ``turned`` that gain the most.
+    """New vertices of flipped triangles, by row of ``triangles`` (t, 3): the best flips of the triangles ``turned``.
 
-    ``triangles`` must contain all triangles at the vertices of those.
+    ``triangles`` must contain all triangles at the vertices of the turned ones. No triangle is flipped twice.
     """
     import numpy as np
 
-    # The vertices c and d opposite the side a b of a turned triangle and its neighbor.
+    # Vertices c and d lie opposite the side a b, in a turned triangle and in its neighbor.
     a, b, c = (np.roll(triangles[turned], -k, axis=1).ravel() for k in range(3))
     at = np.repeat(turned, 3)
     sides = Sides(triangles, len(places))
@@ -97,7 +97,7 @@ def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[
 
 
 class Sides:
-    """Index from directed sides to triangles (t, 3)."""
+    """Look-up of triangles (t, 3) by a directed side."""
 
     def __init__(self, triangles: Rows, vertices: int) -> None:
         import numpy as np
@@ -107,7 +107,7 @@ class Sides:
         self._ascending = keys[self._order]
 
     def owners(self, first: Rows, last: Rows) -> Rows:
-        """(n,) the triangles with directed sides from vertices (n,) to others (n,); -1 for none."""
+        """(n,) the triangle with the directed side from ``first`` (n,) to ``last`` (n,); -1 where there is none."""
         import numpy as np
 
         keys = first * self._vertices + last

@@ -1,7 +1,7 @@
-"""Finds triangles that face inward because their mesh folds over or intersects itself. Imports numpy and numba.
+"""Folds: triangles that face inward because the mesh folds over or intersects itself. Imports numpy and numba.
 
-The gradient at a triangle's center does not find them: along an edge of the solid, and on walls thinner than a cell, it
-is that of another face, and a triangle against it may well separate inside from outside.
+A fold is detected by the mesh's winding number. The gradient at a triangle's center is not enough: along an edge of the
+solid, and on walls thinner than a cell, it belongs to another face, and a triangle against it may be correct.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
     Rows = NDArray[np.int64]
 
 OFF = 1.0e-4
-"""Distance from a triangle's center at which its outer side is tested, in square roots of its area."""
+"""Distance from a triangle's center at which its outer side is tested, in square roots of twice its area."""
 TILT = 0.7548776662466927, 0.5698402909980532
-"""Slopes of the rays against the axes that meshes follow: no ray runs along a side of a triangle."""
+"""Slopes dy/dx and dz/dx of the rays, not aligned with the axes, along which sides of triangles tend to lie."""
 AGREE = 0.5
-"""Cosine of 60 degrees, by which the normals of a triangle's vertices turn at most where the surface is smooth."""
+"""Cosine of 60 degrees, the largest angle between a triangle's vertex normals on a smooth surface."""
 OVER = -0.866
-"""Cosine of 150 degrees."""
+"""Cosine of 150 degrees, the least angle between the normals of a triangle and of its turned over neighbor."""
 INSIDE = 1.001
-"""Side of the grid of squares relative to the extent of the points: none lies on its far border."""
+"""Side of the grid of squares relative to the extent of the points, so that none lies on its far border."""
 
 
 def doubtful(polygons: Polygons) -> Rows:
-    """(n,) rows of triangles whose normal disagrees with one of their vertex normals."""
+    """(n,) rows of triangles whose normal disagrees with one of their vertex normals (kernel ``unlike_corners``)."""
     import numpy as np
 
     from sceneql.mesh.cubes.triangle_kernels import unlike_corners
@@ -49,14 +49,14 @@ def against(tape: Tape, polygons: Polygons) -> Rows:
 
 
 def folds(tape: Tape, polygons: Polygons) -> Rows:
-    """(n,) rows of triangles against the gradient whose outer side is inside the closed mesh."""
+    """(n,) rows of triangles, those of ``against``, whose outer side lies inside the closed mesh."""
     return inverted(polygons, against(tape, polygons))
 
 
 def overturned(tape: Tape, polygons: Polygons) -> Rows:
-    """(n,) rows of ``folds``, and of triangles turned over where the surface is smooth: ``wrinkles``, ``turned_over``.
+    """(n,) rows of ``folds``, ``wrinkles`` and ``turned_over``, the last two where the surface is smooth.
 
-    For meshes whose edges are not kept: polygons that end in an edge of the solid turn there, too.
+    For meshes without sharp edges: where edges are kept, normals turn at correct triangles, too.
     """
     import numpy as np
 
@@ -67,10 +67,10 @@ def overturned(tape: Tape, polygons: Polygons) -> Rows:
 
 
 def wrinkles(polygons: Polygons, rows: Rows) -> Rows:
-    """Those of the rows (n,) of triangles that face against the normals of their vertices, though these agree.
+    """Rows, among ``rows`` (n,), of triangles that face against their three vertex normals, which agree with another.
 
-    The middle layer of a fold like a Z has the inside behind it, as any other triangle; but where the surface is
-    smooth, none faces so. At an edge of the solid, and on walls thinner than a cell, normals disagree.
+    The middle layer of a Z-shaped fold has the inside behind it, so the winding number does not detect it; but on a
+    smooth surface no correct triangle faces so. At an edge of the solid, and on thin walls, vertex normals disagree.
     """
     import numpy as np
 
@@ -82,9 +82,9 @@ def wrinkles(polygons: Polygons, rows: Rows) -> Rows:
 
 
 def turned_over(polygons: Polygons, rows: Rows) -> Rows:
-    """Of triangles beside one another whose normals turn by more than OVER, though those of their vertices agree.
+    """Rows of triangles turned over against a neighbor: normals beyond OVER, though all vertex normals agree.
 
-    Those of the rows (n,) are looked at, and of each pair the one farther from its vertices' normals is told.
+    Searched near the triangles ``rows`` (n,); of each pair the triangle farther from its vertex normals is returned.
     """
     import numpy as np
 
@@ -115,7 +115,7 @@ def turned_over(polygons: Polygons, rows: Rows) -> Rows:
 
 
 def inverted(polygons: Polygons, rows: Rows) -> Rows:
-    """Those of the rows (n,) of triangles whose outer side is inside the closed mesh."""
+    """Rows, among ``rows`` (n,), of triangles whose outer side lies inside the closed mesh, by its winding number."""
     import numpy as np
 
     if not len(rows):
@@ -136,7 +136,7 @@ def winding(points: Floats, places: Floats, triangles: Ints) -> Rows:
 
     if not len(points):
         return np.zeros(0, dtype=np.int64)
-    # A shear makes the rays parallel to x; it keeps crossings and their signs.
+    # A shear makes the tilted rays parallel to x, and preserves crossings and their signs.
     points, places = (
         np.stack([p[:, 0], p[:, 1] - TILT[0] * p[:, 0], p[:, 2] - TILT[1] * p[:, 0]], axis=-1) for p in (points, places)
     )

@@ -1,4 +1,4 @@
-"""Moves vertices of triangles that face inward where no flip helps. Imports numpy and numba."""
+"""Moves of vertices that turn inward facing triangles outward where no edge flip does. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ STEPS = 4
 """Newton steps towards the surface."""
 ROUNDS = 8
 MOST = 256
-"""Triangles facing inward up to which vertices are moved; more come from a field too fine for its cells."""
+"""Most inward facing triangles for which vertices are moved; more arise from a field too fine for its cells."""
 SHARES = (0.25, 0.5, 0.75, 1.0)
-"""Parts of the way to the mean of its neighbors that are tried for a vertex."""
+"""Fractions of a vertex's way to the mean of its neighbors that are tried."""
 
 
 def settled(tape: Tape, begun: Floats, reach: Floats | float = inf) -> tuple[Floats, Floats]:
     """Points (n, 3) moved to the surface by Newton's method along the gradient, and the unit gradients there.
 
-    Points that would go farther than ``reach`` [m], one or (n,), stay: at a jump of f the method diverges.
+    Points that would move farther than ``reach`` [m], a number or (n,), stay: at a jump of f the method diverges.
     """
     import numpy as np
 
@@ -47,10 +47,10 @@ def settled(tape: Tape, begun: Floats, reach: Floats | float = inf) -> tuple[Flo
 
 
 def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
-    """The polygons with inward triangles of the rows ``doubtful`` (n,) repaired: by flips, then by moves of vertices.
+    """The mesh with inward facing triangles of the rows ``doubtful`` (n,) repaired: by edge flips, then by moves.
 
-    A vertex moves along the surface towards the mean of its neighbors if the worst of its triangles then faces the
-    gradient better; vertices without a normal, on edges of the solid, stay.
+    A vertex moves along the surface towards the mean of its neighbors if that raises the smallest cosine between a
+    normal of its triangles and the gradient. Vertices without a normal, on edges of the solid, stay.
     """
     import numpy as np
 
@@ -86,12 +86,12 @@ def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
 
 
 class Stars:
-    """Index from vertices to triangles."""
+    """Look-up of the triangles at a vertex."""
 
     def __init__(self, triangles: Ints) -> None:
         import numpy as np
 
-        corners = triangles.ravel().astype(np.int64)  # the type of the vertices asked for: else each call converts all
+        corners = triangles.ravel().astype(np.int64)  # int64 as the vertex searched for: else each call converts all
         self.triangles, self._order = triangles, np.argsort(corners, kind="stable")
         self._ascending = corners[self._order]
 
@@ -107,7 +107,7 @@ class Stars:
 def _moved(tape: Tape, places: Floats, normals: Floats, star: Ints, vertex: int) -> bool:
     """Move a vertex of the triangles ``star`` (n, 3) if that improves the worst of them; returns whether it moved.
 
-    Newton's method may take it no farther than its triangles reach.
+    Newton's method may move it by at most the length of its longest edge.
     """
     import numpy as np
 

@@ -1,8 +1,8 @@
-"""Repairs folds and self-intersections of dual polygons by moving their vertices. Imports numpy, numba and scipy.
+"""Folds and self-intersections of dual contouring's mesh, repaired by moving vertices. Imports numpy, numba and scipy.
 
-Vertices on an edge of the solid may have passed one another: they are moved along it. Where sheets are nearer to each
-other than a cell, or vertices left their cells for an edge outside, they are pulled towards the means of the crossings
-on their cells' edges: with all vertices there, polygons halved to face along their edges were not seen to fold.
+First, vertices slide along the surface and its edges, where they may have passed one another. Then vertices of folds
+are pulled towards the mean of the crossings on their cell's edges: this helps where sheets are nearer than a cell, or
+where a vertex left its cell for an edge outside. With all vertices at their means no fold has been observed.
 """
 
 from __future__ import annotations
@@ -33,43 +33,43 @@ RETRIES = 8
 BESIDE = 2
 """Rings of triangles around self-intersections in which no edge is flipped, since flips spread to neighbors."""
 MOST = 2**18
-"""Triangles against the gradient that are tested for folds; a limit for fields much too fine for their cells."""
+"""Most triangles against the gradient that are tested for folds: a limit for fields much too fine for their cells."""
 FARTHEST = 0.7
-"""A vertex of intersecting triangles is moved if its distance from its mean is at least this share of the largest among
-their vertices."""
+"""A vertex of intersecting triangles is pulled if its distance from its mean is at least this share of the largest such
+distance among their vertices."""
 WITHIN = 0.02
-"""Distance from the faces of its cell, in cells, at which a vertex is put back into it."""
+"""Distance from the faces of its cell, in cells, to which a vertex outside the cell is moved."""
 NEAR = 0.15
 """Distance from its mean, in cells, below which a vertex is put onto the mean."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Dual:
-    """Dual contouring's quads around crossed edges, with the data of their vertices."""
+    """Dual contouring's quads around crossed grid edges, with the data of their vertices."""
 
     tape: Tape
     quads: Ints
-    """(q, 4)"""
+    """(q, 4) dual vertices."""
     ways: Ints
     """(q,) axes 1 to 3 of the crossed edges, negative where outward is against the axis."""
     rings: Ints
     """(v, 12) the crossed edges around each vertex, -1 after the last."""
     crossings: Floats
-    """(e, 3) [m]"""
+    """(e, 3) [m] where the surface crosses grid edges."""
     slopes: Floats
     """(e, 3) unit gradients at the crossings, or zero."""
     means: Floats
-    """(v, 3) [m] mean of each vertex's crossings."""
+    """(v, 3) [m] mean of the crossings in each vertex's ring."""
     lows: Floats
-    """(v, 3) [m] first node of each vertex's cell."""
+    """(v, 3) [m] lowest corner of each vertex's cell."""
     cell: float
-    """[m]"""
+    """[m] side of a cell."""
 
 
 def repair_folds(dual: Dual, polygons: Polygons) -> Polygons:
-    """The polygons, whose first triangles are the halved quads of ``dual``, with vertices moved until none folds.
+    """The mesh with vertices moved until no triangle folds, for at most ROUNDS rounds.
 
-    Only dual vertices, which come first, are moved.
+    Its first triangles are the halved quads of ``dual``. Only dual vertices, which come first, are moved.
     """
     import numpy as np
 
@@ -92,7 +92,10 @@ def repair_folds(dual: Dual, polygons: Polygons) -> Polygons:
 
 
 def _slid(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
-    """Move vertices of triangles halfway to the mean of their neighbors, along the surface; returns the vertices."""
+    """Move the vertices of the triangles ``rows`` halfway to the mean of their neighbors, then onto their planes.
+
+    Changes the arrays of ``polygons`` and returns the vertices.
+    """
     import numpy as np
 
     places, triangles = polygons.vertices, polygons.triangles
@@ -101,7 +104,7 @@ def _slid(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
     near = np.zeros(len(places), dtype=bool)
     near[corners] = True
     star = triangles[near[triangles].any(axis=1)]
-    # A closed mesh has each side in both directions.
+    # A closed mesh has each side in both directions, so the sides that begin at a vertex reach all its neighbors.
     ends = star[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     ends = np.unique(ends, axis=0)
     ends = ends[near[ends[:, 0]]]
@@ -125,9 +128,10 @@ def _slid(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
 
 
 def _drawn(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
-    """Pull the vertices of folds and of triangles that intersect these, those farthest off, towards their means.
+    """Pull vertices of the folds ``rows`` and of triangles that intersect them towards their means; returns them.
 
-    First back into their cells, then by halves; if all are at their means, vertices of neighboring triangles.
+    Only the vertices farthest from their means (FARTHEST): first back into their cells, then by half the distance. If
+    all are at their means, the vertices of neighboring triangles are pulled instead. Changes ``polygons``.
     """
     import numpy as np
 
@@ -157,9 +161,9 @@ def _drawn(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
 
 
 def repair_turned(tape: Tape, polygons: Polygons) -> Polygons:
-    """The polygons with inward triangles repaired by ``turned_outward``, except where that makes folds.
+    """The mesh with inward facing triangles repaired by ``turned_outward``, except where the repair makes folds.
 
-    At edges of the solid, and on sheets nearer to each other than a cell, the gradient is that of another face.
+    It may, since at edges of the solid, and on sheets nearer than a cell, the gradient belongs to another face.
     """
     import numpy as np
 

@@ -19,20 +19,20 @@ if TYPE_CHECKING:
     Rows = NDArray[np.int64]
 
 CUBES = 128
-"""Cubes along the side of the bounding box of some triangles, by which others near them are found."""
+"""Most cubes along the side of the bounding box in which triangles near given ones are searched."""
 
 
 def self_intersections(places: Floats, triangles: Ints, rows: Rows) -> tuple[Rows, Rows]:
-    """Pairs of rows: of the triangles ``rows`` (n,), and of triangles (t, 3) that intersect them and share no side.
+    """Pairs of intersecting triangles without a common side: (row among ``rows`` (n,), row of ``triangles`` (t, 3)).
 
-    Two triangles intersect if a side of one passes through the inside of the other; coplanar ones do not.
+    Two triangles intersect if a side of one pierces the interior of the other; coplanar ones never do.
     """
     near = _near(places, triangles, rows)
     corners = places[triangles[near]]
     least, most = extents(corners)
     middles, halves = 0.5 * (least + most), 0.5 * (most - least)
     own = np.searchsorted(near, rows)
-    # Boxes that overlap those of the rows have their middles within this distance.
+    # Boxes that overlap have centers within this distance, in the maximum norm.
     reach = halves[own].max(axis=1) + halves.max()
     found = cKDTree(middles).query_ball_point(middles[own], reach, p=np.inf)
     first = np.repeat(own, [len(some) for some in found])
@@ -49,7 +49,7 @@ def self_intersections(places: Floats, triangles: Ints, rows: Rows) -> tuple[Row
 
 
 def _near(places: Floats, triangles: Ints, rows: Rows) -> Rows:
-    """(m,) rows of the triangles (t, 3), with ``rows`` (n,) themselves, whose boxes share a cube with one of theirs."""
+    """(m,) ascending rows of triangles (t, 3) that share a cube with one of the triangles ``rows`` (n,), or are one."""
     least, most = extents(places[triangles[rows]])
     first = least.min(axis=0)
     size = (most.max(axis=0) - first).max()
@@ -63,12 +63,12 @@ def _near(places: Floats, triangles: Ints, rows: Rows) -> Rows:
 
 
 def _pierced(sides: Floats, corners: Floats) -> NDArray[np.bool_]:
-    """(n,) whether sides (n, 2, 3) pass through the insides of triangles (n, 3, 3)."""
+    """(n,) whether segments (n, 2, 3) pierce the interiors of triangles (n, 3, 3)."""
     first, last = sides[:, 0], sides[:, 1]
     a, b, c = (corners[:, k] for k in range(3))
     normals = np.cross(b - a, c - a)
     across = np.einsum("nj,nj->n", first - a, normals) * np.einsum("nj,nj->n", last - a, normals) < 0.0
-    # The line has all three sides of the triangle on the same hand.
+    # The segment's line passes all three sides of the triangle on the same hand.
     hands = np.stack(
         [np.einsum("nj,nj->n", np.cross(p - first, q - first), last - first) for p, q in ((a, b), (b, c), (c, a))]
     )

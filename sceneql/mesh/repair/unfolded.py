@@ -1,4 +1,4 @@
-"""Unfolds meshes whose cells are so coarse that vertices pass one another. Imports numpy and numba."""
+"""Folds of marching cubes' meshes, repaired by moving vertices along the surface. Imports numpy and numba."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
 
 ROUNDS = 12
 WIDENED = 3
-"""Rounds after which vertices one ring farther out are moved too."""
+"""Rounds after which the vertices one ring farther out are moved too."""
 MOST = 2**10
-"""Folds up to which vertices are moved; more come from a field too fine for its cells."""
+"""Most folds for which vertices are moved; more arise from a field too fine for its cells."""
 
 
 def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
-    """The polygons with vertices at folds moved along the surface to the means of their neighbors, and edges flipped.
+    """The mesh with vertices at folds moved along the surface to the means of their neighbors, and edges flipped.
 
-    Neither changes the topology. Folds that stay after ROUNDS are left as they were.
+    Neither changes the topology. The best of ROUNDS rounds is returned, which may still have folds.
     """
     import numpy as np
 
@@ -48,7 +48,7 @@ def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
 
 
 def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_]) -> Polygons:
-    """The polygons with the chosen vertices (v,) moved, and edges flipped near them."""
+    """The mesh with the vertices of the mask ``chosen`` (v,) moved, and edges near them flipped."""
     import numpy as np
 
     triangles = polygons.triangles.astype(np.int64)

@@ -28,6 +28,10 @@ class Attractor(Force):
     exponent: FixedScalar = field("Power of the distance that it falls with.", "2", at_least=-10, at_most=10)
     softening: FixedLength = field("Length below which the pull no longer grows.", "0 m", at_least=0)
 
+    def darkens(self) -> bool:
+        """The gravity of a body; another power is none."""
+        return self.exponent == 2
+
     def at_a_distance(self) -> bool:
         """Smooth wherever no two masses meet."""
         return True
@@ -75,6 +79,6 @@ class Attractor(Force):
         p, softening = state.floats[shape_at], state.floats[shape_at + 1]
         moving = masses.moving_masses(bodies, state) > 0
         rho = np.sqrt(np.sum(away[moving] ** 2, axis=1) + softening**2)
-        with np.errstate(divide="ignore"):  # minus infinity at the point itself
+        with np.errstate(divide="ignore"):  # the logarithm is minus infinity at the point itself
             phi = np.log(rho) if p == 1 else -(rho ** (1 - p)) / (p - 1)
         return float(state.floats[strength_at] * (masses.masses(bodies, state)[moving] @ phi))

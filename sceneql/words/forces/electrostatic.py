@@ -34,6 +34,10 @@ class Electrostatic(Force):
     )
     softening: FixedLength = field("Length below which the force no longer grows.", "0 m", at_least=0)
 
+    def darkens(self) -> bool:
+        """Charges in a vacuum."""
+        return True
+
     def internal(self) -> bool:
         """Between masses alone."""
         return True

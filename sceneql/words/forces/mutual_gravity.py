@@ -47,6 +47,10 @@ class MutualGravity(Force):
         """Smooth wherever no two masses meet."""
         return self.method != "tree" and self.accuracy == "full"
 
+    def darkens(self) -> bool:
+        """Heavenly bodies."""
+        return True
+
     def internal(self) -> bool:
         """Between masses alone."""
         return True

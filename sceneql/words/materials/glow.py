@@ -1,4 +1,4 @@
-"""glow: what shines by itself."""
+"""glow: a surface that emits light."""
 
 from __future__ import annotations
 
@@ -20,6 +20,10 @@ class Glow(Material):
 
     color: Color = field("The color of its light.", "1 1 1")
     strength: FixedScalar = field("Its radiance; 1 is as bright as a white surface in full light.", "1", at_least=0)
+
+    def darkens(self) -> bool:
+        """It shines."""
+        return True
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
         """Its light, and no reflection."""

@@ -1,4 +1,4 @@
-"""galaxy: a disk of stars on their orbits round a heavy center."""
+"""galaxy: a disk of stars in orbit around a heavy center."""
 
 from __future__ import annotations
 
@@ -53,10 +53,18 @@ class Galaxy(Model):
     softening: kinds.FixedLength = field("That of the force.", "0 m", at_least=0)
     dispersion: kinds.FixedScalar = field("Random part of the velocities.", "0", at_least=0, at_most=1)
     seed: int = field("Seed of the stars.", 0, at_least=0, at_most=WORDS - 1)
-    size: kinds.FixedLength = field("Radius of a star in the picture.", "5 mm", above=0)
-    core: kinds.FixedLength = field("Radius of the center in the picture.", "30 mm", above=0)
+    size: kinds.FixedLength | None = field(
+        "Radius of a star in the picture; by default a hundredth of the disk's.", None, above=0
+    )
+    core: kinds.FixedLength | None = field(
+        "Radius of the center in the picture; by default three times a star's.", None, above=0
+    )
     material: kinds.MaterialRef | None = field("How the stars look.", None)
     color: kinds.Color | None = field("Color in place of the material's.", None)
+
+    def darkens(self) -> bool:
+        """Stars."""
+        return True
 
     def static_masses(self) -> Mapping[str, StaticMass]:
         """A star."""
@@ -80,6 +88,7 @@ class Galaxy(Model):
         shaken = np.stack([_normal(chance(4 + 2 * c), chance(5 + 2 * c)) for c in range(3)], axis=1)
         places = r[:, None] * outward + height[:, None] * up
         velocities = speed[:, None] * (onward + self.dispersion * shaken)
+        star = 0.01 * self.radius if self.size is None else self.size
         center = np.zeros((1, 3))
         m = np.concatenate([[self.heart], np.full(n, self.disk / n)])
         velocities = np.concatenate([center, velocities])
@@ -90,12 +99,12 @@ class Galaxy(Model):
             positions=np.concatenate([center, places]) + self.position,
             velocities=velocities + self.velocity,
             masses=m,
-            radii=np.concatenate([[self.core], np.full(n, self.size)]),
+            radii=np.concatenate([[3.0 * star if self.core is None else self.core], np.full(n, star)]),
             fixed=np.zeros(n + 1, dtype=bool),
         )
 
     def _chance(self, draw: int) -> Floats:
-        """One number in [0, 1) a star."""
+        """Random numbers (stars,) in [0, 1), by the number of the draw."""
         import numpy as np
 
         from sceneql.quantities.chance import philox, unit
@@ -128,14 +137,14 @@ class Galaxy(Model):
 
 
 def _share(x: Any) -> Any:
-    """Mass of an exponential disk within x lengths, as a part of the whole."""
+    """Fraction of an exponential disk's mass within x scale lengths."""
     import numpy as np
 
     return 1 - (1 + x) * np.exp(-x)
 
 
 def _exponential(chance: Floats, most: float) -> Floats:
-    """Distances of an exponential disk cut at ``most``, by bisection of its share."""
+    """Radii [scale lengths] of an exponential disk cut at ``most``, for random numbers, by bisection of `_share`."""
     import numpy as np
 
     low, high = np.zeros_like(chance), np.full_like(chance, most)
@@ -148,7 +157,7 @@ def _exponential(chance: Floats, most: float) -> Floats:
 
 
 def _normal(first: Floats, second: Floats) -> Floats:
-    """Normally distributed (Box & Muller 1958)."""
+    """Standard normal numbers from two arrays in [0, 1) (Box & Muller 1958)."""
     import numpy as np
 
     found: Floats = np.sqrt(-2 * np.log1p(-first)) * np.cos(2 * np.pi * second)
@@ -156,7 +165,7 @@ def _normal(first: Floats, second: Floats) -> Floats:
 
 
 def _frame(axis: Floats) -> tuple[Floats, Floats, Floats]:
-    """Two unit vectors across an axis, and the axis as a unit vector; right-handed."""
+    """Two unit vectors (3,) across an axis, and the axis as a unit vector; right-handed."""
     import numpy as np
 
     up = unit_vector(axis)

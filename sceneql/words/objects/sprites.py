@@ -12,6 +12,9 @@ from sceneql.shapes.placement import apply, uniform_scale
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
 
+DARKEST = 0.3
+"""Brightest channel (sRGB) below which covering discs count as soot, which needs a light background."""
+
 
 class Sprites(Object):
     """A soft disc at each of some points, which always faces the camera: sparks, glowing gas, spray, smoke, dust.
@@ -30,6 +33,12 @@ class Sprites(Object):
         at_least=0,
         at_most=1,
     )
+
+    def darkens(self) -> bool:
+        """They shine; where they cover what is behind, unless their color is dark."""
+        color = self.color
+        dark = color is not None and color.constant and max(color.number()) < DARKEST
+        return self.blend == "adds" or not dark
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[Shape]:
         """Soft points."""

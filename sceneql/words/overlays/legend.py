@@ -1,4 +1,4 @@
-"""legend: what the colors of a field mean."""
+"""legend: a bar with the color map of a field."""
 
 from __future__ import annotations
 
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from sceneql.pictures.lettering import Letterer
 
 LONG = 0.62
-"""Length of the bar in parts of the picture's height."""
+"""Length of the bar, relative to the picture's height."""
+WIDEST = 0.2
+"""Width of a default title, relative to the picture's, above which it is left out."""
 SIDES = ("right", "left")
 
 
@@ -30,7 +32,9 @@ class Legend(Overlay):
 
     of: ObjectRef = field("What shows the field in colors: a `field_map`.")
     unit: str | None = field("The unit of the numbers: `mg/L`; by default that of SI.", None)
-    title: str = field("What is said above the bar; the unit follows.", "")
+    title: str | None = field(
+        "What is said above the bar, by default the field's name where there is room; the unit follows.", None
+    )
     place: Literal["left", "right"] | None = field(
         "The side of the picture where it stands; by default right, or where what is shown leaves more room.", None
     )
@@ -57,7 +61,8 @@ class Legend(Overlay):
         from sceneql.pictures.layout import page
         from sceneql.pictures.lettering import Letterer
 
-        return self._told(moment).box(place, Letterer(page(size), self.text, scale=scale))
+        letters = Letterer(page(size), self.text, scale=scale)
+        return self._told(moment, letters).box(place, letters)
 
     def draw(
         self,
@@ -71,14 +76,14 @@ class Legend(Overlay):
         from sceneql.pictures.lettering import DARK, LIGHT, Letterer
 
         letters = Letterer(pixels, self.text, DARK if self.dark else LIGHT, scale)
-        told = self._told(moment)
+        told = self._told(moment, letters)
         box = told.box(self.place or SIDES[0], letters)
         letters.panel(box, self.panel)
         told.draw(letters, box, develop)
         letters.done()
 
-    def _told(self, moment: Moment) -> _Bar:
-        """What it shows now. Raises ValueError for what shows no field, and for a unit of another dimension."""
+    def _told(self, moment: Moment, letters: Letterer) -> _Bar:
+        """Bar to draw now. Raises ValueError for an object without a color key, and for a unit of another dimension."""
         from sceneql.kinds.texts import shown_unit
         from sceneql.pictures.lettering import marked_numbers
 
@@ -93,14 +98,16 @@ class Legend(Overlay):
             raise ValueError(f"the field is {describe(key.dimension)}, which {text} is no unit of")
         low, high = (key.low - offset) / scale, (key.high - offset) / scale
         ticks = [(value, (value - low) / (high - low)) for value in marked_numbers(low, high, self.numbers)]
-        lines = [line for line in (self.title, "" if text == "1" else shown_unit(text)) if line]
+        fits = letters.extent(key.name)[0] <= WIDEST * letters.width
+        title = self.title if self.title is not None else key.name if fits else ""
+        lines = [line for line in (title, "" if text == "1" else shown_unit(text)) if line]
         marks = [(mark - key.low) / (key.high - key.low) for mark in key.marks]
         return _Bar(key, lines, ticks, [mark for mark in marks if 0 < mark < 1])
 
 
 @dataclass(frozen=True, slots=True)
 class _Bar:
-    """The bar with ticks (number, place from 0 to 1) and marks (place), under lines of words."""
+    """Bar with ticks (number, place from 0 to 1) and marks (place from 0 to 1), under lines of text."""
 
     key: ColorKey
     lines: list[str]
@@ -109,15 +116,15 @@ class _Bar:
 
     @property
     def words(self) -> list[str]:
-        """The numbers."""
+        """Texts of the ticks' numbers."""
         return [f"{value:.6g}".replace("-", "\u2212") for value, _ in self.ticks]
 
     def _head(self, em: int) -> int:
-        """Height of the words above [pixels]."""
+        """Height of the lines of text above the bar [pixels]."""
         return round((1.25 * len(self.lines) + 0.35) * em) if self.lines else 0
 
     def box(self, place: str, letters: Letterer) -> Box:
-        """Left, top, right, bottom [pixels] of its panel at the left or the right of a picture."""
+        """Left, top, right, bottom [pixels] of the panel at the left or the right of a picture."""
         em = letters.em
         widest = max((letters.extent(word)[0] for word in self.words), default=0)
         width = max(em + round(0.5 * em) + widest, *(letters.extent(line)[0] for line in self.lines), 0)
@@ -128,7 +135,7 @@ class _Bar:
         return left, top, left + width + 2 * room, top + height + 2 * room
 
     def draw(self, letters: Letterer, box: Box, develop: Callable[[Any], NDArray[uint8]]) -> None:
-        """Draw it on its panel."""
+        """Draw the bar on its panel."""
         import numpy as np
 
         em = letters.em

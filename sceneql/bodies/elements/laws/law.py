@@ -1,4 +1,4 @@
-"""What an elastic law is: its fields in a script, and its numbers at places of the material."""
+"""Base class of elastic laws: fields of a script, and the material's parameters at points."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 AXES = ("x", "y", "z")
 POISSON = 0.3
-"""Poisson's ratio where the script tells none."""
+"""Default Poisson's ratio."""
 MATERIAL = "at the place x, y, z [m] of the material before it moves"
 Modulus = Annotated[Formula, Symbols(AXES, dim.PRESSURE, at_start=True)]
 Ratio = Annotated[Formula, Symbols(AXES, dim.PLAIN, at_start=True)]
@@ -34,7 +34,7 @@ class Law(Record):
     kernels: ClassVar[str]
     """The module of its kernels (law_kernels.py)."""
     recovers: ClassVar[bool] = True
-    """Whether what is turned inside out is pushed back."""
+    """Whether inverted elements are pushed back."""
     turns: ClassVar[bool] = True
     """Whether a rotation makes no stress."""
 
@@ -45,7 +45,7 @@ class Law(Record):
     )
 
     def problems(self) -> Iterator[Problem]:
-        """Numbers out of their range, where they are the same everywhere."""
+        """Problems: constant parameters out of their range."""
         for name in type(self).model_fields:
             formula = getattr(self, name)
             if isinstance(formula, Formula) and not _varies(formula):
@@ -55,7 +55,7 @@ class Law(Record):
 
     @classmethod
     def wrong(cls, name: str, number: float) -> str:
-        """Why a field cannot have this value; empty where it can."""
+        """The message on a value out of a field's range; empty for a value in it."""
         if name != "poisson":
             return "" if 0.0 < number < float("inf") else f"{name} must be above 0 Pa, not {number:g} Pa"
         if number == 0.5:
@@ -63,7 +63,7 @@ class Law(Record):
         return "" if -1.0 < number < 0.5 else f"poisson must be above -1 and below 0.5, not {number:g}"
 
     def at(self, name: str, places: Floats) -> Floats:
-        """(n,) a field at places (n, 3) of the material. Raises ScriptError where it is out of its range."""
+        """Values (n,) of a field at material positions (n, 3) [m]. Raises ScriptError where one is out of range."""
         import numpy as np
 
         formula = getattr(self, name)
@@ -78,30 +78,30 @@ class Law(Record):
         return values.copy()
 
     def most_poisson(self) -> float:
-        """Poisson's ratio, where it is the same everywhere; else 0.5, since it may come near that."""
+        """Poisson's ratio if it is constant; 0.5, its upper bound, if it varies."""
         if self.poisson is None:
             return POISSON
         return 0.5 if _varies(self.poisson) else float(evaluate(self.poisson.expr, {}))
 
     def varies(self, name: str) -> bool:
-        """Whether a field is not the same everywhere."""
+        """Whether a field depends on the position."""
         formula = getattr(self, name)
         return formula is not None and _varies(formula)
 
     def warning(self) -> str:
-        """What it cannot do, for `explain`."""
+        """Limitations of the law, for `explain`; empty without any."""
         lost = [] if self.turns else ["rotation makes a false stress"]
         lost += [] if self.recovers else ["what is turned inside out does not come back"]
         return f"; by this law {', and '.join(lost)}" if lost else ""
 
     def moduli(self, places: Floats) -> tuple[Floats, Floats]:
-        """(n,) Lame's first number and the shear modulus [Pa]."""
+        """Lame's first parameter (n,) and the shear modulus (n,) [Pa] at material positions (n, 3) [m]."""
         modulus, poisson = self.at("modulus", places), self.at("poisson", places)
         shear = modulus / (2.0 * (1.0 + poisson))
         return 2.0 * shear * poisson / (1.0 - 2.0 * poisson), shear
 
     def numbers(self, places: Floats) -> Floats:
-        """(n, k) what the kernels read at places (n, 3): the bulk number [Pa], then the law's own."""
+        """Parameters (n, k) of the law's kernels at material positions (n, 3) [m]: `bulk` [Pa], then the law's own."""
         import numpy as np
 
         return np.column_stack(self.moduli(places))
@@ -115,7 +115,7 @@ class OneLaw(Record):
     """A law by its name."""
 
     def problems(self) -> Iterator[Problem]:
-        """Several or none."""
+        """A problem where more or less than one law is given."""
         given = [name for name in type(self).model_fields if getattr(self, name) is not None]
         if len(given) != 1:
             known = ", ".join(type(self).model_fields)
@@ -124,7 +124,7 @@ class OneLaw(Record):
 
     @property
     def law(self) -> Law:
-        """The one that is given."""
+        """The given law."""
         found: Law = next(value for name in type(self).model_fields if (value := getattr(self, name)) is not None)
         return found
 

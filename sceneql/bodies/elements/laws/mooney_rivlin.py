@@ -24,13 +24,13 @@ class MooneyRivlin(Law):
 
     @classmethod
     def wrong(cls, name: str, number: float) -> str:
-        """Parts from 0 to 1."""
+        """As of Law; `second` must be from 0 to 1."""
         if name == "second":
             return "" if 0.0 <= number <= 1.0 else f"second must be from 0 to 1, not {number:g}"
         return super().wrong(name, number)
 
     def numbers(self, places: Floats) -> Floats:
-        """Lame's lambda, a and b."""
+        """(n, 3) [Pa]: Lame's lambda, a and b at material positions (n, 3) [m]."""
         import numpy as np
 
         first, shear = self.moduli(places)
