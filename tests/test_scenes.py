@@ -39,6 +39,7 @@ FEWER = {
     "cushion": ["define.h=2.4 m/40"],
     "dominoes": ["solvers.main.verlet.step=20 ms"],
     "flag": ["define.h=1 m/20"],
+    "lake": ["define.h=40 m"],
     "jelly": ["models.cube.mass_spring.lattice.count=4 4 4"],
     "notes_fluid": ["models.water.flow.pressure=auto"],
     "pile": ["models.bun.elastic.spacing=9 cm"],
