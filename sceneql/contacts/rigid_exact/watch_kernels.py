@@ -264,8 +264,6 @@ def gap(t, y, gaps, floats, ints):
         if floats[rec + EXTENT] < math.inf:
             if floats[rec + EXTENT] > INSIDE * size:
                 gaps[at + 1] = extent(floats, ints, rec)
-            elif floats[rec + OF] >= 0.0 and is_plain(
-                floats, ints, int(floats[rec + SHAPE_A])
-            ):  # at a border, from where it may turn back
+            elif is_plain(floats, ints, int(floats[rec + SHAPE_A])):  # at a border, from where it may turn back
                 gaps[at + 1] = INSIDE * size + extent(floats, ints, rec) - floats[rec + EXTENT]
         gaps[at + 1] = min(gaps[at + 1], lying(floats, ints, rec))
