@@ -14,6 +14,7 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.distance.convex import CORE
 from sceneql.contacts.distance.core_kernels import (
+    ADVANCES,
     FLOATS,
     GAP,
     HEAD,
@@ -191,7 +192,8 @@ def first_touch(floats, ints, a, b, places, at_a, at_b, motions, of_a, of_b, h, 
         # The spheres around them; a little larger, for rounding.
         t = spheres_meet(x, y, z, vx, vy, vz, (ra + rb + max(margin, 0.0) + tolerance) * (1.0 + 1e-12), h)
     moved = room.size - MOVED
-    for _ in range(MOST_ADVANCES):
+    for number in range(MOST_ADVANCES):
+        room[ADVANCES] = number
         if not t <= h:
             return math.inf
         move(places, at_a, motions, of_a, t, room, moved)
