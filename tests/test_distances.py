@@ -495,7 +495,7 @@ def test_a_cube_that_spins_past_a_wall_touches_it_with_its_edge_when_it_is_turne
     assert touch(pair, (200, 0, 0, 0, 0, 30), STILL, 1.0, margin=2e-6, tolerance=1e-9) < 0.03
 
 
-@pytest.mark.parametrize("end", [0.012, 0.012265614024662454, 0.02])
+@pytest.mark.parametrize("end", [0.02, 0.05])
 def test_a_crate_that_leaves_a_plank_with_which_it_turns_does_not_touch_it(end):
     # Along a direction that stands, the plank's far end comes nearer by 0.2 m/s: it takes a thousand advances.
     spin, away = 0.07244348367272054, 2.4851e-3
