@@ -1,4 +1,4 @@
-"""From scene-referred light to display pixels: exposure, tone curve, sRGB, 8 bits."""
+"""Development of linear pictures into display pixels: exposure, tone curve, sRGB, 8 bits."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BAND = 16
-"""Rows of pixels that a thread takes at a time."""
+"""Number of pixel rows that a thread develops at a time."""
 
 
 def develop(linear: NDArray[float32], exposure: float = 0.0, *, data: bool = False) -> NDArray[uint8]:
     """Display pixels (h, w, 3) of a linear picture (h, w, 3); ``exposure`` in stops.
 
-    ``data`` pictures (normals, depth) in 0..1 are only brought to 8 bits. Else the brightest channel m goes by a curve
-    that is the identity up to a = 0.6 and then a + (1 - a) tanh((m - a)/(1 - a)), smooth in its slope; the others keep
-    their ratio to it, so that hues stay, and what lies far over white fades to white, as on film. So the colors of a
-    script come back as written, up to the sRGB tone 203. Then the sRGB transfer curve, and an ordered dither, the
-    same in every frame, that keeps soft gradients free of bands. What is no number is black.
+    ``data`` pictures (normals, depth) in 0..1 are only rounded to 8 bits. Others go through three steps. First, a tone
+    curve maps the brightest channel m: the identity up to a = 0.6, then a + (1 - a) tanh((m - a)/(1 - a)), with a
+    continuous slope. The other channels keep their ratio to it, which preserves hue; colors far brighter than white
+    fade to white. Colors of a script thus come out as written, up to the sRGB value 203. Second, the sRGB transfer
+    curve. Third, an ordered dither, the same in every frame, against bands in soft gradients. NaN becomes black.
     """
     import numpy as np
 

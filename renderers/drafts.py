@@ -1,4 +1,4 @@
-"""Drafts: pictures of fewer pixels, enlarged once they are developed."""
+"""Drafts: pictures with fewer pixels, enlarged after development."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ if TYPE_CHECKING:
     from sceneql.frame import View
 
 COARSER = 3
-"""Pixels of the picture along a pixel of its draft. A tracer's time goes with the number of pixels and the length of
-edges, so that 3 leaves a sixth of it."""
+"""Width of a draft's pixel in pixels of the picture. A tracer's time grows with the number of pixels and the length of
+edges, so that 3 leaves about a sixth of it."""
 
 
 def coarser(view: View) -> View:
-    """The same view in pixels COARSER times as large, which reach over its edges where they do not fill it."""
+    """View with pixels COARSER times as large, extended beyond its edges to a whole number of pixels."""
     width, height = (-(-pixels // COARSER) for pixels in view.size)
     return replace(view, size=(width, height), half_height=view.half_height * COARSER * height / view.size[1])
 
 
 def enlarged(pixels: NDArray[uint8], size: tuple[int, int]) -> NDArray[uint8]:
-    """Pixels (h, w, 3) of a `coarser` view as a picture of the view's own size (bicubic)."""
+    """Picture of the original view's ``size``, enlarged bicubically from pixels (h, w, 3) of its `coarser` view."""
     import numpy as np
     from PIL import Image
 

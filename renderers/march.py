@@ -1,4 +1,4 @@
-"""march: the ray tracer with implicit surfaces looked for at fixed places of each ray."""
+"""march: the ray tracer with implicit surfaces sampled at fixed places of each ray."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class March(Renderer):
     samples: int = field("Places on a ray at which a field is sampled.", 64, at_least=1, at_most=100000)
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """The tracer's kernel modules."""
+        """Kernel modules of the tracer."""
         own = "renderers.tracing.draw"
         also = ("renderers.tracing.solids.implicit", "renderers.tracing.solids.fixed_samples_kernels")
         return (own, *also) if traced else (own,)
 
     def draw(self, frame: Any) -> Any:
-        """The Picture of a frame: linear (h, w, 3), with nothing undecided."""
+        """Picture of a frame: linear (h, w, 3), with no undecided pixels."""
         from renderers.tracing.draw import draw
 
         return draw(frame, march=self.samples)

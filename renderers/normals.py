@@ -19,13 +19,13 @@ class Normals(Renderer):
     samples: Literal[1, 2, 4, 8, 16, 32, 64] = field("Rays in a pixel; 1 keeps every normal's length.", 1)
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """The tracer's kernel modules."""
+        """Kernel modules of the tracer."""
         from renderers.tracing.certified import certified
 
         return certified("renderers.tracing.normals") if traced else ("renderers.tracing.normals",)
 
     def draw(self, frame: Any) -> Any:
-        """The Picture of a frame: (h, w, 3) in 0..1 and the number of undecided pixels."""
+        """Picture of a frame: (h, w, 3) in 0..1, and the number of undecided pixels."""
         from renderers.tracing.normals import draw_normals
 
         return draw_normals(frame, self.samples)

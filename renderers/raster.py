@@ -31,7 +31,7 @@ class Raster(Renderer):
     )
 
     def draw(self, frame: Any) -> Any:
-        """The Picture of a frame: linear (h, w, 3). Raises ValueError for what it cannot draw, or cannot draw with."""
+        """Picture of a frame: linear (h, w, 3). Raises ValueError for unsupported shapes, or without OpenGL."""
         from renderers.rastering.draw import draw
 
         return draw(frame, self.cells, self.sharp, self.samples, self.shadows, self.brightest)

@@ -39,7 +39,7 @@ class Trace(Renderer):
     )
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """The tracer's kernel modules."""
+        """Kernel modules of the tracer."""
         from renderers.tracing.certified import TOLERANCE, certified
 
         if not traced:
@@ -63,11 +63,11 @@ class Trace(Renderer):
         return (*together, *certified("renderers.tracing.draw"))
 
     def draft(self) -> Trace:
-        """With fewer rays where things meet."""
+        """Renderer for drafts, with at most DRAFT_SAMPLES rays in pixels at edges."""
         return self.model_copy(update={"samples": min(self.samples, DRAFT_SAMPLES)})
 
     def draw(self, frame: Any) -> Any:
-        """The Picture of a frame: linear (h, w, 3) and the number of undecided pixels."""
+        """Picture of a frame: linear (h, w, 3), and the number of undecided pixels."""
         from renderers.tracing.draw import draw
 
         return draw(frame, self.samples, self.tolerance, bounces=self.diffuse_bounces)

@@ -1,4 +1,4 @@
-"""undecided: which pixels the certified search could not decide."""
+"""undecided: picture of the pixels that the certified search could not decide."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class Undecided(Renderer):
     tolerance: FixedScalar = field("As of `trace`.", "1e-9", above=0, at_most=1e-3)
 
     def kernels(self, traced: Collection[str]) -> tuple[str, ...]:
-        """The tracer's kernel modules."""
+        """Kernel modules of the tracer."""
         from renderers.tracing.certified import certified
 
         return certified("renderers.tracing.normals") if traced else ("renderers.tracing.normals",)
 
     def draw(self, frame: Any) -> Any:
-        """The Picture of a frame: (h, w, 3) in 0..1 and the number of undecided pixels."""
+        """Picture of a frame: (h, w, 3) in 0..1, and the number of undecided pixels."""
         from renderers.tracing.normals import draw_undecided
 
         return draw_undecided(frame, self.tolerance)

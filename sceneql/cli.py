@@ -14,7 +14,7 @@ import click
 
 from sceneql import __version__, interrupts, room
 from sceneql.exits import GALLERY_DIFFERS, OK, failed, stopped
-from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, as_seconds, as_words, options
+from sceneql.options import ABOVE_ZERO, SCENE, as_length, as_path, as_seconds, as_words, meant, options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,8 +27,12 @@ if TYPE_CHECKING:
 def cli() -> None:
     """A compiler from scene scripts to films."""
     from sceneql.compiled import variables
+    from sceneql.failure import Unsuitable
 
-    variables.check()
+    try:
+        variables.check()
+    except ValueError as error:
+        raise Unsuitable(str(error)) from error
 
 
 def main() -> None:
@@ -55,6 +59,8 @@ def _run(interrupted: Callable[[], bool]) -> int:
         return stopped(abort.__cause__)
     except click.ClickException as error:
         error.show()
+        if (help := meant(error)) is not None:
+            click.echo(f"help: {help}", err=True)
         return error.exit_code
     except Exception as error:
         return stopped(error) if interrupted() else failed(error)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -55,6 +56,31 @@ def as_path(context: click.Context, parameter: click.Parameter, value: Any) -> A
 def as_words(context: click.Context, parameter: click.Parameter, value: Any) -> tuple[str, ...]:
     """``a, b`` to ``("a", "b")``."""
     return tuple(word.strip() for word in (value or "").split(",") if word.strip())
+
+
+_STILL = "write `sceneql render SCENE --set 'outputs={still: {image: {size: 480 270, time: 1 s}}}'`"
+_MEANT = {
+    **dict.fromkeys(
+        ("--size", "--resolution", "--time", "--frame", "--at", "--still", "still", "image", "frame"), _STILL
+    ),
+    **dict.fromkeys(("--fps", "--rate"), "write `--set clock.fps=60`"),
+    **dict.fromkeys(("--end", "--duration", "--length", "--seconds"), "write `--set 'clock.end=5 s'`"),
+    **dict.fromkeys(("run", "play", "film", "animate", "view", "show"), "write `sceneql render SCENE`"),
+    **dict.fromkeys(("help", "doc", "docs", "manual", "list"), "write `sceneql --help`, or `sceneql words`"),
+    **dict.fromkeys(("validate", "lint", "test"), "write `sceneql check SCENE`"),
+}
+"""Options and commands of other programs, and what is written in their place."""
+
+
+def meant(error: click.ClickException) -> str | None:
+    """The help for an option or a command that there is not."""
+    if isinstance(error, click.NoSuchOption):
+        return _MEANT.get(error.option_name)
+    command = re.fullmatch(r"No such command '(.*)'\.", error.message)
+    if command is None:
+        return None
+    scene = command[1].endswith((".yaml", ".yml"))
+    return f"write `sceneql render {command[1]}`" if scene else _MEANT.get(command[1])
 
 
 SCENE = click.argument("scene", callback=as_path)

@@ -112,8 +112,8 @@ def render(
     for tool in tools.values():
         try_folder(tool.target.parent)
     sinks: dict[str, Any] = {}
-    models = [name for name, task in graph.tasks.items() if isinstance(task.kind, Model)]
-    now, busy = 0.0, _Busy("starting the run", models)
+    parts = [name for name, task in graph.tasks.items() if isinstance(task.kind, Model)] or [*outputs]
+    now, busy = 0.0, _Busy("starting the run", parts)
     run: Any = None
     ending = ExitStack()
     late = ending.enter_context(within(limit, lambda: doing.now(0.0)))
@@ -134,7 +134,7 @@ def render(
         watch = Watch(run, always=account)
         if run.islands and instants and instants[0] > 0.0:
             watch.look(run.at(0.0))  # what is gained is gained over the start
-        busy = solving = _Busy("solving", models)
+        busy = solving = _Busy("solving", parts)
         for done, moment in enumerate(run.moments(instants)):
             progress(done, len(instants))
             if late.passed:  # told where it was lost, as signals are in callbacks of a C library

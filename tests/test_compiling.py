@@ -3,6 +3,7 @@
 import gc
 import math
 import os
+import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
@@ -41,6 +42,20 @@ def test_helpers_of_helpers_reach_the_machine_code_of_the_kernel_that_calls_them
     kernel = numba.njit(types.float64(types.float64[::1]), **PIPELINE)(lambda v: norm(v) + norm(-v))
     values = np.random.default_rng(1).normal(size=100)
     assert kernel(values) == pytest.approx(2.0 * np.linalg.norm(values), rel=1e-14)
+
+
+@shortened
+def test_loops_over_lanes_become_loops_over_vectors():
+    from sceneql.field.packets.packet_kernels import unary_lanes
+
+    def kernel(op, registers, status, lanes):
+        unary_lanes(op, registers[0], registers[1], lanes, status, False)
+
+    signature = types.void(types.int64, types.float32[:, ::1], types.float32[::1], types.int64)
+    made = numba.njit(signature, _nrt=False, error_model="numpy", **PIPELINE)(kernel)
+    (code,) = made.inspect_llvm().values()
+    in_vectors, one_by_one = len(re.findall(r"fmul <\d+ x float>", code)), code.count("fmul float")
+    assert in_vectors > one_by_one, "enclosures take five times as long"
 
 
 @shortened

@@ -53,6 +53,13 @@ def test_a_march_of_hours_ends_at_its_limit_where_it_is(tmp_path):
     assert pipeline.render(pipeline.load(written(tmp_path, short)), folder=tmp_path, limit=300.0).files == made
 
 
+def test_where_nothing_is_simulated_the_limit_ends_an_output(tmp_path):
+    path = written(tmp_path, FILM)
+    with pytest.raises(OutOfTime) as found:
+        pipeline.render(pipeline.load(path), folder=tmp_path, limit=1e-6)
+    assert (found.value.part, found.value.span.line) == ("film", 3)
+
+
 def test_a_film_that_takes_too_long_keeps_its_frames(tmp_path):
     path = written(tmp_path, FILM)
     pipeline.render(pipeline.load(path, sets=["clock.end=0.1 s"]), folder=tmp_path)  # what is compiled is compiled

@@ -54,6 +54,15 @@ def test_check_tells_the_mistakes_of_all_variants(tmp_path):
     assert said.index("radus") < said.index("1 s")
 
 
+def test_options_and_commands_of_other_programs_are_told_with_what_to_write(tmp_path):
+    for told, *given in (
+        ("help: write `sceneql render ball.yaml`", "ball.yaml"),
+        ("help: write `--set clock.fps=60`", "render", "ball.yaml", "--fps", "60"),
+        ("--set 'outputs={still: {image: {size: 480 270, time: 1 s}}}'`", "render", "ball.yaml", "--size", "480 270"),
+    ):
+        assert told in sceneql(tmp_path, *given, code=2)
+
+
 def test_no_library_warns_of_numbers_that_are_too_large(tmp_path):
     script = "objects: {spring: {coil: {from: 0 0 0 m, to: 1e300 0 0 m}}}\noutputs: {still: {image: {size: 16 9}}}\n"
     (tmp_path / "s.yaml").write_text(script)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import xml.etree.ElementTree as ET
 
 import pytest
 from click.testing import CliRunner
@@ -12,6 +13,7 @@ from click.testing import CliRunner
 from sceneql import pipeline
 from sceneql.cli import cli
 from sceneql.failure import Unsuitable
+from sceneql.report.plots import study_errors
 from sceneql.report.study import trials
 from sceneql.report.study_page import study
 
@@ -110,3 +112,15 @@ def test_checking_a_script_tries_every_value(scene):
     said = CliRunner().invoke(cli, ["check", str(scene)])
     assert "rk4 has no field 'stepp'" in str(said.exception)
     assert "scene.yaml:14:" in str(said.exception)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "told"),
+    [((1.0, 7.0, 50.0), ["1", "2", "5", "10", "20", "50"]), ((1e-6, 1e-2), ["10\u22126", "10\u22122"])],
+)
+def test_few_digits_stand_at_an_axis_without_powers_of_ten(tmp_path, numbers, told):
+    runs = {"rk4": [(number, 1e-4 * number, 1e-3, 1e-3) for number in numbers]}
+    study_errors(tmp_path / "study.svg", "scene: steps", "dt [ms]", runs)
+    below = ET.parse(tmp_path / "study.svg").getroot().find(".//*[@id='axes_2']/*[@id='matplotlib.axis_3']")
+    written = ["".join("".join(one.itertext()).split()) for one in below.iter("{http://www.w3.org/2000/svg}text")]
+    assert [text for text in written if text in told] == sorted(told, key=written.index)

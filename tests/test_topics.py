@@ -80,3 +80,13 @@ def test_a_function_has_the_page_of_functions(name):
 def test_words_of_other_programs_have_ours_in_the_manual_too(word, help):
     with pytest.raises(Unsuitable, match=re.escape(help)):
         manual(Catalogue(), word)
+
+
+@pytest.mark.parametrize("family", ["lights", "light", "cameras", "material", "ties"])
+def test_a_family_is_told_by_its_words(family):
+    catalogue = Catalogue()
+    named = next(one for one in catalogue.families if one.startswith(family))
+    first, *lines = manual(catalogue, family).splitlines()
+    assert first == f"{named}:"
+    assert [line.split()[0] for line in lines] == list(catalogue.words(named))
+    assert f"{first}\n{lines[0]}\n" in listing(catalogue)

@@ -1,4 +1,4 @@
-"""mp4: H.264 film, in process by PyAV behind imageio, whole under its final name or not there."""
+"""mp4: H.264 film by PyAV through imageio; the file appears under its name only when complete."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ if TYPE_CHECKING:
     from numpy import uint8
     from numpy.typing import NDArray
 
-# x264's bytes depend on the number of its threads, so that is fixed; faststart lets a browser play while it loads.
+# x264's output depends on its number of threads, which is therefore fixed. faststart: browsers play while loading.
 OPTIONS = {"movflags": "+faststart", "fflags": "+bitexact"}
 AT_ONCE = 64
-"""Frames, at most, that the encoder holds back."""
+"""Largest number of frames that the encoder buffers."""
 USUAL = 48
-"""Bytes of a picture for a byte of film, half a bit a pixel: what a frame takes, as long as none has been seen."""
+"""Bytes of a picture per byte of film (half a bit per pixel): estimate of a frame's size before any is written."""
 
 SEEK = 0.5
-"""Seconds of film from key frame to key frame: where a player can go at once."""
+"""Time [s] between key frames, to which a player can seek directly."""
 
 
 class _Planes(list[Any]):
-    """Planes as imageio takes them: by index, with a shape of their number and that of the first."""
+    """List of planes with the ``shape`` (planes, h, w) that imageio reads."""
 
     shape = (0, 0, 0)
 
 
 def planes_of(picture: NDArray[uint8]) -> list[NDArray[uint8]]:
-    """Luma (h, w) and both chroma (h/2, w/2) of a picture (h, w, 3), in BT.709's video range, dithered."""
+    """Luma (h, w) and both chroma planes (h/2, w/2) of a picture (h, w, 3), in BT.709's video range, dithered."""
     import numpy as np
 
     from renderers.encoders.video_planes_kernels import planes
@@ -48,10 +48,10 @@ def planes_of(picture: NDArray[uint8]) -> list[NDArray[uint8]]:
 
 
 class Writer:
-    """Writes frames of one size at one rate; yuv420p, BT.709, playable everywhere."""
+    """Writer of frames of one size at one rate, as yuv420p in BT.709, which all players support."""
 
     def __init__(self, path: Path, *, size: tuple[int, int], rate: float, quality: float, comment: str) -> None:
-        """Start a film. Raises ValueError for an odd size, which yuv420p cannot hold."""
+        """Start a film. Raises ValueError for an odd size, which yuv420p cannot represent."""
         if size[0] % 2 or size[1] % 2:
             raise ValueError(f"a film's width and height must be even, not {size[0]} {size[1]}")
         self.path = path
@@ -64,7 +64,7 @@ class Writer:
     def _open(self) -> Any:
         from importlib import import_module
 
-        import_module("av")  # imageio would call any error of its import a missing plug-in
+        import_module("av")  # imageio reports any error of this import as a missing plug-in
         import imageio.v3 as iio
 
         (width, height), rate, quality, comment = self._settings
@@ -74,8 +74,8 @@ class Writer:
         file.init_video_stream("libx264", fps=float(rate), pixel_format="yuv420p")
         stream: Any = file._video_stream
         stream.width, stream.height = width, height
-        # aq-mode=3 spends more on dark, even blocks, where bands would show.
-        # Without mbtree=0 x264 was seen to give other bytes from run to run for the same frames, even on one thread.
+        # aq-mode=3 gives more bits to dark, even blocks, where bands would be visible.
+        # Without mbtree=0 x264 gave different bytes from run to run for the same frames, even on one thread.
         stream.options = {"crf": f"{quality:g}", "preset": "medium", "x264-params": "mbtree=0:aq-mode=3"}
         context = stream.codec_context
         context.thread_count, context.thread_type = 4, "FRAME"
@@ -87,9 +87,9 @@ class Writer:
         return file
 
     def write(self, picture: NDArray[uint8]) -> None:
-        """Add a frame (h, w, 3). Raises OSError while the disk still has room to finish the film, and MemoryError."""
+        """Add a frame (h, w, 3). Raises OSError before the disk is too full to finish the film, and MemoryError."""
         planes = planes_of(picture)
-        with held():  # a signal in the encoder's callbacks would break it
+        with held():  # a signal within the encoder's callbacks would break it
             if self._file is None:
                 self._file = self._open()
             self._leave_room(picture.size // USUAL)
@@ -98,15 +98,15 @@ class Writer:
             try:
                 self._file.write_frame(planes, pixel_format="yuv420p")
             except ExternalError:
-                bytearray(AT_ONCE * picture.size // 2 + 2**28)  # MemoryError, where that is what x264 does not tell
+                bytearray(AT_ONCE * picture.size // 2 + 2**28)  # MemoryError, if that is the reason x264 hides
                 raise
             self._disk.raise_error()
             self.frames += 1
 
     def _leave_room(self, usual: int) -> None:
-        """Raise OSError where what the encoder holds back and the index of frames would not fit on the disk.
+        """Raise OSError if the encoder's buffered frames and the index of frames would not fit on the disk.
 
-        ``usual``: bytes of a frame, as long as too few are written to tell.
+        ``usual``: estimated bytes per frame, used until enough frames are written.
         """
         out = self.frames - AT_ONCE
         each = self._made.stat().st_size // out if out > AT_ONCE else usual
@@ -115,11 +115,11 @@ class Writer:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     def close(self) -> list[Path]:
-        """Finish; the film appears under its name."""
+        """Finish the film, which then appears under its name; returns its path."""
         return self._finish(self.path)
 
     def abort(self) -> list[Path]:
-        """Keep the frames so far, playable, beside the final name. Raises the OSError of what was not written."""
+        """Keep the frames so far as a playable film beside the final name. Raises the OSError of a failed write."""
         return self._finish(beside(self.path, "partial"))
 
     def _finish(self, path: Path) -> list[Path]:
@@ -138,7 +138,7 @@ class Writer:
         return [path]
 
     def _end(self, file: Any) -> None:
-        """Close the encoder; where it has failed, it is not asked again for what it holds back when it is collected."""
+        """Close the encoder. After a failure its stream is dropped, so that garbage collection does not flush it."""
         try:
             if not self.frames:
                 file._video_stream = None
@@ -148,12 +148,12 @@ class Writer:
 
 
 class _Disk(io.FileIO):
-    """A file that keeps its first error for later: an encoder would print it, many times, and be of no use after it."""
+    """File that keeps its first error for later; the encoder would print it many times and become unusable."""
 
     error: OSError | None = None
 
     def write(self, data: Any) -> int:
-        """Write all of it, while there has been no error; says that it did in any case."""
+        """Write all data, unless there has been an error; returns the full length in any case."""
         rest = memoryview(data)
         try:
             while len(rest) and self.error is None:
@@ -163,6 +163,6 @@ class _Disk(io.FileIO):
         return len(data)
 
     def raise_error(self) -> None:
-        """Raise what was kept."""
+        """Raise the kept error, if any."""
         if self.error is not None:
             raise self.error

@@ -1,4 +1,4 @@
-"""png: one picture, or a numbered row of them; no video library is imported."""
+"""png: one picture, or a numbered sequence; imports no video library."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 
 FAST = 2
-"""Level of compression up to which rows are all filtered in one way: to choose takes longer than to compress."""
+"""Largest level of compression for which all rows get the same filter: a choice takes longer than the compression."""
 
 
 class Writer:
-    """Writes ``name.png``, or ``name.0000.png``, ``name.0001.png``, ...; every file is whole when it appears.
+    """Writer of ``name.png``, or of ``name.0000.png``, ``name.0001.png``, ...; every file is complete when it appears.
 
-    With more than one thread a row's pictures are encoded beside what follows, one at a time: a picture is not to be
-    changed after ``write``, and an error is raised by the next one or at the end.
+    With more than one thread the pictures of a sequence are encoded in the background, one at a time. A picture must
+    not change after ``write``, and an error is raised by the next call or at the end.
     """
 
     def __init__(self, path: Path, *, numbered: bool, comment: str, compression: int = 6) -> None:
-        """``compression``: zlib's level (RFC 1950), from 0, none, to 9."""
+        """``compression``: level of zlib (RFC 1950), from 0 (none) to 9."""
         self.path, self.numbered, self.comment, self.compression = path, numbered, comment, compression
         self.made: list[Path] = []
         self._count = 0
@@ -34,7 +34,7 @@ class Writer:
         self._last: Future[None] | None = None
 
     def write(self, picture: NDArray[uint8]) -> None:
-        """Add a picture (h, w, 3)."""
+        """Add a picture (h, w, 3). Raises the error of the picture before, if it failed."""
         from sceneql.compiled.kernels import thread_count
 
         self._settle()
@@ -47,7 +47,7 @@ class Writer:
             self._save(picture, path)
 
     def close(self) -> list[Path]:
-        """The files made."""
+        """Wait for the last picture; returns the files made. Raises its error."""
         try:
             self._settle()
         finally:
@@ -55,8 +55,8 @@ class Writer:
         return self.made
 
     def abort(self) -> list[Path]:
-        """The files made: each is whole."""
-        with suppress(Exception):  # the error that ends the run is the one to tell
+        """Stop; returns the files made, all complete."""
+        with suppress(Exception):  # the error that ended the run is reported instead
             self._settle()
         self._end()
         return self.made
@@ -74,7 +74,7 @@ class Writer:
         self.made.append(path)
 
     def _settle(self) -> None:
-        """Wait for the last picture. Raises its error, once."""
+        """Wait for the last picture. Raises its error, only once."""
         last, self._last = self._last, None
         if last is not None:
             last.result()
@@ -86,13 +86,13 @@ class Writer:
 
 
 def by_left(picture: NDArray[uint8], comment: str, compression: int) -> bytes:
-    """The PNG file (ISO/IEC 15948:2004) of a picture (h, w, 3): rows as differences from the left, its filter 1."""
+    """PNG file (ISO/IEC 15948:2004) of a picture (h, w, 3), all rows with filter 1: differences from the left."""
     import zlib
 
     import numpy as np
 
     height, width, channels = picture.shape
-    rows = np.ones((height, 1 + channels * width), dtype=np.uint8)  # each begins with the number of its filter
+    rows = np.ones((height, 1 + channels * width), dtype=np.uint8)  # each row begins with its filter type
     flat = picture.reshape(height, -1)
     rows[:, 1 : 1 + channels] = flat[:, :channels]
     np.subtract(flat[:, channels:], flat[:, :-channels], out=rows[:, 1 + channels :])

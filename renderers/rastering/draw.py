@@ -1,4 +1,4 @@
-"""A frame as a scene of pyrender, and its picture."""
+"""Frame as a scene of pyrender, and the resulting picture."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
     from sceneql.frame import RGB, Floats, LightSource, SeenFrame, View
 
 GAMMA = 2.2
-"""Exponent that decodes pyrender's pictures: its shader stores roots of light, so that 8 bits resolve dark colors."""
+"""Exponent that decodes pyrender's pictures: its shader stores radiance^(1/2.2), so that 8 bits resolve dark colors."""
 NEAR, REACH = 1e-3, 50.0
-"""The near plane, and the extent of planes, in units of the distance of the far end of all bounded shapes."""
+"""Distance of the near plane, and extent of planes, relative to the distance of the far end of all bounded shapes."""
 _meshes: OfHeld[Any] = OfHeld()
 
 
 def draw(frame: SeenFrame, cells: int, sharp: bool, samples: int, shadows: bool, brightest: float) -> Picture:
-    """The Picture of a frame: linear (h, w, 3). Raises ValueError for what cannot be drawn.
+    """Picture of a frame: linear (h, w, 3). Raises ValueError for unsupported shapes, or without OpenGL.
 
-    ``samples`` in a pixel, a square number; radiance is clipped at ``brightest``.
+    ``samples``: number in a pixel, a square; ``brightest`` [W/(sr m^2)]: radiance at which pictures are clipped.
     """
     gl = library()
     made = [part for shape in frame.shapes if not boundless(shape) for part in triangles(shape, cells, sharp)]
@@ -64,7 +64,7 @@ def draw(frame: SeenFrame, cells: int, sharp: bool, samples: int, shadows: bool,
 
 
 def _mesh(gl: Any, part: Triangles, brightest: float) -> Any:
-    """The pyrender mesh of some triangles; if they are those of the last frame, the one that OpenGL still holds."""
+    """Mesh of pyrender for triangles; if they are unchanged since the last frame, the one that OpenGL already holds."""
     arrays = part.vertices, part.triangles, part.normals, part.colors
     key = part.surface, part.flat, brightest
     return _meshes.get(arrays, key, lambda: gl.Mesh([primitive(gl, part, brightest)]))
@@ -78,7 +78,7 @@ def _bounds(made: Iterable[Triangles]) -> tuple[Floats, Floats]:
 
 
 def _pose(axes: Floats, origin: Any) -> Floats:
-    """(4, 4) pose of an object that faces -z: columns right, up, back and origin."""
+    """Pose (4, 4) of an object that faces -z: columns right, up, back and origin."""
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = axes, origin
     return pose
@@ -106,7 +106,7 @@ def _add_light(gl: Any, scene: Any, light: LightSource, brightest: float) -> Non
 
 
 def _turned(sun: Sun) -> Floats:
-    """(3, 3) columns right, up, back of a light that shines along -z."""
+    """Axes (3, 3), columns right, up, back, of a light that shines along its -z."""
     back = np.array(sun.direction)
     right = np.cross(np.eye(3)[int(np.argmin(np.abs(back)))], back)
     right /= np.linalg.norm(right)
@@ -114,7 +114,7 @@ def _turned(sun: Sun) -> Floats:
 
 
 def _mapped(places: Floats, suns: Iterable[Sun], middle: Floats, size: float) -> NDArray[bool_]:
-    """Mask of places (h, w, 3) in the shadow maps of all suns: squares of half side ``size`` about the middle."""
+    """Mask (h, w) of places (h, w, 3) [m] in the shadow maps of all suns: squares of half side ``size`` [m]."""
     known = np.ones(places.shape[:2], dtype=bool)
     for sun in suns:
         known &= (np.abs((places - middle) @ _turned(sun)[:, :2]) < 0.99 * size).all(axis=-1)
@@ -122,27 +122,27 @@ def _mapped(places: Floats, suns: Iterable[Sun], middle: Floats, size: float) ->
 
 
 def _parted(light: RGB, brightest: float) -> tuple[Floats, float]:
-    """A color scaled to a largest component of 1, and the scale."""
+    """Color (3,) scaled to a largest component of 1, and the scale relative to ``brightest``."""
     most = max(*light, 1e-300)
     return np.array(light) / most, most / brightest
 
 
 def _ambient(lights: Iterable[LightSource]) -> Floats:
-    """(3,) mean radiance of all skies: each is linear in the height of a direction, above and below."""
+    """Mean radiance (3,) of all skies; each is linear in a direction's height, above and below the horizon."""
     means = [np.mean([s.horizon, s.horizon, s.zenith, s.ground], axis=0) for s in lights if isinstance(s, Sky)]
     total: Floats = np.sum([np.zeros(3), *means], axis=0)
     return total
 
 
 def _window(view: View, width: int, height: int) -> tuple[Floats, Floats]:
-    """Places (1, width) and (height, 1) of the pixels' centers in the view's window, to the right and up."""
+    """Coordinates (1, width) to the right and (height, 1) up of the pixels' centers in the view's window."""
     u = ((2 * np.arange(width) + 1 - width) / height * view.half_height)[None, :]
     v = ((height - 1 - 2 * np.arange(height)) / height * view.half_height)[:, None]
     return u, v
 
 
 def _places(view: View, depth: Floats, far: float) -> Floats:
-    """(h, w, 3) [m] points seen, from pyrender's depth (h, w), which it always computes as of a perspective camera."""
+    """Visible points (h, w, 3) [m], from pyrender's depth (h, w), which is always that of a perspective camera."""
     u, v = _window(view, *depth.shape[::-1])
     right, up, back = view.axes
     origin: Floats = np.array(view.origin)
@@ -159,7 +159,7 @@ def _places(view: View, depth: Floats, far: float) -> Floats:
 
 
 def _backdrop(view: View, lights: Iterable[LightSource], width: int, height: int) -> Floats:
-    """(height, width, 3) radiance of the backdrop, seen where no shape is."""
+    """Radiance (height, width, 3) of the backdrop, for pixels without a shape."""
     skies = [light for light in lights if isinstance(light, Sky)]
     seen = [sky.below or sky.visible for sky in skies if sky.visible is not None]
     if seen or not skies:

@@ -1,4 +1,4 @@
-"""OpenGL without a screen, by pyrender."""
+"""Off-screen OpenGL by pyrender."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ HELP = "on Debian: apt-get install libegl1 libopengl0 libgl1-mesa-dri; or draw b
 
 @cache
 def library() -> Any:
-    """The module pyrender, ready to draw off-screen. Raises ValueError where it or OpenGL is not there."""
+    """Module pyrender, ready to draw off-screen. Raises ValueError if it or OpenGL is missing."""
     if sys.platform == "linux" and "PYOPENGL_PLATFORM" not in os.environ:
         found = next((name for name, file in (("egl", "EGL"), ("osmesa", "OSMesa")) if find_library(file)), None)
         if found is None:
@@ -37,7 +37,7 @@ def library() -> Any:
 
 
 def canvas(width: int, height: int) -> Any:
-    """A canvas for pictures of a size [pixels]. Raises ValueError where OpenGL gives none."""
+    """Canvas for pictures of a size [pixels]. Raises ValueError if OpenGL cannot create one."""
     made = _context()
     made.viewport_width, made.viewport_height = width, height
     return made
@@ -45,11 +45,11 @@ def canvas(width: int, height: int) -> Any:
 
 @cache
 def _context() -> Any:
-    """The one OpenGL context, never closed: closing one would close all."""
+    """Single OpenGL context, never closed, because closing one would close all. Raises ValueError."""
     gl = library()
     try:
         made = gl.OffscreenRenderer(16, 16)
-    except Exception as error:  # of OpenGL's many kinds
+    except Exception as error:  # OpenGL raises errors of many kinds
         raise ValueError(f"OpenGL draws nothing here: {error} ({HELP})") from error
     atexit.register(made.delete)
     return made

@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from sceneql.frame import Implicit
 
 EDGE = math.radians(30)
-"""Angle below which neighboring triangles are shaded as one smooth surface, where edges are kept."""
+"""Angle [rad] below which neighboring triangles are shaded as one smooth surface, if edges are kept."""
 
 
 def skin(shape: Implicit, cells: int, sharp: bool) -> Mesh:
-    """Triangles of an implicit solid with normals, and its colors where it is painted.
+    """Mesh of an implicit solid with normals, and with colors if it is painted.
 
-    ``cells`` along its longest side, finer where normals turn much or cells may hide thin parts; with ``sharp`` edges
-    are kept instead. Raises ValueError as ``grid_around``.
+    ``cells``: number along its longest side; finer near strongly curved and possibly thin parts. ``sharp``: keeps
+    edges instead. Raises ValueError as ``grid_around``.
     """
     from sceneql.field.tape.tape_solid import paint_values
     from sceneql.mesh.cubes.refine import refined
@@ -38,7 +38,7 @@ def skin(shape: Implicit, cells: int, sharp: bool) -> Mesh:
 
 
 def _creased(polygons: Polygons) -> Polygons:
-    """The same triangles split at edges, with separate normals on either side."""
+    """Triangles split at edges, with separate normals on both sides."""
     import trimesh
 
     if not len(polygons.triangles):

@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     Solid = tuple[Floats, Floats, Ints]
 
 AROUND = 96
-"""Sides of the prism that stands for a round column."""
+"""Number of sides of the prism that represents a round column."""
 AROUND_ROD = ((500, 48), (5_000, 24), (50_000, 12), (math.inf, 6))
-"""(number of rods, sides of each): up to so many rods each has so many sides."""
+"""Pairs (largest number of rods, number of sides of each)."""
 
 
 @cache
 def unit_ball(detail: int) -> tuple[Floats, Ints]:
-    """Directions (n, 3) and triangles of an icosahedron whose faces are subdivided ``detail`` times into four."""
+    """Unit vectors (n, 3) and triangles (m, 3) of an icosahedron whose faces are divided ``detail`` times into four."""
     from trimesh.creation import icosphere
 
     ball = icosphere(subdivisions=detail)
@@ -29,14 +29,14 @@ def unit_ball(detail: int) -> tuple[Floats, Ints]:
 
 
 def ellipsoid(middle: Floats, radii: Floats) -> Solid:
-    """An ellipsoid with half axes ``radii`` (3,) along the axes."""
+    """Ellipsoid with half axes ``radii`` (3,) along the axes."""
     directions, order = unit_ball(5)
     normals = directions / radii
     return middle + directions * radii, normals / np.linalg.norm(normals, axis=1, keepdims=True), order
 
 
 def faces(low: Floats, high: Floats) -> Solid:
-    """A block; each of its faces has vertices of its own, with its normal."""
+    """Block between two corners (3,); each face has its own vertices, with its normal."""
     points: list[Floats] = []
     normals: list[Floats] = []
     order: list[list[int]] = []
@@ -58,7 +58,7 @@ def faces(low: Floats, high: Floats) -> Solid:
 
 
 def round_column(axis: int, middle: Floats, radii: Floats, low: float, high: float) -> Solid:
-    """A column of elliptic section along an axis, from ``low`` to ``high``, with its caps."""
+    """Column of elliptic section along an axis, from ``low`` to ``high``, with caps."""
     u, v = (axis + 1) % 3, (axis + 2) % 3
     angle = 2 * np.pi * np.arange(AROUND) / AROUND
     ring = np.tile(middle, (AROUND, 1))
@@ -89,7 +89,7 @@ def round_column(axis: int, middle: Floats, radii: Floats, low: float, high: flo
 
 
 def capsule_sides(ends: Floats, radii: Floats) -> Solid:
-    """Round sides of rods between ``ends`` (n, 2, 3), without the balls at their ends."""
+    """Lateral surfaces of rods between ``ends`` (n, 2, 3), without the balls at their ends."""
     n = next(sides for most, sides in AROUND_ROD if len(ends) <= most)
     along = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(along, axis=1, keepdims=True)

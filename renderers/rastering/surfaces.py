@@ -1,4 +1,4 @@
-"""Triangles with their material as a primitive of pyrender."""
+"""Primitives of pyrender from triangles with a material."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 FILM = 0.8
 """Transparency of a clear surface."""
 TEXELS = 64
-"""Texels along a square of a checker."""
+"""Number of texels along a square of a checkerboard."""
 
 
 def primitive(gl: Any, part: Triangles, brightest: float) -> Any:
-    """The pyrender primitive of some triangles; radiance is in units of ``brightest``."""
+    """Primitive of pyrender for triangles; radiance is in units of ``brightest`` [W/(sr m^2)]."""
     surface, colors, places = part.surface, part.colors, None
     base: RGB = surface.color
     texture = None
@@ -56,7 +56,7 @@ def primitive(gl: Any, part: Triangles, brightest: float) -> Any:
 
 
 def _places(vertices: Floats, normals: Floats, size: float) -> Floats:
-    """(n, 2) texture coordinates, two squares a side, along the two axes to which a face is most nearly parallel."""
+    """Texture coordinates (n, 2), one unit for two squares, along the two axes most nearly parallel to a face."""
     axis = np.argmax(np.abs(normals), axis=1)
     axis[np.abs(normals[:, 1]) > 0.9] = 1
     squares = vertices / size
@@ -67,9 +67,9 @@ def _places(vertices: Floats, normals: Floats, size: float) -> Floats:
 
 
 def _checks(gl: Any, even: RGB, odd: RGB) -> Any:
-    """A texture of two by two squares of a checkerboard."""
+    """Texture of two by two squares of a checkerboard."""
     k = np.arange(2 * TEXELS) // TEXELS
-    # A picture's first row is its top, the high end of the second axis.
+    # The first row of a picture is its top, the high end of the second axis.
     board = np.where((k[::-1, None] + k[None, :])[..., None] % 2 == 0, np.array(even), np.array(odd))
     gltf = gl.GLTF
     sampler = gl.Sampler(

@@ -1,4 +1,4 @@
-"""Triangle meshes with normals for the closed set of shapes."""
+"""Triangle meshes with normals for all kinds of shapes (frame.Shape)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MOST_BALLS = 500_000
 DETAIL = ((100, 4), (1_000, 3), (8_000, 2), (40_000, 1), (MOST_BALLS, 0))
-"""(number of balls, subdivisions): up to so many balls each is subdivided so often."""
+"""Pairs (largest number of balls, number of subdivisions of each)."""
 
 
 _flat: OfHeld[tuple[Floats, Floats, Ints]] = OfHeld()
@@ -33,22 +33,22 @@ class Triangles:
     normals: Floats
     triangles: Ints
     colors: Floats | None = None
-    """(n, 3) linear RGB that replaces the surface's color."""
+    """(n, 3): linear RGB that replaces the surface's color."""
     flat: bool = False
-    """Whether all faces are planes with vertices of their own."""
+    """Whether all faces are planes with their own vertices."""
 
 
 def boundless(shape: Shape) -> bool:
-    """Whether a shape is infinite, as a plane."""
+    """Whether a shape is infinite, such as a plane."""
     if not isinstance(shape, Quadric) or any(shape.squares):
         return False
     return any(shape.linear) or not np.isfinite([shape.low, shape.high]).all()
 
 
 def triangles(shape: Shape, cells: int, sharp: bool = False, reach: float = 0.0) -> Iterator[Triangles]:
-    """A shape as triangles; implicit ones as ``skin`` makes them, boundless ones as far as ``reach`` [m].
+    """Triangles of a shape; of an implicit one from ``skin``, of a boundless one as far as ``reach`` [m].
 
-    Raises ValueError for a shape that has none.
+    Raises ValueError for a shape that cannot be drawn by triangles.
     """
     if isinstance(shape, Mesh):
         yield _of_mesh(shape)
@@ -90,7 +90,10 @@ def _parted(mesh: Mesh) -> tuple[Floats, Floats, Ints]:
 
 
 def _of_quadric(shape: Quadric, reach: float) -> Triangles:
-    """A ball, an ellipsoid, a column, a block or a plane: the convex solids that words lower to quadrics."""
+    """Triangles of a ball, ellipsoid, column, block or plane: the convex solids that words draw as quadrics.
+
+    Raises ValueError for any other quadric.
+    """
     squares, linear = np.array(shape.squares, dtype=float), np.array(shape.linear, dtype=float)
     low, high = np.array(shape.low), np.array(shape.high)
     place = np.linalg.inv(np.vstack([shape.to_local, [0.0, 0.0, 0.0, 1.0]]))[:3]
@@ -120,7 +123,7 @@ def _of_quadric(shape: Quadric, reach: float) -> Triangles:
 
 
 def _half_space(shape: Quadric, reach: float) -> tuple[Floats, Floats, Ints]:
-    """A square of the plane linear . p + constant = 0, of half side ``reach`` about its point nearest to the origin."""
+    """Square of the plane linear . p + constant = 0: half side ``reach`` [m], center nearest to the origin."""
     normal = np.array(shape.linear) @ shape.to_local[:, :3]
     offset = float(np.dot(shape.linear, shape.to_local[:, 3]) + shape.constant)
     length = float(np.linalg.norm(normal))

@@ -1,4 +1,4 @@
-"""Working memory of a picture."""
+"""Working memory for all pixels of a picture."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 class Buffers:
-    """Arrays of all pixels. Layer 0: what the camera sees; layer 1: what is mirrored or refracted in that."""
+    """Arrays of all pixels. Layer 0: surfaces seen directly; layer 1: surfaces mirrored or refracted in those."""
 
     def __init__(self, width: int, height: int, columns: int, layers: int, hard: bool) -> None:
-        """``columns`` of visibility; light is ``hard``, or it is filtered."""
+        """``columns``: number of visibilities; ``hard``: whether light is hard, so that visibility is not filtered."""
         self.shape, count = (width, height, columns, layers, hard), width * height
         self.records = np.zeros((layers, count, COLUMNS), dtype=np.float32)
         self.radiance, self._linear = (np.empty((count, 3), dtype=np.float32) for _ in range(2))
@@ -31,27 +31,27 @@ class Buffers:
         self.sums = np.zeros((filtered, chunks * (1 + columns) * LANES), dtype=np.float32)
         self.means = np.zeros((filtered, chunks * (1 + columns) * WIDE), dtype=np.float32)
         self.cuts = np.empty((layers, count * columns if hard else 0), dtype=np.int64)
-        """Of ``hard_kernels.list_cuts``: of each band of rows from its first number of visibility on."""
+        """Edges from ``hard_kernels.list_cuts``; those of a band of rows begin at its first visibility's index."""
         bands = -(-height // TILE)
         self.reached = np.zeros((bands, -(-width // TILE)), dtype=np.int8)
         self.busy = np.ones_like(self.reached)
         self.laid, self.chunks = np.ones((2, bands, chunks), dtype=np.int8)
 
     def linear(self) -> NDArray[float32]:
-        """Memory (h w, 3) for the picture: that of the last one, unless somebody still has it."""
+        """Memory (h w, 3) for the picture: that of the last one, unless it is still referenced elsewhere."""
         if getrefcount(self._linear) > ALONE:
             self._linear = np.empty_like(self._linear)
         return self._linear
 
 
 ALONE = 2
-"""References to an array that only an attribute holds: that, and the argument of the count. Views hold it too."""
+"""Reference count of an array held by one attribute: the attribute and getrefcount's argument. Views add to it."""
 _kept: list[Buffers] = []
-"""The last picture's buffers: fresh memory costs the system a tenth of a frame's time."""
+"""Buffers of the last picture: allocating fresh memory takes a tenth of a frame's time."""
 
 
 def take(width: int, height: int, columns: int, layers: int, hard: bool) -> Buffers:
-    """Buffers of a shape, as Buffers is made with: those ``put_back`` last, if they are."""
+    """Buffers with the arguments of Buffers: those ``put_back`` last, if they have the same shape."""
     shape = width, height, columns, layers, hard
     kept = _kept.pop() if _kept else None
     return kept if kept is not None and kept.shape == shape else Buffers(*shape)

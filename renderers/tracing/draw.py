@@ -1,4 +1,4 @@
-"""The stages of a ray-traced picture, each over bands of rows on the thread pool."""
+"""Stages of a ray-traced picture, each over bands of rows on the thread pool."""
 
 from __future__ import annotations
 
@@ -33,20 +33,21 @@ if TYPE_CHECKING:
 
 
 DOUBTED = 0.01
-"""Share of pixels with undecided roots up to which these are looked at by more rays: each of them takes long."""
+"""Largest fraction of pixels with undecided roots for which these get more rays; each such ray takes long."""
 
 
 def draw(
     frame: SeenFrame, samples: int = 8, tolerance: float = TOLERANCE, march: int = 0, bounces: int = BOUNCES
 ) -> Picture:
-    """Ray-trace a frame; ``samples``, a power of two from 1 to 64: rays in a pixel at an edge between surfaces.
+    """Ray-trace a frame.
 
-    ``tolerance`` is that of roots of implicit surfaces; with ``march`` they are sampled at so many places of a ray. At
-    the usual tolerance rays are tested against solids in packets, at others one by one. Light is reflected onto matte
-    surfaces by at most so many ``bounces``.
+    ``samples``: rays in a pixel at an edge between surfaces, a power of two from 1 to 64. ``tolerance``: that of roots
+    of implicit surfaces; only at TOLERANCE are rays tested against solids in packets. ``march``: if not 0, number of
+    samples on a ray that replace certified roots. ``bounces``: largest number of reflections onto matte surfaces.
 
-    Roots of implicit surfaces are certified (sceneql.field); shadows and the sky's light are sampled once a pixel by a
-    net and averaged over the surface around it, so that the picture has no grain and repeats to the bit.
+    Roots of implicit surfaces are certified (sceneql.field). Shadows and the sky's light are sampled once per pixel on
+    a net of directions and averaged over the surface around it, so that the picture has no grain and is reproducible
+    to the bit.
     """
     scene, rows = pack(frame, tolerance, march, bounces=bounces)
     width, height = frame.view.size
@@ -73,7 +74,7 @@ def draw(
 
     over_rows(height, gather)
     undecided, seconds = map(sum, zip(*counts, strict=True))
-    layers_seen = (1, 0) if seconds else (0,)  # layer 0 last: the edges need its planes
+    layers_seen = (1, 0) if seconds else (0,)  # layer 0 comes last: the stage of edges reads its planes
     if hard:
         _soften(with_waves, buffers, layers_seen)
     if samples > 1 or not hard:

@@ -1,4 +1,4 @@
-"""Mists: packed for the kernels, and lit before rays meet them."""
+"""Mists: packing for the kernels, and their light, which is computed before rays are traced."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ if TYPE_CHECKING:
     Corner = tuple[float, float, float]
 
 FAINT = 1e-4
-"""Optical depth across a mist's box below which there is none: a carried field has faint rims that reach far."""
+"""Optical depth across a mist's box below which it counts as 0: a carried field has faint rims that reach far."""
 ORDERS = 6
-"""How often light goes on from place to place in mists, after it has been scattered once."""
+"""Number of further scatterings in mists after the first one."""
 COARSE = 10
-"""Places along the longest side of a mist's grid at which the light from around is gathered."""
+"""Number of places along the longest side of a mist's grid at which light from around is gathered."""
 DIRECTIONS = 24
-"""In so many directions, evenly over the sphere."""
+"""Number of directions, evenly over the sphere, from which it is gathered."""
 
 
 def row(shape: Mist) -> Floats:
-    """The reals of a mist (see layout); what it sends is still 0."""
+    """Reals of a mist (see layout), with its emitted light still 0."""
     counts = shape.absorption.shape[::-1]
     low, high = box_of(shape)
     some = shape.absorption * np.linalg.norm(high - low) > FAINT
@@ -51,7 +51,7 @@ def row(shape: Mist) -> Floats:
 
 
 def _bounds(shape: Mist, found: NDArray[np.bool_]) -> tuple[Corner, Corner]:
-    """The corners of its box, cut to the blocks in which there is any."""
+    """Corners of a mist's box, cut to the blocks ``found`` that contain any mist."""
     low, high = list(shape.low), list(shape.high)
     for axis in range(3):
         some = np.flatnonzero(found.any(axis=tuple({0, 1, 2} - {2 - axis})))
@@ -62,16 +62,15 @@ def _bounds(shape: Mist, found: NDArray[np.bool_]) -> tuple[Corner, Corner]:
 
 
 def passed(scene: Scene) -> Scene:
-    """The scene with the address of the kernel for mists."""
+    """Scene with the address of the kernel for mists."""
     return scene._replace(mist=address(mists_along, MIST))
 
 
 def light_up(scene: Scene, rows: int, orders: int = ORDERS) -> None:
-    """Find what the scene's lit mists send; ``rows`` of scratch.
+    """Compute the light that the scene's lit mists send; ``rows`` of scratch.
 
-    The light of lamps and suns that each node scatters is found there: what solids and mists leave of it. The rest, of
-    the sky, of surfaces, and of the mists themselves, is gathered at a few places, and again ``orders`` times, since
-    each time light has gone on from place to place.
+    The light of lamps and suns, attenuated by solids and mists, is computed at each node. The light of the sky, of
+    surfaces and of mists is gathered at a few places, ``orders`` times, once for each further scattering.
     """
     from renderers.tracing.light.bounce_kernels import WAY
     from renderers.tracing.light.mist_light_kernels import REACH, gather_around, light_nodes, scatter_again, spread
@@ -112,7 +111,7 @@ def light_up(scene: Scene, rows: int, orders: int = ORDERS) -> None:
 
 
 def _source(scene: Scene, at: int) -> Floats:
-    """What a mist sends, as kept in the scene."""
+    """Light that a mist sends, (3 nodes,), a view into the scene's reals."""
     count = int(np.prod(scene.reals[at + layout.NODES : at + layout.NODES + 3]))
     first = at + layout.ABSORPTION + count
     found: Floats = scene.reals[first : first + 3 * count]
@@ -120,14 +119,14 @@ def _source(scene: Scene, at: int) -> Floats:
 
 
 def _coarse(reals: Floats, at: int) -> tuple[int, int, int]:
-    """Places along z, y, x."""
+    """Numbers of places along z, y, x."""
     nodes = reals[at + layout.NODES : at + layout.NODES + 3]
     x, y, z = (max(2, round(COARSE * float(side / nodes.max()))) for side in nodes)
     return z, y, x
 
 
 def directions() -> Floats:
-    """(DIRECTIONS, 3) unit vectors evenly over the sphere, on a spiral (Gonzalez 2010)."""
+    """Unit vectors (DIRECTIONS, 3) evenly over the sphere, on a spiral (Gonzalez 2010)."""
     up = 1.0 - (2.0 * np.arange(DIRECTIONS) + 1.0) / DIRECTIONS
     turn = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(DIRECTIONS)
     across = np.sqrt(1.0 - up * up)

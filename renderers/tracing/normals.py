@@ -1,4 +1,4 @@
-"""The pictures of normals and of undecided roots: the tracer's intersections without light."""
+"""Pictures of normals and of undecided roots, from the tracer's intersections without light."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def draw_normals(frame: SeenFrame, samples: int = 1) -> Picture:
-    """(n + 1)/2 of the world normals n of a frame, 0 where there is no surface; ``samples`` rays in a pixel."""
+    """Picture of (n + 1)/2 for world normals n, 0 for rays without a surface; ``samples`` rays in a pixel."""
     scene, rows = pack(frame)
     width, height = frame.view.size
     points = subpixels(samples)
@@ -33,7 +33,7 @@ def draw_normals(frame: SeenFrame, samples: int = 1) -> Picture:
 
 
 def draw_undecided(frame: SeenFrame, tolerance: float = TOLERANCE) -> Picture:
-    """Orange where a root is undecided at the ``tolerance``, else gray, black where there is no surface."""
+    """Picture with orange for a root undecided at the ``tolerance``, gray for surfaces, black for none."""
     scene, rows = pack(frame, tolerance)
     width, height = frame.view.size
     picture = np.empty((height, width, 3), dtype=np.float32)

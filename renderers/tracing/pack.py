@@ -1,4 +1,4 @@
-"""Packs a frame into the tracer's flat arrays."""
+"""Packing of a frame into the tracer's flat arrays."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ if TYPE_CHECKING:
 UNBOUNDED = np.repeat([-np.inf, np.inf], 3)
 NO_BALL = (0.0, 0.0, 0.0, np.inf)
 FADE = 0.04
-"""`layout.FADE` where no sky says another: close above the horizon."""
+"""Default of `layout.FADE`: floors fade close above the horizon."""
 SAME = 1e-3
-"""Half pixels below which two ends of thin capsules are one place."""
+"""Distance [half pixels] below which two ends of thin capsules count as one place."""
 
 
 def pack(
     frame: SeenFrame, tolerance: float = TOLERANCE, samples: int = 0, certain: bool = False, bounces: int = BOUNCES
 ) -> tuple[Scene, int]:
-    """The scene of a frame, and the rows of scratch that its kernels need.
+    """Scene of a frame, and number of scratch rows that its kernels need.
 
-    With ``samples`` implicit objects are sampled at so many places of a ray instead of searched for roots; with
-    ``certain`` they are searched by certified intervals alone. Light is reflected onto others by at most so many
-    ``bounces``, surfaces one after the other. ValueError names a shape outside of the closed set.
+    ``samples``: if not 0, number of samples on a ray that replace the search for roots of implicit objects.
+    ``certain``: whether roots are searched by certified intervals alone. ``bounces``: largest number of successive
+    reflections from surface to surface. Raises ValueError for an object that is no frame.Shape.
     """
     tables = Rows(frame.view)
     for index, shape in enumerate(frame.shapes):
@@ -119,15 +119,15 @@ def pack(
 
 
 class Rows:
-    """A Scene in the making; places count from the items' first real, and from the first integer of code."""
+    """Builder of a Scene; places count from the items' first real, and from the first integer of code."""
 
     def __init__(self, view: View) -> None:
         self.view = view
         self.thin = False
-        """Whether there are capsules that the view may show thinner than a pixel."""
+        """Whether there are capsules that may appear thinner than a pixel."""
         self.boxes: list[Floats] = []
         self.floors: list[Floats] = []
-        """(1, 4) of each half-space: the unit normal and the height of its face."""
+        """Half-spaces, (1, 4) each: unit normal, and height of the face."""
         self.items: list[NDArray[np.int64]] = []
         self.surfaces: list[Floats] = []
         self.reals: list[Floats] = []
@@ -136,17 +136,17 @@ class Rows:
         self.implicits: list[int] = []
         self.painted: list[int] = []
         self.textures: list[NDArray[np.int64]] = []
-        """Ranges of the tapes of meshes, the shapes ``painted``; they stand behind those of implicit objects."""
+        """Ranges of the tapes of meshes, the shapes ``painted``; they follow those of implicit objects."""
         self.still: list[tuple[Packed, NDArray[np.int64]]] = []
-        """Meshes with hierarchies of their own: their packed data, and their items, which are not among the others."""
+        """Meshes with their own hierarchies: packed data, and items, which are not in ``items``."""
         self.mists: list[int] = []
-        """Places of the reals of mists."""
+        """Places of the mists' reals."""
         self.rows = 0
         self._size = 0
         self._code_size = 0
 
     def add(self, index: int, shape: Any) -> None:
-        """Append shape number ``index`` of the frame."""
+        """Append shape number ``index`` of the frame. Raises ValueError for an object that is no frame.Shape."""
         self.surfaces.append(_surface(shape.surface))
         if isinstance(shape, seen.Mesh):
             self._mesh(index, shape)
@@ -188,12 +188,12 @@ class Rows:
             raise ValueError(f"shape {index} is a {type(shape).__name__}, which is none of the closed set")
 
     def _items(self, index: int, kind: int, boxes: Floats, reals: Floats) -> None:
-        """Items with bounds (n, 6) and reals (n, r)."""
+        """Append items with bounds (n, 6) [m] and reals (n, r)."""
         self.items.append(self._rows(index, kind, reals))
         self.boxes.append(boxes)
 
     def _rows(self, index: int, kind: int, reals: Floats) -> NDArray[np.int64]:
-        """(n, 4) items with reals (n, r)."""
+        """Items (n, 4) with reals (n, r), which are appended."""
         count, columns = reals.shape
         items = np.zeros((count, 4), dtype=np.int64)
         items[:, layout.KIND], items[:, layout.SHAPE] = kind, index
@@ -201,7 +201,7 @@ class Rows:
         return items
 
     def _place(self, reals: Floats) -> int:
-        """Append reals; returns where they begin."""
+        """Append reals; returns their first place."""
         begin = self._size
         self.reals.append(np.ascontiguousarray(reals, dtype=np.float64).ravel())
         self._size += reals.size
@@ -223,7 +223,7 @@ class Rows:
         self, index: int, ends: Floats, axes: Floats, radii: Floats, colors: Floats | None, kind: int = layout.ROUND,
         blurred: tuple[Floats, Floats] | None = None,
     ) -> None:  # fmt: skip
-        """Balls and capsules; THIN ones are ``blurred`` by so much [m], and pieces of lines of such lengths [m]."""
+        """Append balls and capsules; ``blurred`` of THIN ones: blur radii [m], and lengths of their lines [m]."""
         shades = np.full((len(ends), 3), np.nan) if colors is None else colors
         radii = np.asarray(radii, dtype=np.float64)[:, None]
         around = radii if blurred is None else radii + blurred[0][:, None]
@@ -257,7 +257,7 @@ class Rows:
         return [*ranges, self._place(tape.parts), len(tape.parts)]
 
     def _code(self, code: Ints) -> int:
-        """Append integers; returns where they begin."""
+        """Append integers; returns their first place."""
         begin = self._code_size
         self.codes.append(code.ravel())
         self._code_size += code.size
@@ -265,9 +265,9 @@ class Rows:
 
 
 def quadric_box(shape: seen.Quadric) -> Floats:
-    """(6,) world bounds of a quadric: of its local box, cut to the quadric's own extent along each axis."""
+    """World bounds (6,) [m] of a quadric: of its local box, cut to the quadric's extent along each axis."""
     low, high = np.array(shape.low, dtype=np.float64), np.array(shape.high, dtype=np.float64)
-    # sum s (p + l/2s)^2 <= sum l^2/4s - constant over the axes with s > 0; bounds only without a linear rest.
+    # sum s (p + l/2s)^2 <= sum l^2/4s - constant over the axes with s > 0; bounded only if the others have l = 0.
     curved = [k for k in range(3) if shape.squares[k] > 0]
     if all(shape.linear[k] == 0 for k in range(3) if k not in curved):
         rest = sum(shape.linear[k] ** 2 / (4 * shape.squares[k]) for k in curved) - shape.constant
@@ -283,7 +283,7 @@ def quadric_box(shape: seen.Quadric) -> Floats:
 
 
 def half_pixels(shape: seen.Segments, view: View) -> Floats:
-    """(n,) half of a pixel's width [m] where it is largest on capsules: at their farther ends."""
+    """Half of a pixel's width (n,) [m] at each capsule's farther end, where it is largest."""
     pixel = view.half_height / view.size[1]
     if view.orthographic:
         return np.full(len(shape.radii), pixel)
@@ -293,7 +293,7 @@ def half_pixels(shape: seen.Segments, view: View) -> Floats:
 
 
 def _half_space(shape: seen.Quadric) -> Floats | None:
-    """(1, 4) unit normal and height of the face if a quadric is a half-space, else None."""
+    """Unit normal and height of the face, (1, 4), if a quadric is a half-space, else None."""
     if any(shape.squares) or not np.isinf([*shape.low, *shape.high]).all():
         return None
     normal = np.array([*shape.linear, 0.0]) @ np.vstack([shape.to_local, np.zeros(4)])
@@ -335,7 +335,7 @@ def _soft_boxes(lights: tuple[LightSource, ...]) -> Floats:
 
 
 def _sky(frame: SeenFrame, bounces: int) -> Floats:
-    """The sum of all skies; `visible` is that of the last one that has it."""
+    """Reals (14,) of the sum of all skies; `visible` is that of the last sky that has it."""
     row = np.zeros(14)
     shines = [light for light in frame.lights if bounces > 0 or isinstance(light, seen.Sky)]
     row[layout.HAS_LIGHT] = any(shines) or any(any(shape.surface.emission) for shape in frame.shapes)
@@ -349,7 +349,7 @@ def _sky(frame: SeenFrame, bounces: int) -> Floats:
 
 
 def _cove(frame: SeenFrame) -> Floats:
-    """How endless floors and the background fade: of the last sky that has something to see."""
+    """Reals (4,) for the fading of endless floors into the background, from the last visible sky."""
     row = np.array([FADE, 0.0, 0.0, 0.0])
     for sky in frame.lights:
         if isinstance(sky, seen.Sky) and sky.visible is not None:

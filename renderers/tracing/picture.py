@@ -1,4 +1,4 @@
-"""The result of a renderer, and the bands of rows by which it is made."""
+"""Result of a renderer, and work over bands of rows."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BAND = 16
-"""Rows of pixels that a thread takes at a time."""
+"""Number of pixel rows that a thread takes at a time."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture:
-    """What a renderer makes of a frame."""
+    """Picture of a frame as a renderer returns it."""
 
     linear: NDArray[float32]
     """(h, w, 3): scene-referred linear RGB, or data."""
     undecided: int = 0
-    """Pixels with a ray on which root isolation left a place undecided."""
+    """Number of pixels with a ray on which root isolation left an interval undecided."""
 
 
 def over_rows(height: int, work: Callable[[int, int], object]) -> None:

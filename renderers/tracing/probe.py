@@ -1,4 +1,4 @@
-"""Depths and normals of a frame, by any of the methods for implicit surfaces: compared by `bench`."""
+"""Depths and normals of a frame, by any method for implicit surfaces, for comparison by `bench`."""
 
 from __future__ import annotations
 
@@ -29,25 +29,25 @@ class Probe:
     """First hits of the rays through the pixels' centers."""
 
     depth: Floats
-    """(h, w) [m] along the ray; infinite for a miss."""
+    """(h, w) [m]: distance along the ray; infinite for a miss."""
     normals: Floats
-    """(h, w, 3) outward unit normals; zero for a miss."""
+    """(h, w, 3): outward unit normals; zero for a miss."""
     undecided: NDArray[np.bool_]
-    """(h, w) whether a root on the ray is undecided."""
+    """(h, w): whether a root on the ray is undecided."""
 
 
 class Lines:
-    """A thread's working memory for the rays of bands of pixels."""
+    """Working memory of a thread for the rays of bands of pixels."""
 
     def __init__(self, scene: Scene, packets: Packets | None, rows: int) -> None:
-        """``packets`` to intersect solids by, or None; ``rows`` of scratch."""
+        """``packets``: intersect solids in packets, if not None; ``rows``: number of scratch rows."""
         self.scene, self.packets = scene, packets
         pixels = (int(scene.reals[layout.WIDTH]) + TILE) * TILE
         self.asked = np.zeros((1, layout.ANSWERS)) if packets is None else packets.asked(pixels)
         self.scratch = scratch_beside(self.asked, scene, rows)
 
     def look(self, start: int, stop: int, *out: Any) -> None:
-        """As probe_kernels.probe_rows: once, or with packets twice, to collect rays and to use the answers."""
+        """Run probe_kernels.probe_rows: once, or with packets twice, first to collect rays, then to use the answers."""
         if self.packets is not None:
             self.asked[0, [layout.MODE, layout.NEXT]] = layout.ASKING, 1
             probe_rows(self.scene, self.scratch, self.asked, start, stop, *out)
@@ -57,7 +57,10 @@ class Lines:
 
 
 def probe(frame: SeenFrame, tolerance: float = TOLERANCE, *, march: int = 0, certain: bool = False) -> Probe:
-    """Look through every pixel's center: as `trace` does, by ``march`` samples, or by certified intervals alone."""
+    """Probe of the rays through all pixels' centers.
+
+    Roots are found as in `trace`, by ``march`` samples if not 0, or if ``certain`` by certified intervals alone.
+    """
     scene, rows = pack(frame, tolerance, march, certain)
     width, height = frame.view.size
     out = np.empty((height, width)), np.empty((height, width, 3)), np.empty((height, width), dtype=np.bool_)

@@ -15,15 +15,15 @@ if TYPE_CHECKING:
 
 
 def scratch(rows: int) -> Floats:
-    """Working memory of one thread for kernels on a scene."""
+    """Working memory (rows, SCRATCH_COLUMNS) of one thread for kernels on a scene."""
     return np.zeros((rows, SCRATCH_COLUMNS))
 
 
 def scratch_beside(asked: Floats, scene: Scene, rows: int) -> Floats:
-    """The same beside a list of rays for packets: the rows of the shapes that these know tell their items.
+    """Working memory of one thread with a list of rays for packets.
 
-    They hold no crossings yet. Whether packets know all of the scene is noted in the list, in which rays meet nothing
-    past them then.
+    Rows of the shapes that packets intersect get the shapes' items, and no crossings yet. Writes to ``asked`` whether
+    packets cover the whole scene, and that its rays hit nothing else.
     """
     out = scratch(rows)
     out[-1 - int(scene.ints[layout.SHAPE_COUNT]) : -1, 0] = np.nan

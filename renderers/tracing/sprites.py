@@ -1,4 +1,4 @@
-"""Soft discs that face the camera, drawn over a finished picture with depth tests."""
+"""Soft discs facing the camera, drawn over a finished picture with depth tests."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, SeenFrame, View
 
 SMALLEST = 1.25
-"""Radius [pixels] below which a disc is drawn larger and as much fainter, so that none falls between pixels."""
+"""Radius [pixels] below which a disc is drawn larger and correspondingly fainter, so that none is missed."""
 
 
 def over(frame: SeenFrame, records: NDArray[float32], linear: NDArray[float32]) -> None:
     """Draw the frame's soft discs over ``linear`` (pixels, 3), shapes in their order.
 
-    ``records``: of the center of each pixel. Opaque discs of one shape are drawn from the farthest on.
+    ``records``: records of the pixels' centers. Covering discs of one shape are drawn from the farthest to the nearest.
     """
     for shape in frame.shapes:
         if isinstance(shape, Points) and shape.soft is not None and len(shape.centers):
@@ -42,7 +42,7 @@ def _draw(shape: Points, view: View, records: NDArray[float32], linear: NDArray[
 
 
 def _discs(shape: Points, view: View) -> Floats:
-    """(n, 9) of the discs before the camera: x, y [pixels], depth [m], radius [pixels] and [m], color, opacity."""
+    """Discs (n, 9) in front of the camera: x, y [pixels], depth [m], radius [pixels], radius [m], color, opacity."""
     height = view.size[1]
     away = (shape.centers - np.array(view.origin)) @ view.axes.T
     depth = -away[:, 2]

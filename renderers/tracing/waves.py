@@ -1,8 +1,8 @@
-"""The stages of a picture that trace rays: rays of a wave are listed first, so that packets can intersect them.
+"""Stages of a picture that trace rays in waves: the rays of a wave are listed first, so that packets intersect them.
 
-The camera's rays of some tiles make a wave, and so do the shadow rays and rays to the sky from what they meet, and each
-step of all their paths: mirrored and refracted rays, with the light on their surfaces. Single are rays that light what
-hides the sky, and all where no shape suits packets and there is more than a few balls, boxes and floors.
+A wave is one of: the camera's rays of some tiles; the shadow rays and sky rays from their hits; one step of all their
+paths, mirrored and refracted rays with the light on their surfaces. Rays are traced one by one if they light surfaces
+that hide the sky, and in scenes without shapes for packets but with more than a few balls, boxes and floors.
 """
 
 from __future__ import annotations
@@ -48,21 +48,20 @@ if TYPE_CHECKING:
     Array = NDArray[Any]
 
 TILES, RAYS = 10, 40
-"""Tiles of the camera's rays in a wave, few enough that their memory stays in a core's cache, and of rays listed at a
-time."""
+"""Size of a wave of the camera's rays, and of a list of rays, in tiles; a wave's memory stays in a core's cache."""
 MORE_TILES, MORE_RAYS = 40, 80
-"""The same where no light comes from around: a wave is a band of most pictures, as each is some calls from Python."""
+"""Sizes in scenes without light from around: for most pictures a wave is a whole band, to save calls from Python."""
 FEW = 16
-"""Ways of light below which each is followed by itself: a wave would cost more than it saves, unless packets alone know
-all that ways meet. Then a single ray costs as much as a wave."""
+"""Number of light paths below which each is followed singly, because a wave costs more than it saves. This does not
+apply if packets intersect the whole scene: a single ray then costs as much as a wave."""
 
 
 class Waves:
-    """A thread's working memory for bands of a picture, at most TILE rows high."""
+    """Working memory of a thread for bands of a picture, at most TILE rows high."""
 
     def __init__(self, scene: Scene, packets: Packets | None, rows: int, columns: int, layers: int) -> None:
-        """``packets`` to intersect solids by, or None; ``rows`` of scratch, ``columns`` of visibility, ``layers`` of
-        records."""
+        """``packets``: intersect solids in packets, if not None; ``rows``: of scratch; ``columns``: of visibility;
+        ``layers``: of records."""
         self.scene, self.packets = scene, packets
         around = scene.reals[layout.HAS_LIGHT] != 0.0
         self.tiles = TILES if around else MORE_TILES
@@ -82,7 +81,7 @@ class Waves:
         self.looks = np.zeros(looks.ROOM) if alone and lights <= looks.MOST_LIGHTS and not others.any() else None
         self.waiting = np.zeros(2 + rays, dtype=np.int64)
         self.cones, self.at, self.each = np.zeros((room, 3)), np.zeros(room, np.int64), np.arange(room, dtype=np.int64)
-        some = room if layers > 1 or scene.ints[layout.HAS_THIN] else 1  # none begins where all is matte
+        some = room if layers > 1 or scene.ints[layout.HAS_THIN] else 1  # no path begins in a wholly matte scene
         self.paths, self.of = np.zeros((some, PATH)), np.zeros(some, dtype=np.int64)
         self.hits, self.met, self.skins = np.zeros(room, dtype=np.int64), np.zeros((room, 5)), np.zeros((room, 6))
         self.gathered = np.zeros((room, 4))
@@ -108,9 +107,9 @@ class Waves:
     ) -> tuple[int, int]:  # fmt: skip
         """Fill rows start..stop: records (L, h w, COLUMNS), radiance (h w, 3), visibility (L, h w, V) of L layers.
 
-        Returns the number of pixels with an undecided root, and with a second record. Radiance is the part that needs
-        no visibility, unless that is ``final``. Only in tiles that are ``reached`` rays are followed; those that show
-        something become ``busy``.
+        Returns the numbers of pixels with an undecided root, and with a second record. Radiance is the part that needs
+        no visibility, or all of it if visibility is ``final``. Rays are traced only in ``reached`` tiles; tiles with a
+        hit become ``busy``.
         """
         fill_background(self.scene, start, stop, reached, busy, records, radiance)
         tiles = np.flatnonzero(reached[start // TILE])
@@ -125,7 +124,7 @@ class Waves:
         self, start: int, stop: int, tiles: Array, busy: Array, records: Array, visibility: Array, final: bool,
         radiance: Array,
     ) -> tuple[int, int]:  # fmt: skip
-        """As ``gather``, for some tiles."""
+        """Run ``gather`` for some tiles."""
         scene, asked, at = self.scene, self.asked, self.at
         count = list_pixels(scene, start, stop, tiles, asked, self.cones, at)
         self._follow(count, at, records)
@@ -143,12 +142,12 @@ class Waves:
         return counts
 
     def refine(self, start: int, stop: int, *more: Array) -> None:
-        """As refine_kernels.refine."""
+        """Run refine_kernels.refine on the pixels start..stop of a layer."""
         own = self.scene, self.scratch, self.asked, self.ways
         self._ask(start, stop, lambda i, end: refine(*own, i, end, self.waiting, *more))
 
     def soften(self, cuts: Array, records: Array, visibility: Array, radiance: Array) -> None:
-        """Sample the edges of hard shadows that hard_kernels.list_cuts has found."""
+        """Sample the edges ``cuts`` of hard shadows, from hard_kernels.list_cuts."""
         own = self.scene, self.scratch, self.asked
         self._ask(0, len(cuts), lambda i, end: soften(*own, i, end, cuts, records, visibility, radiance))
 
@@ -156,7 +155,7 @@ class Waves:
         self, start: int, stop: int, points: Array, undecided: int, busy: Array, planes: Array, records: Array,
         radiance: Array, visibility: Array, picture: Array,
     ) -> None:  # fmt: skip
-        """Fill rows start..stop of ``picture`` (n, 3): ``radiance``, but edges by rays through ``points`` (s, 2)."""
+        """Fill rows start..stop of ``picture`` (n, 3): ``radiance``, and at edges rays through ``points`` (s, 2)."""
         scene = self.scene
         width, size = int(scene.reals[layout.WIDTH]), planes.shape[1] * LANES // self.marks.shape[1]
         light, own = (records, radiance), (self.marks, self.same, self.edges)
@@ -173,7 +172,7 @@ class Waves:
         self, edges: Array, points: Array, used: int, records: Array, radiance: Array, visibility: Array,
         picture: Array,
     ) -> Array:  # fmt: skip
-        """Take some more samples of pixels; returns the pixels that need still more."""
+        """Take up to TRIAL more samples of the pixels ``edges``; returns those that need more."""
         scene, some = self.scene, points[used : used + TRIAL]
         each, count = len(some), len(some) * len(edges)
         own, found = self.own, self.found
@@ -186,7 +185,7 @@ class Waves:
         return edges[:left]
 
     def _follow(self, count: int, at: Array, records: Array) -> None:
-        """Follow ``count`` listed rays of the camera, and their paths to the ends: see waves_kernels.meet_first."""
+        """Trace ``count`` listed rays of the camera, and their paths to the end; see waves_kernels.meet_first."""
         self._meet()
         scene, asked, cones, gathered, met, spares = (
             self.scene,
@@ -217,7 +216,7 @@ class Waves:
         end_paths(paths, of, gathered)
 
     def _dress(self, paths: Array) -> None:
-        """Find the normals of implicit solids where live paths meet them, and beside these places."""
+        """Compute normals of implicit solids at the hits of live paths, and beside these places."""
         assert self.packets is not None
         scene, hits, met, skins = self.scene, self.hits, self.met, self.skins
         count = meet_paths(scene, self.scratch, self.asked, paths, hits, met)
@@ -229,23 +228,24 @@ class Waves:
             bend_paths(paths, hits[:count], skins)
 
     def _meet(self) -> None:
-        """Answer all listed rays."""
+        """Intersect all listed rays."""
         if self.packets is not None:
             self.packets.meet(self.asked)
         if self.lanes is not None:
             self.meet_plain(self.scene, self.asked, self.lanes)
 
     def _light(self, start: int, stop: int, paths: Array) -> int:
-        """Light surfaces beyond the records of paths start..stop; returns where it ends."""
+        """Light surfaces beyond the records of paths start..stop; returns the first path that is left."""
         end: int = light_paths(
             self.scene, self.scratch, self.asked, self.ways, start, stop, paths, self.spares, self.found[0]
         )
         return end
 
     def _ask(self, start: int, stop: int, work: Callable[[int, int], int]) -> None:
-        """Do ``work`` twice on each part of start..stop whose rays fit the list: to list them, and with their answers.
+        """Run ``work`` twice on each part of start..stop whose rays fit the list: to list them, and with the answers.
 
-        And once more where light from around has taken ways, when these have ended. Without packets only once, on all.
+        A third run follows after light paths from around have ended, if there are any. Without a list, ``work`` runs
+        only once, on all.
         """
         if not self.listed:
             work(start, stop)
@@ -261,7 +261,7 @@ class Waves:
             start = end
 
     def _twice(self, start: int, stop: int, work: Callable[[int, int], int]) -> int:
-        """List the rays of as much of start..stop as fits, and use their answers; returns where it ends."""
+        """List the rays of as much of start..stop as fits, and use the answers; returns the end of that part."""
         head = self.asked[0]
         head[layout.MODE], head[layout.NEXT] = layout.ASKING, 1
         end = work(start, stop)
@@ -272,7 +272,7 @@ class Waves:
         return end
 
     def _light_ways(self, count: int) -> None:
-        """Follow the first ``count`` of the ways to their ends, in waves; the last FEW one by one."""
+        """Follow the first ``count`` light paths to their ends, in waves; the last few one by one."""
         scene, asked, ways, live, hits = self.scene, self.asked, self.ways, self.live, self.ways_hit
         live[:count] = np.arange(count)
         few = 1 if self.lanes is None and asked[0, layout.ALONE] else FEW

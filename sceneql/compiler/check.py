@@ -15,7 +15,8 @@ from typing import Any
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.names import Names, Parsed
 from sceneql.compiler.over_time import check_instants
-from sceneql.compiler.read import Reader, Unreadable
+from sceneql.compiler.problems import Unreadable
+from sceneql.compiler.read import Reader
 from sceneql.compiler.unknown import (
     beside_world,
     mover_of,

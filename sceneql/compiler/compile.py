@@ -45,6 +45,8 @@ from sceneql.quantities.span import Span
 
 LONG = 10_000
 """Number of frames of a film from which on there is a warning."""
+FILM, ROWS = 10.0, 1000
+"""Seconds of a film, and rows of a table, that are told in place of too many."""
 SHORTER = "a larger `speed` of the `clock`, or an `end` that is sooner, makes fewer; `render --draft` draws them sooner"
 
 
@@ -172,7 +174,9 @@ def _check_outputs(
                     text = f"'{task.name}' is of {frames:,} frames: a second for each would be {duration(frames)}"
                     found.warning("long-film", text, task.span or place, help=SHORTER)
             except Exceeds as error:
-                found.error("limit-refused", f"{task.name}: {error}", task.span or place)
+                help = f"the clock makes it a film of {FILM:g} s with `speed: {clock.end / FILM:.3g}`"
+                help = help if isinstance(task.kind, Picture) else f"take fewer: `every: {clock.end / ROWS:.3g} s`"
+                found.error("limit-refused", f"{task.name}: {error}", task.span or place, help=help)
             if not drawn.get(task.name, (task.name,)):
                 found.warning("nothing-drawn", f"there is nothing to draw in '{task.name}'", task.span)
 

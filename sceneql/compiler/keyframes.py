@@ -41,8 +41,8 @@ def read_keys(
     if unsure(table):
         return None
     if not isinstance(table, MappingNode) or not table.entries:
-        listed = [item.span.text for item in table.items] if isinstance(table, SequenceNode) else []
-        better = ", ".join(f"{second} s: {text}" for second, text in enumerate(listed))
+        listed = table.items if isinstance(table, SequenceNode) else []
+        better = ", ".join(_key_meant(second, item) for second, item in enumerate(listed))
         help = f"write `{{{better}}}`, at the times that are meant" if listed else None
         found.error("wrong-shape", "keys are written `{time: value, ...}`", table.span, help=help)
         return None
@@ -76,6 +76,11 @@ def read_keys(
         both = slopes.get("slope")
         keys.append(Key(at.expr, read, slopes.get("slope_in", both), slopes.get("slope_out", both)))
     curve = _curve(node, found)
+    cycled = node.entries.get("cycle")
+    if isinstance(cycled, Scalar) and cycled.text.lower() in ("yes", "true", "on"):
+        help = f"write the time after which they begin anew, `cycle: {last:g} s`"
+        found.error("wrong-shape", "cycle is a time (s)", cycled.span, help=help)
+        return None
     cycle, delay = (time(node.entries[name], name) if name in node.entries else None for name in ("cycle", "delay"))
     if not ok or curve is None:
         return None
@@ -83,6 +88,16 @@ def read_keys(
     if delay is not None:
         argument = Call("sub", (argument, delay.expr), Type((), TIME))
     return Keys(argument, tuple(keys), curve, None if cycle is None else cycle.expr, type_, node.span)
+
+
+def _key_meant(second: int, item: Node) -> str:
+    """A key of a list as a script writes it; ``{time: 1 s, value: 2 m}`` and a pair have their time."""
+    match item:
+        case MappingNode(entries={"value": value, **rest}) if len(rest) == 1:
+            return f"{next(iter(rest.values())).span.text}: {value.span.text}"
+        case SequenceNode(items=[at, value]):
+            return f"{at.span.text}: {value.span.text}"
+    return f"{second} s: {item.span.text}"
 
 
 def _curve(node: MappingNode, found: Diagnostics) -> Any:

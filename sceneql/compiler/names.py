@@ -78,7 +78,8 @@ class Names:
         """The value of a define; a define that needs itself is an error."""
         if name in self._open:
             circle = " -> ".join([*self._open[self._open.index(name) :], name])
-            self.found.error("circular-define", f"'{name}' is defined by itself: {circle}", span)
+            help = f"write one of these without the others: `{name}: 1 m`"
+            self.found.error("circular-define", f"'{name}' is defined by itself: {circle}", span, help=help)
             return None
         # The defines that a define needs are bound before it, except in a circle.
         if name not in self._bound and len(self._open) > DEEPEST:
@@ -258,6 +259,9 @@ class Names:
                 hint = f"a color by its name stands alone, `color: {wanted}`; in a formula it is `[1, 0.5, 0]`"
             if hint is None and wanted in UNITS:
                 hint = f"a unit stands behind a number: write `(1 {wanted})`"
+            giving = next((part for part in parts_known if wanted in (self.outputs_of(part) or ())), None)
+            if hint is None and giving is not None:
+                hint = f"a value is named with its part: write `{giving}.{wanted}`"
             if hint is None and len(parts) == 1:
                 hint = f"names stand under `define`, `define: {{{wanted}: 1 m}}`: `sceneql words define`"
         return Diagnostic("unknown-name", message, span, hint)
@@ -285,7 +289,8 @@ class Names:
     def _some_output(self, task: str) -> str:
         outputs = self.outputs_of(task) or {}
         fields = [name for name, gives in outputs.items() if gives.type.shape == (None,)]
-        return f"{task}.{'position' if 'position' in outputs else next(iter([*fields, *outputs]), 'position')}"
+        places = [name for name in ("position", "positions") if name in outputs]
+        return f"{task}.{next(iter([*places, *fields, *outputs]), 'position')}"
 
 
 def _words(node: Node) -> list[str]:

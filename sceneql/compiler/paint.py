@@ -13,6 +13,7 @@ from sceneql.compiler.values import parsed_text, read_expr, read_value, time_rea
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure
+from sceneql.language.tree import Sequence as SequenceNode
 from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import ANGLE, PLAIN
 from sceneql.quantities.evaluate import evaluate
@@ -150,6 +151,16 @@ def _turned(node: Node, expr: Expr | None) -> str:
         written = node.text.strip()
         angle = f"{written} deg" if all(isinstance(one, Number) and one.bare for one in literal) else written
         return f"write `{{xyz: {angle}}}`" if len(literal) == 3 else f"write `{{about: y, angle: {angle}}}`"
+    if isinstance(node, SequenceNode) and len(literal) == 3 and all(isinstance(one, Number) for one in literal):
+        return f"write `{{xyz: [{', '.join(item.span.text for item in node.items)}]}}`"
+    if isinstance(node, MappingNode) and node.entries:
+        given = {name: item.span.text for name, item in node.entries.items()}
+        if given.keys() == {"axis", "angle"}:
+            return f"write `{{about: {given['axis']}, angle: {given['angle']}}}`"
+        if len(given) == 1 and given.keys() <= AXES.keys():
+            return f"write `{{about: {next(iter(given))}, angle: {next(iter(given.values()))}}}`"
+        if given.keys() <= AXES.keys():
+            return f"write `{{xyz: [{', '.join(given.get(axis, '0 deg') for axis in AXES)}]}}`"
     return "write `{about: z, angle: 30 deg}`, `{xyz: 10 20 30 deg}` or a quaternion `[w, x, y, z]`"
 
 

@@ -13,6 +13,10 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.span import Span
 
 
+class Unreadable(Exception):
+    """A value was wrong and has been reported; the reader of the surrounding value goes on with the next."""
+
+
 def validated(cls: type[BaseModel], got: dict[str, Any], node: Node | None, span: Span, found: Diagnostics) -> Any:
     """The record made of fields read from ``node``; None after reporting that they do not go together.
 

@@ -7,8 +7,7 @@ these. An error is reported where it stands, and reading goes on, so that all er
 from __future__ import annotations
 
 import types
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -16,14 +15,15 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql import kinds
-from sceneql.compiler import limits, paint, values
-from sceneql.compiler.annotations import could_be, example_of, is_fixed, marks_of, quantities, unwrap
+from sceneql.compiler import likely, limits, paint, values
+from sceneql.compiler.annotations import could_be, is_fixed, unwrap
 from sceneql.compiler.corners import by_corners
 from sceneql.compiler.formulas import Wanted, read_formula
+from sceneql.compiler.likely import TRUE
 from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
-from sceneql.compiler.problems import validated
+from sceneql.compiler.problems import Unreadable, validated
 from sceneql.compiler.texts import read_text
 from sceneql.compiler.unknown import meant_field, report_unknown
 from sceneql.language.repeat import numbered
@@ -35,11 +35,9 @@ from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.span import Span
 
-TRUE, FALSE = ("true", "yes", "on"), ("false", "no", "off")
-
-
-class Unreadable(Exception):
-    """A value was wrong and has been reported; the reader of the surrounding value goes on with the next."""
+PLANAR = "is a vector of 3, not a vector of 2"
+"""What is told of a vector without one of its components."""
+FALSE = ("false", "no", "off")
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +70,7 @@ class Reader:
             raise Unreadable
         elif node is not None and not (isinstance(node, Scalar) and node.kind == "null"):
             fields = ", ".join(map(kinds.written_name, cls.model_fields))
-            help = self._meant(node, cls) or f"it has {fields}"
+            help = likely.field_meant(self, node, cls) or f"it has {fields}"
             raise self._fail("wrong-shape", f"{title} takes fields, `{{name: value}}`", node.span, help)
         symbols, solved = self.symbols, self.solved
         if isinstance(node, MappingNode) and issubclass(cls, kinds.Kind):
@@ -107,63 +105,13 @@ class Reader:
                     rest = {
                         key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
                     }
-                    better = self._elsewhere(written[name], info, rest)
+                    better = likely.elsewhere(self, written[name], info, rest)
+                    if better is None and self.found.found[before].message.endswith(PLANAR):
+                        better = "a number is missing: it has one for each of x, y and z"
                     self.found.found[before] = replace(self.found.found[before], help=better)
         if not ok:
             raise Unreadable
         return self._some(validated(cls, got, node, span, self.found))
-
-    def _meant(self, node: Node, cls: type[BaseModel]) -> str | None:
-        """The help for a field without its colon, or for a single quantity that suits one field of a record."""
-        required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
-        if not isinstance(node, Scalar):
-            return f"write `{{{required[0]}: {node.span.text}}}`" if len(required) == 1 else None
-        if node.text.lower() in TRUE and not required:
-            return "write `{}`: all of its fields have defaults"
-        name, _, rest = node.text.partition(" ")
-        if name in map(kinds.written_name, cls.model_fields):
-            rest = rest.strip().removeprefix("=").strip()
-            return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {example_of(cls, name)}}}`"
-        if list(cls.model_fields) == [only := next(iter(cls.model_fields), "")]:
-            return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
-        found = list(self._fitting(node, cls.model_fields)) or list(self._formulas(node, cls))
-        alone = required if len(required) == 1 else []
-        likely = alone or [kinds.written_name(name) for name in found] or self._paints(node, cls)
-        return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
-
-    def _paints(self, node: Node, cls: type[BaseModel]) -> list[str]:
-        """The field `color`, if there is one and the value is a color."""
-        nothing = Diagnostics()
-        fits = paint.read_color(node, replace(self.names, found=nothing), nothing) is not None
-        return ["color"] if fits and "color" in cls.model_fields else []
-
-    def _elsewhere(self, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
-        """The help for a wrong count of numbers: the one other field that takes them."""
-        found = {name: mark for name, mark in self._fitting(node, others).items() if mark.shape}
-        if len(found) > 1:
-            own = [mark.dimension for mark in quantities(info)]
-            found = {name: mark for name, mark in found.items() if mark.dimension in own}
-        if len(found) != 1:
-            return None
-        return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
-
-    def _fitting(self, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
-        """The fields of quantities that accept a value."""
-        nothing = Diagnostics()
-        names = replace(self.names, found=nothing)
-        marked = [(name, mark) for name, info in fields.items() for mark in quantities(info)]
-        return {name: mark for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None}
-
-    def _formulas(self, node: Node, cls: type[BaseModel]) -> Iterator[str]:
-        """The names of formula fields that accept a value."""
-        nothing = Diagnostics()
-        trial = replace(self, found=nothing, names=replace(self.names, found=nothing))
-        for name, info in cls.model_fields.items():
-            for mark in marks_of(info):
-                if isinstance(mark, kinds.Symbols) and mark.dimension is not None:
-                    with suppress(Unreadable):
-                        trial._formula(node, mark, name)
-                        yield name
 
     def field(self, node: Node, info: Any, name: str) -> Any:
         """The value of a field, within its range. Raises Unreadable after reporting."""
@@ -207,7 +155,7 @@ class Reader:
                 self.files.append(path)
                 return path
             if isinstance(mark, kinds.Symbols):
-                return self._formula(node, mark, what)
+                return self.formula(node, mark, what)
         origin, arms = get_origin(base), get_args(base)
         if origin in (Union, types.UnionType):
             return self._union(node, arms, what)
@@ -220,7 +168,7 @@ class Reader:
         if isinstance(base, type) and issubclass(base, BaseModel):
             return self.record(node, base, node.span, what)
         if base is kinds.Formula:
-            return self._formula(node, kinds.Symbols(None), what)
+            return self.formula(node, kinds.Symbols(None), what)
         if base is bool:
             return self._bool(node, what)
         if base in (int, float):
@@ -249,7 +197,8 @@ class Reader:
             raise self._fail("not-finite", f"{what} is {number}", node.span)
         return number
 
-    def _formula(self, node: Node, mark: kinds.Symbols, what: str) -> kinds.Formula:
+    def formula(self, node: Node, mark: kinds.Symbols, what: str) -> kinds.Formula:
+        """A formula of the symbols that its field allows. Raises Unreadable after reporting."""
         symbols, wanted = self.symbols if mark.names is None else mark.names, mark.dimension
         if mark.of_field and wanted is not None:
             wanted = None if self.solved is None else self.solved * wanted
@@ -300,6 +249,8 @@ class Reader:
         if fixed and isinstance(node, Scalar):
             return tuple(self._spread(node, arms, what))
         items = node.items if isinstance(node, Sequence) else [node]
+        if not fixed and isinstance(node, MappingNode) and (help := likely.listed(node, arms[0], what)) is not None:
+            raise self._fail("wrong-shape", f"{what} is a list, not parts by name", node.span, help)
         if not fixed:
             items = [one for item in items for one in self._copies(item, arms[0])]
         if fixed and len(items) != len(arms):

@@ -3,24 +3,34 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
 from sceneql.compiler.values import parsed_text, scalar_expr
 from sceneql.kinds import Interpolated, Text, TextValue, Value
 from sceneql.kinds.texts import FORM, overlong
-from sceneql.language.tree import Node, Scalar
+from sceneql.language.behind_quotes import without_letters
+from sceneql.language.tree import Node, Scalar, unsure
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import Unit, describe, parse_unit, unit_of
 
+_WORD = re.compile(r"\s?([^\W\d]\w*(?:[/*^]\w+)*)")
+_PRINTED = re.compile(r"%(\.\d+[efg])")
+_SIGN = re.compile(r"\$(\{[^{}]*\})")
 PIECE = re.compile(r"\{\{|\}\}|\{(?P<inside>[^{}]*)\}|(?P<odd>[{}])")
 
 
 def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Diagnostics) -> Text | None:
     """The text of a scalar; None after reporting errors."""
     if not isinstance(node, Scalar):
-        found.error("wrong-shape", f"{what} is a text", node.span)
+        help = None if unsure(node) else f'put it in quotes: `{what}: "{node.span.text}"`'
+        found.error("wrong-shape", f"{what} is a text", node.span, help=help)
+        return None
+    if not node.quoted and (inner := without_letters(node.text)) is not None:
+        help = f"values stand in braces in every text: write `{inner}`"
+        found.error("syntax", "no letter stands before the quotes of a text", node.span, help=help)
         return None
     if said := overlong(node.text):
         found.error("limit-refused", said, node.span)
@@ -44,7 +54,36 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
             ok = ok and told is not None
             pieces += [] if told is None else [told]
     pieces.append(text[at:])
+    if (form := _PRINTED.search(text)) is not None:
+        help = f"a text has its values in braces, and behind a colon their form: `{{ball.position.y:{form[1]}}}`"
+        found.error("syntax", f"'{form[0]}' would be drawn as it stands", node.span, help=help)
+        return None
+    if (sign := _SIGN.search(text)) is not None:
+        help = f"values stand in braces alone: write `{sign[1]}`"
+        found.error("syntax", "a '$' before braces would be drawn as it stands", node.span, help=help)
+        return None
+    ok = ok and not _twice(pieces, node.span, found)
     return Text(tuple(one for one in pieces if one)) if ok else None
+
+
+def _twice(pieces: list[str | TextValue], place: Span, found: Diagnostics) -> bool:
+    """Whether the unit of a value stands behind its braces, too: the value tells it."""
+    for piece, behind in pairwise(pieces):
+        if not isinstance(piece, TextValue) or piece.unit is None or not isinstance(behind, str):
+            continue
+        word = _WORD.match(behind)
+        try:
+            unit = None if word is None else parse_unit(word[1], place)
+        except ScriptError:
+            continue
+        if unit is not None and unit.dimension == piece.unit.dimension:
+            value = "" if piece.value.span is None else piece.value.span.text
+            write = f"{{{value}:{piece.form} {unit.text}}}"
+            told = f"'{unit.text}' behind these braces would stand there twice"
+            help = f"a value tells its unit itself: write `{write}`, and none behind the braces"
+            found.error("unit-twice", told, place, help=help)
+            return True
+    return False
 
 
 def _told(

@@ -11,11 +11,13 @@ from sceneql.compiler.css_colors import NAMED
 from sceneql.compiler.names import Names
 from sceneql.kinds import Refers, written_name
 from sceneql.language.scope import Entry
-from sceneql.language.tree import Mapping, Scalar
+from sceneql.language.tree import Mapping, Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
 from sceneql.quantities.instead import instead
 from sceneql.quantities.other_words import OURS
 
+DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere"}
+"""The word of a family that is shown where several have a field."""
 MANY = 6
 """Largest number of words of which all that have a field are listed."""
 
@@ -36,7 +38,8 @@ def report_unknown(
     """
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        help = (said_by or {}).get(name) or (suggestion(name, known) if same_as(name, known) else None)
+        help = (said_by or {}).get(name) or _together(name, unknown, node, known)
+        help = help or (suggestion(name, known) if same_as(name, known) else None)
         help = help or instead(f"field.{family}", name) or instead("field", name) or suggestion(name, known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
@@ -54,6 +57,26 @@ def meant_field(name: str, known: Collection[str]) -> str | None:
     return written[1] if written is not None and written[1] in known else nearest(name, known)
 
 
+def _together(name: str, unknown: Sequence[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for fields that are one here: ``from: a, to: b``, and items of a list without brackets."""
+    ours = same_as(name, known)
+    same = [other for other in unknown if same_as(other, known) == ours]
+    if ours == "between" and len(same) == 2 and ours not in node.entries:
+        return f"write `{ours}: [{', '.join(node.entries[other].span.text for other in same)}]`"
+    names = list(node.entries)
+    first = names.index(name)
+    while first and names[first] not in known and _empty(node.entries[names[first]]):
+        first -= 1
+    items = [node.entries[names[first]].span.text, *names[first + 1 : names.index(name) + 1]]
+    if len(items) > 1 and names[first] in known and isinstance(node.entries[names[first]], Scalar):
+        return f"a list stands in brackets: write `{names[first]}: [{', '.join(items)}]`"
+    return None
+
+
+def _empty(node: Node) -> bool:
+    return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
+
+
 def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
     """The help for an entry with a word that is not in its family."""
     words, fields = catalogue.choices(family), entry.fields
@@ -64,6 +87,10 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
         return f"did you mean '{same}'?"
     if others := catalogue.families_of(entry.word):
         return f"it belongs under '{others[0]}:'"
+    if fields is None and not entry.word.isidentifier() and (having := _having([entry.name], family, catalogue)):
+        word = DEFAULT.get(family) if DEFAULT.get(family) in having else having[0]
+        text = f"main: {{{word}: {{{entry.name}: {entry.word}}}}}"
+        return f"a part has a name, and a word around its fields: write `{text}`"
     if catalogue.load(family, entry.name) is not None:
         return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
     having = [] if fields is None or entry.word in OURS else _having([entry.word], family, catalogue)

@@ -1,4 +1,4 @@
-"""The integers that describe the surfaces of objects to contact kernels (shape_kernels)."""
+"""Integers that describe the surfaces of objects to contact kernels (shape_kernels)."""
 
 from __future__ import annotations
 
@@ -19,18 +19,19 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
 
 OFTEN = 1 / 240
-"""Longest adaptive step [s] where contacts act at the ends of steps or objects accelerate: the error estimate sees
-neither, and a body that approaches no faster than gravity makes it in two steps is taken to rest."""
+"""Longest adaptive step [s] with contacts that act at the ends of steps, or objects that accelerate. The error estimate
+sees neither, and a body that approaches no faster than gravity makes it in two steps counts as at rest."""
 SHIFTING = ("position", "height")
-"""Fields of an object that only translate it; `height` is a plane's."""
+"""Fields of an object that only translate it; `height` belongs to planes."""
 FAR_APART = 1.0
-"""Seconds between the poses of an object in uniform motion: exact for any, and a long one loses least to rounding."""
+"""Time [s] between the poses that give the rates of an object in uniform motion. Any is exact; a long one loses least
+to rounding."""
 
 
 def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...]:
-    """The objects' integers, from index ``at`` of a contact's on; further integers of the shapes follow them.
+    """Integers of objects, to stand at index ``at`` of a contact's integers, followed by the data of their shapes.
 
-    Raises ScriptError for an object that cannot be collided with.
+    Raises ScriptError for an object without a collider.
     """
     heads: list[int] = []
     tail: list[int] = []
@@ -42,7 +43,7 @@ def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...
 
 
 def must_be_points(bodies: Bodies, assembly: Assembly) -> None:
-    """Raise ScriptError for rigid bodies: masses alone collide."""
+    """Raise ScriptError for rigid bodies, in contacts of masses alone."""
     if bodies.turning is not None:
         message = f"'{bodies.model}' is rigid, and rigid bodies do not collide yet: masses do"
         help = "name under `between` what may touch, without it"
@@ -50,7 +51,7 @@ def must_be_points(bodies: Bodies, assembly: Assembly) -> None:
 
 
 def must_be_free(model: str, assembly: Assembly) -> None:
-    """Raise ScriptError for masses that ties hold: ties and contacts are not solved together."""
+    """Raise ScriptError for masses with ties, which are not solved together with contacts."""
     if assembly.tied(model):
         message = f"ties hold masses of '{model}', and such masses do not collide yet"
         help = "name under `between` what may touch, without it"
@@ -58,7 +59,7 @@ def must_be_free(model: str, assembly: Assembly) -> None:
 
 
 def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assembly: Assembly) -> None:
-    """Raise ScriptError where a moving body's center starts inside an object; ``ints``: the contact's integers."""
+    """Raise ScriptError for a mass that starts inside an object; ``ints``: integers of the contact."""
     import numpy as np
 
     from sceneql.contacts.near_kernels import deepest
@@ -72,7 +73,7 @@ def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assemb
 
 
 def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """An object's integers without the last, and the further integers of its shape."""
+    """Integers of an object without the last (the index of its data), and the data of its shape."""
     kind = cast(Object, assembly.object(ref))
     try:
         noted = _Noted(assembly)
@@ -101,7 +102,7 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
 
 
 def shape_kernels(here: Collider) -> list[int]:
-    """The numbers of a shape's four kernels."""
+    """Numbers of a shape's four kernels: surface, bend, clear and near."""
     from sceneql.compiled.numbered_kernels import number_of
     from sceneql.contacts.shape_kernels import BEND_TYPE, CLEAR_TYPE, NEAR_TYPE, SURFACE_TYPE
 
@@ -116,10 +117,11 @@ def shape_kernels(here: Collider) -> list[int]:
 def surface_of(
     ref: Ref, center: Floats, place: Floats, assembly: Assembly
 ) -> tuple[tuple[int, ...], tuple[int, ...], Floats]:
-    """The integers of the surface of a solid that something else puts in place, without the last, and the further ones.
+    """Integers of a moving solid's surface without the last, the data of its shape, and its relative place (7,).
 
-    And its place (7,), position and quaternion, in the solid's axes from ``center`` (3,), which is in those of its
-    object; ``place`` (7,): of the solid at the start. Raises ScriptError for one that cannot be collided with.
+    The relative place is position [m] and quaternion in the solid's axes, from ``center`` (3,) [m], which is in the
+    object's axes. ``place`` (7,): position and quaternion of the solid at the start.
+    Raises ScriptError for an object without a collider.
     """
     import numpy as np
 
@@ -162,7 +164,7 @@ def surface_of(
 
 
 class _Noted:
-    """An assembly that notes by its offset what each value is, so that its derivatives can be found."""
+    """Assembly that records the value at each offset, so that its time derivatives can be found."""
 
     def __init__(self, assembly: Assembly) -> None:
         self._assembly = assembly
@@ -172,13 +174,13 @@ class _Noted:
         return getattr(self._assembly, name)
 
     def value(self, value: Value) -> int:
-        """As the assembly's."""
+        """Offset of a value, as Assembly.value returns it."""
         at = self._assembly.value(value)
         self._values[at] = value
         return at
 
     def motion(self, here: Collider) -> tuple[int, int, int, int] | None:
-        """Offsets of the first derivatives of position and rotation, and of the second; None where one is not known."""
+        """Offsets of first, then second derivatives of position and rotation; None if one is not known."""
         found = []
         for at, size in ((here.position_at, 3), (here.rotation_at, 4)):
             value, rates = self._values.get(at), []
@@ -192,7 +194,7 @@ class _Noted:
         return velocity, turn, acceleration, twist
 
     def _rate(self, value: Value) -> Value | None:
-        """The derivative of a value; None where it is not known, or has no finite value at the start."""
+        """Time derivative of a value; None if it is not known or not finite at the start."""
         import numpy as np
 
         expr = exact_rate(value.expr, self._assembly.formula)
@@ -205,12 +207,15 @@ def _has_own(kind: Object) -> bool:
 
 
 def _collider(kind: Object, assembly: Assembly) -> Collider:
-    """An object's own collider, or that of its field. Raises TypeError, ValueError."""
+    """Collider of an object, its own or that of its field.
+
+    Raises TypeError for an object without an inside, ValueError for one without a collider.
+    """
     return kind.collider(assembly) if _has_own(kind) else implicit.collider(kind, assembly)
 
 
 def _shifted(kind: Object, by: float, assembly: Assembly) -> tuple[int, int]:
-    """Offsets of position and rotation of an object's collider, ``by`` [s] later."""
+    """Offsets of position and rotation of an object's collider at a time later by ``by`` [s]."""
     there = shifted(kind, by, assembly)
     if not _has_own(kind):
         return implicit.place(there, assembly)
@@ -224,7 +229,7 @@ def is_moving(kind: Object) -> bool:
 
 
 def _moves_evenly(kind: Object, assembly: Assembly) -> bool:
-    """Whether an object is known to move uniformly: its contacts then are those of one at rest."""
+    """Whether an object is known to move uniformly, so that its contacts are those of an object at rest."""
     return all(
         name in SHIFTING and goes_evenly(value.expr, assembly.formula)
         for name, value in kind
@@ -233,7 +238,7 @@ def _moves_evenly(kind: Object, assembly: Assembly) -> bool:
 
 
 def shifted(kind: Object, by: float, assembly: Assembly) -> Object:
-    """The object with every value taken ``by`` [s] later. Raises ValueError for one that follows a solved model."""
+    """Object with every value at a time later by ``by`` [s]. Raises ValueError for one that follows a solved model."""
     changed = {
         name: replace(value, expr=later(value.expr, by, assembly.formula))
         for name, value in kind

@@ -1,4 +1,4 @@
-"""What the word `collision` tells of a run: its outputs, remarks and troubles, by the integers that it remembers."""
+"""Outputs, remarks and troubles of the word `collision`, from the integers that it remembers."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ if TYPE_CHECKING:
 RIGID = ("points", "normals", "forces")
 TALLY = ("hits.count", "hits.first.time", "hits.last.time", "hits.last.speed", "rest.time")
 BARRIER, SPRINGS, CARRIED = -3, -4, -5
-"""Where in the remembered integers those of a barrier begin, that of the memory of masses beside rigid bodies, and
-those of skins that a flow carries."""
+"""Marks in the remembered integers: after them stand those of a barrier, of the memory of masses with rigid bodies,
+and of skins in a flow."""
 
 
 def read(output: str, state: ModelState) -> Any:
-    """An output over all its models: counts add up, the first time is the earliest, the last the latest."""
+    """Output over all models: counts are summed, first times are the earliest, last times the latest."""
     import numpy as np
 
     if output in RIGID:
@@ -35,12 +35,12 @@ def read(output: str, state: ModelState) -> Any:
 
 
 def tally(state: ModelState) -> Any:
-    """What a contact has counted (5,)."""
+    """Tally (5,) of the first contact, in the order of TALLY."""
     return state.floats[state.ints[0] : state.ints[0] + len(TALLY)]
 
 
 def remark(state: ModelState) -> str:
-    """The gap of elastic solids, and of rigid bodies beside them; that of skins that a flow carries."""
+    """Remark about the gap of barriers, or of skins in a flow; empty without these."""
     if CARRIED in state.ints:
         gap = state.floats[state.ints[state.ints.index(CARRIED) + 1]]
         return f"skins in the flow are pushed off within a gap of {gap:.3g} m"
@@ -51,7 +51,7 @@ def remark(state: ModelState) -> str:
 
 
 def trouble(state: ModelState) -> str:
-    """Steps in which contacts of rigid bodies were more than can be told, or had no solution."""
+    """Message about steps too long for springs, jammed instants, and crowded or unsolved steps; empty if none."""
     at = [k for k, each in enumerate(state.ints) if each == -1]
     longer, longest = _too_long(state)
     if longer:
@@ -69,7 +69,7 @@ def trouble(state: ModelState) -> str:
 
 
 def _too_long(state: ModelState) -> tuple[float, float]:
-    """Steps that were too long for the springs of masses beside rigid bodies, and how long they may be [s]."""
+    """Number of steps too long for the springs of masses with rigid bodies, and the longest stable step [s]."""
     if SPRINGS not in state.ints:
         return 0.0, 0.0
     from sceneql.contacts.distance.mass_points_kernels import LONGER, LONGEST
@@ -79,7 +79,7 @@ def _too_long(state: ModelState) -> tuple[float, float]:
 
 
 def _rigid(output: str, state: ModelState) -> Any:
-    """Points, normals and forces of the contacts of rigid bodies at the end of the latest step (n, 3)."""
+    """Points [m], normals or forces [N], (n, 3), of the contacts of rigid bodies at the end of the latest step."""
     import numpy as np
 
     if -1 not in state.ints:

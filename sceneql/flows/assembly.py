@@ -1,4 +1,4 @@
-"""An incompressible flow in a box as state, numbers and terms of an island."""
+"""Assembly of an incompressible flow on a staggered grid: state, numbers and terms of an island."""
 
 from __future__ import annotations
 
@@ -36,15 +36,15 @@ if TYPE_CHECKING:
 
 SCHEMES = {"upwind": layout.UPWIND, "central": layout.CENTRAL, "koren": layout.KOREN}
 UNBALANCED = 1e-6
-"""Net inflow, in parts of what comes in, that counts as rounding of profiles."""
+"""Net flux through the boundary, relative to the sum of magnitudes, that counts as rounding of inflow profiles."""
 ACROSS = 1e-9
-"""Velocity of a wall across it, in parts of its largest, that counts as rounding."""
+"""Normal component of a wall's velocity, relative to its largest component, that counts as rounding."""
 TIMES = (0.0, 0.37, 1.0, 7.3)
-"""Instants [s] at which inflows of a closed box are looked at."""
+"""Instants [s] at which the balance of inflows into a closed box is tested."""
 
 
 def add_flow(name: str, model: Model, cells: Ground, assembly: Assembly) -> Flow:
-    """Reserve an entry of y a face, and add the terms of the rate. Raises ScriptError where sides do not fit."""
+    """Reserve one entry of y a face and add the flow's terms. Raises ScriptError for boundary parts that do not fit."""
     return _Builder(name, model, cells, assembly).build()
 
 
@@ -182,13 +182,13 @@ class _Builder:
         return flow
 
     def _must_fit(self, formula: Formula | None) -> None:
-        """Raises ScriptError where a velocity has other components than the box sides."""
+        """Raise ScriptError for a velocity whose number of components is not that of the box's axes."""
         if formula is not None and formula.expr.type.shape != (self.faces.axes,):
             text = f"this velocity needs {self.faces.axes} components, one for each side of the box"
             raise ScriptError([Diagnostic("wrong-shape", text, formula.span)])
 
     def _must_slide(self) -> None:
-        """Raises ScriptError where the velocity of a wall has a part across it at the start."""
+        """Raise ScriptError for a wall whose velocity has a normal component at the start."""
         for part, by_axis in self._normal():
             for axis, mine in by_axis.items():
                 if part.wall is None or part.velocity is None:
@@ -201,7 +201,7 @@ class _Builder:
                     raise ScriptError([Diagnostic("invalid", text, part.velocity.span, help)])
 
     def _on_boundary(self, values: Any, kind: Any, default: Any = 0) -> Any:
-        """An array by face of numbers by boundary face; ``default`` within."""
+        """An array (faces,) of values given for boundary faces; ``default`` for inner faces."""
         found = np.full(self.faces.count, default, dtype=kind)
         for axis in range(self.faces.axes):
             for high in range(0 if self.periodic[axis] else 2):
@@ -209,7 +209,8 @@ class _Builder:
         return found
 
     def _faces(self) -> tuple[Floats, Floats, Any, Floats]:
-        """By face: area, volume, whether its velocity is given, and the acceleration by the pressure outside."""
+        """Arrays (faces,): area, volume of the control volume, whether the velocity is given, and the acceleration by a
+        given pressure outside."""
         faces = self.faces
         areas = np.concatenate([np.full(np.prod(s), a) for s, a in zip(faces.shapes, faces.areas, strict=True)])
         volumes, signs = np.full(faces.count, faces.volume), np.zeros(faces.count)
@@ -224,7 +225,7 @@ class _Builder:
         return areas, volumes, given, signs * outside / self.model.density * areas / volumes
 
     def _given_velocity(self, time: float) -> Floats:
-        """By face: the velocity across the boundary that is given at an instant [s]; 0 elsewhere."""
+        """Normal velocities (faces,) of inflows on the boundary at a time [s]; 0 elsewhere."""
         faces = self.faces
         found = np.zeros(faces.count)
         for part, chosen in self._normal():
@@ -236,13 +237,13 @@ class _Builder:
         return found
 
     def _open_points(self, axis: int) -> Floats:
-        """(m, 3) the middles of what is open of a component's faces [m]."""
+        """Centroids (m, 3) [m] of the open parts of a component's faces."""
         if self.solids is None or self.solids.staircase:
             return self.faces.points(axis)
         return self.solids.opened[axis].centers
 
     def _normal(self) -> list[tuple[Side, dict[int, Any]]]:
-        """Each part with the faces that lie on it, by axis."""
+        """Each part of the boundary with the numbers of its faces, by axis."""
         number = self._on_boundary(self.part_of, int, -1)
         found = []
         for k, (part, _) in enumerate(self.parts):
@@ -256,7 +257,7 @@ class _Builder:
         return found
 
     def _must_balance(self, areas: Floats) -> None:
-        """Raises ScriptError where fluid comes into a box that has no way out."""
+        """Raise ScriptError where the inflows of a box without outflow do not balance."""
         if self.opened.any():
             return
         inflows = [part for part, _ in self.parts if part.inflow is not None]
@@ -270,7 +271,7 @@ class _Builder:
                 raise ScriptError([Diagnostic("no-way-out", text, inflows[0].span or self.assembly.line(), help)])
 
     def _signs(self) -> Floats:
-        """By face: 1 where the boundary is on its high side, -1 where on its low side, 0 within."""
+        """(faces,): 1 on the high sides of the box, -1 on the low sides, 0 for inner faces."""
         signs = np.zeros(self.faces.count)
         for axis in range(self.faces.axes):
             for high in range(0 if self.periodic[axis] else 2):
@@ -278,7 +279,7 @@ class _Builder:
         return signs
 
     def _start(self, given: Any) -> Floats:
-        """The velocities at the start, before they lose their divergence."""
+        """Velocities (faces,) at the start, before the projection."""
         faces, said = self.faces, self.model.initial
         x = np.zeros(faces.count)
         for axis in range(faces.axes if said is not None else 0):
@@ -302,7 +303,7 @@ class _Builder:
         return x
 
     def _projected(self, x: Floats, ints: Any) -> Floats:
-        """Velocities free of divergence."""
+        """Velocities x (faces,) made divergence-free, in place. Raises ScriptError if iteration does not converge."""
         from sceneql.flows.projection_kernels import project
 
         own = ints.copy()
@@ -313,7 +314,7 @@ class _Builder:
         return x
 
     def _moving(self, at: int) -> int:
-        """Offset of the rates of velocities that are given; those that vary are written at stage times."""
+        """Offset of time derivatives (faces,) of given velocities; terms write those of varying inflows."""
         assembly = self.assembly
         moves = assembly.floats(np.zeros(self.faces.count))
         varying = [
@@ -342,8 +343,8 @@ class _Builder:
         return moves
 
     def _push(self, pushes: Floats, fills: Floats) -> tuple[int, int, int]:
-        """Offsets of the accelerations by the pressure outside, and by a force that the script gives; of those without
-        it, and of what it is multiplied with by face, or -1 where there is none."""
+        """Offsets of arrays (faces,): accelerations by the pressure outside and the script's force; accelerations
+        without this force; factor of the force. The last two are -1 without a force."""
         assembly, force = self.assembly, self.model.force
         pushing = assembly.floats(pushes)
         if force is None:
@@ -352,7 +353,7 @@ class _Builder:
         return pushing, assembly.floats(pushes), assembly.floats(fills / self.model.density)
 
     def _force(self, at: int, pushing: int, base: int, weights: int) -> None:
-        """Add what writes the accelerations by a force."""
+        """Add the terms that write the accelerations by the script's force."""
         assembly, faces, force = self.assembly, self.faces, self.model.force
         for axis in range(faces.axes if force is not None else 0):
             assert force is not None
@@ -373,8 +374,10 @@ class _Builder:
         weights_at: int,
         edge_faces: Sequence[int],
     ) -> tuple[int, int, tuple[Grid, ...]]:
-        """Each component as a field whose conductances are those of viscosity; before these, offsets of what viscosity
-        takes beside its ties, and of the volumes that are solved for, by face."""
+        """(offset of the viscous sinks, offset of the volumes of free faces, each velocity component as a Grid).
+
+        A component is a field whose conductances are the viscous ties.
+        """
         faces, assembly = self.faces, self.assembly
         sink = np.zeros(faces.count)
         weights = assembly.numbers()[weights_at : weights_at + len(edge_faces)]

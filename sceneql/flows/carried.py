@@ -1,4 +1,4 @@
-"""Fields in the box of a flow that is solved: carried by it, and acting back on it."""
+"""Fields advected by a solved flow in the same box, and their action on it (buoyancy)."""
 
 from __future__ import annotations
 
@@ -35,13 +35,14 @@ PAST = "sceneql.flows.carrying_past_kernels"
 EVEN_OUT = "sceneql.flows.carrying_kernels:even_out"
 LIFT = "sceneql.flows.carrying_kernels:lift"
 SAME = 1e-9
-"""Difference of boxes, in parts of a cell, that counts as none."""
+"""Difference of two boxes, in cells, that counts as rounding."""
 
 
 def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Boundary]], assembly: Assembly) -> None:
-    """Have a flow carry the fields of a model. Raises ScriptError where it is none, or fills another box.
+    """Add the advection of a model's fields by the flow that its drift names.
 
-    Where fluid comes in through the boundary it brings the `value` that the field has there, or none of it.
+    Inflow through the boundary brings in the field's `value` there, else 0. Raises ScriptError for a model that is no
+    flow, or a flow on other cells.
     """
     assert drift.by is not None
     flow = assembly.flow_of(drift.by.name)
@@ -94,7 +95,7 @@ def carry(model: SpreadingMedium, drift: Drift, fields: Sequence[tuple[Grid, Bou
 
 
 def _past(grid: Grid, flow: Flow, areas: Sequence[int], assembly: Assembly) -> None:
-    """Have solids that move leave of a field's cells what they leave of the flow's."""
+    """Add the terms that cut a field's cells by moving solids as they cut the flow's."""
     n, numbers = int(np.prod(flow.cells.shape)), assembly.numbers()
     uncut = numbers[grid.cells.insides_at : grid.cells.insides_at + n]
     whole = [assembly.floats(numbers[at : at + n]) for at in grid.faces_at[: len(areas)]]
@@ -114,7 +115,7 @@ def _past(grid: Grid, flow: Flow, areas: Sequence[int], assembly: Assembly) -> N
 
 
 def _cut(grid: Grid, fractions: Floats, faces: Faces, opened: Floats, drift: Drift, assembly: Assembly) -> None:
-    """Leave of a field's cells what solids leave of the flow's. Raises ScriptError where its coefficient varies."""
+    """Cut a field's cells by standing solids as the flow's are cut. Raises ScriptError for a varying coefficient."""
     if grid.varying:
         text = "a field around solids has a coefficient that varies neither in time nor with the field"
         help = "write its `coefficient` by place alone, or let no solids stand in the flow"
@@ -131,7 +132,7 @@ def _cut(grid: Grid, fractions: Floats, faces: Faces, opened: Floats, drift: Dri
 
 
 def _must_agree(shape: Any, low: Any, spacing: Any, periodic: Any, flow: Flow, name: str, span: Any) -> None:
-    """Raises ScriptError where a field's cells are not those of a flow."""
+    """Raise ScriptError where a field's cells or periodic axes differ from a flow's."""
     same = tuple(shape) == flow.cells.shape
     axes = len(flow.areas)
     if same:
@@ -149,8 +150,7 @@ def _must_agree(shape: Any, low: Any, spacing: Any, periodic: Any, flow: Flow, n
 
 
 def _must_be_closed(flow: Flow, faces: Faces, opened: Floats, carrier: Any, drift: Drift) -> None:
-    """Raises ScriptError where fluid crosses the sides of a flow's box, or solids stand in it, whose field ends at the
-    skin of its own domain."""
+    """Raise ScriptError for a field with its own boundary in a flow with open sides or further solids."""
     first = flow.components[0].at
     _, beside, _ = _boundary(flow, faces, False)
     if carrier.around or (opened[beside - first] > 0.0).any():
@@ -161,7 +161,7 @@ def _must_be_closed(flow: Flow, faces: Faces, opened: Floats, carrier: Any, drif
 
 
 def _between(cells: Cells, faces: Faces, opened: Floats) -> list[Floats]:
-    """By component the open areas of faces, without those beside cells that the field does not fill."""
+    """For each component the open areas of faces, 0 next to cells outside the field's domain."""
     found = []
     filled = (cells.volumes > 0.0).reshape(cells.shape[::-1])
     for axis in range(faces.axes):
@@ -175,8 +175,10 @@ def _between(cells: Cells, faces: Faces, opened: Floats) -> list[Floats]:
 
 
 def _boundary(flow: Flow, faces: Faces, own_skin: bool) -> tuple[Any, Any, Any]:
-    """Of the boundary's faces, but those of periodic sides, their numbers, entries in y and sides (1 high, -1 low);
-    none of a field that ends at its own skin."""
+    """(numbers, entries in y, side 1 high or -1 low) of the boundary faces of sides that are not periodic.
+
+    Empty for a field whose domain has a boundary of its own (``own_skin``).
+    """
     mine, beside, sides = [], [], []
     at = flow.components[0].at
     for axis in range(faces.axes):
@@ -190,7 +192,7 @@ def _boundary(flow: Flow, faces: Faces, own_skin: bool) -> tuple[Any, Any, Any]:
 
 
 def _values(boundary: Boundary, cells: Cells, mine: Any, at: int, assembly: Assembly) -> int:
-    """Offset of what fluid that comes in has, by the faces in ``mine``."""
+    """Offset of the field's values (faces,) in inflowing fluid, for the boundary faces ``mine``."""
     place = np.full(len(cells.boundary.cells), -1)
     place[mine] = np.arange(len(mine))
     fixed, later = np.zeros(len(mine)), []
@@ -220,7 +222,7 @@ def _nodes(expr: Any) -> Any:
 
 
 def field_in(by: Value, flow: Flow, name: str, assembly: Assembly) -> Grid:
-    """A field in the cells of a flow, that of model ``name``. Raises ScriptError where it is none of these."""
+    """The field that a value links to, on the cells of the flow of model ``name``. Raises ScriptError for any other."""
     link = by.expr
     assert isinstance(link, Link)
     grid = assembly.field_of(link)
@@ -233,7 +235,7 @@ def field_in(by: Value, flow: Flow, name: str, assembly: Assembly) -> Grid:
 
 
 def add_buoyancy(buoyancy: Buoyancy, name: str, assembly: Assembly) -> None:
-    """Have a field lift the flow of a model. Raises ScriptError where that is none of the same box."""
+    """Add the buoyancy force of a field on a model's flow. Raises ScriptError for no field, or one on other cells."""
     flow = assembly.flow_of(name)
     if flow is None:
         return  # its own assembly has failed

@@ -1,4 +1,4 @@
-"""Lines along a velocity field, by Runge and Kutta's method on its trilinear interpolant."""
+"""Streamlines of a velocity field, by a Runge-Kutta method on its trilinear interpolant."""
 
 from __future__ import annotations
 
@@ -15,19 +15,22 @@ if TYPE_CHECKING:
     from sceneql.grids.medium import FieldLayout
 
 PART = 0.8
-"""Length of a step, in parts of a cell."""
+"""Length of a step, in cells."""
 REST = 1e-6
-"""Speed that counts as rest, in parts of the largest."""
+"""Speed, relative to the largest, below which fluid counts as at rest."""
 OUT = 1e-6
-"""Part of a step up to the box by which a line is drawn beyond."""
+"""Relative overshoot of a line's last step beyond the box, where the line then ends."""
 LEAST = 4
-"""Pieces of a line, shorter ones are left out."""
+"""Least number of segments of a line; shorter ones are left out."""
 MOST = 150
-"""Steps of a line either way."""
+"""Most steps of a line in each direction."""
 
 
 def lines(velocity: Floats, layout: FieldLayout, apart: float, longest: float) -> Floats:
-    """Ends (k, 2, 3) of the pieces of lines [m] of velocities (cells, 3), which begin ``apart`` from one another."""
+    """Segments (k, 2, 3) [m] of streamlines of velocities (cells, 3), seeded ``apart`` [m] from each other.
+
+    ``longest`` [m]: largest length in each direction.
+    """
     low, spacing = np.array(layout.low), np.array(layout.spacing)
     size = np.array(layout.shape) * spacing
     flat = layout.shape[2] == 1
@@ -39,7 +42,7 @@ def lines(velocity: Floats, layout: FieldLayout, apart: float, longest: float) -
         return np.zeros((0, 2, 3))
 
     def along(points: Floats) -> Floats:
-        """Unit vectors (k, 3); 0 where the fluid is at rest, or outside."""
+        """Unit vectors (k, 3) along the velocity at points (k, 3); 0 where the fluid is at rest, and outside."""
         found = np.zeros((len(points), 3))
         for axis in range(axes):
             found[:, axis] = between.at(fields[axis], points)
@@ -68,7 +71,7 @@ def lines(velocity: Floats, layout: FieldLayout, apart: float, longest: float) -
 def _way(
     along: Callable[[Floats], Floats], starts: Floats, step: float, most: float, box: tuple[Floats, Floats]
 ) -> Floats:
-    """The points (steps, k, 3) of ways from all starts, by the midpoint rule; at rest where a way ends: at the box."""
+    """Points (steps, k, 3) [m] of lines from all starts by the midpoint rule; an ended line repeats its last point."""
     found = [starts]
     while len(found) <= most:
         at = found[-1]
@@ -80,7 +83,7 @@ def _way(
 
 
 def _part_within(at: Floats, change: Floats, low: Floats, high: Floats) -> Floats:
-    """(k,) part of each change (k, 3) up to where it leaves the box, by so little more that it rests there."""
+    """Share (k,) of each move (k, 3) up to the box's side, plus OUT so that the next point is outside."""
     with np.errstate(divide="ignore", invalid="ignore"):
         wall = np.where(change > 0.0, high - at, low - at) / change
     part: Floats = np.minimum(1.0, np.where(change != 0.0, wall, np.inf).min(axis=1) * (1.0 + OUT))

@@ -1,4 +1,4 @@
-"""The edges beside the sides of a flow's box, where velocities along them are given."""
+"""Edges of a staggered grid on the sides of the box, where walls impose tangential velocities."""
 
 from __future__ import annotations
 
@@ -22,21 +22,24 @@ BEGIN = "sceneql.grids.diffusion_kernels:begin"
 
 
 class Sides(Protocol):
-    """A flow under construction, as its edges see it."""
+    """The part of a flow under construction that ``edges_of`` reads."""
 
     faces: Faces
     assembly: Assembly
     viscosity: float
-    """Kinematic [m^2/s]."""
+    """Kinematic viscosity [m^2/s]."""
     parts: list[tuple[Side, Any]]
     part_of: Any
-    """The number of the part of each boundary face; -1 where nothing is said."""
+    """The number of each boundary face's part in ``parts``; -1 for none."""
     slip: Any
-    """By boundary face, the slip length [m]."""
+    """Slip length [m] of each boundary face."""
 
 
 def edges_of(builder: Sides, at: int) -> tuple[tuple[int, ...], list[int]]:
-    """Offsets of values and weights, the first edge of each side (EDGE_FIRST), and the faces beside the edges."""
+    """Store the edges' velocities and viscous weights.
+
+    ((offset of velocities, offset of weights, first edge of each side as of EDGE_FIRST), faces beside the edges).
+    """
     faces, assembly, spacing = builder.faces, builder.assembly, builder.faces.cells.spacing
     firsts, sides = [-1] * 18, []
     count = 0
@@ -82,12 +85,12 @@ def edges_of(builder: Sides, at: int) -> tuple[tuple[int, ...], list[int]]:
 
 
 def timed(expr: Expr) -> bool:
-    """Whether a formula varies in time, or with what is solved."""
+    """Whether a formula depends on time or on other parts."""
     names = ("t", TIME_SYMBOL)
     return any(isinstance(node, Link) or (isinstance(node, Symbol) and node.name in names) for node in walk(expr))
 
 
 def component_at(formula: Formula, axis: int, points: Floats, time: float) -> Floats:
-    """A component of a velocity at points (k, 3) [m] and an instant [s]: (k,)."""
+    """A component (k,) of a velocity formula at points (k, 3) [m] and a time [s]."""
     one = Formula(components(formula.expr)[axis], formula.span)
     return at_points(one, points, t=time, **{TIME_SYMBOL: time})

@@ -1,4 +1,4 @@
-"""The fields of the word `flow` that its terms are made by."""
+"""Protocol of the word `flow`: the script fields that its assembly reads."""
 
 from __future__ import annotations
 
@@ -11,44 +11,44 @@ if TYPE_CHECKING:
 
 
 class Model(Protocol):
-    """The fields of the word `flow` that its terms are made by."""
+    """The script fields of the word `flow` that its assembly reads."""
 
     @property
     def boundary(self) -> Mapping[str, Side]:
-        """What holds on its sides."""
+        """Boundary conditions by name of the side, part or solid."""
 
     @property
     def density(self) -> float:
-        """[kg/m^3]"""
+        """Density [kg/m^3] of the fluid."""
 
     @property
     def viscosity(self) -> Formula:
-        """[Pa s]"""
+        """Dynamic viscosity [Pa s]."""
 
     @property
     def initial(self) -> Start | None:
-        """The flow at the start."""
+        """Velocity or stream function at the start; None: at rest."""
 
     @property
     def advection(self) -> str:
-        """A name of SCHEMES."""
+        """Name of the advection scheme (assembly.SCHEMES)."""
 
     @property
     def around(self) -> tuple[Ref, ...]:
-        """Solids in it."""
+        """Solids that the fluid flows around."""
 
     @property
     def domain(self) -> Ref | None:
-        """The object that it fills, where it is no box."""
+        """The object whose inside the fluid fills, in place of a box."""
 
     @property
     def edges(self) -> str:
-        """How cells meet these."""
+        """How cells meet solids: cut_cell or staircase."""
 
     @property
     def pressure(self) -> str:
-        """How it is solved for."""
+        """Name of the linear solver of the pressure equation."""
 
     @property
     def force(self) -> Formula | None:
-        """On each cubic meter [N/m^3]."""
+        """Force density [N/m^3]."""

@@ -1,4 +1,4 @@
-"""The box of a flow: by its sides, or around the object whose inside it fills."""
+"""The box of cells of a flow: given by its sides, or around the object whose inside the fluid fills."""
 
 from __future__ import annotations
 
@@ -25,29 +25,32 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 INSET = 3.0
-"""How far off an open side of the box, in cells, the level there is taken, as the domain may end at that side: further
-than distances from walls are looked at (obstacles.ROUND)."""
+"""Distance [cells] from a named side of the box from which on the level set is continued constantly, since the domain
+may end at this side. It exceeds the distance within which walls matter (obstacles.ROUND)."""
 
 
 LARGEST_FACTOR = 11
-"""Of numbers of cells: transforms of n numbers by a factor p take about n p."""
+"""Largest prime factor of a number of cells: a transform of n numbers takes about n p operations for a factor p."""
 
 
 class Around:
-    """The level of what is around an object, below 0 beside it; drawn on beyond sides of the box that are open."""
+    """The complement of an object as a level set, negative outside the object.
+
+    Near named sides of the box the level set is continued constantly along the normal of the side.
+    """
 
     def __init__(self, level: Any, low: Floats, high: Floats) -> None:
-        """``low``, ``high``: (3,) from where on it is drawn on; endless along axes without such sides."""
+        """``low``, ``high`` (3,) [m]: start of the constant continuation; infinite along axes without named sides."""
         self.level, self.low, self.high = level, low, high
 
     def values(self, points: Floats) -> Floats:
-        """(k,) at points (k, 3)."""
+        """Values (k,) at points (k, 3) [m]."""
         found: Floats = -self.level.values(np.clip(points, self.low, self.high))
         return found
 
 
 def around(ref: Ref, faces: Faces, named: Container[str], assembly: Assembly) -> Around:
-    """What is around the domain of a flow, whose box has these faces; ``named``: sides that the script names."""
+    """The complement of a flow's domain; ``faces``: of the flow's box, ``named``: sides that the script names."""
     low, high = np.full(3, -np.inf), np.full(3, np.inf)
     spacing = faces.cells.spacing
     for number, name in enumerate(SIDES[: 2 * faces.axes]):
@@ -60,7 +63,10 @@ def around(ref: Ref, faces: Faces, named: Container[str], assembly: Assembly) ->
 
 
 def level_of(ref: Ref, flat: bool, assembly: Assembly) -> tuple[Any, Floats, Floats, bool]:
-    """The level of an object, the box around it, whether it is flat. Raises ScriptError for one without an inside."""
+    """(level set of an object, low and high corner of its box, whether it is two-dimensional).
+
+    Raises ScriptError for an object without an inside.
+    """
     try:
         return inside(ref, flat, cast("Moment", Start(assembly)))
     except (TypeError, ValueError) as error:
@@ -69,7 +75,7 @@ def level_of(ref: Ref, flat: bool, assembly: Assembly) -> tuple[Any, Floats, Flo
 
 
 def _quick(count: int) -> int:
-    """The next number from a count on without large prime factors, by which transforms take as long as they are."""
+    """The smallest number >= count without prime factors above LARGEST_FACTOR, for fast transforms."""
     while max(factors(count), default=1) > LARGEST_FACTOR:
         count += 1
     return count
@@ -79,10 +85,11 @@ def box_of(
     domain: Ref | None, flat: bool, size: tuple[float, ...], corner: tuple[float, ...], cell: float, depth: float,
     named: Container[str], assembly: Assembly,
 ) -> cells.Cells:  # fmt: skip
-    """The cells of a flow's box: where the script names no side, a cell more than its domain, whose skin is the wall,
-    and so many that transforms are fast.
+    """The cells of a flow's box, given by its sides or made around a domain.
 
-    Raises ScriptError where the domain moves or has no inside; LimitRefused.
+    On sides that the script does not name, the box extends one cell beyond the domain, whose surface is the wall; its
+    numbers of cells allow fast transforms. Raises ScriptError where the domain moves, has no inside or is thinner than
+    two cells, LimitRefused for too many cells.
     """
     if domain is None:
         return cells.box(size, corner, cell, depth)

@@ -1,4 +1,4 @@
-"""What scripts say of a flow's boundary, of its start and of buoyancy."""
+"""Script fields of a flow's boundary, start and buoyancy, and estimates from them before a run."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME)
 
 
 ROUNDED = 1e-9
-"""Part of what comes in and goes out below which the difference is rounding."""
+"""Difference of inflow and outflow, relative to their sum, that counts as rounding."""
 MOST_FACTORED = {2: 40_000, 3: 4_000}
-"""Cells of a flat or deep flow whose equation of the pressure is factored: the numbers stand in each of its terms."""
+"""Most cells of a 2D or 3D flow whose pressure equation is factored: its numbers are repeated in each of its terms."""
 
 
 class Wall(Record):
@@ -68,7 +68,7 @@ class Side(Record):
     within: kinds.FixedLength | None = field("How far around it.", None, above=0)
 
     def problems(self) -> Iterable[Problem]:
-        """Errors: more than one condition, or none; a place without its size."""
+        """Problems: not exactly one condition; `periodic` on a part of a side; `near` without `within`."""
         if sum([*(one is not None for one in (self.wall, self.inflow, self.outflow)), self.periodic]) != 1:
             yield Problem("a side of a flow has one of `wall`, `inflow`, `outflow` and `periodic`")
         if self.periodic and self.chosen:
@@ -78,32 +78,32 @@ class Side(Record):
 
     @property
     def chosen(self) -> bool:
-        """Whether the part has a place of its own."""
+        """Whether it is restricted by `where` or `near`."""
         return self.where is not None or self.near is not None
 
     @property
     def velocity(self) -> Formula | None:
-        """The velocity that is given there."""
+        """The given velocity of a wall or inflow; None without one."""
         part = self.wall or self.inflow
         return None if part is None else part.velocity
 
     @property
     def slip(self) -> float:
-        """Its slip length [m]; infinite where nothing holds the fluid back along it."""
+        """Slip length [m]: 0 for an inflow, infinite for free slip and outflow."""
         if self.inflow is not None:
             return 0.0
         return float("inf") if self.wall is None or self.wall.slip == "free" else self.wall.slip
 
     @property
     def span(self) -> Span | None:
-        """Its line in the script, where a formula tells it."""
+        """Place of the side in the script, known from its formulas; None without any."""
         return next((one.span for one in (self.velocity, self.where) if one is not None), None)
 
 
 def comes_in(boundary: Mapping[str, Side], size: Sequence[float]) -> float:
-    """What comes into a box of so many sides [m] more than goes out of it [m^3/s], where constants tell it.
+    """Net inflow [m^3/s] into a closed box with sides ``size`` [m], if all inflows are constant on whole sides.
 
-    0 where the boundary has a way out, or a formula or a part of a side tells what comes in.
+    0 for a balanced box, one with an outflow, and where an inflow is a formula or on a part of a side.
     """
     through = [0.0]
     for name, side in boundary.items():
@@ -127,7 +127,7 @@ class Start(Record):
     stream_function: STREAM | None = field("Of a flat flow the stream function s, v = (ds/dy, -ds/dx).", None)
 
     def problems(self) -> Iterable[Problem]:
-        """Both or neither."""
+        """Problems: both or neither of velocity and stream function."""
         if (self.velocity is None) == (self.stream_function is None):
             yield Problem("a flow starts by one of `velocity` and `stream_function`")
         elif self.stream_function is not None and self.stream_function.expr.type.shape != ():
@@ -145,7 +145,7 @@ class Buoyancy(Record):
     gravity: kinds.Acceleration = field("Gravity.", "0 -9.81 0 m/s^2")
 
     def problems(self) -> Iterable[Problem]:
-        """A value that is no field itself; values of other dimensions."""
+        """Problems: `by` that is no model's field; expansion or reference of a wrong dimension."""
         own = self.by.expr.type.dimension
         if not isinstance(self.by.expr, Link):
             yield Problem("this is the field of a model itself: `heat.temperature`", ("by",))
@@ -158,21 +158,21 @@ class Buoyancy(Record):
 
 
 def of_field(viscosity: Formula) -> bool:
-    """Whether a viscosity varies with a field, which is `c` in it."""
+    """Whether a viscosity depends on a field, its symbol `c`."""
     return Symbol("c") in walk(viscosity.expr)
 
 
 MOMENTS = 200
-"""Pieces of a run in which the mean velocities of solids are sampled before it."""
+"""Intervals of a run in which mean velocities of solids are sampled in advance."""
 SAMPLES = 12
-"""Samples of a velocity along each side before the run."""
+"""Samples of a formula along each side of the box, in advance of a run."""
 
 
 def fastest_turn(
     start: Start | None, boundary: Mapping[str, Side], corner: Sequence[float], size: Sequence[float],
     spacing: Sequence[float],
 ) -> float:  # fmt: skip
-    """The largest sum of |u|/spacing [1/s] of what is given of a flow at its start, by samples; 0: nothing is."""
+    """Largest sum of |u|/spacing [1/s] of the given velocities at the start, from samples; 0 where none is given."""
     whole = [[low + side * k / SAMPLES for k in range(SAMPLES + 1)] for low, side in zip(corner, size, strict=True)]
     given = [] if start is None or start.velocity is None else [(start.velocity, whole)]
     for name, part in boundary.items():
@@ -193,8 +193,10 @@ def fastest_turn(
 
 
 def thickest(viscosity: Formula, corner: Sequence[float], size: Sequence[float]) -> float:
-    """The viscosity [Pa s] of a flow's own fluid, of a formula the largest at the start by samples of its box; 0 where
-    it varies with a field, of which nothing is known before the run."""
+    """The viscosity [Pa s] of a flow's own fluid, for a formula the largest of samples of the box at the start.
+
+    0 where it depends on a field, which is unknown before the run.
+    """
     alone = number_in(viscosity)
     if alone is not None:
         return alone
@@ -210,9 +212,9 @@ def thickest(viscosity: Formula, corner: Sequence[float], size: Sequence[float])
 
 
 def fastest_solid(refs: Sequence[kinds.Ref], scene: StaticScene, spacing: Sequence[float]) -> tuple[float, str]:
-    """The largest sum of |v|/spacing [1/s] of places of solids that move, by samples in time, and of which one.
+    """(largest sum of |v|/spacing [1/s] of moving solids' positions, name of that solid), from samples in time.
 
-    The fluid beside a solid is as fast. What turns in its place, or is led by another part, is not known here.
+    The fluid next to a solid is as fast. Rotation in place, and motion that depends on other parts, is not included.
     """
     most, of = 0.0, ""
     for ref in refs:
@@ -229,6 +231,6 @@ def fastest_solid(refs: Sequence[kinds.Ref], scene: StaticScene, spacing: Sequen
 
 
 def _placed(position: Value, time: float) -> tuple[float, ...]:
-    """Where it is at a time [m]."""
+    """The position [m] at a time [s]."""
     found = evaluate(position.expr, lambda node: time if isinstance(node, Symbol) else {}[node])
     return tuple(map(float, found))

@@ -1,4 +1,4 @@
-"""The equation of a flow's pressure as numbers and integers."""
+"""The pressure equation of a flow: conductances, sinks, transforms and linear solver, as an island's numbers."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ def write_pressure(
     faces: Faces, opened: Any, solid: bool, areas: Floats, scales: Floats, solver: str, assembly: Assembly, ints: Any,
     varies: bool = False,
 ) -> tuple[NDArray[int64], str]:  # fmt: skip
-    """Write the integers of the pressure's equation, by the open ``areas`` of faces and those over volumes; the plan of
-    the linear solver that is named, empty for `auto` and `fast_transform`, and a text for `explain`.
+    """Write the integers of the pressure equation into ``ints``: (plan of a named linear solver, text for `explain`).
 
-    ``opened``: by boundary face, whether fluid leaves there; ``solid``: whether solids stand in the flow; ``varies``:
-    whether the coefficients change. Raises ScriptError where the solver cannot take the grid.
+    ``areas``: open areas of faces, ``scales``: areas over control volumes; ``opened``: for each boundary face whether
+    it is an outflow; ``solid``: whether there are solids; ``varies``: whether coefficients change. The plan is empty
+    for `auto` and `fast_transform`. Raises ScriptError where the named solver cannot solve on this grid.
     """
     cells = faces.cells
     n = len(cells.volumes)
@@ -86,14 +86,14 @@ def write_pressure(
 def _by_name(
     solver: str, faces: Faces, sink: Floats, assembly: Assembly, ints: Any, varies: bool
 ) -> tuple[NDArray[int64], str]:
-    """The plan of a linear solver (grids/multigrid/linear_kernels), and a text for `explain`."""
+    """(plan of a linear solver chosen by name (grids/multigrid/linear_kernels), text for `explain`)."""
     cells, axes = faces.cells, faces.axes
     n, shape = len(sink), cells.shape
     numbers = assembly.numbers()
     ties = [numbers[at : at + n] for at in ints[layout.CONDUCTANCES : layout.CONDUCTANCES + axes].tolist()]
     around = sum(tie + np.roll(tie.reshape(shape[::-1]), -1, axis=2 - axis).ravel() for axis, tie in enumerate(ties))
     held = np.where(sink < 0.0, 1.0, sink)
-    if solver == "direct":  # of each part of the flow without a way out, one cell stands still
+    if solver == "direct":  # one cell of each component without outflow has pressure 0
         alone = _parts(faces, ties)
         firsts = np.unique(alone, return_index=True)[1]
         closed = np.bincount(alone, weights=held) == 0.0
@@ -108,7 +108,7 @@ def _by_name(
 
 
 def _parts(faces: Faces, ties: Sequence[Floats]) -> NDArray[int64]:
-    """By cell: the number of the part of the flow that it is of, which no open face leads out of."""
+    """For each cell (cells,) the number of its connected component, by open faces."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -122,7 +122,7 @@ def _parts(faces: Faces, ties: Sequence[Floats]) -> NDArray[int64]:
 
 
 def _around_cell(faces: Faces, areas: Floats, axis: int) -> Floats:
-    """By cell: the open areas of its two faces across an axis."""
+    """For each cell (cells,) the sum of the open areas of its two faces normal to an axis."""
     shape = faces.cells.shape[::-1]
     own = areas[faces.index(axis)]
     count = shape[2 - axis]

@@ -1,4 +1,4 @@
-"""What can be read of a flow at an instant."""
+"""Outputs of a flow at an instant."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def crowded(ints: Sequence[int], floats: Floats) -> bool:
-    """Whether solids that move push into a closed box about as much as no flow has room for; ``ints``: the flow's."""
+    """Whether moving solids displace fluid in a closed box, close to the limit UNEVEN; ``ints``: the flow's."""
     if ints[layout.LED] <= 0 or ints[layout.SINGULAR] == 0:
         return False
     cells = int(np.prod(ints[layout.CELLS : layout.CELLS + 3]))
@@ -29,9 +29,9 @@ def crowded(ints: Sequence[int], floats: Floats) -> bool:
 def measure(
     what: str, cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState, masses_at: int = -1
 ) -> Any:
-    """An output of the word `flow`: (cells,), (cells, 3), (3,), (iterations,) or float.
+    """Value of an output of the word `flow`: (cells,), (cells, 3), (3,), (iterations,) or float.
 
-    ``masses_at``: of several fluids, where the masses in the own cells of faces stand.
+    ``masses_at``: offset of the masses of the faces' control volumes, for a flow of several fluids; -1: one density.
     """
     match what:
         case "centers":
@@ -71,7 +71,7 @@ def measure(
 
 
 def components(ints: tuple[int, ...], y: Floats) -> list[Floats]:
-    """The velocities of each component at its faces (nz, ny, nx)."""
+    """For each component its velocities at its faces, (nz, ny, nx) views of y."""
     found = []
     for axis in range(ints[layout.AXES]):
         shape = list(ints[layout.CELLS : layout.CELLS + 3])
@@ -82,7 +82,7 @@ def components(ints: tuple[int, ...], y: Floats) -> list[Floats]:
 
 
 def _own(ints: tuple[int, ...], floats: Floats, cells: FieldLayout, axis: int) -> Floats:
-    """Volumes of fluid in the own cells of a component's faces, half on the boundary [m^3]."""
+    """Volumes (nz, ny, nx) [m^3] of fluid in the control volumes of a component's faces."""
     shape = list(cells.shape)
     shape[axis] += not ints[layout.PERIODIC + axis]
     volumes = np.full(shape[::-1], np.prod(cells.spacing))
@@ -99,7 +99,7 @@ def _own(ints: tuple[int, ...], floats: Floats, cells: FieldLayout, axis: int) -
 
 
 def _at_centers(ints: tuple[int, ...], y: Floats) -> list[Floats]:
-    """Each component at the centers of cells (cells,)."""
+    """Each velocity component, averaged to the centers of cells (cells,)."""
     found = []
     for axis, u in enumerate(components(ints, y)):
         if ints[layout.PERIODIC + axis]:
@@ -114,7 +114,10 @@ CUTS = (slice(0, -1), slice(1, None))
 
 
 def _vorticity(ints: tuple[int, ...], spacing: tuple[float, ...], state: ModelState) -> Floats:
-    """At centers (cells,): by differences at edges, with the velocity that is given beside walls, and their mean."""
+    """Vorticity (2D) or its magnitude (3D) at cells' centers (cells,) [1/s]: the mean of differences at edges.
+
+    At walls the differences use the wall's velocity.
+    """
     axes = ints[layout.AXES]
     u = components(ints, state.y)
     turns = []
@@ -126,7 +129,7 @@ def _vorticity(ints: tuple[int, ...], spacing: tuple[float, ...], state: ModelSt
 def _slope(
     u: Floats, component: int, axis: int, spacing: tuple[float, ...], ints: tuple[int, ...], state: ModelState
 ) -> Floats:
-    """d(component)/d(axis) at the centers of cells: the mean of the four edges of each cell (nz, ny, nx)."""
+    """d(component)/d(axis) (nz, ny, nx) [1/s] at cells' centers: the mean over each cell's four edges."""
     line = 2 - axis
     if ints[layout.PERIODIC + axis]:
         steps = np.roll(u, -1, axis=line) - u

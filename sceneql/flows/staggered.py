@@ -1,4 +1,4 @@
-"""The faces of a staggered grid, by component, and the edges beside its sides."""
+"""Faces of a staggered grid, numbered component by component, and edges on the sides of its box."""
 
 from __future__ import annotations
 
@@ -17,18 +17,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Edges:
-    """Edges along one side of the box, of one component."""
+    """The m edges of one component on one side of the box."""
 
     faces: NDArray[int64]
-    """(m,) the face beside each, of all."""
+    """(m,) number of the face next to each edge."""
     points: Floats
-    """(m, 3) [m]."""
+    """(m, 3) [m] midpoints of the edges."""
     both: tuple[NDArray[int64], NDArray[int64]]
-    """(m,) each: the boundary faces of the cells on both sides of the face."""
+    """(m,) each: boundary faces of the two cells on both sides of that face."""
 
 
 class Faces:
-    """All faces (f,), component after component; arrays of a component are (nz, ny, nx) of its own numbers."""
+    """All faces of a staggered grid, component after component.
+
+    Arrays of a component are (nz, ny, nx), with one more entry along its own axis unless this is periodic.
+    """
 
     def __init__(self, cells: Cells, periodic: tuple[bool, bool, bool]) -> None:
         self.cells, self.periodic = cells, periodic
@@ -48,14 +51,14 @@ class Faces:
         self.volume = volume
 
     def index(self, component: int) -> NDArray[int64]:
-        """The numbers of a component's faces."""
+        """Numbers (nz, ny, nx) of a component's faces."""
         shape = self.shapes[component]
         count = np.arange(np.prod(shape), dtype=np.int64)
         found: NDArray[int64] = self.starts[component] + count.reshape(shape)
         return found
 
     def points(self, component: int, shift: tuple[int, float] | None = None) -> Floats:
-        """(m, 3) the middles of a component's faces [m]; ``shift``: an axis, and how far along it in cells."""
+        """Centers (m, 3) [m] of a component's faces; ``shift``: an axis, and a shift along it in cells."""
         index = np.stack(np.meshgrid(*map(np.arange, self.shapes[component]), indexing="ij")[::-1], axis=-1)
         offset = np.full(3, 0.5)
         offset[component] = 0.0
@@ -67,7 +70,7 @@ class Faces:
         return found
 
     def box(self, component: int) -> list[float]:
-        """Low corner and spacing of the box whose cells' centers are a component's faces: six numbers [m]."""
+        """Low corner and spacing, six numbers [m], of the grid whose cells are centered on a component's faces."""
         low = np.array(self.low)
         low[component] -= 0.5 * self.cells.spacing[component]
         if self.cells.flat:
@@ -75,7 +78,7 @@ class Faces:
         return [*low.tolist(), *self.cells.spacing.tolist()]
 
     def own_widths(self, component: int) -> Floats:
-        """How wide the own cells of a component's faces are along its axis, in cells: half on the boundary."""
+        """Widths (nz, ny, nx) [cells] of a component's control volumes along its axis: 1, and 1/2 on the boundary."""
         widths = np.ones(self.shapes[component])
         if not self.periodic[component]:
             for end in (0, -1):
@@ -83,19 +86,19 @@ class Faces:
         return widths
 
     def side(self, axis: int, high: int) -> NDArray[int64]:
-        """The boundary faces (cells.boundary) of a side, as an array (z, y, x) without its axis."""
+        """Numbers of a side's boundary faces (in cells.boundary), as an array (z, y, x) without its axis."""
         shape = [n for k, n in enumerate(self.cells.shape[::-1]) if k != 2 - axis]
         count = int(np.prod(shape))
         before = sum(2 * int(np.prod(self.cells.shape)) // self.cells.shape[k] for k in range(axis))
         return before + high * count + np.arange(count, dtype=np.int64).reshape(shape)
 
     def on_side(self, axis: int, high: int) -> NDArray[int64]:
-        """The faces that lie on a side, in the order of `side`."""
+        """Numbers of the faces that lie on a side, in the order of `side`."""
         found: NDArray[int64] = self.index(axis).take([-1 if high else 0], axis=2 - axis).squeeze(2 - axis)
         return found
 
     def edges(self, component: int, axis: int, high: int) -> Edges:
-        """The edges of a component along a side across it."""
+        """The edges of a component on a side normal to another axis."""
         faces: Any = self.index(component).take(-1 if high else 0, axis=2 - axis)
         points = self.points(component, (axis, 0.5 if high else -0.5))
         own = points.reshape(*self.shapes[component], 3).take(-1 if high else 0, axis=2 - axis)

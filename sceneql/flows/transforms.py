@@ -1,4 +1,4 @@
-"""The tables of fast transforms for the pressure of a box."""
+"""Tables of the fast transforms that solve the pressure equation of a box."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 KINDS = {(False, False): COSINES, (True, True): SINES, (False, True): QUARTER_COSINES, (True, False): QUARTER_SINES}
-"""Modes of values at centers by whether they are 0 at the low and the high end."""
+"""Eigenmodes of values at cells' centers, by whether they vanish at the low and the high end."""
 NODE_KINDS = {(True, True): NODES, (True, False): NODES_FREE, (False, True): FREE_NODES, (False, False): FREE_FREE}
-"""Modes of values at faces, likewise."""
+"""Eigenmodes of values at faces, by the same."""
 
 
 def modes(count: int, periodic: bool, zero: tuple[bool, bool], faces: bool = False) -> tuple[int, int, Floats]:
-    """The modes of an axis, the length of the complex transform, and eigenvalues (count,) of 2 x - left - right.
+    """(kind of eigenmodes of an axis, length of its complex transform, eigenvalues (count,) of 2 x - left - right).
 
-    ``zero``: whether values are 0 at the low and the high end. ``faces``: of values at faces, both ends among them.
+    ``zero``: whether values vanish at the low and the high end; ``faces``: whether values are at faces, ends included.
     """
     k = np.arange(count)
     if periodic:
@@ -53,7 +53,7 @@ def modes(count: int, periodic: bool, zero: tuple[bool, bool], faces: bool = Fal
 
 
 def plan_of(kind: int, length: int, store: Callable[[Floats], int]) -> list[int]:
-    """The PLAN integers of an axis; ``store`` keeps numbers and gives their offset."""
+    """The PLAN integers of an axis's transform; ``store`` appends numbers and returns their offset."""
     turn, twist = 2.0 * np.pi * np.arange(length) / length, 0.5 * np.pi * np.arange(length) / length
     waves = store(np.concatenate([np.cos(turn), np.sin(turn)]))
     twists = store(np.concatenate([np.cos(twist), np.sin(twist)]))
@@ -66,10 +66,9 @@ def plans(
     shape: tuple[int, int, int], periodic: Sequence[bool], opened: Sequence[tuple[bool, bool]],
     conductances: Sequence[float], assembly: Assembly,
 ) -> tuple[list[int], Floats, int]:  # fmt: skip
-    """Integers of all three axes, 1/eigenvalues (cells,) of the pressure's equation, and the floats of scratch
-    that transforms of cells or faces need.
+    """(integers of all three axes, 1/eigenvalues (cells,) of the pressure equation, size of scratch [floats]).
 
-    ``conductances``: of the faces of each axis, two or three of them.
+    ``conductances``: those of the faces normal to each of the two or three axes.
     """
     ints: list[int] = []
     total, lengths = np.zeros(shape[::-1]), []
@@ -89,7 +88,7 @@ def plans(
 
 
 def factors(n: int) -> list[int]:
-    """Fours, a two, and odd primes, whose product is n."""
+    """The factors 4, 2 and odd primes of n, with multiplicity."""
     found = []
     for prime in (4, 2, 3, 5, 7, 11, 13):
         while n % prime == 0:

@@ -1,4 +1,4 @@
-"""Diffusing fields on elements, as state, numbers and terms of an island. Imports numpy."""
+"""Diffusing fields on finite elements: state, numbers and terms in the island. Imports numpy."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ if TYPE_CHECKING:
 
 CLOSING = "sceneql.galerkin.closing_kernels"
 POWERS = 60
-"""Steps of power iteration to the fastest decay."""
+"""Steps of power iteration for the fastest decay."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rim:
-    """The outer sides of a mesh as boundary conditions choose among them (grids.domain.boundary)."""
+    """Outer sides of a mesh, from which boundary conditions choose theirs (grids.domain.boundary)."""
 
     boundary: BoundaryFaces
     names: tuple[str, ...]
@@ -84,7 +84,7 @@ class _Builder:
     assembly: Assembly
 
     def add(self) -> None:
-        """Add all."""
+        """Reserve the state and add all terms."""
         mesh, assembly = self.mesh, self.assembly
         self.form = WeakForm(mesh, self.depth)
         self.at = assembly.state(np.append(self._start(mesh.places), 0.0))
@@ -120,7 +120,7 @@ class _Builder:
         self.matrix, self.mass = matrix, mass
 
     def fastest(self) -> float:
-        """The largest eigenvalue [1/s] of the matrix by the mass, by power iteration: of what does not vary in time."""
+        """Largest eigenvalue [1/s] of the constant matrix relative to the mass, by power iteration."""
         from scipy.sparse.linalg import splu
 
         matrix, solve = self.matrix, splu(self.mass.tocsc()).solve
@@ -159,7 +159,10 @@ class _Builder:
         return found
 
     def _coefficients(self, points: Floats) -> Floats:
-        """D (e, q) at points (e, q, 3), where it depends on the place alone; else zeros."""
+        """Coefficients (e, q) [m^2/s] at points (e, q, 3); zeros if they depend on time or on the field.
+
+        Raises ScriptError for a value below 0.
+        """
         formula = self.spreading.coefficient
         if formula is None or self.varying:
             return np.zeros(points.shape[:2])
@@ -186,7 +189,7 @@ class _Builder:
         )
         self.given, _ = conditions(self.boundary, rim, self.assembly.line())
         held = [one.cells for one in self.given if one.resistance == 0.0]
-        # Elements with several sides on which values are given: all are counted by each part.
+        # An element may have several sides with given values: the strength sums over all of them.
         self.firm = np.zeros(len(everything))
         if held:
             faces = np.concatenate(held)
@@ -194,7 +197,7 @@ class _Builder:
         return self.given
 
     def _given(self, one: Condition) -> tuple[Any, Any, Any] | None:
-        """Matrices (f, nodes, nodes), elements, and what is fed (f, nodes); None where terms do it all."""
+        """Matrices (f, nodes, nodes), elements (f,) and loads (f, nodes) of a condition; None if terms contain all."""
         edge = self.form.edge(one.cells)
         shapes, area = edge.functions, edge.weights[..., None]
         moving = varies(one.formula)
@@ -221,7 +224,7 @@ class _Builder:
         return blocks, edge.owners, np.einsum("fqi,fq->fi", weights, self._at(one.formula, edge.points))
 
     def _held(self, one: Condition, edge: Edge) -> None:
-        """The term of given values where the coefficient varies."""
+        """Add the term of given boundary values with a coefficient that varies."""
         assembly, nodes = self.assembly, self.mesh.unknowns[edge.owners]
         formula = self.spreading.coefficient
         assert formula is not None
@@ -251,7 +254,7 @@ class _Builder:
         self.terms.term("held", ints, self.terms.pairs(each))
 
     def _bulk(self, source: Formula | None) -> None:
-        """The term of a coefficient and a source that vary; with a lumped mass a source acts at the nodes alone."""
+        """Add the term of a varying coefficient and source; with a lumped mass a source acts at the nodes alone."""
         if source is not None and self.mesh.element.degree == 1:
             nodes, weights = np.arange(self.mesh.count)[:, None], self.form.volumes[:, None, None]
             self.terms.given(source, self.mesh.places[:, None], np.ones((1, 1)), nodes, weights)

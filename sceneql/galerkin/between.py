@@ -1,4 +1,4 @@
-"""A field on elements between its nodes: the elements of places, and its values there. Imports numpy."""
+"""Interpolation of a field on elements: the element that contains a point, and the field there. Imports numpy."""
 
 from __future__ import annotations
 
@@ -15,54 +15,54 @@ if TYPE_CHECKING:
     from sceneql.grids.medium import FieldLayout
 
 NEAREST = 12
-"""Elements with the nearest centers among which that of a place is looked for."""
+"""Number of elements with the nearest centers that are searched for a point."""
 FEWER = 4
-"""Those among which it is looked for first."""
+"""Number of elements that are searched first."""
 INVERSIONS = 6
-"""Most steps of Newton's method to a place in an element with curved sides."""
+"""Largest number of Newton steps for a point in an element with curved sides."""
 BEYOND = 0.5
-"""How far outside its element, in barycentric coordinates, a field is continued; beyond it stays."""
+"""Distance outside its element, in barycentric coordinates, up to which a field is continued; constant beyond."""
 
 FARTHEST = 1.0
-"""Farthest, in barycentric coordinates from its middle, that an element's own functions tell where a place is."""
+"""Largest barycentric distance from an element's middle at which its curved map is used."""
 LEAST = 0.1
-"""Part of an element's straight size below which it is taken as straight at a place, far outside of it."""
+"""Fraction of the straight element's Jacobian below which the straight map replaces the curved one."""
 
 
 class BetweenNodes:
-    """The functions of a mesh's elements as pictures read them (grids.medium.Between)."""
+    """Interpolation of a field on a mesh for pictures (implements grids.medium.Between)."""
 
     what = "nodes"
 
     def __init__(self, mesh: FieldMesh, layout: FieldLayout) -> None:
-        """``layout``: the grid on which pictures see a deep field."""
+        """``layout``: grid on which pictures sample a deep field."""
         self.mesh, self.layout, self.count = mesh, layout, mesh.count
         self._weights: Kept[Any] = Kept()
 
     def filled(self, values: Floats) -> Floats:
-        """The values at the nodes themselves."""
+        """Values at the nodes, unchanged."""
         return values
 
     def at(self, field: Floats, points: Floats) -> Floats:
-        """The field (k,) at points (k, 3) [m]; a little outside the elements it is continued."""
+        """Field (k,) at points (k, 3) [m]; continued a little outside the elements."""
         found: Floats = self._weights.get(points, None, lambda: self.weights(points)[0]) @ field
         return found
 
     def gridded(self, field: Floats) -> Floats:
-        """(nz, ny, nx) at the centers of the cells of the layout, with a layer of cells around them of a deep one."""
+        """Field (nz, ny, nx) at centers of the layout's cells, with one layer of cells around them (z: if deep)."""
         weights, _ = self._grid
         found: Floats = (weights @ field).reshape(self.shape)
         return found
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Of `gridded`."""
+        """Shape (nz, ny, nx) of `gridded`."""
         nx, ny, nz = self.layout.shape
         return (nz if nz == 1 else nz + 2, ny + 2, nx + 2)
 
     @property
     def known(self) -> Any:
-        """Which of these centers lie in elements."""
+        """Mask (nz, ny, nx) of the centers of `gridded` that lie in elements."""
         return self._grid[1].reshape(self.shape)
 
     @cached_property
@@ -73,7 +73,7 @@ class BetweenNodes:
         return self.weights(np.array(self.layout.low) + index * np.array(self.layout.spacing))
 
     def weights(self, points: Floats) -> tuple[Any, Any]:
-        """Sparse (k, count) weights of the nodes at points (k, 3), and which points (k,) lie in elements."""
+        """Sparse weights (k, count) of the nodes at points (k, 3) [m], and mask (k,) of the points in elements."""
         from scipy.sparse import csr_array
 
         mesh, element = self.mesh, self.mesh.element
@@ -86,11 +86,11 @@ class BetweenNodes:
         return csr_array((shapes.ravel(), mesh.unknowns[owner].ravel(), starts), (len(points), mesh.count)), inside
 
     def beside(self, points: Floats) -> Any:
-        """Which points (k, 3) lie in elements, or as little outside as a field is continued: (k,)."""
+        """Mask (k,) of points (k, 3) [m] in elements, or less than BEYOND outside one."""
         return (self._located(points[:, : self.mesh.element.dimension])[1] > -BEYOND).all(axis=1)
 
     def _located(self, points: Floats) -> tuple[Any, Floats]:
-        """Elements (k,) of points (k, d), or those that they are least outside of, and barycentric places there."""
+        """Elements (k,) that contain points (k, d), or are nearest, and the points' barycentric coordinates there."""
         owner = np.zeros(len(points), dtype=np.int64)
         places = np.full((len(points), self.mesh.element.dimension + 1), -np.inf)
         left = np.arange(len(points))
@@ -113,7 +113,7 @@ class BetweenNodes:
         return cKDTree(corners.mean(axis=1))
 
     def _places(self, owner: Any, points: Floats) -> Floats:
-        """(k, corners) barycentric places of points (k, d) in elements (k,)."""
+        """Barycentric coordinates (k, corners) of points (k, d) in elements (k,)."""
         element = self.mesh.element
         nodes = self.mesh.points[self.mesh.cells[owner]]
         corners = nodes[:, : element.dimension + 1]

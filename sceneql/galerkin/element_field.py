@@ -1,4 +1,4 @@
-"""A field on elements as its outputs tell it. Imports numpy."""
+"""Outputs of a field on elements. Imports numpy."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ElementField:
-    """A field of an island."""
+    """Field on finite elements in an island."""
 
     mesh: FieldMesh
     at: int
-    """y[at : at + count] are the values at the nodes, y[at + count] is what has come in."""
+    """Offset: y[at : at + count] are the values at the nodes, y[at + count] is the integrated inflow."""
     form: WeakForm
-    """Its integrals."""
+    """Integrals of the mesh."""
     layout: FieldLayout
-    """The grid on which pictures see it."""
+    """Grid on which pictures sample the field."""
     between: BetweenNodes
     probed: Mapping[str, Any]
     """Sparse weights (1, count) of the nodes at each probe."""
     fastest: Callable[[], float]
-    """The fastest decay [1/s] of what is even in time."""
+    """Fastest decay rate [1/s] of the terms that are constant in time."""
 
     def values(self, state: ModelState) -> Floats:
-        """(count,) at the nodes."""
+        """Values (count,) at the nodes."""
         return state.y[self.at : self.at + self.mesh.count]
 
     def measure(self, what: str, state: ModelState) -> Any:
-        """`field` (count,), `centers` (count, 3), the nodes, or a float: another measure, a probe."""
+        """Output ``what``: `field` (count,), `centers` (count, 3) of nodes, or a float for others and for probes."""
         values = self.values(state)
         match what:
             case "field":
@@ -63,18 +63,18 @@ class ElementField:
         return float((self.probed[what] @ values)[0])
 
     def samples(self, state: ModelState) -> tuple[Floats, Floats, Floats]:
-        """Places (k, 3) [m] of the elements' rule, the field there (k,), and the volumes (k,) that these stand for."""
+        """Quadrature points (k, 3) [m] of the elements, the field (k,) there, and their volumes (k,) [m^3]."""
         values = self.values(state)[self.mesh.unknowns] @ self.form.functions.T
         return self.form.points.reshape(-1, 3), values.ravel(), self.form.weights.ravel()
 
     def places_of(self, what: str) -> NDArray[int64] | None:
-        """Where in y a measure stands (kinds.Model.places)."""
+        """Indices in y of an output (kinds.Model.places); None for outputs that are computed."""
         if what == "field":
             return self.at + np.arange(self.mesh.count)
         return np.array(self.at + self.mesh.count) if what == "inflow" else None
 
     def remark(self, name: str) -> str:
-        """How many elements, their worst angle, what bounds explicit steps, and what is not kept."""
+        """Remark of a run: number of elements, their worst angles, bound of explicit steps, and range of values."""
         mesh = self.mesh
         what, between = ("triangles", "") if mesh.element.dimension == 2 else ("tetrahedra", "between faces ")
         least, largest = (float(np.degrees(angle)) for angle in mesh.worst)

@@ -1,4 +1,4 @@
-"""The mesh of a model's domain: a box by its sides, or the inside of an object of the script. Imports numpy."""
+"""Mesh of a model's domain, which is a box or the inside of an object of the script. Imports numpy."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 DEGREES = {"p1": 1, "p2": 2}
-"""Of the functions of elements, by their names."""
+"""Polynomial degree of elements, by name."""
 BYTES = {(2, 1): 600, (2, 2): 2500, (3, 1): 1500, (3, 2): 9000}
-"""[bytes] of an element by dimension and degree, with its part of an implicit solver's matrix."""
+"""Memory per element [bytes] by dimension and degree, with its share of an implicit solver's matrix."""
 ON = 1e-9
-"""Parts of a side within which a point of a box lies on it."""
+"""Distance from a side of the box, relative to its length, within which a point lies on it."""
 
 
 def mesh_of(model: Medium, degree: int, boundary: Boundary, assembly: Assembly) -> FieldMesh:
-    """The mesh of a model. Raises ScriptError for a domain that has none, LimitRefused for too many elements."""
+    """Mesh of a model's domain. Raises ScriptError for a domain without a mesh, LimitRefused for too many elements."""
     try:
         if model.size is not None:
             return _box(model, degree, boundary)
@@ -83,7 +83,7 @@ def _object(model: Medium, degree: int, assembly: Assembly) -> FieldMesh:
 
 
 def _outer(four: Any) -> Any:
-    """(f, 2) tetrahedron and corner across from each face that one alone has."""
+    """(f, 2): tetrahedron and opposite corner of each face that belongs to one tetrahedron alone."""
     corners = np.sort(four[:, [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]], axis=2).reshape(-1, 3)
     size = int(four.max()) + 1
     _, first, count = np.unique((corners @ (size, 1, 0)) * size + corners[:, 2], return_index=True, return_counts=True)
@@ -114,7 +114,7 @@ def _corners(element: Simplex) -> Any:
 def _joined(
     mesh: FieldMesh, pieces: Any, names: tuple[str, ...], axes: set[int], low: Floats, sides: Floats
 ) -> FieldMesh:
-    """With names of the box's sides, and nodes across periodic ones as one unknown."""
+    """Mesh of a box with ``pieces``, ``names``, and one unknown for opposite nodes of periodic sides."""
     if not axes:
         return replace(mesh, pieces=pieces, names=names)
     share = (mesh.points - low) / sides
@@ -134,7 +134,7 @@ def _joined(
 
 
 def _flat_box(shape: tuple[int, ...], low: Floats, sides: Floats, element: Simplex) -> FieldMesh:
-    """Two triangles a cell, whose diagonals turn from cell to cell."""
+    """Mesh with two triangles per cell; the diagonal's direction alternates from cell to cell."""
     nx, ny = shape[:2]
     j, i = (index.ravel() for index in np.indices((ny + 1, nx + 1)))
     points = low + np.stack([i / nx, j / ny], axis=1) * sides
@@ -150,7 +150,7 @@ def _flat_box(shape: tuple[int, ...], low: Floats, sides: Floats, element: Simpl
 
 
 def _deep_box(shape: tuple[int, ...], low: Floats, sides: Floats, element: Simplex) -> FieldMesh:
-    """Six tetrahedra a cell (Kuhn 1960)."""
+    """Mesh with six tetrahedra per cell (Kuhn 1960)."""
     nx, ny, nz = shape
     k, j, i = (index.ravel() for index in np.indices((nz + 1, ny + 1, nx + 1)))
     points = low + np.stack([i / nx, j / ny, k / nz], axis=1) * sides

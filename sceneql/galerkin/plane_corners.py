@@ -1,4 +1,4 @@
-"""Corners of outlines kept in a mesh of triangles: vertices moved there, or put in. Imports numpy."""
+"""Vertices of a triangle mesh at the corners of its outline: moved there or inserted. Imports numpy."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 SHARP = 0.5
-"""Angle [rad] between the normals at the ends of a side from which on a corner is looked for between them."""
+"""Least angle [rad] between the normals at a side's ends for which a corner is sought between them."""
 BESIDE = 0.4
-"""Parts of a side from one of its ends within which this end moves to the corner."""
+"""Distance from an end, relative to the side, within which this end moves to the corner."""
 OFF = 1e-3
-"""Sides by which a corner that is found may be off the outline."""
+"""Largest distance of a corner from the outline, relative to the side."""
 POOR = 0.02
-"""Least quality of a triangle that is made so."""
+"""Least quality of the resulting triangles."""
 
 
 def slopes(values: Values, points: Floats, step: float) -> Floats:
-    """(k, 2) of a level set's values, by central differences."""
+    """Gradient (k, 2) of a level at points (k, 2), by central differences with ``step`` [m]."""
     ways = step * np.eye(2)
     found: Floats = np.stack([(values(points + way) - values(points - way)) / (2.0 * step) for way in ways], axis=1)
     return found
 
 
 def corners_of(mesh: Triangles, values: Values, spacing: float) -> Floats:
-    """(k, 2) corners of the outline that sides of the mesh cut off: where the tangents at their ends meet on it."""
+    """Corners (k, 2) [m] of the outline that outer sides cut off: the tangents at a side's ends meet there."""
     _, outer = outer_sides(mesh.triangles)
     ends = mesh.points[outer]
     normal = slopes(values, ends.reshape(-1, 2), 1e-4 * spacing).reshape(-1, 2, 2)
@@ -52,8 +52,10 @@ def corners_of(mesh: Triangles, values: Values, spacing: float) -> Floats:
 
 
 def kept(mesh: Triangles, corners: Floats, spacing: float) -> tuple[Triangles, Any]:
-    """The mesh with vertices at corners (k, 2) of its outline, and the numbers of these vertices; where the spacing is
-    too long for one it is left out."""
+    """Mesh with vertices at corners (k, 2) of its outline, and the indices of these vertices.
+
+    A corner too sharp for the spacing is left out.
+    """
     points, triangles = list(mesh.points), [tuple(three) for three in mesh.triangles.tolist()]
     fixed: dict[int, int] = {}
     _, outer = outer_sides(mesh.triangles)
@@ -75,7 +77,7 @@ def kept(mesh: Triangles, corners: Floats, spacing: float) -> tuple[Triangles, A
 
 
 def _apart(corner: Floats, a: Floats, b: Floats) -> tuple[float, float]:
-    """Distance of a corner from a side, and the part of it at which it is nearest."""
+    """Distance [m] of a corner from a side, and the fraction of the side at the nearest point."""
     way = b - a
     share = float(np.clip((corner - a) @ way / max(float(way @ way), 1e-300), 0.0, 1.0))
     return float(np.linalg.norm(corner - a - share * way)), share
@@ -84,7 +86,7 @@ def _apart(corner: Floats, a: Floats, b: Floats) -> tuple[float, float]:
 def _placed(
     points: list[Any], triangles: list[Any], around: Any, sides: Any, fixed: Any, which: int, corner: Any, at: Any
 ) -> bool:
-    """Move an end of a side to a corner, or divide the side there; False where triangles would be turned."""
+    """Move an end of a side to a corner, or divide the side there; False if triangles became too poor."""
     share, a, b = at
     end = a if share < BESIDE else b if share > 1.0 - BESIDE else -1
     if end >= 0 and end not in fixed:

@@ -1,4 +1,4 @@
-"""Meshes of triangles in outlines: corners kept, quadratic sides curved onto the outline. Imports numpy."""
+"""Triangle meshes inside outlines, with vertices at corners and quadratic sides on the outline. Imports numpy."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 LEAST_BENT = 0.2
-"""A triangle is bent no more than to this part of its straight size at any place that is looked at."""
+"""Least Jacobian of a curved triangle, relative to the straight one."""
 FINE, THIN = 0.25, 0.95
-"""What lies inside farther than THIN spacings from all vertices is too thin: sought at places FINE spacings apart."""
+"""Check for thin parts: points FINE spacings apart; one inside farther than THIN spacings from all vertices fails."""
 GAP = 0.05
-"""Spacings by which a triangle, away from its outer sides, may lie outside."""
+"""Largest distance [spacings] outside the outline of centers and inner sides."""
 LOOKED_AT = (0.1, 0.25, 0.5, 0.75, 0.9)
-"""Parts of an inner side at which it must lie inside."""
+"""Fractions of inner sides at which they are tested."""
 ROUGH = 1e-4
-"""Parts of a side within which vertices on the outline move along it."""
+"""Tolerance, relative to a side, of vertices on the outline while they are smoothed."""
 ROUNDS = 3
-"""Times that vertices move, and sides are exchanged."""
+"""Rounds of smoothing and flips."""
 
 
 class TooCoarse(ValueError):
-    """A domain has parts that are too thin for the spacing."""
+    """Error for a domain with parts or gaps too thin for the spacing."""
 
 
 def outlined(low: Floats, high: Floats, spacing: float, level: Any, element: Simplex) -> FieldMesh | None:
-    """The mesh of what lies inside a flat level set (grids.domain.cut.Level); None where nothing does.
+    """Mesh of the inside of a flat level (grids.domain.cut.Level); None if no triangle lies inside.
 
-    Raises TooCoarse where parts, or gaps between parts, are thinner than the spacing.
+    Raises TooCoarse for parts, or gaps between parts, thinner than the spacing.
     """
 
     def values(points: Floats) -> Floats:
@@ -75,7 +75,7 @@ def outlined(low: Floats, high: Floats, spacing: float, level: Any, element: Sim
 
 
 def _settled(points: Floats, triangles: Any, fixed: Any, onto: Any) -> Floats:
-    """With the vertices of outer sides, but those that are fixed, on the outline to rounding."""
+    """Points with the vertices of outer sides moved onto the outline to rounding, except ``fixed`` ones."""
     _, outer = outer_sides(triangles)
     normals = np.zeros_like(points)
     way = points[outer[:, 1]] - points[outer[:, 0]]
@@ -93,7 +93,7 @@ def _settled(points: Floats, triangles: Any, fixed: Any, onto: Any) -> Floats:
 def flat_mesh(
     points: Floats, triangles: Any, element: Simplex, pieces: Any, names: tuple[str, ...], worst: tuple[float, float]
 ) -> FieldMesh:
-    """Triangles (t, 3) of points (n, 2) with straight sides; ``pieces``: of the outer sides in their order."""
+    """Mesh of triangles (t, 3) with points (n, 2) and straight sides; ``pieces``: of outer sides, in their order."""
     cells = triangles
     if element.degree == 2:
         ends, which = sides_of(triangles)
@@ -106,7 +106,7 @@ def flat_mesh(
 
 
 def _distinct(corners: Floats, spacing: float) -> Floats:
-    """Corners of which none are the same."""
+    """Corners (k, 2) without duplicates."""
     kept: list[Any] = []
     for corner in corners:
         if all(np.abs(corner - other).max() > 1e-3 * spacing for other in kept):
@@ -115,7 +115,7 @@ def _distinct(corners: Floats, spacing: float) -> Floats:
 
 
 def _curved(mesh: FieldMesh, onto: Any) -> FieldMesh:
-    """With the nodes on outer sides moved onto the outline, but those that would bend a triangle too much."""
+    """Mesh with the nodes on outer sides moved onto the outline, unless that bends a triangle too much."""
     from dataclasses import replace
 
     points = mesh.points.copy()
@@ -136,7 +136,7 @@ def _curved(mesh: FieldMesh, onto: Any) -> FieldMesh:
 
 
 def _whole(points: Floats, triangles: Any, low: Floats, high: Floats, spacing: float, values: Values) -> None:
-    """Raise TooCoarse where a part, or a gap between parts, is too thin for the lattice to know of it."""
+    """Raise TooCoarse for a part, or a gap between parts, too thin for the lattice to resolve."""
     from scipy.spatial import cKDTree
 
     counts = np.ceil((high - low) / (FINE * spacing)).astype(int) + 1

@@ -1,4 +1,4 @@
-"""Triangles made better: vertices moved towards the middles of their neighbors. Imports numpy."""
+"""Quality of triangle meshes: measures, Delaunay flips, and smoothing of vertices. Imports numpy."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 PASSES, IDLE = 60, 4
-"""Most passes over the vertices, and passes in a row in which few move after which no more follow."""
+"""Largest number of passes over the vertices, and number of successive passes with few moves that ends them."""
 FEW = 0.05
-"""Part of the vertices tried that counts as few."""
+"""Fraction of the tried vertices that counts as few."""
 GOOD = 0.9
-"""Quality from which on triangles are left as they are."""
+"""Quality above which triangles are left unchanged."""
 ENOUGH = 1e-3
 """Least gain of quality for which a vertex moves."""
 STEPS = (1.0, 0.5, 0.25)
-"""Parts of the way that are tried."""
+"""Fractions of the way to the target that are tried."""
 
 Onto = Callable[["Floats", "Floats", "Floats"], "Floats"]
-"""Places (k, 2) on the outline near given ones, along unit directions (k, 2), no farther than so much (k,); NaN where
-there is none."""
+"""Function: points (k, 2) on the outline from given points (k, 2), unit directions (k, 2) and largest distances (k,)
+[m]; NaN for points with none."""
 
 
 def qualities(points: Floats, triangles: Any) -> Floats:
-    """(t,) 4 sqrt(3) area over the sum of the squares of the sides: 1 of equilateral ones, below 0 of turned ones."""
+    """Qualities (t,): 4 sqrt(3) area / sum of squared sides; 1 if equilateral, negative if inverted."""
     a, b, c = (points[triangles[..., k]] for k in range(3))
     u, v, w = b - a, c - a, c - b
     area = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
@@ -39,7 +39,7 @@ def qualities(points: Floats, triangles: Any) -> Floats:
 
 
 def angles(points: Floats, triangles: Any) -> tuple[float, float]:
-    """The least and the largest angle [rad] of triangles."""
+    """Least and largest angle [rad] of triangles."""
     least, largest = np.pi, 0.0
     for k in range(3):
         angle = _angle(*(points[triangles[:, (k + m) % 3]] for m in range(3)))
@@ -48,8 +48,8 @@ def angles(points: Floats, triangles: Any) -> tuple[float, float]:
 
 
 def outer_sides(triangles: Any) -> tuple[Any, Any]:
-    """(s, 2) triangle and corner across from each side that one triangle alone has, and its ends (s, 2),
-    counterclockwise around the inside."""
+    """Sides that belong to one triangle alone: (s, 2) triangle and opposite corner; (s, 2) ends, counterclockwise
+    around the inside."""
     _, which = sides_of(triangles)
     lone = np.bincount(which.ravel())[which] == 1
     own = np.argwhere(lone)
@@ -58,9 +58,9 @@ def outer_sides(triangles: Any) -> tuple[Any, Any]:
 
 
 def delaunay(points: Floats, triangles: Any) -> Any:
-    """The triangles with inner sides exchanged until none lies in the circle around a neighbor's corners (Lawson 1977).
+    """Triangles with inner sides flipped until all are locally Delaunay (Lawson 1977); sides of the boundary stay.
 
-    Those of the boundary stay. Then the matrix of diffusion has no positive entry between vertices of an inner side.
+    The matrix of diffusion then has no positive entry between the vertices of an inner side.
     """
     triangles = triangles.copy()
     for _ in range(PASSES):
@@ -78,7 +78,7 @@ def delaunay(points: Floats, triangles: Any) -> Any:
         found = np.flatnonzero(wrong)
         if not len(found):
             break
-        # Of sides with a triangle in common one is exchanged at a time: that of the largest angles.
+        # Of flips that share a triangle, one is done at a time: that with the largest sum of angles.
         found = found[np.argsort(-(one + two)[found], kind="stable")]
         rank = np.full(len(triangles), len(pairs))
         for own in (t, u):
@@ -90,16 +90,16 @@ def delaunay(points: Floats, triangles: Any) -> Any:
 
 
 def _angle(corner: Floats, one: Floats, other: Floats) -> Floats:
-    """(k,) [rad] at corners (k, 2) between the ways to two places."""
+    """Angles (k,) [rad] at corners (k, 2) between the directions to two points."""
     u, v = one - corner, other - corner
     found: Floats = np.arctan2(np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]), (u * v).sum(axis=1))
     return found
 
 
 def smoothed(points: Floats, triangles: Any, fixed: Any, onto: Onto) -> Floats:
-    """The points (n, 2), of which those in poor triangles have moved: to where the worst around each is best.
+    """Points (n, 2) after smoothing: a vertex of a poor triangle moves if the worst quality around it improves.
 
-    Those of the outline move along it, but for ``fixed`` (k,) ones. Neighbors never move at once.
+    Vertices of the outline move along it, except ``fixed`` (k,) ones. Neighbors never move in the same pass.
     """
     points = points.copy()
     ends = sides_of(triangles)[0]

@@ -1,7 +1,7 @@
 """Triangles inside an outline: isosurface stuffing in the plane, on a lattice of equilateral triangles.
 
-As Labelle & Shewchuk do in space (Isosurface stuffing, 2007): where a side of the lattice leaves the outline near one
-of its ends, the end moves there; triangles that are still crossed are cut. Imports numpy.
+The planar form of Labelle & Shewchuk 2007 (Isosurface stuffing): if the outline cuts a side of the lattice near one of
+its ends, that end moves to the cut; triangles that the outline still crosses are cut. Imports numpy.
 """
 
 from __future__ import annotations
@@ -16,29 +16,29 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 NEAR = 0.4
-"""An end of a side moves to where the outline cuts it within this part of the side."""
+"""Distance of a cut from an end, relative to the side, within which the end moves to the cut."""
 OUT, ON, IN = 0, 1, 2
 ROOTS, SLOW = 80, 12
-"""Most steps to the place where the outline cuts a side, and those after which it is halved in turn."""
+"""Largest number of root-finding steps, and number of steps after which every second one bisects."""
 TOUCHING = 1e-9
-"""Parts of the spacing by which the lattice is off a place on the outline."""
+"""Distance of the lattice from points on the outline, relative to the spacing."""
 
 Values = Callable[["Floats"], "Floats"]
-"""From points (k, 2) to numbers (k,) below 0 inside."""
+"""Level: values (k,) at points (k, 2) [m], negative inside."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Triangles:
-    """Triangles of points."""
+    """Triangle mesh in the plane."""
 
     points: Floats
-    """(n, 2) [m]."""
+    """(n, 2) [m]: vertices."""
     triangles: Ints
-    """(t, 3) counterclockwise."""
+    """(t, 3): indices of vertices, counterclockwise."""
 
 
 def stuffed(low: Floats, high: Floats, spacing: float, values: Values) -> Triangles:
-    """Triangles of side ``spacing`` [m] inside what lies in a box; none where no place of the lattice lies inside."""
+    """Triangles with sides of ``spacing`` [m] inside a level in a box; none if no lattice point lies inside."""
     rise = 0.5 * 3.0**0.5 * spacing
     counts = np.ceil((high - low) / (spacing, rise)).astype(np.int64) + 4
     middle = 0.5 * (low + high)
@@ -64,8 +64,10 @@ def stuffed(low: Floats, high: Floats, spacing: float, values: Values) -> Triang
 
 
 def crossing(values: Values, inner: Floats, outer: Floats, within: float = 4e-16) -> Floats:
-    """(k,) fractions at which ways from places inside to places outside, each (k, 2), leave, ``within`` so much: by
-    regula falsi with the Illinois rule (Dowell & Jarratt 1971), by halving where that takes long."""
+    """Fractions (k,) at which segments from points inside to points outside, (k, 2) each, cross the outline.
+
+    Regula falsi with the Illinois rule (Dowell & Jarratt 1971) to the tolerance ``within``, with bisection if slow.
+    """
     low, high = np.zeros(len(inner)), np.ones(len(inner))
     below, above = values(inner), values(outer)
     share, side = np.full(len(inner), np.inf), np.zeros(len(inner))
@@ -89,7 +91,7 @@ def crossing(values: Values, inner: Floats, outer: Floats, within: float = 4e-16
 
 
 def sides_of(triangles: Any) -> tuple[Any, Any]:
-    """(s, 2) sides, each once, lower end first; (t, 3) which one is across from each corner."""
+    """Sides (s, 2), each once, lower end first; and (t, 3): the side opposite to each corner."""
     ends = np.sort(triangles[:, [[1, 2], [2, 0], [0, 1]]].astype(np.int64), axis=2).reshape(-1, 2)
     size = int(ends.max(initial=0)) + 1
     keys, which = np.unique(ends @ (size, 1), return_inverse=True)
@@ -97,7 +99,7 @@ def sides_of(triangles: Any) -> tuple[Any, Any]:
 
 
 def _lattice(counts: Any) -> Any:
-    """(t, 3) the triangles of rows of places, x fastest, of which the odd ones are half a side to the right."""
+    """Triangles (t, 3) of a lattice of points, x fastest, whose odd rows are shifted by half a side."""
     nx, ny = counts.tolist()
     j, i = (index.ravel() for index in np.indices((ny - 1, nx - 1)))
     a = i + nx * j
@@ -109,14 +111,14 @@ def _lattice(counts: Any) -> Any:
 
 
 def _cut(points: Floats, state: Any, triangles: Any, ends: Any, surface: Floats) -> Triangles:
-    """The triangles' parts inside."""
+    """Triangles cut to their parts inside; ``surface`` (k, 2): points at which sides ``ends`` (k, 2) cross."""
     size = len(points)
     order = np.argsort(ends @ (size, 1))
     keys = (ends @ (size, 1))[order]
     points = np.concatenate([points, surface[order]])
 
     def meet(inner: Any, outer: Any) -> Any:
-        """Where sides leave: the outer ends themselves where they are ON."""
+        """Vertices at which sides leave: the outer end if it is ON, else the crossing."""
         return np.where(state[outer] == ON, outer, size + np.searchsorted(keys, inner * size + outer))
 
     states = state[triangles]
@@ -136,6 +138,6 @@ def _cut(points: Floats, state: Any, triangles: Any, ends: Any, surface: Floats)
 
 
 def _turned(triangles: Any, lone: Any) -> Any:
-    """Triangles turned so that the first corner marked comes first."""
+    """Triangles (t, 3) rotated so that the first marked corner comes first."""
     first = np.argmax(lone, axis=1)
     return np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)

@@ -1,4 +1,4 @@
-"""Linear and quadratic functions on triangles and tetrahedra, and rules of integration. Imports numpy."""
+"""Linear and quadratic functions on triangles and tetrahedra, and quadrature rules. Imports numpy."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 TRIANGLE_ENDS = ((0, 1), (1, 2), (2, 0))
-"""The edges of a triangle by its corners."""
+"""Corners of a triangle's edges, in the order of the nodes on them."""
 TRIANGLE_SIDES = ((1, 2), (2, 0), (0, 1))
-"""Its sides, counterclockwise, each across from the corner of its number."""
+"""Corners of a triangle's sides, counterclockwise; side k is opposite to corner k."""
 INNER = ((0.445948490915965, 0.223381589678011), (0.091576213509771, 0.109951743655322))
-"""A coordinate and a weight of the rule of six points in a triangle, exact to fourth order (Dunavant 1985)."""
+"""Coordinate and weight of the two orbits of the six-point rule in a triangle, exact to degree 4 (Dunavant 1985)."""
 GAUSS = (0.5 * (1.0 - 0.6**0.5), 0.5, 0.5 * (1.0 + 0.6**0.5))
-"""Places of Gauss's rule of three points on a side, exact to fifth order."""
+"""Points of the three-point Gauss rule on a side, exact to degree 5."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,21 +34,24 @@ class Simplex:
 
     @property
     def ends(self) -> tuple[tuple[int, int], ...]:
-        """The edges by their corners, in the order of the nodes on them."""
+        """Corners of each edge, in the order of the nodes on them."""
         return TRIANGLE_ENDS if self.dimension == 2 else ENDS
 
     @property
     def sides(self) -> tuple[tuple[int, ...], ...]:
-        """The corners of each side, seen from outside counterclockwise; side k is across from corner k."""
+        """Corners of each side, counterclockwise from outside; side k is opposite to corner k."""
         return TRIANGLE_SIDES if self.dimension == 2 else FACES
 
     @property
     def nodes(self) -> int:
-        """How many an element has."""
+        """Number of nodes of an element."""
         return self.dimension + 1 + (len(self.ends) if self.degree == 2 else 0)
 
     def functions(self, places: Any) -> Floats:
-        """(q, nodes) at barycentric places (q, corners): L, or L (2 L - 1) of corners and 4 L M of edges."""
+        """Values (q, nodes) of the functions at barycentric places (q, corners).
+
+        Degree 1: L. Degree 2: L (2 L - 1) of corners, 4 L M of edges.
+        """
         at = np.asarray(places, dtype=float)
         if self.degree == 1:
             return at
@@ -56,7 +59,7 @@ class Simplex:
         return np.concatenate([at * (2.0 * at - 1.0), 4.0 * at[..., a] * at[..., b]], axis=-1)
 
     def slopes(self, places: Any) -> Floats:
-        """(q, nodes, corners) their derivatives by the barycentric coordinates."""
+        """Derivatives (q, nodes, corners) of the functions by the barycentric coordinates."""
         at = np.asarray(places, dtype=float)
         corners = self.dimension + 1
         found = np.zeros((*at.shape[:-1], self.nodes, corners))
@@ -68,22 +71,25 @@ class Simplex:
 
     @property
     def steepness(self) -> float:
-        """C of |grad u|^2 over a side <= C side / volume times that over the element (Warburton & Hesthaven 2003)."""
+        """Constant C of: integral of |grad u|^2 over a side <= C side/volume times that over the element.
+
+        Warburton & Hesthaven 2003.
+        """
         p, d = self.degree, self.dimension
         return p * (p + d - 1) / d
 
     @property
     def rule(self) -> tuple[Floats, Floats]:
-        """Places (q, corners) and weights (q,) that sum to 1: exact to order 2 for degree 1, to 4 for degree 2."""
+        """Points (q, corners) and weights (q,), which sum to 1: exact to order 2 for degree 1, to 4 for degree 2."""
         return _rule(self.dimension, self.degree)
 
     @property
     def coarse_rule(self) -> tuple[Floats, Floats]:
-        """The same exact to order 2: enough for loads and stiffness of either degree (Ciarlet 1978, section 4.1)."""
+        """Rule exact to order 2: enough for loads and stiffness of either degree (Ciarlet 1978, section 4.1)."""
         return _rule(self.dimension, 1)
 
     def side_rule(self) -> tuple[Floats, Floats]:
-        """Places (sides, q, corners) on each side, and weights (q,) that sum to 1."""
+        """Points (sides, q, corners) on each side, and weights (q,), which sum to 1."""
         if self.dimension == 2:
             at = np.array(GAUSS)
             inner, weights = np.stack([1.0 - at, at], axis=1), np.array([5.0, 8.0, 5.0]) / 18.0
@@ -95,7 +101,7 @@ class Simplex:
         return found, weights
 
     def side_nodes(self) -> list[list[int]]:
-        """Nodes on each side: its corners, then those on its edges."""
+        """Nodes of each side: its corners, then the nodes on its edges."""
         corners = self.dimension + 1
         return [
             [*side, *(k for k, ends in enumerate(self.ends, corners) if self.degree == 2 and set(ends) <= set(side))]

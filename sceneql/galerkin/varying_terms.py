@@ -1,4 +1,4 @@
-"""The terms of a field on elements that vary: formulas at points, evaluated at each rate. Imports numpy."""
+"""Terms of a field on elements with formulas evaluated at points for each rate. Imports numpy."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ KERNELS = "sceneql.galerkin.field_kernels"
 SLOPES = "sceneql.galerkin.field_slopes_kernels"
 WITHOUT_SLOPES = "sceneql.galerkin.closing_kernels:nothing"
 NONE = -1
-"""An offset of what is not there."""
+"""Offset of an absent array."""
 
 
 @dataclass
 class VaryingTerms:
-    """Adds terms of a field whose unknowns begin at y[at], and whose inflow is y[inflow]."""
+    """Builder of the varying terms of a field whose unknowns begin at y[at] and whose inflow is y[inflow]."""
 
     assembly: Assembly
     at: int
     inflow: int
     tables: dict[int, tuple[int, int, Floats]] = field(default_factory=dict)
-    """Offsets of points, and of the field at them, by the identity of the points, which are held."""
+    """By the id of an array of points: offsets of the points and of the field there, and the array, kept alive."""
     sampled: set[int] = field(default_factory=set)
-    """Those at which the field is found."""
+    """Ids of the arrays of points at which the field is sampled."""
 
     def given(self, formula: Formula, points: Floats, shapes: Floats, nodes: Any, weights: Floats) -> None:
-        """Values or fluxes at points (e, q, 3), which act on the unknowns ``nodes`` (e, k) by ``weights`` (e, q, k)."""
+        """Add values or fluxes at points (e, q, 3) that act on unknowns ``nodes`` (e, k) by ``weights`` (e, q, k)."""
         assembly = self.assembly
         at, bend = self.values(formula, points, shapes, nodes)
         each = np.repeat(nodes, points.shape[1], axis=0)
@@ -49,9 +49,9 @@ class VaryingTerms:
         self.term("given", ints, self.pairs(each) if bend >= 0 else None)
 
     def values(self, formula: Formula, points: Floats, shapes: Floats, nodes: Any) -> tuple[int, int]:
-        """Offsets of a formula at points (e, q, 3), evaluated at each rate, and of its derivative (-1: it is 0).
+        """Offsets of a formula's values at points (e, q, 3) and of its derivative by the field (NONE: it is 0).
 
-        ``shapes`` (q, nodes) of all elements or (e, q, nodes); ``nodes`` (e, nodes): their unknowns.
+        ``shapes``: functions, (q, nodes) of all elements or (e, q, nodes); ``nodes`` (e, nodes): unknowns.
         """
         assembly, count = self.assembly, points.shape[0] * points.shape[1]
         key = id(points)
@@ -74,17 +74,17 @@ class VaryingTerms:
         return target
 
     def _writes(self, kernel: str, ints: tuple[int, ...]) -> None:
-        """A kernel that writes floats for the terms after it, and for their slopes."""
+        """Add a kernel that writes floats for later terms and for their derivatives."""
         self.assembly.term("internal", kernel, ints, Slopes(kernel, [self.at], [self.at]))
 
     def term(self, kernel: str, ints: tuple[int, ...], places: tuple[Any, Any] | None) -> None:
-        """Add a kernel, whose slopes stand at rows and columns; None: it has none."""
+        """Add a kernel whose derivatives are entries at ``places``, (rows, columns); None: it has none."""
         none = np.zeros(0, dtype=np.int64)
         rows, columns = (none, none) if places is None else places
         slopes = WITHOUT_SLOPES if places is None else f"{SLOPES}:{kernel}"
         self.assembly.term("force", f"{KERNELS}:{kernel}", ints, Slopes(slopes, rows, columns))
 
     def pairs(self, nodes: Any) -> tuple[Any, Any]:
-        """Rows and columns of the entries of blocks (e, nodes, nodes)."""
+        """Rows and columns in y of the entries of blocks (e, nodes, nodes)."""
         k = nodes.shape[1]
         return self.at + np.repeat(nodes, k, axis=1).ravel(), self.at + np.tile(nodes, (1, k)).ravel()

@@ -1,4 +1,4 @@
-"""Integrals over elements and their outer sides: masses, Galerkin's matrices, Nitsche's terms. Imports numpy."""
+"""Integrals over elements and outer sides: masses, stiffness matrices, Nitsche terms. Imports numpy."""
 
 from __future__ import annotations
 
@@ -14,31 +14,34 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 CHUNK = 20_000
-"""Elements integrated at a time."""
+"""Number of elements integrated at a time."""
 FIRM = 2.0
-"""Strength of what holds given values, in parts of the least with which the equations are those of a decay."""
+"""Nitsche penalty of given values, relative to the least one that keeps the matrix positive."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Edge:
-    """Points of outer sides (f, q): of the places of a rule on each."""
+    """Quadrature points of outer sides: q on each of f sides."""
 
     owners: Any
-    """(f,) elements."""
+    """(f,): element of each side."""
     points: Floats
     """(f, q, 3) [m]."""
     weights: Floats
-    """(f, q) areas that they stand for [m^2]."""
+    """(f, q) [m^2]: areas of the points."""
     functions: Floats
-    """(f, q, nodes) of the element."""
+    """(f, q, nodes): values of the element's functions."""
     normal: Floats
-    """(f, q, nodes) their slopes outwards [1/m]."""
+    """(f, q, nodes) [1/m]: outward normal derivatives of the functions."""
     steep: Floats
-    """(f,) Simplex.steepness times area over volume of the element [1/m]."""
+    """(f,) [1/m]: Simplex.steepness times the side's area over the element's volume."""
 
 
 class WeakForm:
-    """The integrals of a mesh; ``depth`` [m]: how thick a flat one is; ``rule``: places and weights, else its own."""
+    """Integrals of a mesh.
+
+    ``depth`` [m]: thickness of a flat mesh; ``rule``: quadrature points and weights, by default the element's own.
+    """
 
     def __init__(self, mesh: FieldMesh, depth: float, rule: tuple[Floats, Floats] | None = None) -> None:
         self.mesh, self.rule = mesh, mesh.element.rule if rule is None else rule
@@ -46,7 +49,7 @@ class WeakForm:
 
     @cached_property
     def weights(self) -> Floats:
-        """(e, q) volumes [m^3] that the places of the rule stand for."""
+        """Volumes (e, q) [m^3] of the quadrature points."""
         mesh = self.mesh
         places, weights = self.rule
         found: Floats = sized(mesh.element, mesh.points[mesh.cells], places) * weights * self.depth
@@ -54,7 +57,7 @@ class WeakForm:
 
     @cached_property
     def points(self) -> Floats:
-        """(e, q, 3) the places of the rule [m]."""
+        """Quadrature points (e, q, 3) [m]."""
         at = self.mesh.at(self.rule[0])
         found = np.zeros((*at.shape[:2], 3))
         found[..., : at.shape[2]] = at
@@ -62,23 +65,23 @@ class WeakForm:
 
     @property
     def functions(self) -> Floats:
-        """(q, nodes) at these places."""
+        """Values (q, nodes) of the functions at the quadrature points."""
         return self.mesh.element.functions(self.rule[0])
 
     def gradients(self, chosen: Any = slice(None)) -> Floats:
-        """(e, q, nodes, d) at these places of some elements [1/m]."""
+        """Gradients (e, q, nodes, d) [1/m] of the functions at the quadrature points of chosen elements."""
         mesh = self.mesh
         return gradients(mesh.element, mesh.points[mesh.cells[chosen]], self.rule[0])
 
     @cached_property
     def volumes(self) -> Floats:
-        """(unknowns,) integrals of the functions [m^3]."""
+        """Integrals (unknowns,) [m^3] of the functions."""
         found = np.zeros(self.mesh.count)
         np.add.at(found, self.mesh.unknowns, self.weights @ self.functions)
         return found
 
     def mass(self) -> Any:
-        """(unknowns, unknowns) integrals of products of functions [m^3]; of degree 1 those of its nodes alone."""
+        """Mass matrix (unknowns, unknowns) [m^3], sparse: integrals of products of functions; lumped for degree 1."""
         from scipy.sparse import diags_array
 
         if self.mesh.element.degree == 1:
@@ -88,7 +91,7 @@ class WeakForm:
         return self.gathered(self.weights @ products)
 
     def stiffness(self, coefficient: Floats) -> Any:
-        """(unknowns, unknowns) integrals of D grad . grad [m^3/s]; D (e, q) at the places of the rule."""
+        """Sparse stiffness matrix (unknowns, unknowns) [m^3/s]; ``coefficient`` (e, q) [m^2/s] at quadrature points."""
         held = self.weights * coefficient
         parts = []
         for first in range(0, len(held), CHUNK):
@@ -98,7 +101,7 @@ class WeakForm:
         return self.gathered(np.concatenate(parts))
 
     def gathered(self, blocks: Floats, owners: Any = slice(None)) -> Any:
-        """The sparse sum of matrices (e, nodes, nodes) of some elements."""
+        """Sparse sum (unknowns, unknowns) of element matrices (e, nodes, nodes) of elements ``owners``."""
         from scipy.sparse import coo_array
 
         unknowns = self.mesh.unknowns[owners]
@@ -109,7 +112,7 @@ class WeakForm:
         return found
 
     def edge(self, faces: Any) -> Edge:
-        """The points of some outer sides (indices)."""
+        """Quadrature points of outer sides ``faces`` (f,), indices into the mesh's faces."""
         mesh, element = self.mesh, self.mesh.element
         owners, across = mesh.faces[faces].T if len(faces) else np.zeros((2, 0), dtype=np.int64)
         places, weights = element.side_rule()
@@ -136,7 +139,7 @@ class WeakForm:
 
 
 def firmness(edge: Edge) -> Floats:
-    """(f,) the strength [1/m] that holds given values on sides: by the sum over the sides of each element."""
+    """Nitsche penalty (f,) [1/m] of sides with given values, from the sum over such sides of each element."""
     found = np.zeros(int(edge.owners.max(initial=-1)) + 1)
     np.add.at(found, edge.owners, edge.steep)
     strength: Floats = FIRM * found[edge.owners]

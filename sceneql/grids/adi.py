@@ -1,4 +1,4 @@
-"""How steps by alternating directions are prepared."""
+"""Preparation of alternating direction implicit (ADI) steps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """Settings and scratch of adi_kernels.step. Raises ScriptError where the island is not one field on a grid."""
+    """Settings, numbers and scratch of adi_kernels.step. Raises ScriptError for an island that is no single field."""
     grid = system.fields.single
     if grid is None:
         _, _, part, spans = system.ranges[0]

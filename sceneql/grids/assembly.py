@@ -1,4 +1,4 @@
-"""Diffusing fields on cells, as state, numbers and terms of an island."""
+"""Assembly of a diffusing field on cells: state, numbers and terms of an island."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ZERO = Number(0.0)
 
 
 class Spreading(Protocol):
-    """A field of a model."""
+    """A field of a model, as a script describes it."""
 
     @property
     def coefficient(self) -> Formula | None:
@@ -44,7 +44,7 @@ class Spreading(Protocol):
 
     @property
     def source(self) -> Formula | None:
-        """Source per second and cubic meter."""
+        """Source per second and cubic meter; None: 0."""
 
     @property
     def made(self) -> bool:
@@ -56,7 +56,7 @@ class Spreading(Protocol):
 
 
 def add_field(field: Spreading, boundary: Boundary, drift: Drift | None, ground: Ground, assembly: Assembly) -> Grid:
-    """Reserve an entry of y per cell and one for the inflow, and add the terms of the rate.
+    """Reserve an entry of y per cell and one for the total inflow, and add the terms of the field's rate.
 
     Raises ScriptError for a coefficient below 0 and for boundary parts that overlap.
     """
@@ -65,23 +65,23 @@ def add_field(field: Spreading, boundary: Boundary, drift: Drift | None, ground:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spread:
-    """What `diffusion_kernels.spread` needs for a field that is in the state."""
+    """Arguments of the kernel `diffusion_kernels.spread` for a field at ``at`` in y, and of its Jacobian."""
 
     at: int
     ints: tuple[int, ...]
-    """Its integers."""
+    """Integers of the kernel."""
     more: tuple[int, ...]
-    """Those of its slopes: the same, and more behind them."""
+    """Integers of its Jacobian: those of the kernel, then more."""
     places: Callable[[], tuple[Any, Any]]
-    """Rows and columns of its slopes, (k,) each."""
+    """Returns rows and columns, (k,) each, of the Jacobian's entries."""
     radiating: list[Condition]
-    """Parts of the boundary that are open."""
+    """Open parts of the boundary."""
 
 
 def spread_of(field: Spreading, boundary: Boundary, ground: Ground, assembly: Assembly) -> Spread:
-    """Reserve an entry of y per cell and one for the inflow, and what its spread reads; the term is the caller's.
+    """Reserve an entry of y per cell and one for the total inflow, and the numbers of the diffusion kernel.
 
-    Raises ScriptError as `add_field` does.
+    The caller adds the term itself. Raises ScriptError as `add_field`.
     """
     return _Builder(field, boundary, None, ground, assembly).spread()
 
@@ -147,9 +147,9 @@ class _Builder:
         return Spread(self.at, ints, more, lambda: self._slopes(self.periodic), radiating)
 
     def _keeps(self, given: list[Condition]) -> tuple[float, float]:
-        """Bounds of the field by the maximum principle (Protter and Weinberger 1967, chapter 3), else infinite.
+        """Bounds of the field by the maximum principle (Protter and Weinberger 1967, chapter 3); infinite if unknown.
 
-        Sources and given fluxes allow any value, but no concentration is below 0.
+        Sources and given fluxes allow any value, except that a concentration stays nonnegative.
         """
         gathered = self.drift is not None and not self.drift.incompressible
         made, positive = self.field.made or gathered, self.field.positive
@@ -170,14 +170,14 @@ class _Builder:
         return least, float(values.max(initial=-math.inf))
 
     def _drifts(self, drift: Drift, flow: Flow, given: list[Condition], periodic: tuple[bool, ...]) -> None:
-        """Add the drift and its fluxes through the boundary."""
+        """Add the advection by a drift, and its fluxes through the boundary."""
         from sceneql.grids.carrying import add_drift
 
         forth, back = self._exchange(flow.through, given), self._exchange([-out for out in flow.through], given)
         add_drift(drift, flow, self.at, self.ground, periodic, (*forth, *back), self.assembly)
 
     def _exchange(self, through: Sequence[Floats], given: list[Condition]) -> tuple[int, int]:
-        """Offsets of the inflow that a boundary flow carries in per second, and of its outward part."""
+        """Offsets of arrays (cells,): amount per second that inflow brings in, and outflow [m^3/s]."""
         assembly, n = self.assembly, self.count
         leaving, coming = np.zeros(n), np.zeros(n)
         later: list[tuple[Condition, Floats]] = []
@@ -211,7 +211,7 @@ class _Builder:
         return start
 
     def _pictured(self, initial: Picture) -> Floats:
-        """The field at the start by a picture over the box around the domain."""
+        """The field at the start from the brightness of a picture that covers the domain's bounding box."""
         from sceneql.grids.domain.picture_mask import sampled
 
         low, high = (corner[:2] for corner in self.cells.around)
@@ -222,7 +222,7 @@ class _Builder:
         return np.where(self.inside, initial.black + (initial.white - initial.black) * light, 0.0)
 
     def _ties(self, axis: int, periodic: bool) -> Floats:
-        """Area over distance of all faces of an axis."""
+        """Area over distance of centers [m] (cells,) of the low faces along an axis."""
         cells = self.cells
         areas = cells.areas[axis].copy()
         if periodic:
@@ -233,13 +233,16 @@ class _Builder:
         return ties
 
     def _before(self, axis: int) -> Any:
-        """The cell before each along an axis, round the grid."""
+        """Number (cells,) of the cell before each along an axis, with periodic wrapping."""
         nx, ny, nz = self.cells.shape
         index = np.arange(self.count).reshape(nz, ny, nx)
         return np.roll(index, 1, axis=2 - axis).ravel()
 
     def _constant_coefficient(self, ties: list[Floats]) -> tuple[tuple[int, ...], int, list[Floats]]:
-        """Offsets of conductances and sink, and the weights of the boundary's conditions."""
+        """Offsets of the faces' conductances and of the boundary's sink, and the weights of the conditions.
+
+        Conductances use the harmonic mean of both cells' coefficients.
+        """
         assembly = self.assembly
         formula = self.field.coefficient
         d = np.zeros(self.count) if formula is None else at_points(formula, self.centers)
@@ -296,7 +299,7 @@ class _Builder:
         return faces, sink, [np.full(len(one.cells), np.nan) for one in everything], bend
 
     def _fed(self, weights: list[Floats]) -> tuple[int, int]:
-        """Offsets of the sources fed into cells, and of d(source)/dc times the volume (0: none)."""
+        """Offsets of the sources of cells (cells,), boundary included, and of d(source)/dc times volume (0: none)."""
         assembly, n = self.assembly, self.count
         moving = varies(self.field.coefficient)
         fixed = np.zeros(n)
@@ -344,11 +347,11 @@ class _Builder:
         self.assembly.term("internal", kernel, ints, self._dummy(kernel))
 
     def _dummy(self, kernel: str) -> Slopes:
-        """Slopes of a kernel that only writes floats for the slopes after it: its own entry stays 0."""
+        """Slopes of a kernel that only writes floats, which later kernels' Jacobians read: one entry that stays 0."""
         return Slopes(kernel, [self.at], [self.at])
 
     def _slopes(self, periodic: tuple[bool, bool, bool]) -> tuple[Any, Any]:
-        """Rows and columns of the entries of diffusion_slopes_kernels.spread; missing neighbors' on the diagonal."""
+        """Rows and columns of the entries of diffusion_slopes_kernels.spread; on the diagonal for missing neighbors."""
         own = np.arange(self.count, dtype=np.int64)
         rows, columns = [own], [own]
         nx, ny, nz = self.cells.shape

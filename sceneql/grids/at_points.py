@@ -1,4 +1,4 @@
-"""Formulas of the place at many points."""
+"""Evaluation of formulas of the position at many points."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def at_points(formula: Formula, points: Floats, **more: Any) -> Floats:
-    """Values (k,) of a formula of the place (and of the symbols in ``more``) at points (k, 3) [m]."""
+    """Values (k,) of a formula of x, y, z (and of the symbols in ``more``) at points (k, 3) [m]."""
     known = {"x": points[:, 0], "y": points[:, 1], "z": points[:, 2], **more}
 
     def look_up(node: Any) -> Any:

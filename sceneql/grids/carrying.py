@@ -28,10 +28,10 @@ def add_drift(
     drift: Drift, flow: Flow, at: int, ground: Ground, periodic: tuple[bool, ...], exchange: tuple[int, ...],
     assembly: Assembly,
 ) -> None:  # fmt: skip
-    """Add the drift of the field at ``at`` in y.
+    """Add the advection term of the field at ``at`` in y.
 
-    ``exchange``: offsets of the inflow through the boundary per second (cells,) and of the flow out through it
-    (cells,), and of both for a reversed flow.
+    ``exchange``: offsets of arrays (cells,): amount per second that inflow through the boundary brings in, outflow
+    [m^3/s], and both for the reversed flow.
     """
     axes = [assembly.floats(one) for one in flow.axes]
     strength = assembly.value(drift.strength)

@@ -1,11 +1,11 @@
-"""Formulas of place, time and the field, printed as kernels that evaluate them for cells, boundary faces or points.
+"""Formulas of position, time and the field, printed as kernels that evaluate them at cells, boundary faces or points.
 
-Two add weight * value: ``floats[target + cell] = floats[base + cell] + floats[weight + cell] * value`` for cells,
-``floats[target + cell] += floats[weight + k] * value`` for face k of the cell. ints of the first: constants, field (in
-y), target, base, weight, nx, ny, nz, box (low corner and spacing: 6 floats), then values read from other parts; of the
-second: constants, field, target, weight, faces, points (3 floats a face), number of inputs, index of the cells in ints,
-then the inputs' offsets and the cells. For points ``floats[target + k] = value`` with the field in floats: constants,
-field, target, count, points, then the inputs' offsets.
+Cells: ``floats[target + cell] = floats[base + cell] + floats[weight + cell] * value``; integers: constants, field (in
+y), target, base, weight, nx, ny, nz, box (low corner and spacing: 6 floats), then offsets of values read from other
+parts (inputs). Faces: ``floats[target + cell] += floats[weight + k] * value`` for face k of a cell; integers:
+constants, field, target, weight, number of faces, points (3 floats a face), index of the cells in ints, inputs, cells.
+Points: ``floats[target + k] = value`` with the field in floats; integers: constants, field, target, count, points,
+inputs.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ NAMES = {"x": "own_x", "y": "own_y", "z": "own_z", FIELD: "own_c", TIME_SYMBOL: 
 def over_cells(
     assembly: Assembly, expr: Expr, at: int, arrays: tuple[int, int, int], shape: tuple[int, int, int], box: int
 ) -> tuple[str, tuple[int, ...]]:
-    """Kernel and ints for all cells; ``arrays``: offsets of target, base, weight."""
+    """Name of a kernel over all cells, and its integers; ``arrays``: offsets of target, base, weight."""
     constants, printer, value = _printed(expr)
     lines = [
         "    field, target, base, weight = ints[1], ints[2], ints[3], ints[4]",
@@ -54,7 +54,7 @@ def over_cells(
 def over_faces(
     assembly: Assembly, expr: Expr, at: int, target: int, weight: int, points: int, cells: Sequence[int]
 ) -> tuple[str, tuple[int, ...]]:
-    """Kernel and ints for boundary faces of some cells."""
+    """Name of a kernel over boundary faces, and its integers; ``cells``: the cell of each face."""
     constants, printer, value = _printed(expr)
     lines = [
         "    field, target, weight, points = ints[1], ints[2], ints[3], ints[5]",
@@ -73,7 +73,10 @@ def over_faces(
 def over_points(
     assembly: Assembly, expr: Expr, field: int, target: int, count: int, points: int
 ) -> tuple[str, tuple[int, ...]]:
-    """Kernel and ints for points; ``field``: offset of the field there in the floats, of any floats where none is."""
+    """Name of a kernel over points, and its integers.
+
+    ``field``: offset in the floats of the field at the points; any offset where the formula does not read it.
+    """
     constants, printer, value = _printed(expr)
     lines = [
         "    field, target, points = ints[1], ints[2], ints[4]",

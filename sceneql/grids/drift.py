@@ -1,4 +1,4 @@
-"""The description of a flow that advects fields."""
+"""Script fields of a drift, a flow that advects a field."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from sceneql.quantities.expression import Call, Expr, Symbol
 VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True)]
 STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_start=True)]
 SAMPLES = {2: 24, 3: 8}
-"""Samples of a flow along each side before the run."""
+"""Samples of a flow along each side of a 2D or 3D box, before the run."""
 LIMITED = 4.0
-"""No step h lets new extrema arise up to h sum |v|/spacing = 1/2 (Sweby 1984, with limiters up to 2), for the method
-that bounds h times this sum and factor by 2: the explicit Euler method. Without a limiter up to twice that."""
+"""Factor of sum |v|/spacing in the rate that bounds explicit steps by h rate = 2. With limiters the explicit Euler
+method creates no new extrema up to h sum |v|/spacing = 1/2 (Sweby 1984), without limiter up to twice that."""
 
 
 class Drift(Record):
@@ -42,13 +42,13 @@ class Drift(Record):
 
     @property
     def formula(self) -> Formula:
-        """The one that is given."""
+        """The given formula, of velocity or stream function."""
         formula = self.velocity or self.stream_function
         assert formula is not None
         return formula
 
     def problems(self) -> Iterable[Problem]:
-        """Both or neither of velocity and stream function, or not one number where one is needed."""
+        """Problems: not exactly one of velocity, stream function and `by`; wrong number of components."""
         if sum(one is not None for one in (self.velocity, self.stream_function, self.by)) != 1:
             yield Problem("a drift has one of `velocity`, `stream_function` and `by`")
         elif self.by is not None:
@@ -60,14 +60,14 @@ class Drift(Record):
             yield Problem("a stream function is one number at every place", ("stream_function",))
 
     def components(self) -> tuple[Expr, ...]:
-        """The velocity: two or three scalar formulas."""
+        """The two or three components of the velocity, as scalar expressions."""
         if self.velocity is not None:
             return components(self.velocity.expr)
         (stream,) = components(self.formula.expr)
         return differentiate(stream, Symbol("y")), Call("neg", (differentiate(stream, Symbol("x")),))
 
     def fastest(self, corner: Sequence[float], size: Sequence[float], spacing: Sequence[float]) -> float:
-        """The rate [1/s] that bounds explicit steps on a box, by samples; 0: not known."""
+        """The rate [1/s] that bounds explicit steps on a box, from samples of the velocity; 0 where it is unknown."""
         if self.by is not None or not self.strength.constant:
             return 0.0
         try:

@@ -1,4 +1,4 @@
-"""The flow through the faces of cells by a script's velocity or stream function, made free of divergence if asked."""
+"""Fluxes of a drift through the faces of cells, from velocity or stream function, made divergence-free if asked."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ if TYPE_CHECKING:
     from sceneql.kinds import Formula
 
 LARGEST_FACTORED = {2: 300_000, 3: 20_000}
-"""Cells of a flat or deep grid up to which the projection's system is factored."""
+"""Most cells of a 2D or 3D grid for which the projection's matrix is factored; larger ones are solved iteratively."""
 SMALL = 1e-12
-"""Divergence that counts as rounding, relative to the largest flow through a face."""
+"""Divergence that counts as rounding, relative to the largest flux through a face."""
 ROUNDS = 2
-"""Number of projections: the second removes the first one's rounding errors, which matter in small cells."""
+"""Number of projections; the second removes the first one's rounding errors, which matter in small cells."""
 UNBALANCED = 1e-6
-"""Relative imbalance of the flow through a boundary that is allowed, for a given velocity is sampled at faces."""
+"""Largest relative imbalance of the fluxes through a boundary: it arises from sampling a velocity at faces."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Flow:
-    """Flow through faces [m^3/s] at strength 1."""
+    """Volume fluxes [m^3/s] of a drift of strength 1."""
 
     axes: tuple[Floats, ...]
-    """Along each axis (cells,), with the cell on the high side."""
+    """For each axis (cells,), through the low face of each cell."""
     through: tuple[Floats, ...]
-    """Outward through the faces of each condition."""
+    """For each boundary condition (m,), outward through its faces."""
 
     def outward(self, cells: Cells, conditions: list[Condition]) -> Floats:
-        """Net outflow of each cell (cells,) [m^3/s]."""
+        """Net outflow (cells,) [m^3/s] of each cell."""
         total = np.zeros(len(cells.volumes))
         for axis, flow in enumerate(self.axes):
             total += np.roll(flow.reshape(cells.shape[::-1]), -1, axis=2 - axis).ravel() - flow
@@ -51,10 +51,10 @@ class Flow:
 def flow_of(
     drift: Drift, cells: Cells, ties: list[Floats], conditions: list[Condition], periodic: tuple[bool, ...]
 ) -> Flow:
-    """The flow of a drift; ``ties``: area over distance of the faces of each axis.
+    """The fluxes of a drift; ``ties``: for each axis area over distance (cells,) of the low faces.
 
-    It crosses the boundary where a condition has ``through``. Raises ScriptError where it is not finite, or cannot be
-    made free of divergence since inflow and outflow through the boundary do not balance.
+    They cross the boundary where a condition has ``through``. Raises ScriptError for a drift that is not finite, or one
+    that cannot be made divergence-free because inflow and outflow through the boundary do not balance.
     """
     found = _given(drift, cells, ties, conditions)
     formula = drift.formula
@@ -91,7 +91,7 @@ def _given(drift: Drift, cells: Cells, ties: list[Floats], conditions: list[Cond
 
 
 def _through(drift: Drift, points: Floats, outward: Floats, areas: Floats, widths: Floats) -> Floats:
-    """Flow through faces (k,): of the velocity at their points, or of the stream function between their ends."""
+    """Fluxes (k,) through faces: by the velocity at their points, or by the stream function at their ends."""
     if drift.stream_function is not None:
         side = 0.5 * widths[:, None] * np.column_stack([-outward[:, 1], outward[:, 0], np.zeros(len(points))])
         (ahead,) = _at(drift.stream_function, points + side)
@@ -106,7 +106,7 @@ def _through(drift: Drift, points: Floats, outward: Floats, areas: Floats, width
 
 
 def _at(formula: Formula, points: Floats) -> list[Floats]:
-    """A formula's components at points (k, 3): each (k,)."""
+    """The components of a formula at points (k, 3), each (k,)."""
     known = dict(zip("xyz", points.T, strict=True))
 
     def look_up(node: Any) -> Any:
@@ -120,8 +120,10 @@ def _at(formula: Formula, points: Floats) -> list[Floats]:
 def _projected(
     given: Flow, divergence: Floats, cells: Cells, ties: list[Floats], conditions: list[Condition], formula: Formula
 ) -> Flow:
-    """The nearest flow free of divergence, by projection: minus the gradient of a potential (Chorin 1968), which is 0
-    on open boundaries, where the flow is free."""
+    """The nearest divergence-free fluxes, by projection (Chorin 1968).
+
+    The gradient of a potential is subtracted; the potential is 0 on open boundaries, where the flow is free.
+    """
     from scipy.sparse import csr_array, diags_array
     from scipy.sparse.csgraph import connected_components
     from scipy.sparse.linalg import cg, splu
@@ -184,7 +186,7 @@ def _projected(
 
 
 def _less(flow: Flow, potential: Floats, befores: list[Any], ties: list[Floats], conditions: list[Condition]) -> Flow:
-    """A flow minus the gradient of a potential."""
+    """Fluxes minus those of the gradient of a potential (cells,)."""
     axes = tuple(
         one - tie * (potential - potential[before]) for one, tie, before in zip(flow.axes, ties, befores, strict=True)
     )

@@ -1,4 +1,4 @@
-"""The choice of an implicit method's linear systems for a field: those of its grid, or of a general system."""
+"""Choice of the linear systems of an implicit method for a field: the grid's own solvers, or a general sparse one."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ if TYPE_CHECKING:
 
 KERNELS = "sceneql.grids.grid_stage_kernels"
 MOST_CARRIED = {2: 300_000, 3: 30_000}
-"""Cells of a flat or deep grid up to which general systems with a drift's entries are assembled."""
+"""Most cells of a 2D or 3D grid for which general systems with a drift's entries are assembled."""
 UNSOLVED = "Newton's method finds no solution of this step: take a shorter one"
 UNSOLVED_AS_NAMED = f"{UNSOLVED}, or with a drift `linear: auto`"
 BEYOND = "by Newton's method on all that its drift ties, from the first step on that this does not solve"
 
 
 def grid_or_general(solver: Solver, linear: str, island: IslandFacts) -> Methods:
-    """The methods that march an island by an implicit Runge-Kutta method; ``linear``: the solver of a grid's systems.
+    """The methods by which an implicit Runge-Kutta method marches an island; ``linear``: the grid's linear solver.
 
-    Systems of grids contain diffusion and iterate on advection, which is fast but converges up to Courant numbers of
-    about 1. Newton's method on all slopes, with the limiter's, has no such bound: it takes over where a fixed step does
-    not converge, and makes all adaptive steps.
+    The grid's solvers treat diffusion directly and iterate on advection: this is fast, but converges only up to Courant
+    numbers of about 1. Newton's method with the full Jacobian, limiter included, has no such bound: it takes over where
+    a fixed step does not converge, and makes all adaptive steps.
     """
     general, grid = solver.stepper(), island.fields.single
     if grid is None:
@@ -41,7 +41,7 @@ def grid_or_general(solver: Solver, linear: str, island: IslandFacts) -> Methods
 
 
 def _on_grid(general: Stepper, linear: str, grid: Grid) -> Stepper:
-    """The same method, its stages solved by the systems of the grid."""
+    """Stepper of the method ``general`` with stages solved by the grid's linear solvers."""
     from sceneql.grids.prepare_stages import likely_kernels
 
     dense = None if general.control.adaptive else f"{KERNELS}:linear"

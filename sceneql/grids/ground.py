@@ -1,4 +1,4 @@
-"""The cells of a model, with their offsets in an island."""
+"""Cells of a model, stored in the floats of an island."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Ground:
-    """Centers, volumes and divisors of a model's cells, as offsets into the floats of the island."""
+    """A model's cells, with the offsets of their box, volumes and divisors in the island's floats."""
 
     def __init__(self, cells: Cells, assembly: Assembly) -> None:
         self.cells = cells
@@ -25,7 +25,7 @@ class Ground:
         self.box_at = assembly.floats([*cells.low[:2], low_z, *cells.spacing])
         self.volumes_at = assembly.floats(cells.volumes)
         self.divisors_at = assembly.floats(np.where(self.inside, cells.volumes, 1.0))
-        """Volumes as divisors: 1 outside."""
+        """Offset of the volumes with 1 in place of 0 outside, to divide by."""
 
     @property
     def memory(self) -> tuple[int, ...]:

@@ -1,4 +1,4 @@
-"""The coupling of masses to a field on a grid."""
+"""Coupling of masses to a field on a grid."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def unfit(of: Value, name: str) -> Iterator[Problem]:
-    """The errors of a value that has to be a field itself; ``name``: the word's field that has the value."""
+    """Problems of a value that must be a model's field itself; ``name``: the word's field with this value."""
     if not isinstance(of.expr, Link):
         yield Problem("this is the field of a model itself: `lake.concentration`", (name,))
 
@@ -26,7 +26,7 @@ def dimension(of: Value) -> Dimension | None:
 
 
 def numbers(of: Value, assembly: Assembly) -> tuple[int, ...]:
-    """The integers of cell_weights_kernels. Raises ScriptError where a value is no field on a grid."""
+    """The integers of cell_weights_kernels for a field. Raises ScriptError for a value that is no field on a grid."""
     assert isinstance(of.expr, Link)
     grid = assembly.field_of(of.expr)
     if grid is None:

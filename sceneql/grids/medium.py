@@ -1,4 +1,4 @@
-"""The common part of models of fields on grids: their domain, boundary conditions and outputs."""
+"""Base of the models of fields on grids: domain, boundary conditions, probes and outputs."""
 
 from __future__ import annotations
 
@@ -35,24 +35,24 @@ FLUX = Annotated[Formula, Symbols(ANY, dim.VELOCITY, of_field=True)]
 SOURCE = Annotated[Formula, Symbols(ANY, dim.FREQUENCY, of_field=True)]
 MEASURES = ("field", "concentration", "temperature", "centers", "mass", "inflow", "max", "min", "mean")
 SHORTEST = 1e-100
-"""[m] Least side of a domain, or of a cell: rates of spreading over shorter ones overflow."""
+"""[m] Least side of a domain or of a cell: diffusion rates over shorter ones overflow."""
 SIZES = Annotated[tuple[float, ...], Quantity(dim.LENGTH, (None,))]
 
 
 class Spaced(Protocol):
-    """What a script says of the cells of a field or a flow."""
+    """Script fields of the cells of a field or a flow."""
 
     @property
     def size(self) -> tuple[float, ...] | None:
-        """Sides of the box [m]."""
+        """Sides [m] of a box domain; None for an object as domain."""
 
     @property
     def domain(self) -> kinds.Ref | None:
-        """In place of it the object whose inside is the domain."""
+        """The object whose inside is the domain, in place of a box."""
 
     @property
     def flat(self) -> bool:
-        """Whether only its section is."""
+        """Whether only the object's section at z = 0 is the domain."""
 
     @property
     def cell(self) -> float:
@@ -60,12 +60,12 @@ class Spaced(Protocol):
 
 
 ON_SIDE = 1e-9
-"""Cells beyond a side of the grid that count as rounding."""
+"""Distance beyond a side of the grid, in cells, that counts as rounding."""
 
 
 @dataclass(frozen=True, slots=True)
 class FieldLayout:
-    """A field on its grid: cell (i, j, k) is y[at + i + nx (j + ny k)]; where its volume is 0 it is outside."""
+    """A field on its grid: cell (i, j, k) is y[at + i + nx (j + ny k)]; cells with volume 0 are outside the domain."""
 
     shape: tuple[int, int, int]
     at: int
@@ -78,11 +78,11 @@ class FieldLayout:
 
     @property
     def count(self) -> int:
-        """Number of cells, with those outside."""
+        """Number of cells, those outside the domain included."""
         return self.shape[0] * self.shape[1] * self.shape[2]
 
     def cell(self, place: tuple[float, ...]) -> int:
-        """The number of the cell at a place [m], on the outer sides of the one beside it; -1 beyond the grid."""
+        """Number of the cell at a place [m]; on an outer side the adjacent cell; -1 beyond the grid."""
         index = [0, 0, 0]
         for axis, (x, low, side, n) in enumerate(zip(place, self.low, self.spacing, self.shape, strict=False)):
             at = (x - low) / side
@@ -92,33 +92,33 @@ class FieldLayout:
         return index[0] + self.shape[0] * (index[1] + self.shape[1] * index[2])
 
     def centers(self) -> Floats:
-        """(cells, 3) [m]."""
+        """Centers (cells, 3) [m] of all cells."""
         return centers_of(self.shape, self.low, self.spacing)
 
 
 class Between(Protocol):
-    """What a field is between the places of its values."""
+    """An interpolation of a field between the points where its values are known."""
 
     @property
     def what(self) -> str:
-        """What it has values at: cells, nodes."""
+        """Name of the places with values: `cells` or `nodes`."""
 
     @property
     def count(self) -> int:
-        """How many."""
+        """Number of values."""
 
     @property
     def known(self) -> Any:
-        """Which places of `gridded` lie in the domain."""
+        """Which entries of `gridded` lie in the domain."""
 
     def filled(self, values: Floats) -> Floats:
-        """What `at` and `gridded` read, from the values (count,)."""
+        """The values (count,) in the form that `at` and `gridded` read."""
 
     def at(self, field: Floats, points: Floats) -> Floats:
-        """The field (k,) at points (k, 3) [m]."""
+        """Interpolated values (k,) of a filled field at points (k, 3) [m]."""
 
     def gridded(self, field: Floats) -> Floats:
-        """(nz, ny, nx) at the centers of the cells of its layout, with a layer of cells around them."""
+        """Values (nz, ny, nx) of a filled field at the centers of a grid's cells, with a layer of cells around."""
 
 
 class Exchange(Record):
@@ -149,7 +149,7 @@ class Part(Record):
     within: kinds.FixedLength | None = field("How far around it.", None, above=0)
 
     def problems(self) -> Iterable[Problem]:
-        """Errors: more than one condition, or none; a place without its size."""
+        """Problems: not exactly one condition; `periodic` on a part of a side; `near` without `within`."""
         given = [self.value is not None, self.flux is not None, self.robin is not None, self.periodic, self.open]
         if sum(given) != 1:
             yield Problem("a part of the boundary has one of `value`, `flux`, `robin`, `periodic` and `open`")
@@ -160,12 +160,12 @@ class Part(Record):
 
     @property
     def chosen(self) -> bool:
-        """Whether the part has a place of its own."""
+        """Whether the part is restricted by `where` or `near`."""
         return self.where is not None or self.near is not None
 
     @property
     def span(self) -> Span | None:
-        """Its line in the script, where a formula tells it."""
+        """Place of the part in the script, known from its formulas; None without any."""
         outside = None if self.robin is None else self.robin.outside
         formulas = (self.value, self.flux, self.where, outside)
         return next((one.span for one in formulas if one is not None), None)
@@ -175,18 +175,18 @@ Boundary = dict[str, Part]
 
 
 def number_in(formula: Formula | None) -> float | None:
-    """The number of a constant formula; None where the formula varies, or there is none."""
+    """The value of a constant formula; None for a formula that varies, or no formula."""
     if formula is None or any(isinstance(node, Symbol | Link) for node in walk(formula.expr)):
         return None
     return float(evaluate(formula.expr, {}))
 
 
 SAMPLES = {2: 24, 3: 8}
-"""Samples of a formula along each side of a box before the run."""
+"""Samples of a formula along each side of a 2D or 3D box, before the run."""
 
 
 def largest_in(formula: Formula | None, corner: Sequence[float], size: Sequence[float]) -> float | None:
-    """The largest magnitude of a formula in a box at the start, by samples; None where it reads the field itself."""
+    """Largest magnitude of a formula in a box at the start, from samples; None if it reads the field or other parts."""
     if formula is None or any(
         isinstance(node, Link) or (isinstance(node, Symbol) and node.name == "c") for node in walk(formula.expr)
     ):
@@ -200,7 +200,7 @@ def largest_in(formula: Formula | None, corner: Sequence[float], size: Sequence[
 
 
 def spacing_of(medium: Spaced, scene: StaticScene) -> tuple[float, ...]:
-    """The sides of the cells of a model in a box, or of those that an object's inside is cut into at most."""
+    """Sides [m] of a model's cells: exact for a box, the largest allowed for an object as domain."""
     if medium.size is not None:
         return tuple(side / n for n, side in zip(counts(medium.size, medium.cell), medium.size, strict=False))
     domain = None if medium.domain is None else scene.objects.get(medium.domain.name)
@@ -209,7 +209,7 @@ def spacing_of(medium: Spaced, scene: StaticScene) -> tuple[float, ...]:
 
 
 def _vectors(part: object, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    """Paths of the formulas in a field, its records and its names that are not of one number."""
+    """Paths of the formulas in a field, in its records and dicts, that are not scalar."""
     if isinstance(part, Formula) and part.expr.type.shape:
         yield path
     elif isinstance(part, dict | Record):
@@ -252,11 +252,11 @@ class Medium(Model):
     )
 
     def insides(self) -> Iterable[kinds.Ref]:
-        """Its domain."""
+        """The object that is its domain, if any."""
         return () if self.domain is None else (self.domain,)
 
     def shown_in_place_of(self) -> Iterable[kinds.Ref]:
-        """Its domain."""
+        """The object that is its domain, if any."""
         return self.insides()
 
     def boundaries(self) -> Iterable[Boundary]:
@@ -264,13 +264,13 @@ class Medium(Model):
         raise NotImplementedError
 
     def probed(self) -> Iterable[Probed]:
-        """Those in an object: a cell of which a part lies inside is large enough."""
+        """Probes in an object's domain; they may lie outside by a cell, since cut cells have values."""
         if self.domain is not None:
             for name, place in self.probes.items():
                 yield Probed(("probes", name), place, self.domain, self.cell)
 
     def problems(self) -> Iterable[Problem]:
-        """Two places or none, sides that do not fit, too many cells, boundaries of no side."""
+        """Problems of domain, cells, formulas, probes and names of boundary parts."""
         if (self.size is None) == (self.domain is None):
             yield Problem("it spreads in one of the two: a box, `size: 1 1 m`, or an object, `domain: plate`")
         vectors = [
@@ -323,11 +323,11 @@ class Medium(Model):
             yield Problem(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`")
 
     def sums_up(self, output: str) -> bool:
-        """What has come in, of any field."""
+        """Whether an output is a field's total inflow, an integral over time."""
         return output.rpartition(".")[2] == "inflow"
 
     def must_hold_probes(self, layout: FieldLayout, assembly: Assembly) -> None:
-        """Raises ScriptError where a probe stands in no cell of the domain."""
+        """Raise ScriptError for a probe that lies in no cell of the domain."""
         volumes = assembly.numbers()[layout.volumes_at : layout.volumes_at + layout.count]
         for name, place in self.probes.items():
             cell = layout.cell(place)
@@ -337,7 +337,7 @@ class Medium(Model):
                 )
 
     def measure(self, what: str, layout: FieldLayout, state: ModelState) -> Any:
-        """Of a field: `field` (cells of the domain,), `centers` (cells, 3), or a float: another measure, a probe."""
+        """A measure of a field: `field` (cells,) and `centers` (cells, 3) of the domain, else a number or a probe."""
         import numpy as np
 
         field = state.y[layout.at : layout.at + layout.count]
@@ -361,7 +361,7 @@ class Medium(Model):
         return float(field[layout.cell(self.probes[what])])
 
     def places_of(self, what: str, layout: FieldLayout, state: ModelState) -> NDArray[int64] | None:
-        """Where in y a measure of a field stands (kinds.Model.places)."""
+        """Indices in y of a measure of a field; None for one that is computed (kinds.Model.places)."""
         import numpy as np
 
         if what == "field":
@@ -373,7 +373,7 @@ class Medium(Model):
 
 
 def gives_of(field: str, unit: Dimension, written: Mapping[str, Any]) -> Mapping[str, Gives]:
-    """The outputs of `measure`, in the unit of a field; ``field``: its line of the manual."""
+    """The outputs of `measure` for a field of a unit; ``field``: the field's description in the manual."""
     probes = written.get("probes")
     one, amount = quantity_type(unit), quantity_type(unit * dim.VOLUME)
     return {
@@ -392,7 +392,7 @@ def gives_of(field: str, unit: Dimension, written: Mapping[str, Any]) -> Mapping
 
 
 def layout_of(at: int, ints: tuple[int, ...], floats: Floats) -> FieldLayout:
-    """Where a field lies; ``ints``: offsets of volumes and box, nx, ny, nz."""
+    """The layout of a field at ``at`` in y; ``ints``: offsets of volumes and box in the floats, nx, ny, nz."""
     volumes_at, box_at, nx, ny, nz = ints[:5]
     box = floats[box_at : box_at + 6]
     return FieldLayout((nx, ny, nz), at, volumes_at, tuple(box[:3].tolist()), tuple(box[3:].tolist()))

@@ -1,4 +1,4 @@
-"""Preparation of implicit steps on a grid: the choice of the linear solver, its memory, and the reason."""
+"""Preparation of implicit steps on a grid: choice of the linear solver, its memory, and the reason for the choice."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sceneql.island.system import System
 
 DIRECT_CELLS = {2: 40_000, 3: 4_000}
-"""Cells of a flat or deep grid up to which `auto` takes direct factors."""
+"""Most cells of a 2D or 3D grid for which `auto` chooses a direct factorization."""
 LARGEST_FACTORED = {2: 500_000, 3: 30_000}
 MOST = {
     "multigrid": 100,
@@ -28,7 +28,7 @@ MOST = {
     "direct": 1,
     "fast_transform": 1,
 }
-"""Iterations for one system; 1: direct, solved to rounding."""
+"""Most iterations for one system; 1: a direct solver, exact to rounding."""
 KERNELS = {
     "multigrid": "sceneql.grids.multigrid.multigrid_kernels:solve",
     "conjugate_gradient": "sceneql.grids.multigrid.relaxation_kernels:solve_conjugate_gradient",
@@ -38,33 +38,36 @@ KERNELS = {
     "fast_transform": "sceneql.grids.multigrid.transform_kernels:solve",
 }
 FIRST = {"direct": ("sceneql.linear.multifrontal.symmetric_kernels",)}
-"""Modules of a solver that the background process compiles first, while this one compiles others."""
+"""Further modules of a solver, which the background process compiles first."""
 COARSEST = 2
 LONGEST_ROW = 512
-"""Cells of a row up to which `auto` transforms: a cell costs twice as many multiplications."""
+"""Most cells of a row for which `auto` chooses dense transforms: each cell costs twice as many multiplications."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Plan:
     numbers: Any
     room: int
-    """Floats that the linear solver keeps."""
+    """Number of floats that the linear solver keeps."""
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class LinearReport:
-    """Statistics of the linear solver of a march."""
+    """Statistics of the linear solver over a march."""
 
     systems: int
     iterations: int
     residuals: tuple[float, ...]
-    """2-norms of the residual of the last system: after every relaxation_kernels.CHECKED sweeps for gauss_seidel and
-    sor, after every iteration for the others."""
+    """2-norms of the last system's residual: after every relaxation_kernels.CHECKED sweeps of gauss_seidel and sor,
+    after every iteration of the others."""
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """The arrays of grid_stage_kernels.step. Raises LimitRefused where a named linear solver cannot take the grid."""
+    """Settings, numbers and scratch of grid_stage_kernels.step.
+
+    Raises LimitRefused where the linear solver that the script names cannot solve on this grid.
+    """
     import numpy as np
 
     from sceneql.grids.grid_stage_kernels import SHARE
@@ -91,9 +94,9 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
 
 def laid_out(name: str, grid: Grid) -> tuple[NDArray[int64], int, str]:
-    """Of a linear solver by name, but `fast_transform`: its plan (linear_kernels), the floats of its store, a text.
+    """(plan (linear_kernels), number of floats of the store, description) of a linear solver other than fast_transform.
 
-    Raises LimitRefused where factors would not fit.
+    Raises LimitRefused where factors would not fit into memory.
     """
     plan = _PLANS[name](grid)
     return (*_laid_out(name, grid, plan), plan.text)
@@ -115,7 +118,7 @@ def _laid_out(name: str, grid: Grid, plan: _Plan) -> tuple[NDArray[int64], int]:
 
 
 def likely_kernels(grid: Grid, linear: str) -> tuple[str, ...]:
-    """Modules of the linear solver that `prepare` will most likely need, to be compiled in the background."""
+    """Modules of the linear solver that `prepare` will most likely choose, to be compiled in the background."""
     try:
         name = _choice(grid, linear, _may_separate(grid, linear))[0]
     except LimitRefused:
@@ -188,7 +191,7 @@ def _direct(grid: Grid) -> _Plan:
 
 
 def _may_separate(grid: Grid, asked: str) -> bool:
-    """Whether a search for modes of rows pays."""
+    """Whether ``separate`` may succeed and pay off."""
     nx, _, nz = grid.cells.shape
     wanted = asked == "fast_transform" or (asked == "auto" and nx <= LONGEST_ROW)
     deep_or_bent = nz > 1 or grid.varying or grid.cells.periodic[1] or nx > 4 * LONGEST_ROW or grid.cells.outside.any()
@@ -196,7 +199,11 @@ def _may_separate(grid: Grid, asked: str) -> bool:
 
 
 def separate(grid: Grid, floats: Floats) -> tuple[Floats, ...] | None:
-    """Modes of a row (nx, nx), transposed, eigenvalues, conductances and sinks along y, volume; None: rows differ."""
+    """Separation of a 2D operator along x: None where rows differ.
+
+    (Modes of a row as rows (nx, nx), as columns (nx, nx), eigenvalues (nx,), conductances (ny,) and sinks (ny,) along
+    y, volume of a cell (1,)).
+    """
     import numpy as np
 
     nx, ny, _ = grid.cells.shape
@@ -226,7 +233,7 @@ def _transform(grid: Grid, separated: tuple[Floats, ...]) -> _Plan:
 
 
 def _pattern(grid: Grid) -> tuple[Any, NDArray[int64]]:
-    """The (cells, cells) scipy CSR pattern, and for every value its cell and face (see grid_factors_kernels)."""
+    """The CSR pattern (cells, cells), and for each of its values cell and face (k, 2) (see grid_factors_kernels)."""
     import numpy as np
     from scipy.sparse import csr_array
 

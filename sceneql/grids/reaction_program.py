@@ -1,9 +1,9 @@
-"""Rates of several fields by formulas of place, time and all of them, printed as kernels over the cells of a domain.
+"""Reaction rates of several fields, formulas of position, time and all fields, printed as kernels over cells.
 
-Both kernels have the signature of a term; ints: constants, volumes (0 outside), box (low corner and spacing: 6 floats),
-nx, ny, nz, then where each field starts in y (its inflow follows its cells), then values read from other parts. The
-first adds dc/dt to every field and volume dc/dt to its inflow; the second the derivatives, one block of cells after
-another for every pair of a row and a field that is not zero by form.
+Both kernels are terms with the integers: constants, volumes (0 outside), box (low corner and spacing: 6 floats), nx,
+ny, nz, the start of each field in y (its inflow follows its cells), then offsets of values read from other parts. The
+first kernel adds dc/dt to each field, and volume dc/dt to its inflow. The second adds the Jacobian: for each pair
+(rate, field) whose derivative is not identically zero, one block of entries, a cell each.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ PLACES = {"x": "own_x", "y": "own_y", "z": "own_z", "t": "t", "time": "t"}
 
 
 def add_reaction(system: RateSystem, ground: Ground, fields: Sequence[int], assembly: Assembly) -> None:
-    """Add the rates of fields that start at ``fields`` in y, with their symbolic Jacobian."""
+    """Add the reaction term of fields that start at ``fields`` in y, with its symbolic Jacobian."""
     constants = Constants()
     meanings, rows = lifted(system, constants)
     printer = Printer(_names(system), meanings, constants)
@@ -35,7 +35,7 @@ def add_reaction(system: RateSystem, ground: Ground, fields: Sequence[int], asse
 
 
 def _slopes(system: RateSystem, ground: Ground, fields: Sequence[int], assembly: Assembly) -> Slopes | None:
-    """The symbolic Jacobian; None where an operation has no derivative."""
+    """The Jacobian of the reaction, from symbolic derivatives; None where an operation has no derivative."""
     import numpy as np
 
     from sceneql.system import Slopes
@@ -71,7 +71,7 @@ def _ints(constants: Constants, ground: Ground, fields: Sequence[int], assembly:
 def _kernel(
     function: str, system: RateSystem, printer: Printer, values: Sequence[str], targets: Sequence[str], *, tally: bool
 ) -> str:
-    """Module and function that add values to ``out`` at targets; ``tally``: times the volume to the inflow too."""
+    """Name of a kernel that adds values to ``out`` at targets; ``tally``: also values times volume to the inflow."""
     size = len(system.states)
     text = "\n".join(printer.lines + list(values))
     place = [

@@ -1,4 +1,4 @@
-"""Media in which fields spread and are carried by a drift."""
+"""Base of the models of fields that diffuse and are advected by a drift."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class SpreadingMedium(Medium):
     drift: Drift | None = field("A flow that carries what spreads.", None)
 
     def coefficients(self) -> Iterable[tuple[Formula | None, tuple[str, ...]]]:
-        """The diffusion coefficient of every field, and its place in the script."""
+        """The diffusion coefficient of each field, and its path in the script."""
         raise NotImplementedError
 
     def problems(self) -> Iterable[Problem]:
-        """Besides those of any medium, coefficients below 0 and drifts of other dimensions."""
+        """Problems of any medium; negative coefficients; drifts with a wrong number of components."""
         told = False
         for problem in super().problems():
             told |= problem.code == "wrong-shape"
@@ -49,10 +49,10 @@ class SpreadingMedium(Medium):
             yield Problem("a deep drift has a velocity, not a stream function", ("drift",))
 
     def spreading(self, coefficient: Formula | None, scene: StaticScene) -> Oscillation | None:
-        """The rates that limit explicit steps of a field: the decay of the checkerboard, and the drift.
+        """The rates that limit explicit steps of a field: decay of the checkerboard mode, and the drift.
 
-        The first is at most 4 D sum of 1/spacing^2 (von Neumann's bound), for the largest D of the start where that
-        varies in a box; None where it varies with the field, or elsewhere.
+        The former is 4 D sum of 1/spacing^2 (von Neumann's bound), with the largest D at the start if D varies in a
+        box. None where D varies with the field or with other parts, or varies in an object's domain.
         """
         d = 0.0 if coefficient is None else number_in(coefficient)
         if d is None and self.size is not None:

@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Final
 
+from sceneql.language.behind_quotes import without_letters
 from sceneql.language.tree import Scalar
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 from sceneql.quantities.instead import instead
@@ -29,6 +30,7 @@ _UNIT = re.compile(r"[^\W\d_]|[%°]")
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _ITEM = r"(?:[^(),]|\([^(),]*\))+"
 _PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
+_ROTATION = re.compile(r"\brotation:\s*\Z")
 _UNPARTED = re.compile(r"([^\W\d]\w*)(?:[ ]+|(:))(?=\[)")
 _BLOCK_VALUE = re.compile(r"\s*(?:- +)*(?:[^\s\[{\"'#][^\[{\"'#]*?:\s+)?(?=[\[{])")
 
@@ -186,6 +188,7 @@ class _Scan:
             return Fault("yaml-syntax", start, end, caret.start, "", diagnostic)
         vector = _PARENTHESES.fullmatch(written)  # as other languages write one
         fixed = _quote(written) if vector is None else _with_unit(vector[1], vector[2] or "")
+        fixed = without_letters(written) or fixed
         return Fault("torn-expression", start, end, start, fixed)
 
     def collection(self, at: int, depth: int) -> int:
@@ -239,6 +242,8 @@ class _Scan:
         self.faults = [fault for fault in self.faults if fault.start < start]
         if self.text[start] == "[" and _UNIT.match(rest) is not None:
             fixed = _with_unit(self.written[start + 1 : close - 1], rest)
+            if _ROTATION.search(self.text, max(0, start - _MOST_SHOWN), start) and not fixed.startswith("["):
+                fixed = f"{{xyz: {fixed}}}"
             self.faults.append(Fault("unit-after-bracket", start, end, at, fixed))
         else:
             self.faults.append(self.torn(start, end))

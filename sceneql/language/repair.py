@@ -34,6 +34,8 @@ def blanked(text: str, faults: Iterable[Fault]) -> str:
 def repaired(fault: Fault, source: Source) -> Node:
     """The value that a fault was meant to be; a hole where that is not known."""
     span = Span(source, fault.start, fault.end)
+    if fault.code == "unit-after-bracket" and fault.fixed.startswith("{"):
+        return hole(span)  # a rotation, of which the fixed text says all
     if fault.code == "unit-after-bracket":
         inside = Span(source, fault.start, source.text.rindex("]", fault.start, fault.caret) + 1)
         return _with_unit(inside, source.text[fault.caret : fault.end]) or hole(span)

@@ -14,6 +14,8 @@ from sceneql.quantities.instead import instead
 NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect", "studies")
 """Sections beside the families that hold names."""
 
+NOTHING: Final = ("none", "no", "false", "off")
+"""Words of what is not to be there."""
 _ENTRY = "an entry is `name: word` or `name: {word: {fields}}`"
 
 
@@ -42,7 +44,8 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
         found.error("entry-shape", message, node.span, help=instead("entry", what.strip("'")) or _ENTRY)
         return None
     if isinstance(node, Sequence):
-        found.error("entry-shape", f"{what} is a list, not a part", node.span, help=_ENTRY)
+        help = instead("list", what.strip("'")) or _ENTRY
+        found.error("entry-shape", f"{what} is a list, not a part", node.span, help=help)
         return None
     words = [key for key in node.entries if key != "repeat"]
     if not words and node.partial:
@@ -80,6 +83,8 @@ def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Br
         name = key
         if key not in known:
             other = instead("section", key)
+            if other is not None and isinstance(value, Scalar) and value.text.lower() in NOTHING:
+                other = instead("absent", key) or other
             near = nearest(key, known) if other is None else None
             every = f"{holder} may have {', '.join(dict.fromkeys(known))}: `sceneql words sections`"
             help = other or suggestion(key, known) or every

@@ -7,6 +7,7 @@ from typing import Final
 
 import yaml
 
+from sceneql.language.behind_quotes import told_behind
 from sceneql.quantities.diagnostic import Diagnostic, Note
 from sceneql.quantities.span import Source, Span
 
@@ -72,6 +73,9 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
     if (long := _long_key(source.text, at, flow)) is not None:
         help = "a name is short: say more in a comment behind it"
         return _syntax(f"a key of {at - long:,} letters; it may have {_LONGEST:,}", source, long, help)
+    if (told := told_behind(source.text, at)) is not None:
+        help = f"a text has its values in braces: write `{told}`"
+        return _syntax("nothing can stand behind this quote", source, at, help)
     if flow is not None:
         return _in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow)
     character = source.text[at : at + 1]

@@ -190,6 +190,8 @@ class _Expander:
         if not name.split(".")[0].isidentifier() or (key.text == name and "." in name):
             message = f"'{name}' cannot be the name of a part"
             letters = "a name is made of letters, digits and underscores, and begins with a letter"
+            better = re.sub(r"\W+", "_", name).strip("_")
+            letters = f"write `{better}`: {letters}" if better.isidentifier() else letters
             help = numbered(name) or letters
             self.found.error("part-name", message, key.span, help=help)
             for part in (name, *re.split(r"\W+", name)):  # as it may be written in an expression

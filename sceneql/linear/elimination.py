@@ -1,4 +1,4 @@
-"""The systems (1 - a J) d = r of implicit stages, reduced by elimination of positions and idle entries."""
+"""Reduction of the systems (1 - a J) d = r of implicit stages: positions and idle entries are eliminated."""
 
 from __future__ import annotations
 
@@ -24,42 +24,46 @@ _THREE = np.arange(3)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Left:
-    """The unknowns of the reduced system, in units of one entry or of a mass's three, and the map of the Jacobian."""
+    """Reduced system: its unknowns, and the map from the Jacobian. A unit is one entry, or the three of a mass."""
 
     unit: int
-    """Entries of a unit: 1 or 3. Values are blocks of as many rows and columns, row by row."""
+    """Number of entries of a unit: 1 or 3. Values are blocks (unit, unit), row by row."""
     core: Numbers
-    """(m,) entries of y, then unknowns that border the system (Slopes.border)."""
+    """(m,): entries of y that remain, then unknowns that border the system (Slopes.border)."""
     positions: Numbers
-    """(p, 3): position, velocity, index among the Jacobian's values of the 1 in the position's row."""
+    """(p, 3): position, velocity, and index of the 1 in the position's row among the Jacobian's values."""
     first: Numbers
-    """(., 3): place in the Jacobian, row and column (units) of the reduced matrix: the coefficient is -a."""
+    """(., 3): place in the Jacobian, row and column (units) in the reduced matrix; the coefficient is -a."""
     second: Numbers
-    """(., 4): place, row and column likewise, number of the position (the unit's first): the coefficient is -a^2."""
+    """(., 4): place, row and column as in ``first``, and index of the position (of a unit's first one); the
+    coefficient is -a^2."""
     tallies: Numbers
-    """Entries without slopes, on which nothing depends."""
+    """Entries without derivatives, on which no rate depends."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kinds:
-    """The role of every entry of y in the elimination."""
+    """Role of every entry of y in the elimination."""
 
     core: Mask
     position: Mask
     tally: Mask
     one: Numbers
-    """Index among the Jacobian's values of d(dx/dt)/dv for a position x; -1: none."""
+    """Index of d(dx/dt)/dv among the Jacobian's values for a position x; -1: none."""
 
 
 def kinds_of(system: System, inverse: Floats) -> Kinds:
-    """Find the positions with rows dx/dt = v, and fixed or idle entries; ``inverse`` masses (n,)."""
+    """Kinds of all entries: positions with rows dx/dt = v, fixed and idle entries, and the core.
+
+    ``inverse`` (n,): inverse masses, as from stage._inverse_masses.
+    """
     pattern = system.pattern
     assert pattern is not None
     n, border = len(system.y), system.border
     (rows, columns), known, partner = pattern.others.T, pattern.known, partners(system)
     in_blocks, by_blocks = ((pattern.blocks[:, side, None] + _THREE).ravel() for side in (0, 1))
     off = (rows != columns) & known
-    # Rows with entries other than their own velocity are no such positions.
+    # A position whose row has entries other than its own velocity is not eliminated.
     alien = np.bincount(rows[off & (columns != partner[rows])], minlength=len(partner)) > 0
     alien[in_blocks] = True
     ones = off & (columns == partner[rows])
@@ -77,12 +81,12 @@ def kinds_of(system: System, inverse: Floats) -> Kinds:
 
 
 def partners(system: System) -> Numbers:
-    """For each row of the pattern that is a position the index of its velocity, else -1."""
+    """Index of the velocity for each row of the pattern that is a position, else -1."""
     return np.concatenate([system.partner, np.full(2 * system.border, -1, dtype=np.int64)])
 
 
 def left_by_masses(system: System, kinds: Kinds) -> Left | None:
-    """The system in units of three; None where its unknowns are not all velocities of whole masses."""
+    """Reduced system in units of three; None unless its unknowns are all velocities of whole masses."""
     pattern, partner = system.pattern, partners(system)
     assert pattern is not None
     if system.border:
@@ -106,7 +110,7 @@ def left_by_masses(system: System, kinds: Kinds) -> Left | None:
 
 
 def left_by_entries(system: System, kinds: Kinds) -> Left:
-    """The system in units of one."""
+    """Reduced system in units of one entry."""
     pattern = system.pattern
     assert pattern is not None
     known = np.concatenate([np.ones(9 * len(pattern.blocks), dtype=bool), pattern.known])
@@ -135,18 +139,18 @@ def _left(system: System, kinds: Kinds, unit: int, rows: Numbers, columns: Numbe
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Inertia:
-    """The lists of a plan for it; all are empty where no inertia is a matrix."""
+    """Lists of a plan for inertia that is a matrix; all empty without one."""
 
     entries: Numbers
     """(k, 3): place among the values of the reduced matrix, row and column (unknowns)."""
     held: Numbers
-    """Places of values that are left out, in rows and columns of held entries."""
+    """Places of values that are left out, because their row or column is held."""
     numbers: Floats
-    """(unknowns,) 1 for a row of the matrix, 0 where it is held, -1 of others; then the value of each entry [kg]."""
+    """(unknowns,): 1 for a row of the inertia matrix, 0 for a held one, -1 for others; then each entry's value [kg]."""
 
     @staticmethod
     def of(system: System, left: Left, pattern: Any) -> Inertia:
-        """Find them; ``pattern``: the units' CSR, indices sorted."""
+        """Lists for a system; ``pattern``: CSR of units, indices sorted."""
         none = np.zeros(0, dtype=np.int64)
         if not system.inertia:
             return Inertia(none.reshape(0, 3), none, np.zeros(0))
@@ -170,8 +174,11 @@ class Inertia:
 
 
 def borders(system: System, left: Left, pattern: Any) -> Numbers:
-    """(k, 4): place among the values of the matrix, of a unit of one entry, its row, entry of y, place in the Jacobian
-    of what the rows of the border hold of rates; ``pattern``: the units' CSR, indices sorted."""
+    """(k, 4): entries of the border's rows for rates of entries of y.
+
+    Each has its place among the values of the matrix (in units of one entry), its row, the entry of y, and its place in
+    the Jacobian. ``pattern``: CSR of units, indices sorted.
+    """
     n, border, m = len(system.y), system.border, len(left.core)
     if not border:
         return np.zeros((0, 4), dtype=np.int64)
@@ -186,13 +193,13 @@ def borders(system: System, left: Left, pattern: Any) -> Numbers:
 
 
 def inertia_places(system: System, left: Left) -> Numbers:
-    """(k, 2) rows and columns (units) where the reduced matrix has inertia."""
+    """Rows and columns (k, 2), in units, of the reduced matrix's entries with inertia."""
     rows, columns, _ = _entries(system, left)
     return np.column_stack([rows, columns]) // left.unit
 
 
 def _entries(system: System, left: Left) -> tuple[Numbers, Numbers, Floats]:
-    """Rows, columns (unknowns) and values of all matrices between unknowns."""
+    """Rows and columns (unknowns), and values [kg], of all inertia matrices, restricted to the unknowns."""
     number = np.full(len(partners(system)), -1, dtype=np.int64)
     number[left.core] = np.arange(len(left.core))
     rows, columns, values = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)], [np.zeros(0)]

@@ -1,4 +1,4 @@
-"""The plan of species_kernels: which systems a multigrid over cells of several species solves, and their layout."""
+"""Plan of species_kernels: the systems that a multigrid over cells of several species solves, and their layout."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sceneql.system import Grid
 
 FEWEST = {2: 30_000, 3: 2_000}
-"""Number of cells, in 2 or 3 dimensions, from which on multigrid cycles are faster than a factorization."""
+"""Least number of cells, in 2 or 3 dimensions, for which multigrid cycles are faster than a factorization."""
 
 
 def one_grid(system: System, core: NDArray[int64]) -> bool:
@@ -27,9 +27,9 @@ def one_grid(system: System, core: NDArray[int64]) -> bool:
 
 
 def plan(system: System, core: NDArray[int64], pattern: Any) -> tuple[NDArray[int64], int, str]:
-    """The integers behind the preconditioner's number, floats of the levels, and its text for users.
+    """Integers after the preconditioner's number, number of floats of the levels, and text for users.
 
-    ``core``: (unknowns,) entries of y; ``pattern``: their (unknowns, unknowns) scipy CSR.
+    ``core`` (unknowns,): entries of y; ``pattern``: scipy CSR (unknowns, unknowns).
     """
     import numpy as np
 
@@ -62,7 +62,7 @@ def plan(system: System, core: NDArray[int64], pattern: Any) -> tuple[NDArray[in
 
 
 def _places(grids: tuple[Grid, ...], size: int) -> NDArray[int64]:
-    """(size,) index of each entry of y among the species' cells; -1: it is no cell."""
+    """(size,): index of each entry of y among the species' cells; -1 for entries that are no cells."""
     import numpy as np
 
     found = np.full(size, -1, dtype=np.int64)
@@ -73,10 +73,10 @@ def _places(grids: tuple[Grid, ...], size: int) -> NDArray[int64]:
 
 
 class _Entries:
-    """Places of entries in a pattern."""
+    """Lookup of entries' places among a pattern's values."""
 
     def __init__(self, pattern: Any, at: NDArray[int64]) -> None:
-        """``at`` (s, n): the unknowns of the species in the cells, -1 where they are none."""
+        """``at`` (s, n): unknown of each species in each cell, -1 for none."""
         import numpy as np
 
         self._at, self._count = at, pattern.shape[0]
@@ -84,7 +84,7 @@ class _Entries:
         self._keys = rows * self._count + pattern.indices
 
     def of(self, species: int, cells: Any, other: int, others: Any) -> NDArray[int64]:
-        """(k,) places of the derivatives of species in cells by other species in other cells; -1: none."""
+        """Places (k,) of derivatives of ``species`` in ``cells`` by species ``other`` in cells ``others``; -1: none."""
         import numpy as np
 
         rows, columns = self._at[species, cells], self._at[other, others]

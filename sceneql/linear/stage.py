@@ -1,8 +1,8 @@
-"""The linear systems of implicit stages, (1 - a J) d = r, analyzed once for an island.
+"""Linear systems of implicit stages, (1 - a J) d = r, analyzed once for an island.
 
-Positions are eliminated: their rows say dx/dt = v, so d_x = r_x + a d_v, which leaves a system in the velocities
-(and other entries), 1 - a D - a^2 K for damping D and stiffness K: half the size, and symmetric when its rows are
-multiplied by the masses. Entries on which no rate depends and fixed masses are left out too.
+Positions are eliminated: their rows are dx/dt = v, so d_x = r_x + a d_v. A system in the velocities and other entries
+remains, 1 - a D - a^2 K for damping D and stiffness K. It has half the size, and is symmetric after its rows are
+multiplied by the masses. Entries on which no rate depends, and fixed masses, are left out too.
 """
 
 from __future__ import annotations
@@ -27,33 +27,33 @@ SMALL = 96
 """Largest number of unknowns for which a dense factorization is as fast as a sparse one."""
 MOST_GROUPS = 100_000
 MOST_OPERATIONS = 2e10
-"""Multiplications of a factorization; above, iterations are quicker."""
+"""Multiplications of a factorization above which iterations are faster."""
 SOLID = 16
-"""Neighbors of a mass from which on a net counts as a solid, whose factors fill up."""
+"""Mean number of neighbors of a mass above which a net counts as a solid, whose factors fill in."""
 SOLID_GROUPS = 3000
 TILE = 40_000
-"""Values of the matrix that a thread puts together at a time; fewer are not worth threads."""
+"""Number of matrix values that a thread assembles at a time; fewer are not worth threads."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StagePlan:
-    """The arrays of an island for the kernels of stage_kernels.py."""
+    """Arrays of an island for the kernels of stage_kernels.py."""
 
     numbers: NDArray[int64]
-    """Laid out as stage_kernels says; changed by the kernels (pivots, symmetry)."""
+    """Integers in the layout of stage_kernels; the kernels change some (pivots, symmetry)."""
     scales: Floats
-    """(unknowns,) factor of each row; then what Inertia has."""
+    """(unknowns,): factor of each row; then Inertia.numbers."""
     store: int
-    """Floats for the matrix, its factors and scratch."""
+    """Number of floats for the matrix, its factors and scratch."""
     text: str
-    """How the systems are solved, for `explain`."""
+    """Description of the solver, for `explain`."""
 
 
 def stage_plan(system: System, exact: bool = False, signs: bool = False) -> StagePlan:
-    """Analyze an island whose Jacobian was requested. Raises LimitRefused where it is unavailable.
+    """Analyze an island whose Jacobian was requested. Raises LimitRefused for an island without a Jacobian.
 
-    Not ``exact``: solutions may have errors of some percent, which Newton's method repairs. ``signs``: negative
-    eigenvalues are asked for, on islands without a potential, too.
+    ``exact``: False allows errors of some percent in solutions, which Newton's method corrects. ``signs``: whether
+    negative eigenvalues are counted on islands without a potential, too.
     """
     import numpy as np
 
@@ -100,17 +100,17 @@ def stage_plan(system: System, exact: bool = False, signs: bool = False) -> Stag
 @dataclass(frozen=True, slots=True, eq=False)
 class _Solver:
     kernels: Any
-    """The module with its `factor` and `solve` (solver_kernels.py)."""
+    """Module with `factor_system` and `solve_system` (solver_kernels.py)."""
     numbers: Any
     factors: int
     work: int
     text: str
     counts: bool = False
-    """Whether it counts negative eigenvalues: `negatives`."""
+    """Whether the module counts negative eigenvalues, by `negatives`."""
 
 
 def _chosen(system: System, kinds: Kinds, exact: bool, signs: bool) -> tuple[Left, Any, _Solver]:
-    """The reduced system, its pattern and solver: in units of masses unless their factors fill in too much."""
+    """Reduced system, its pattern and solver: in units of masses unless their factors fill in too much."""
     from sceneql.linear.elimination import inertia_places, left_by_entries, left_by_masses
 
     by_masses = left_by_masses(system, kinds) if kinds.core.sum() > SMALL else None
@@ -126,13 +126,13 @@ def _chosen(system: System, kinds: Kinds, exact: bool, signs: bool) -> tuple[Lef
     solver = None
     if by_masses is None:
         points = None if system.border else _points(system, left)
-        # Factors of a field's matrix serve for many steps: they pay where iterations would be sooner for one.
+        # Factors of a field's matrix serve many steps, so they pay even if iterations would be faster for one.
         solver = _factored(pattern, 1, points, exact, signs or system.fields.on_elements > 0, system.border)
     return left, pattern, solver or _iterations(pattern)
 
 
 def _parts(left: Left, pattern: Any) -> tuple[NDArray[int64], NDArray[int64]]:
-    """The parts of each block of the matrix (stage_kernels.py), and the indices of the diagonal blocks."""
+    """Parts (blocks, 4) of each block of the matrix (stage_kernels.py), and indices of the diagonal blocks."""
     import numpy as np
 
     units = pattern.shape[0]
@@ -147,7 +147,7 @@ def _parts(left: Left, pattern: Any) -> tuple[NDArray[int64], NDArray[int64]]:
 
 
 def _inverse_masses(system: System) -> Floats:
-    """(n,) factors of the rows of the Jacobian: the inverse mass of a velocity, 1 for other entries and a matrix's."""
+    """Factors (n,) of the Jacobian's rows: inverse masses of velocities [1/kg]; 1 for others and for matrix inertia."""
     import numpy as np
 
     assert system.pattern is not None
@@ -160,7 +160,7 @@ def _inverse_masses(system: System) -> Floats:
 
 
 def _masses(system: System) -> list[list[int]]:
-    """(velocity_at, inverse_at, count) of each model of masses, where the slopes are known."""
+    """(velocity_at, inverse_at, count) of each model of masses; empty without exact derivatives."""
     assert system.pattern is not None
     if not system.pattern.exact:
         return []
@@ -171,7 +171,7 @@ def _masses(system: System) -> list[list[int]]:
 
 
 class _Full:
-    """A full pattern with scipy CSR's attributes, without scipy.sparse, which takes 0.1 s to import."""
+    """Full pattern with the attributes of scipy's CSR, without the 0.1 s that importing scipy.sparse takes."""
 
     def __init__(self, units: int) -> None:
         import numpy as np
@@ -182,9 +182,9 @@ class _Full:
 
 
 def _pattern(left: Left, inertia: NDArray[int64]) -> Any:
-    """The symmetric pattern of units as scipy CSR, indices sorted; where it is small, the full one.
+    """Symmetric pattern of units as scipy CSR, indices sorted; the full pattern for a small system.
 
-    ``inertia`` (k, 2): the places of sparse inertia.
+    ``inertia`` (k, 2): rows and columns (units) of sparse inertia.
     """
     import numpy as np
 
@@ -206,14 +206,14 @@ def _pattern(left: Left, inertia: NDArray[int64]) -> Any:
 
 
 def _twins(pattern: Any) -> NDArray[int64]:
-    """For each entry of a symmetric pattern, indices sorted, the place of the transposed one."""
+    """Place of the transposed entry for each entry of a symmetric pattern, indices sorted."""
     import numpy as np
 
     return np.argsort(pattern.indices, kind="stable").astype(np.int64)
 
 
 def _points(system: System, left: Left) -> Floats | None:
-    """(units, 3) start positions of the units' masses; None where a unit is no velocity."""
+    """Positions (units, 3) [m] of the units' masses at the start; None if a unit is no velocity."""
     import numpy as np
 
     points = np.full((len(system.y), 3), np.nan)
@@ -229,7 +229,7 @@ def _points(system: System, left: Left) -> Floats | None:
 
 
 def likely_kernels(system: System) -> tuple[str, ...]:
-    """Modules that a plan will most likely ask for, to be compiled while the island is built."""
+    """Kernel modules that a plan most likely needs, to be compiled while the island is built."""
     if system.pattern is None or system.grids:
         return ()
     few = (system.partner < 0).sum() <= SMALL
@@ -248,9 +248,11 @@ def likely_kernels(system: System) -> tuple[str, ...]:
 def _factored(
     pattern: Any, unit: int, points: Floats | None, exact: bool, filling: bool, border: int = 0
 ) -> _Solver | None:
-    """A factorization on a pattern of units; None where it would fill in too much, unless it has a border, for which
-    iterations are no good. They tell no signs, and are slow in thin parts at rest, which no inertia stiffens: then it
-    may be ``filling``, as in solids."""
+    """Factorization on a pattern of units; None if it would fill in too much.
+
+    A system with a border is always factored, as iterations fail on it. ``filling``: whether the fill of solids is
+    accepted, for signs, which iterations do not give, and for thin parts at rest, where they are slow.
+    """
     import numpy as np
 
     size = pattern.shape[0]
@@ -301,7 +303,7 @@ def _iterations(pattern: Any) -> _Solver:
 
 
 def _over_grids(system: System, core: NDArray[int64], pattern: Any) -> _Solver:
-    """The solver of species on one grid."""
+    """Iterative solver of species on one grid."""
     import numpy as np
 
     from sceneql.linear import species, species_kernels
@@ -312,7 +314,7 @@ def _over_grids(system: System, core: NDArray[int64], pattern: Any) -> _Solver:
 
 
 def _iterated(pattern: Any, kernels: Any) -> NDArray[int64]:
-    """The integers of krylov_kernels with a module's preconditioner."""
+    """Integers of krylov_kernels with the preconditioner of a kernel module."""
     import numpy as np
 
     from sceneql.compiled.numbered_kernels import number_of

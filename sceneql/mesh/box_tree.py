@@ -27,7 +27,7 @@ class BoxTree(NamedTuple):
 
 
 def box_tree(corners: Floats, leaf: int) -> BoxTree:
-    """The tree of triangles (m, 3, 3), at most ``leaf`` to a leaf. Raises ValueError where there are none."""
+    """The tree of triangles (m, 3, 3), at most ``leaf`` in a leaf. Raises ValueError without triangles."""
     count = len(corners)
     if not count:
         raise ValueError("its mesh has no triangle of any area")

@@ -18,9 +18,9 @@ class Hausdorff(NamedTuple):
     """Largest distances [m] found at samples: lower bounds of the true ones."""
 
     to_surface: float
-    """From points on the triangles to the surface."""
+    """Largest distance from points on the triangles to the surface."""
     to_mesh: float
-    """From points on the surface to the triangles."""
+    """Largest distance from points on the surface to the triangles."""
 
     @property
     def distance(self) -> float:

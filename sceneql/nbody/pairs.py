@@ -1,4 +1,4 @@
-"""Forces of 1/r^2 between all masses of an island, as the words mutual_gravity and electrostatic add them."""
+"""Inverse-square forces between all masses of an island, for the words mutual_gravity and electrostatic."""
 
 from __future__ import annotations
 
@@ -26,22 +26,22 @@ MOST_DIRECT = 4000
 
 @dataclass(frozen=True)
 class Pairs:
-    """F_i = sign c w_i sum_j w_j d_ij / (r^2 + softening^2)^(3/2) between all bodies, d_ij from i to j."""
+    """Forces F_i = sign c w_i sum_j w_j d_ij / (r^2 + softening^2)^(3/2) between all bodies, d_ij from i to j."""
 
     sign: int
     constant_at: int
     softening: float
     opening: float
-    """Angle of the tree; 0: every pair is summed."""
+    """Opening angle of the tree; 0: direct sum over all pairs."""
     weights: Sequence[tuple[int, int]]
-    """For every model offset and step of its weights in the floats."""
+    """Offset and stride of each model's weights in the floats."""
     fast: bool = False
     """Whether sums over every pair are in single precision."""
 
     def add(self, assembly: Assembly, everyone: Sequence[Bodies], span: Span | None) -> None:
-        """Add the term, and remember what `potential` needs.
+        """Add the term, and remember the integers for `energy`.
 
-        Raises ScriptError where bodies stand at one place at the start and no softening keeps the force finite.
+        Raises ScriptError for bodies at one place at the start without softening.
         """
         if self.softening == 0:
             apart(assembly, everyone, span)
@@ -86,13 +86,13 @@ class Pairs:
         return "sceneql.nbody.tree_kernels:tree", ints
 
     def _numbers(self, assembly: Assembly, room: int) -> tuple[int, ...]:
-        """The first integers of both kernels (layout)."""
+        """First integers of both kernels (layout)."""
         softening = assembly.floats([self.softening])
         return self.constant_at, self.sign, softening, _scratch(assembly, 3 * room), _scratch(assembly, room), room
 
 
 def blocks(everyone: Sequence[Bodies]) -> Slopes:
-    """The derivatives of all forces: 3x3 for every two bodies."""
+    """Derivatives of all forces by positions: a 3x3 block for every two bodies."""
     import numpy as np
 
     from sceneql.system import Slopes
@@ -116,7 +116,7 @@ def _scratch(assembly: Assembly, count: int) -> int:
 
 
 def apart(assembly: Assembly, everyone: Sequence[Bodies], span: Span | None) -> None:
-    """Raise ScriptError when two bodies stand at one place."""
+    """Raise ScriptError for two bodies with mass at one place at the start."""
     import numpy as np
 
     start, numbers = assembly.start(), assembly.numbers()
@@ -134,7 +134,7 @@ def apart(assembly: Assembly, everyone: Sequence[Bodies], span: Span | None) -> 
 
 
 def sampled_error(state: ModelState) -> tuple[float, float]:
-    """Relative errors of the forces at a state: root mean square and largest of SAMPLES bodies, evenly chosen."""
+    """Relative errors of the forces at a state: root mean square and largest over SAMPLES evenly chosen bodies."""
     import numpy as np
 
     ints = np.array(state.ints[1:], dtype=np.int64)
@@ -165,7 +165,7 @@ def sampled_error(state: ModelState) -> tuple[float, float]:
 
 
 def energy(bodies: Bodies, state: ModelState) -> float:
-    """The model's share of the potential energy [J]: half of each pair's for each of its bodies."""
+    """Potential energy [J] of a model: half of each pair's energy for each of its bodies."""
     import numpy as np
 
     tree, *rest = state.ints

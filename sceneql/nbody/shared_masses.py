@@ -1,4 +1,4 @@
-"""The masses of several models as one list: its integers for forces between all masses."""
+"""Masses of several models as one list, for forces between all masses."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def integers_of(everyone: Sequence[Bodies]) -> tuple[int, ...]:
-    """Integers of all masses, that `gather` reads (layout.MASSES)."""
+    """Integers of all masses, which `gather` reads (layout.MASSES)."""
     numbers: list[int] = []
     total = 0
     for bodies in everyone:
@@ -23,6 +23,6 @@ def integers_of(everyone: Sequence[Bodies]) -> tuple[int, ...]:
 
 
 def first_of(bodies: Bodies, ints: Sequence[int]) -> int:
-    """Number of a model's first mass among all, from what `integers_of` gave."""
+    """Number of a model's first mass in the list; ``ints``: from `integers_of`."""
     rows = (ints[layout.ROWS + layout.MODEL * k :] for k in range(ints[layout.MODELS]))
     return next(row[layout.FIRST] for row in rows if row[layout.POSITION_AT] == bodies.position_at)

@@ -1,4 +1,4 @@
-"""Where blocks stand in a picture: at an edge, or over a point of the scene."""
+"""Places of blocks in a picture: at an edge, or over a point of the scene."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ EDGES: tuple[Place, ...] = (
     "left",
     "right",
 )
-"""The places where words look for room, best first."""
+"""Places that words try, best first."""
 CORNERS: tuple[Place, ...] = ("bottom left", "bottom right", "top left", "top right", "bottom", "top")
-"""The places where panels look for it."""
+"""Places that panels try, best first."""
 
 MARGIN = 0.025
-"""Free space at the edges in parts of the picture's height."""
+"""Free space at the edges, relative to the picture's height."""
 
 
 def corner(place: str, block: tuple[int, int], picture: tuple[int, int]) -> tuple[int, int]:
@@ -38,13 +38,13 @@ def corner(place: str, block: tuple[int, int], picture: tuple[int, int]) -> tupl
 
 
 def box_at(place: str, block: tuple[int, int], picture: tuple[int, int]) -> Box:
-    """The box of a block (width, height) at a named place of a picture (width, height)."""
+    """Box of a block (width, height) at a named place of a picture (width, height)."""
     left, top = corner(place, block, picture)
     return left, top, left + block[0], top + block[1]
 
 
 def outline(points: Any, view: View) -> tuple[float, float, float, float] | None:
-    """Left, top, right, bottom [pixels] of points (n, 3) that are before the camera; None where none is."""
+    """Left, top, right, bottom [pixels] of the points (n, 3) [m] in front of the camera; None if there is none."""
     seen = [place for point in points if (place := projected(point, view)) is not None]
     if not seen:
         return None
@@ -52,7 +52,7 @@ def outline(points: Any, view: View) -> tuple[float, float, float, float] | None
 
 
 def projected(point: Any, view: View) -> tuple[float, float] | None:
-    """Where a point (3,) is seen [pixels], from the top left; None behind the camera."""
+    """Place of a point (3,) [m] in the picture [pixels], from the top left; None behind the camera."""
     import numpy as np
 
     x, y, z = view.axes @ (np.asarray(point, dtype=float) - np.array(view.origin))

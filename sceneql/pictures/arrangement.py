@@ -1,4 +1,4 @@
-"""Where the overlays of a picture stand: each keeps one place over the film, which the subject leaves free."""
+"""Arrangement of a picture's overlays: each keeps one place over the film, off the subject if possible."""
 
 from __future__ import annotations
 
@@ -20,29 +20,29 @@ if TYPE_CHECKING:
     from sceneql.run.instant import Instant
 
     Mask = Any
-    """(h, w) bool, cells of the picture."""
+    """(h, w) bool: mask of the picture's cells."""
 
 Room = tuple[float, float, float, float]
-"""What is kept free at the left, top, right and bottom, in parts of the picture's width and height."""
+"""Space kept free at the left, top, right and bottom, relative to the picture's width and height."""
 NO_ROOM: Room = (0.0, 0.0, 0.0, 0.0)
 
 CELLS = 90
-"""Cells in the picture's height, by which is told what the subject covers."""
+"""Number of cells along the picture's height, in masks of what the subject covers."""
 INSTANTS = 8
-"""Instants besides the first at which a camera that moves is looked through."""
+"""Number of instants, besides the first, at which a moving camera's view is sampled."""
 MOST = 0.75
-"""Most of the picture's width or height that overlays may keep free."""
+"""Largest fraction of the picture's width or height that overlays may keep free."""
 WAYS = 64
-"""Most ways to keep overlays free that are tried."""
+"""Largest number of ways to keep overlays free that are tried."""
 APART = 10.0
-"""Weight of one overlay over another, where a subject that is wholly covered has 1."""
+"""Weight of one overlay over another; a wholly covered subject has weight 1."""
 ALIKE = 0.05
-"""Places that hide something, and no more of it than this beyond the least, are alike: the first of them is taken."""
+"""Difference of cost within which places that hide something count as equal: the first of them is taken."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arrangement:
-    """The overlays of a picture, each with its place, and the room that they take of it."""
+    """Overlays of a picture, each with its place, and the room that they take of it."""
 
     overlays: Mapping[str, Overlay]
     room: Room = NO_ROOM
@@ -50,24 +50,24 @@ class Arrangement:
 
 @dataclass(frozen=True, slots=True)
 class Sight:
-    """A picture to be arranged."""
+    """Picture to be arranged."""
 
     size: tuple[int, int]
-    """[pixels]"""
+    """Width and height [pixels]."""
     scale: float
-    """How many times as high the whole picture is, of which this is a panel."""
+    """Height of the whole picture over that of this panel."""
     moment: Instant
-    """The instant of the first picture."""
+    """Instant of the first picture."""
     look: Callable[[Instant], View]
     yields: bool
     """Whether the camera leaves room for overlays."""
     drawn: Sequence[str]
-    """The parts that it shows."""
+    """Names of the parts that it shows."""
 
     def parts(self) -> list[tuple[Floats, Floats]]:
-        """Low and high corner (3,) over the film of each part, in all variants that are seen beside one another.
+        """Low and high corners (3,) [m] of each part over the film, in all variants shown side by side.
 
-        What leaves for good is left out.
+        Each box is clipped to what stays in the scene; parts that leave for good are left out.
         """
         import numpy as np
 
@@ -79,12 +79,12 @@ class Sight:
 
 
 def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> Arrangement:
-    """The Arrangement of overlays in a picture where ``fixed`` boxes are taken by other letters.
+    """Arrangement of overlays in a picture; ``fixed``: boxes taken by other letters.
 
-    An overlay takes the first of its places (`Overlay.places`) where it hides nothing, else one where it hides little;
-    large ones choose first. For what then still lies on the subject a camera that yields leaves room.
+    An overlay takes the first of its places (`Overlay.places`) that hides nothing, else one that hides little; large
+    overlays choose first. A camera that yields leaves room for overlays that still lie on the subject.
 
-    Raises RunFailure.
+    Raises RunFailure for an overlay whose box cannot be found.
     """
     overlays = {name: cast("Overlay", task.kind) for name, task in tasks.items()}
     seekers = [name for name, kind in overlays.items() if len(kind.places()) > 1]
@@ -105,7 +105,7 @@ def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> A
 
 
 def _boxes(sight: Sight, task: Task) -> dict[str, Box]:
-    """The boxes of an overlay at its places. What is not shown yet, and cannot be told before it is, has none."""
+    """Boxes of an overlay by place; empty for one that is not shown yet and whose box is unknown until then."""
     kind, moment = cast("Overlay", task.kind), sight.moment
     with failing_as(task.name, moment.now, task.span):
         hidden = kind.show is not None and moment.at(kind.show) == 0
@@ -116,9 +116,9 @@ def _boxes(sight: Sight, task: Task) -> dict[str, Box]:
 
 
 def covered(parts: Iterable[tuple[Floats, Floats]], views: Sequence[View], size: tuple[int, int]) -> list[Mask]:
-    """For each part that is seen the cells that its box covers in any of the views.
+    """Mask of the cells that a part's box covers in any of the views, for each visible part.
 
-    What reaches behind the camera is the scene's surroundings, which may be covered.
+    A box that reaches behind the camera is not counted: overlays may cover such surroundings.
     """
     import numpy as np
     from PIL import Image, ImageDraw
@@ -140,13 +140,13 @@ def covered(parts: Iterable[tuple[Floats, Floats]], views: Sequence[View], size:
 
 
 def _cells(size: tuple[int, int]) -> tuple[int, int]:
-    """Columns and rows of cells."""
+    """Numbers of columns and rows of cells."""
     high = min(CELLS, size[1])
     return max(1, math.ceil(size[0] * high / size[1])), high
 
 
 def _hull(points: Floats) -> list[tuple[float, float]]:
-    """The convex hull of points (n, 2), in order (Andrew 1979)."""
+    """Convex hull of points (n, 2), in order (Andrew 1979)."""
     rows = sorted({(float(x), float(y)) for x, y in points})
     if len(rows) < 3:
         return [*rows, *rows][:2]
@@ -166,7 +166,7 @@ def _hull(points: Floats) -> list[tuple[float, float]]:
 
 
 def _views(seen: Sight) -> Iterator[View]:
-    """The different views of the film; of a camera that reads what is solved the one that is known, the first."""
+    """Views of the film that differ from the first, after it; of a camera that reads solved states the first alone."""
     first = replace(seen.moment, _states={}, _values={})
     view = seen.look(first)
     yield view
@@ -180,12 +180,12 @@ def _views(seen: Sight) -> Iterator[View]:
 
 
 def _hidden(box: Box, masks: Sequence[Mask], size: tuple[int, int]) -> float:
-    """How much of the subject a box hides: the mean over the parts of the share of each."""
+    """Fraction of the subject that a box hides: the mean over its parts."""
     return float(sum(mask[_slices(box, size)].sum() / mask.sum() for mask in masks)) / max(len(masks), 1)
 
 
 def _slices(box: Box, size: tuple[int, int]) -> tuple[slice, slice]:
-    """The cells that a box touches."""
+    """Slices of rows and columns of the cells that a box touches."""
     part = _cells(size)[1] / size[1]
     left, top, right, bottom = (edge * part for edge in box)
     rows, columns = (max(0, math.floor(top)), math.ceil(bottom)), (max(0, math.floor(left)), math.ceil(right))
@@ -197,7 +197,7 @@ def _area(box: Box) -> int:
 
 
 def _clash(box: Box, taken: Iterable[Box]) -> float:
-    """The share of a box that others cover, by its weight."""
+    """Fraction of a box that other boxes cover, times APART."""
     total = 0.0
     for other in taken:
         wide = min(box[2], other[2]) - max(box[0], other[0])
@@ -207,7 +207,7 @@ def _clash(box: Box, taken: Iterable[Box]) -> float:
 
 
 def _room(seen: Sight, parts: Sequence[tuple[Floats, Floats]], taken: Sequence[Box]) -> Room:
-    """The room at the edges with which no box lies on the subject, and the subject is as large as it can be."""
+    """Room at the edges with which no box lies on the subject and the subject is largest."""
     room, kept = NO_ROOM, list[Box]()
     while True:
         masks = covered(parts, [seen.look(replace(seen.moment, room=room))], seen.size)
@@ -222,7 +222,7 @@ def _room(seen: Sight, parts: Sequence[tuple[Floats, Floats]], taken: Sequence[B
 
 
 def _sides(box: Box, size: tuple[int, int]) -> list[Room]:
-    """The rooms at one edge each that keep a box free."""
+    """Rooms at a single edge that keep a box free."""
     (wide, high), (left, top, right, bottom) = size, box
     sides = (right / wide, bottom / high, 1 - left / wide, 1 - top / high)
     return [
@@ -233,7 +233,7 @@ def _sides(box: Box, size: tuple[int, int]) -> list[Room]:
 
 
 def _ways(kept: Sequence[Box], size: tuple[int, int]) -> Iterator[Room]:
-    """The rooms that keep all boxes free, by the edge for each."""
+    """Rooms that keep all boxes free, one for each choice of an edge per box."""
     options = [_sides(box, size) for box in kept]
     if math.prod(map(len, options)) > WAYS:
         options = [[min(sides, key=max)] for sides in options]
@@ -244,7 +244,7 @@ def _ways(kept: Sequence[Box], size: tuple[int, int]) -> Iterator[Room]:
 
 
 def _largeness(seen: Sight, parts: Sequence[tuple[Floats, Floats]], room: Room) -> float:
-    """How large the subject is with a room: the diagonal of what it covers."""
+    """Diagonal [pixels] of the subject in the picture with a room."""
     import numpy as np
 
     view = seen.look(replace(seen.moment, room=room))

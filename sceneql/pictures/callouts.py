@@ -1,4 +1,4 @@
-"""Words beside things: on the side that is wanted, or as near as there is room, with a leader line from afar."""
+"""Labels beside things: on the wanted side, or the nearest free place, with a leader line if far away."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ if TYPE_CHECKING:
     from sceneql.pictures.lettering import Letterer
 
 Thing = tuple[float, float, float, float]
-"""Left, top, right, bottom of what is named [pixels]; a point has no extent."""
+"""Left, top, right, bottom of a labelled thing [pixels]; a point has no extent."""
 Way = tuple[float, float]
-"""To the right and down, of any length but 0."""
+"""Direction (right, down), of any length but 0."""
 
 UP: Way = (0.0, -1.0)
 DOWN: Way = (0.0, 1.0)
 STEP, FARTHEST = 0.25, 6.0
-"""How a label moves away from what stands in its way, and how far, in heights of letters."""
+"""Step and largest distance of a label's moves away from obstacles, in heights of letters."""
 AWAY = 0.6
-"""From which distance on a leader line leads to it, in heights of letters."""
+"""Distance of a label beyond which it gets a leader line, in heights of letters."""
 
 
 def stand(
@@ -34,10 +34,10 @@ def stand(
     taken: Sequence[Thing] = (),
     spared: Sequence[Thing] = (),
 ) -> Box:
-    """The box of a label (width, height) outside a thing, on the side that ``way`` points to, inside the picture.
+    """Box of a label (width, height) outside a thing, on the side that ``way`` points to, inside the picture.
 
-    It meets none of the boxes ``taken`` where that can be, nor of those to be ``spared`` if that can be, too: it moves
-    on the same way first, then to the other sides.
+    If possible it meets none of the boxes ``taken``, and none of those ``spared``: it moves farther the same way
+    first, then to the other sides. ``gap`` [pixels]: distance from the thing; ``em`` [pixels]: height of letters.
     """
     boxes = list(dict.fromkeys(_tries(thing, way, block, picture, gap, em)))
     for others in ((*taken, *spared), taken):
@@ -50,7 +50,7 @@ def stand(
 def _tries(
     thing: Thing, way: Way, block: tuple[int, int], picture: tuple[int, int], gap: float, em: int
 ) -> Iterator[Box]:
-    """Boxes in the order in which they are tried."""
+    """Boxes to try, in order."""
     x, y = way
     for one in ((x, y), (-y, x), (y, -x), (-x, -y)):
         for k in range(math.ceil(FARTHEST / STEP)):
@@ -61,7 +61,7 @@ def _tries(
 
 
 def _outside(thing: Thing, way: Way, block: tuple[int, int], gap: float) -> tuple[float, float]:
-    """Left and top of a block whose center lies that way from the thing's, outside by a gap."""
+    """Left and top of a block outside a thing by a gap, with the direction ``way`` between their centers [pixels]."""
     length = math.hypot(*way)
     x, y = way[0] / length, way[1] / length
     half = 0.5 * (thing[2] - thing[0] + block[0]) + gap * abs(x), 0.5 * (thing[3] - thing[1] + block[1]) + gap * abs(y)
@@ -71,17 +71,17 @@ def _outside(thing: Thing, way: Way, block: tuple[int, int], gap: float) -> tupl
 
 
 def meet(one: Sequence[float], other: Sequence[float]) -> bool:
-    """Whether two boxes have more than an edge in common."""
+    """Whether the interiors of two boxes intersect."""
     return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
 
 
 def _covers(box: Box, thing: Thing) -> bool:
-    """Whether a box lies on a thing, by more than rounding."""
+    """Whether a box overlaps a thing by more than a pixel, which is rounding."""
     return meet((box[0] + 1, box[1] + 1, box[2] - 1, box[3] - 1), thing)
 
 
 def lead(letters: Letterer, thing: Thing, box: Box) -> None:
-    """A line from a thing to its label, where this stands away from it."""
+    """Draw a leader line from a thing to its label, if the label is farther than AWAY."""
     x = min(max(0.5 * (box[0] + box[2]), thing[0]), thing[2])
     y = min(max(0.5 * (box[1] + box[3]), thing[1]), thing[3])
     to = min(max(x, box[0]), box[2]), min(max(y, box[1]), box[3])

@@ -1,4 +1,4 @@
-"""How strongly an overlay is seen: it comes and goes softly where the script says so."""
+"""Opacity of an overlay that fades in and out."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def strength(overlay: Overlay, moment: Moment) -> float:
-    """From 0, not there now, to 1: within the time of `fade` from where `show` begins or ends, a part of it."""
+    """Opacity from 0 (hidden) to 1; linear in time over `fade` [s] after `show` begins and before it ends."""
     if overlay.show is None:
         return 1.0
     if moment.at(overlay.show) == 0:

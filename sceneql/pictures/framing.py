@@ -1,4 +1,4 @@
-"""Where a camera must stand so that a box fills its picture."""
+"""Camera positions and directions for which a box fills the picture."""
 
 from __future__ import annotations
 
@@ -16,17 +16,18 @@ if TYPE_CHECKING:
     from sceneql.kinds import Moment
 
 NEAREST = 1e-3
-"""Least distance [m] of a camera from what it is fitted to."""
+"""Least distance [m] of a camera from the points that it is fitted to."""
 
 
 GAP = 0.035
-"""Free space between overlays and what is fitted, in parts of the picture's height."""
+"""Free space between overlays and the subject, relative to the picture's height."""
 
 
 def axes_towards(back: Any, up: Any = (0.0, 1.0, 0.0)) -> Floats:
-    """(3, 3) rows right, up, back of a camera that looks along -back, with ``up`` upwards in the picture.
+    """Axes (3, 3), rows right, up, back, of a camera that looks along -back, with ``up`` upward in the picture.
 
-    Where the camera looks along ``up``, another axis takes its place. Raises ValueError for a ``back`` of zero.
+    For a camera that looks along ``up`` another axis replaces it. Raises ValueError for a ``back`` that is zero or
+    longer than LARGEST [m].
     """
     import numpy as np
 
@@ -46,31 +47,33 @@ def axes_towards(back: Any, up: Any = (0.0, 1.0, 0.0)) -> Floats:
 
 
 LONGEST, FINE = 12.0, 16.0
-"""How far back a follower remembers, in lags, and samples in one lag."""
+"""Memory of a follower, in lags, and number of samples in one lag."""
 
 
 def corners(low: Any, high: Any) -> Floats:
-    """(8, 3) corners of a box."""
+    """Corners (8, 3) of a box."""
     import numpy as np
 
     return np.array(list(product(*zip(low, high, strict=True))), dtype=float)
 
 
 def bounds(moment: Moment, refs: Iterable[Ref] | None) -> tuple[Floats, Floats]:
-    """Low and high corner (3,) around the named parts, or all that is drawn, over the whole film."""
+    """Low and high corner (3,) [m] around the named parts, or around all that is drawn, over the whole film."""
     return moment.bounds([ref.name for ref in refs or ()])
 
 
 def fitted(
     points: Floats, axes: Floats, slopes: tuple[float, float], aim: Any = None, middle: tuple[float, float] = (0.0, 0.0)
 ) -> tuple[Floats, float]:
-    """Position (3,) and distance of the nearest camera that sees all points; exact, without iteration.
+    """Position (3,) [m] and distance [m] of the nearest camera that sees all points (n, 3) [m]; exact, not iterative.
 
-    ``slopes``: half the width and height, at the distance 1, of the picture's part where the points shall be, whose
-    center stands at ``middle``, to the right and up. With ``aim`` (3,) the camera looks at that point; else it moves
-    sideways until that part is filled best. For a coordinate p across, a depth b towards the camera, a slope k and a
-    middle m, a point is seen from the distance D at the place s across if |p - s - m (D - b)| <= k (D - b): so
-    D >= (max(p + (k + m) b) - min(p - (k - m) b))/(2 k), and s is the middle of what is left.
+    ``slopes``: half width and half height, at distance 1, of the picture's part that the points shall fill;
+    ``middle``: that part's center, to the right and up. With ``aim`` (3,) the camera looks at that point, else it
+    shifts sideways to fill the part best.
+
+    Let p be a point's coordinate across, b its depth towards the camera, k the slope and m the middle. The point is
+    visible from distance D and place s across if |p - s - m (D - b)| <= k (D - b). So
+    D >= (max(p + (k + m) b) - min(p - (k - m) b))/(2 k), and s is the center of the remaining interval.
     """
     import numpy as np
 
@@ -93,7 +96,7 @@ def fitted(
 
 
 def whereabouts(moment: Moment, ref: Ref) -> Any:
-    """(3,) place of a part in the world now: its position, the middle of its box, or the center of its masses."""
+    """Place (3,) [m] of a part now: its position, the center of its box, or the center of its masses."""
     part: Any = moment.object(ref)
     if isinstance(part, Object):
         place = moment.place(ref.name)
@@ -107,20 +110,20 @@ def whereabouts(moment: Moment, ref: Ref) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class Whereabouts:
-    """The place of a part as a value that can be remembered (kinds.moment.Seen)."""
+    """Place of a part as a value whose past can be kept (kinds.moment.Seen)."""
 
     ref: Ref
 
     def at(self, moment: Moment) -> Any:
-        """(3,) [m] now."""
+        """Place (3,) [m] now."""
         return whereabouts(moment, self.ref)
 
 
 def behind(past: Sequence[tuple[float, Any]], now: float, place: Any, lag: float) -> Any:
-    """Position (3,) now of a follower with the velocity (place - own)/lag, which starts at the first place.
+    """Position (3,) [m] of a follower with the velocity (place - own position)/lag, which starts at the first place.
 
-    Between the samples (time [s], place) of ``past`` the place moves on straight lines, for which the solution is
-    exact: the mean of past places with the weight exp(-age/lag).
+    The solution is the mean of past places with weight exp(-age/lag). It is exact for a place that moves on straight
+    lines between the samples (time [s], place) of ``past``.
     """
     import numpy as np
 
@@ -138,7 +141,7 @@ def behind(past: Sequence[tuple[float, Any]], now: float, place: Any, lag: float
 
 
 def seen_slopes(half_height: float, size: tuple[int, int], margin: float) -> tuple[float, float]:
-    """Half width and half height of the picture's inner part, at the distance 1."""
+    """Half width and half height, at distance 1, of the picture's part inside a margin."""
     inner = half_height * (1 - margin)
     return inner * size[0] / size[1], inner
 
@@ -150,12 +153,11 @@ def inner(
     room: tuple[float, float, float, float],
     headroom: float = 1.0,
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Half width and height of the part of the picture that is filled, and its middle, at the distance 1.
+    """Half width and height, at distance 1, of the picture's part for the subject, and that part's middle.
 
-    ``room``: what overlays take at the left, top, right and bottom, in parts of the picture's width and height. The
-    margin is at the picture's edges; between an overlay and the subject there is GAP of the height, and at the other
-    edges as much as ever: a subject between overlays is not made smaller twice. ``headroom``: the part of the height
-    between the margins that is filled at most.
+    ``room``: space of overlays at the left, top, right and bottom, relative to the picture's width and height.
+    Between an overlay and the subject there is GAP of the height, at other edges half the ``margin``: the margin is
+    not added to an overlay's room. ``headroom``: largest fraction of the height between the margins that is filled.
     """
     full, gap = half_height * size[0] / size[1], min(GAP * size[1] / size[0], GAP)
     wide, across = _free(margin, gap, room[0], room[2])
@@ -164,14 +166,14 @@ def inner(
 
 
 def _free(margin: float, gap: float, before: float, after: float) -> tuple[float, float]:
-    """The part of a side of the picture that is filled beside overlays, and how far its middle lies off, in halves."""
+    """Fraction of the picture's width or height that is filled beside overlays, and its middle in half widths."""
     first, last = (max(0.5 * margin, side + gap) if side else 0.5 * margin for side in (before, after))
     least = (1 - margin) * (1 - before - after)
     return (1 - first - last, first - last) if 1 - first - last > least else (least, before - after)
 
 
 def view(origin: Any, axes: Floats, size: tuple[int, int], half_height: float, *, orthographic: bool = False) -> View:
-    """The view from a point (3,) [m]."""
+    """View from a point (3,) [m]."""
     from sceneql.frame import View
 
     return View(triple(origin), axes, size, half_height, orthographic)

@@ -1,4 +1,4 @@
-"""Several pictures in one: boxes of rows, and runs of variants side by side."""
+"""Several pictures in one: boxes of panels in rows, and runs of variants side by side."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
     from sceneql.run.instant import Instant
 
 GAP = 0.008
-"""Gap between panels, in parts of the picture's height."""
+"""Gap between panels, relative to the picture's height."""
 
 NAME, TOLD = 0.032, 0.024
-"""Heights of letters, in parts of the picture's height."""
+"""Heights of letters of names and of failures, relative to the picture's height."""
 WARNING = (176, 40, 24)
-"""Ink of a failure."""
+"""Color of a failure's message."""
 
 Box = tuple[int, int, int, int]
 """Left, top, width, height [pixels]."""
 
 
 def boxes(rows: Sequence[Row], variants: Sequence[str], size: tuple[int, int]) -> list[tuple[Any, Box]]:
-    """The content of each panel (a variant's name, or the reference of a row) with its box."""
+    """Content of each panel (a variant's name, or the reference of a row) with its box."""
     lines: list[tuple[Sequence[Any], float, int, bool]] = []
     for row in rows:
         if isinstance(row, EachVariant):
@@ -51,9 +51,7 @@ def boxes(rows: Sequence[Row], variants: Sequence[str], size: tuple[int, int]) -
         top, bottom = (round(room * part / total) + k * gap for part in (done, done + share))
         done += share
         across = size[0] - gap * (columns - 1)
-        start = round(
-            (columns - len(line)) * (across / columns + gap) / 2
-        )  # the last line of a grid stands in its middle
+        start = round((columns - len(line)) * (across / columns + gap) / 2)  # the last line of a grid is centered
         for j, item in enumerate(line):
             left, right = (round(across * part / columns) + j * gap for part in (j, j + 1))
             wide, high = right - left, bottom - top
@@ -69,7 +67,7 @@ def _columns(count: int) -> int:
 
 
 def page(size: tuple[int, int]) -> NDArray[uint8]:
-    """An empty picture (h, w, 3) of a size (width, height)."""
+    """Empty picture (h, w, 3) of a size (width, height) [pixels]."""
     import numpy as np
 
     from sceneql.pictures.lettering import LIGHT
@@ -78,7 +76,7 @@ def page(size: tuple[int, int]) -> NDArray[uint8]:
 
 
 def label(pixels: NDArray[uint8], name: str, failure: RunFailure | None, scale: float) -> None:
-    """Write a variant's name on its panel (h, w, 3), and how it failed; the picture is ``scale`` times as high."""
+    """Write a variant's name and its failure on its panel (h, w, 3); the picture is ``scale`` times as high."""
     from sceneql.pictures.lettering import Letterer
 
     letters = Letterer(pixels, NAME * scale, scale=scale)
@@ -102,7 +100,7 @@ def label_box(size: tuple[int, int], names: Iterable[str], scale: float) -> Anch
 
 
 class Panel:
-    """A variant's run; after a failure that the script allows, the last moment before it stays."""
+    """Run of a variant; after a failure that the script allows, the last moment before it stays."""
 
     def __init__(self, graph: SimulationGraph) -> None:
         from sceneql.run.run import Run
@@ -110,15 +108,15 @@ class Panel:
         self.graph = graph
         self.run = Run(graph)
         self.tools: Any = None
-        """The tools that draw it."""
+        """Tools that draw the panel."""
         self.picture: Any = None
-        """Its latest picture (h, w, 3) uint8."""
+        """Latest picture of the panel, (h, w, 3) uint8."""
         self.failure: RunFailure | None = None
         self._last: Instant | None = None
         self._whole = self.run
 
     def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
-        """Low and high corner (3,) of each part over the whole run; nothing of one that may fail, and cannot start."""
+        """Low and high corner (3,) [m] of each part over the whole run; empty for an allowed failure at the start."""
         try:
             return self._whole.boxes()
         except RunFailure:
@@ -127,17 +125,17 @@ class Panel:
             return {}
 
     def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats] | None:
-        """Low and high corner (3,) of what the parts draw over the whole run (run.Run)."""
+        """Low and high corner (3,) [m] of what named parts draw over the whole run (run.Run); None without boxes."""
         return self._whole.bounds(names) if self.boxes() else None
 
     def outline(self) -> Floats:
-        """Points (n, 3) whose hull holds what stays of all that is drawn, over the whole run."""
+        """Points (n, 3) [m] whose hull contains all that is drawn and stays, over the whole run."""
         import numpy as np
 
         return self._whole.outline() if self.boxes() else np.zeros((0, 3))
 
     def at(self, time: float) -> Instant:
-        """The moment [s], or the last one before the failure. Raises RunFailure where the script does not allow it."""
+        """Moment at ``time`` [s], or the last before a failure. Raises RunFailure unless the script allows failures."""
         if self.failure is None and (self._last is None or self._last.now < time):
             try:
                 self._last = self.run.at(time)
@@ -150,7 +148,7 @@ class Panel:
         return self._last
 
     def _before_failure(self) -> Instant:
-        """The last frame of the film before the failure, by a new run. Raises RunFailure where there is none."""
+        """Last frame of the film before the failure, by a new run. Raises RunFailure if there is none."""
         from sceneql.run.run import Run
 
         clock = self.graph.settings.clock

@@ -1,4 +1,4 @@
-"""Formulas as pictures, and what is wrong with one before it is drawn; matplotlib's mathtext reads and sets them."""
+"""Formulas as pictures, typeset by matplotlib's mathtext, and a check of formulas before they are drawn."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 DEEPEST = 15
-"""Most groups within one another: mathtext's parser takes some 40 calls of Python for each."""
+"""Largest depth of nested groups: mathtext's parser takes some 40 Python calls for each level."""
 WIDEST = 400
 LARGEST = 2_000
-"""Most letters' heights of width, and squares of such of area: what is larger fills the memory, and no picture."""
+"""Largest width [heights of letters] and area [their squares]: larger formulas exhaust the memory."""
 SIGN = re.compile(r"\\[A-Za-z]+|\\.|.", re.DOTALL)
 OPENED = re.compile(r"\{|\\left(?![A-Za-z])")
 CLOSED = re.compile(r"\}|\\right(?![A-Za-z])")
 ARGUMENTS = re.compile(r"expected (\\[A-Za-z]+)")
-"""The message on a command whose groups are missing; its place is behind the command."""
+"""Pattern of pyparsing's message about a command with missing groups; the error's place is after the command."""
 
 Fault = tuple[str, int, int]
-"""What is wrong, and the characters of the text where it is."""
+"""Message, and first and last (exclusive) character of the faulty part of the text."""
 
 
 class UnsetError(ValueError):
-    """A formula that cannot be set. ``place``: number of the wrong character, None where that is not known."""
+    """Error for a formula that cannot be typeset. ``place``: index of the wrong character, None if unknown."""
 
     def __init__(self, said: str, place: int | None) -> None:
         super().__init__(said)
@@ -36,7 +36,7 @@ class UnsetError(ValueError):
 
 @lru_cache(maxsize=256)
 def fault(tex: str) -> Fault | None:
-    """What is wrong with a formula, found as its picture would be; None where there is nothing."""
+    """Fault of a formula, found by typesetting it; None for a valid one."""
     if not (text := plain(tex)).strip():
         return "a formula needs letters", 0, len(tex)
     depth = 0
@@ -59,7 +59,7 @@ def fault(tex: str) -> Fault | None:
 
 @cache
 def printed(tex: str, em: int) -> NDArray[uint8]:
-    """A formula (h, w) in ink 255 on 0, letters ``em`` pixels high. Raises ValueError for one that cannot be read."""
+    """Picture (h, w) uint8 of a formula, 255 for ink, letters ``em`` pixels high. Raises UnsetError for a fault."""
     import numpy as np
     from matplotlib.mathtext import MathTextParser
 
@@ -70,19 +70,19 @@ def printed(tex: str, em: int) -> NDArray[uint8]:
 
 
 def plain(tex: str) -> str:
-    """The text with a space, which TeX skips, for each character that is no sign: line breaks, marks of direction."""
+    """Text with control and format characters replaced by spaces, which TeX skips, so that indices stay the same."""
     return "".join(" " if category(one) in ("Cc", "Cf", "Zl", "Zp") else one for one in tex)
 
 
 def _box(text: str, em: int) -> None:
-    """Set a formula without drawing it. Raises UnsetError."""
+    """Typeset a formula without drawing it. Raises UnsetError for a faulty or too large one."""
     from matplotlib.mathtext import MathTextParser
 
     try:
         wide, high, *_ = MathTextParser("path").parse(f"${text}$", dpi=72, prop=_font(em))
     except RecursionError:
         raise UnsetError(f"groups are nested more than {DEEPEST} deep", None) from None
-    except (RuntimeError, OverflowError):  # of the fonts
+    except (RuntimeError, OverflowError):  # from the fonts
         raise UnsetError("a length in it is too large or too small", None) from None
     except ValueError as error:
         raise _told(error.__context__, text) from None
@@ -92,9 +92,9 @@ def _box(text: str, em: int) -> None:
 
 
 def _told(error: Any, text: str) -> UnsetError:
-    """An error of pyparsing, which mathtext reads by, in one line."""
-    said, whole = str(error.msg), error.pstr != text  # whole: of the text with its dollar signs, which is none
-    if said.startswith("Expected {") or whole:  # all of its grammar, or that the text should end where it begins
+    """One-line error from an error of pyparsing, mathtext's parser."""
+    said, whole = str(error.msg), error.pstr != text  # whole: the error is about the text with its dollar signs
+    if said.startswith("Expected {") or whole:  # pyparsing lists its whole grammar, or expects the end of the text
         said = "a group, a letter or a command is missing or wrong here"
     said, place = said[0].lower() + said[1:].replace("\\\\", "\\"), error.loc
     if (command := ARGUMENTS.match(said)) is not None:

@@ -1,4 +1,4 @@
-"""A plot drawn into a picture: panel, axes, curves up to now with a dot at their end."""
+"""Plot drawn into a picture: panel, axes, and curves up to now with dots at their ends."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 Color = tuple[int, int, int]
 
 FEW = 12
-"""Most curves that end in dots."""
+"""Largest number of curves with dots at their ends."""
 MOST_TICKS = 5
-"""About how many numbers an axis has at most."""
+"""Approximate largest number of ticks on an axis."""
 SHARE = 0.3
-"""A title below that is longer than this share of the panel has a line of its own."""
+"""Length of the title below, relative to the panel, above which it gets its own line."""
 TITLE_LINES = 2
-"""Lines that a title above may take; what is longer is cut."""
+"""Largest number of lines of the title above; longer titles are cut."""
 
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """A quantity over another (n,), SI, at times (n,) [s]; it is drawn up to ``now`` [s]."""
+    """Quantity ``values`` over another, ``across``, (n,) each, SI, at times (n,) [s]; drawn up to ``now`` [s]."""
 
     name: str
     times: Floats
@@ -42,7 +42,7 @@ class Curve:
     now: float
 
     def drawn(self) -> tuple[Floats, Floats]:
-        """The curve up to now, with its last point interpolated."""
+        """Abscissas and ordinates of the curve up to now, with the last point interpolated."""
         import numpy as np
 
         count = int(np.searchsorted(self.times, self.now, side="right"))
@@ -56,7 +56,7 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One axis of a plot. ``unit``: empty for plain numbers; ``limits`` in SI."""
+    """Axis of a plot. ``unit``: empty for plain numbers; ``limits`` in SI."""
 
     title: str
     unit: str
@@ -64,17 +64,17 @@ class Axis:
     limits: tuple[float, float] | None = None
 
     def told(self, values: Any) -> Any:
-        """SI values in the axis's unit."""
+        """Values in SI converted to the axis's unit."""
         unit = parse_unit(self.unit) if self.unit else None
         return values if unit is None else (values - unit.offset) / unit.scale
 
     def scale(self, values: Sequence[Any]) -> Scale:
-        """Its scale, in the unit."""
+        """Scale for values in SI, in the axis's unit."""
         limits = None if self.limits is None else (self.told(self.limits[0]), self.told(self.limits[1]))
         return scale_for([self.told(value) for value in values], self.log, limits)
 
     def words(self, power: int) -> str:
-        """Title, unit and power of ten that the numbers leave out."""
+        """Title with unit and the power of ten that the ticks leave out."""
         factor = "" if power == 0 else "10" + str(power).translate(SUPERSCRIPTS)
         unit = " ".join(part for part in (factor, shown_unit(self.unit) if self.unit else "") if part)
         return f"{self.title} [{unit}]" if unit and self.title else self.title or unit
@@ -91,10 +91,10 @@ def draw_plot(
     look: Look,
     named: bool,
 ) -> None:
-    """Draw over the whole of a part (h, w, 3) of a picture; ``named``: with the curves' names.
+    """Draw a plot over a whole panel (h, w, 3) of a picture; ``named``: with the curves' names.
 
-    ``text``: height of letters in parts of the part's height; the whole picture is ``scale`` times as high. Without
-    room for letters there are curves alone.
+    ``text``: height of letters relative to the panel's height; ``scale``: height of the whole picture over that of
+    the panel. A panel too small for letters shows the curves alone.
     """
     letters = Letterer(pixels, text, look, scale)
     em, wide, high = letters.em, letters.width, letters.height
@@ -111,7 +111,7 @@ def draw_plot(
     length = letters.draw.textlength(title, font=small)
     x1, low = wide - 1 - round(1.2 * em), high - pad
     tries: list[tuple[_Area, list[tuple[float, str]], list[tuple[float, str]], bool]] = []
-    for apart in (length > SHARE * wide, True):  # the title below has a line of its own
+    for apart in (length > SHARE * wide, True):  # whether the title below has its own line
         y0, y1 = pad + round(head), low - round((2.35 if apart else 1.35) * em)
         if y1 - y0 < 2 * em or wide < 8 * em:
             break
@@ -158,7 +158,7 @@ def draw_plot(
 
 @dataclass(frozen=True, slots=True)
 class _Area:
-    """The rectangle between the axes [pixels], and what it shows."""
+    """Rectangle between the axes [pixels], and their scales."""
 
     x0: int
     y0: int
@@ -168,19 +168,19 @@ class _Area:
     up: Scale
 
     def x(self, values: Any) -> Any:
-        """Columns of values."""
+        """Columns [pixels] of values."""
         return self.x0 + self.across.place(values) * (self.x1 - self.x0)
 
     def y(self, values: Any) -> Any:
-        """Rows of values."""
+        """Rows [pixels] of values."""
         return self.y1 - self.up.place(values) * (self.y1 - self.y0)
 
 
 def _draw_curve(letters: Letterer, area: _Area, x: Floats, y: Floats, color: Color, *, dot: bool) -> None:
-    """A line, with a dot at its end."""
+    """Draw a curve; ``dot``: with a dot at its end."""
     import numpy as np
 
-    reach = round(0.4 * letters.em)  # dots and thick lines go a little over the ends
+    reach = round(0.4 * letters.em)  # margin for dots and thick lines at the area's edges
     corner = (area.x0 - reach, area.y0 - reach)
     size = (area.x1 + reach - corner[0], area.y1 + reach - corner[1])
     points = np.stack([area.x(x) - corner[0], area.y(y) - corner[1]], axis=1)
@@ -196,14 +196,14 @@ def _draw_curve(letters: Letterer, area: _Area, x: Floats, y: Floats, color: Col
 
 
 def _scaled(scale: Scale, power: int) -> Scale:
-    """The scale in units of a power of ten."""
+    """Scale in units of a power of ten."""
     return scale if power == 0 else Scale(scale.low / 10.0**power, scale.high / 10.0**power)
 
 
 def _columns(letters: Letterer, small: Any, area: _Area, power: int, room: float) -> list[tuple[float, str]]:
-    """Columns of ticks and their texts, of which at least three stand left of ``room`` [pixels], if they can.
+    """Columns [pixels] of ticks and their texts; a text without room is empty.
 
-    A text without room is empty.
+    If possible at least FEWEST texts end left of ``room`` [pixels].
     """
     scale = _scaled(area.across, power)
     wanted = min(max(FEWEST, round((area.x1 - area.x0) / (6 * letters.em))), MOST_TICKS)
@@ -223,7 +223,7 @@ def _columns(letters: Letterer, small: Any, area: _Area, power: int, room: float
 
 
 def _within(up: Axis, scale: Scale, curve: Curve) -> bool:
-    """Whether something of a curve lies between the ends of the upright axis at any time of the run."""
+    """Whether any point of a curve, at any time of the run, lies within the vertical axis."""
     import numpy as np
 
     values = np.asarray(up.told(curve.values), dtype=float)
@@ -233,10 +233,9 @@ def _within(up: Axis, scale: Scale, curve: Curve) -> bool:
 def _head(
     letters: Letterer, wide: int, title: str, curves: Sequence[Curve], rows: int = TITLE_LINES
 ) -> tuple[float, list[tuple[float, float, Curve | None, str]]]:
-    """Height of title and names, and for each the column and row of its left end, its curve, its text.
+    """Height of title and names [pixels], and column, row, curve and text of each.
 
-    Names that need several lines are spread over them evenly: none stands alone that need not. ``rows``: the most lines
-    of the title.
+    Names that need several lines are spread evenly over them. ``rows``: largest number of lines of the title.
     """
     told = letters.wrapped(title, letters.width - 1.4 * letters.em, rows)
     lines = len(_lines(letters, wide, told, curves))
@@ -254,7 +253,7 @@ def _head(
 def _lines(
     letters: Letterer, wide: int, title: Sequence[str], curves: Sequence[Curve]
 ) -> list[list[tuple[float, Curve | None, str]]]:
-    """Title and names in lines of a width [pixels]: the column of each text's left end, its curve, the text."""
+    """Title and names in lines of a width [pixels]; each text with the column of its left end and its curve."""
     em, at = letters.em, 0.0
     lines: list[list[tuple[float, Curve | None, str]]] = [[(0.0, None, line)] for line in title] or [[]]
     if title:

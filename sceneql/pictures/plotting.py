@@ -1,4 +1,4 @@
-"""Axes of plots in pictures: limits, ticks, their texts, and soft strokes."""
+"""Axes of plots in pictures: limits, ticks and their texts; antialiased strokes."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 FINE = 4
-"""Strokes are drawn this many times larger, and averaged down."""
+"""Supersampling factor of strokes."""
 SMALLEST = 1e-200
-"""The smallest number that a logarithmic axis is stretched for."""
+"""Smallest value that a logarithmic axis includes."""
 FEW_DECADES = 3
-"""Most decades that have ticks between their powers."""
+"""Largest number of decades for which there are finer lines between powers of ten."""
 
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """One axis from low to high, linear or logarithmic."""
+    """Scale of an axis from low to high, linear or logarithmic."""
 
     low: float
     high: float
     log: bool = False
 
     def place(self, values: Any) -> Floats:
-        """Positions of values, 0 at the low end and 1 at the high one; NaN where a logarithm does not exist."""
+        """Positions of values, 0 at the low end and 1 at the high one; NaN for values without a logarithm."""
         import numpy as np
 
         values = np.asarray(values, dtype=float)
@@ -43,14 +43,14 @@ class Scale:
         return np.asarray((logs - low) / (high - low))
 
     def ticks(self, count: int) -> list[tuple[float, str]]:
-        """About so many round numbers with their texts; at least three where three are asked for."""
+        """About ``count`` round numbers with their texts; at least FEWEST, unless ``count`` is less."""
         if not self.log:
             values = marked_numbers(self.low, self.high, count)
             step = values[1] - values[0] if len(values) > 1 else abs(self.high - self.low)
             digits = max(0, -math.floor(math.log10(step) + 1e-9))
             return [(value, f"{value + 0.0:.{digits}f}".replace("-", "\u2212")) for value in values]
         first, last = math.ceil(math.log10(self.low) - 1e-9), math.floor(math.log10(self.high) + 1e-9)
-        if last - first < 2:  # powers of ten alone would be too few
+        if last - first < 2:  # too few powers of ten
             values = [m * 10.0**k for k in range(first - 1, last + 1) for m in (1, 2, 5)]
             values = [v for v in values if self.low * (1 - 1e-9) <= v <= self.high * (1 + 1e-9)]
             if len(values) < min(FEWEST, count):
@@ -71,7 +71,7 @@ class Scale:
 
 
 def scale_for(values: Sequence[Any], log: bool, limits: tuple[float, float] | None) -> Scale:
-    """The axis that shows all of the finite values with some room, or just what the limits say."""
+    """Scale that contains all finite values with a margin, or that has the given limits."""
     import numpy as np
 
     if limits is not None:
@@ -83,12 +83,12 @@ def scale_for(values: Sequence[Any], log: bool, limits: tuple[float, float] | No
         room = 10 ** max(0.06 * math.log10(high / low), 0.05)
         return Scale(low / room, high * room, log)
     room = 0.07 * (high - low) or 0.07 * abs(high) or 1.0
-    room = max(room, 2.0 * math.ulp(max(abs(low), abs(high))))  # which is not rounded away
+    room = max(room, 2.0 * math.ulp(max(abs(low), abs(high))))  # so that rounding does not remove it
     return Scale(low - room, high + room)
 
 
 def thousands(scale: Scale) -> int:
-    """The power of ten that numbers beside a linear axis are divided by: 0 where they are short enough as they are."""
+    """Power of ten that the ticks of a linear axis are divided by, a multiple of 3; 0 for short numbers."""
     most = max(abs(scale.low), abs(scale.high))
     if scale.log or 1e-3 <= most < 1e5:
         return 0
@@ -96,9 +96,9 @@ def thousands(scale: Scale) -> int:
 
 
 def stroke(size: tuple[int, int], points: Floats, width: float) -> tuple[Any, tuple[int, int]] | None:
-    """A line through points (n, 2) [pixels], broken at NaN, with round ends, in an area of this size.
+    """Mask (Pillow, 8 bits) of a line through points (n, 2) [pixels], and its left and top.
 
-    A mask (Pillow, 8 bits) and its left and top; None where no part of the line is inside.
+    The line is broken at NaN and has round ends; ``size``: that of the area. None if no part of it lies inside.
     """
     import numpy as np
     from PIL import Image, ImageDraw

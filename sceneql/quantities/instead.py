@@ -88,6 +88,9 @@ _SENTENCES = (
     ("sign", "²", "write `^2`"),
     ("sign", "³", "write `^3`"),
     ("sign", "°", "write `deg`"),
+    ("sign", "“ ” „ « »", 'write straight quotes, `"`'),
+    ("sign", "‘ ’ ‚", "write straight quotes, `'`"),
+    ("sign", ";", "leave it out: the end of the line, or in braces a comma, ends a value"),
     (
         "sign",
         "{ }",
@@ -95,7 +98,11 @@ _SENTENCES = (
         "`sceneql words repeat`",
     ),
     ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
-    ("unit", "fps frames frame", "a number of frames has no unit: `clock: {fps: 30}`"),
+    (
+        "unit",
+        "fps frames frame",
+        "a number of frames has no unit: `clock: {fps: 30}`; in a formula write `time`, which is 1 s at frame 30",
+    ),
     ("name", "t", "the time is written 'time'"),
     ("name behind", "if then else elif when", f"{_IF}: `sceneql words functions`"),
     (
@@ -133,7 +140,8 @@ _SENTENCES = (
     (
         "field",
         "scale",
-        "write its sizes as they shall be, or let a group scale it: `{group: {children: [ball], scale: 1 1.4 1}}`",
+        "write its sizes as they shall be, or let a group scale it, which has the place then, and may be a `rigid`"
+        " body: `{group: {children: [{sphere: {radius: 1 m}}], scale: 1 1.4 1, position: 0 1 0 m}}`",
     ),
     (
         "field",
@@ -162,6 +170,7 @@ _SENTENCES = (
         "restitution bounce bounciness bouncy elasticity friction",
         "a contact has it, `contacts: {touch: {collision: {restitution: 0.8, friction: 0.3}}}`",
     ),
+    ("field.objects", "count copies number amount instances", _REPEAT),
     ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
     ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
     ("field", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
@@ -209,6 +218,7 @@ _SENTENCES = (
     ("section", "resolution size width height", "write `outputs: {film: {video: {size: 720p}}}`"),
     ("section", "scene world root project", "the sections stand by themselves, with no key around them"),
     ("section", "floor", "write `objects: {floor: plane}`"),
+    ("absent", "floor", "write `objects: {floor: none}`"),
     ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
     ("zero", "mass", "what never moves is an object without a model, or a body or mass with `fixed: yes`"),
     ("body", "wall ground static base ceiling earth fixed none null", "what stands still is `world`"),
@@ -230,6 +240,11 @@ _SENTENCES = (
         "its equation is a model, `sceneql words equations`; or a body hangs on a tie, `sceneql words hinge`",
     ),
     ("entry", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
+    (
+        "list",
+        "gravity",
+        "write `gravity: {gravity: {acceleration: 0 -9.81 0 m/s^2}}`, or only `forces: [gravity]`",
+    ),
 )
 """(what the words were taken for, the words, the sentence)."""
 

@@ -116,7 +116,7 @@ _LISTS = (
     ("difference", "subtract minus subtraction"),
     ("intersection", "intersect"),
     ("trail", "trace tail"),
-    ("particles", "particle body rigid_body rigidbody point_mass bodies"),
+    ("particles", "particle body point_mass bodies"),
     ("mass_spring", "springs spring_system mass_springs"),
     ("diffusion", "heat heat_equation"),
     ("equations", "ode system odes equation"),

@@ -206,6 +206,7 @@ def _unknown(name: str, span: Span | None, at: int) -> ScriptError:
     else:
         hint = instead("unit", name)
         same = [known for known in KNOWN_UNITS if known.lower() == name.lower()]
+        same += [name[:-1]] if name.endswith("s") and name[:-1] in KNOWN_UNITS else []  # 20 cms
         meant = sign_of(name) or (same[0] if same else None)
         hint = hint or (suggestion(name, KNOWN_UNITS) if meant is None else f"did you mean '{meant}'?")
     return _error("unknown-unit", f"there is no unit '{name}'", span, at, at + max(1, len(name)), hint)

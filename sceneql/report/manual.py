@@ -27,19 +27,25 @@ def listing(catalogue: Catalogue) -> str:
     lines: list[str] = []
     wrong: list[str] = []
     for family in catalogue.families:
-        lines.append(f"{family}:")
-        for word in catalogue.words(family):
-            try:
-                lines.append(f"  {word:<22}{_summary(catalogue.load(family, word))}")
-            except ScriptError as error:
-                lines.append(f"  {word:<22}cannot be used, as told below")
-                wrong += [str(found) for found in error.diagnostics]
+        lines += _family(catalogue, family, wrong)
     lines += ["topics:", *(f"  {topic:<22}{title}" for topic, title in topics().items())]
     return "\n\n".join(["\n".join(lines), *wrong])
 
 
+def _family(catalogue: Catalogue, family: str, wrong: list[str]) -> list[str]:
+    """The lines of a family's words; to ``wrong`` go the errors of those that cannot be used."""
+    lines = [f"{family}:"]
+    for word in catalogue.words(family):
+        try:
+            lines.append(f"  {word:<22}{_summary(catalogue.load(family, word))}")
+        except ScriptError as error:
+            lines.append(f"  {word:<22}cannot be used, as told below")
+            wrong += [str(found) for found in error.diagnostics]
+    return lines
+
+
 def manual(catalogue: Catalogue, word: str) -> str:
-    """The manual of a word (in every family that has it), of a topic, or of functions if it is one.
+    """The manual of a word (in every family that has it), of a topic, or of functions if it is one; a family's words.
 
     Raises Unsuitable if there is none.
     """
@@ -50,6 +56,10 @@ def manual(catalogue: Catalogue, word: str) -> str:
         pages.append(page(word, clock=_fields(kinds.Clock, "  ")))
     if not pages and word in OPERATIONS:
         pages.append(page("functions"))
+    named = [family for family in catalogue.families if not pages and word in (family, family.removesuffix("s"))]
+    for family in named:
+        wrong: list[str] = []
+        pages += ["\n".join(_family(catalogue, family, wrong)), *wrong]
     if not pages:
         every = [w for family in catalogue.families for w in catalogue.words(family)]
         hint = anywhere(word) or suggestion(word, [*every, *topics(), *OPERATIONS])

@@ -23,6 +23,8 @@ COLORS = {"stable": "#8fd0a8", "inaccurate": "#f3d06b", "failed": "#c8553d", "sk
 """Colors of the outcomes of runs, which differ in lightness, too."""
 DOTS = 150
 """Resolution of PNGs [dots per inch]."""
+PLAIN = 1e-3, 1e4
+"""Numbers between these are written without powers of ten."""
 SMALLEST = 1e-17
 """Smallest change that is drawn."""
 
@@ -169,9 +171,18 @@ def logarithmic(axes: Any) -> None:
     """Logarithmic scales on both axes; within two decades the x axis is labeled at 1, 2 and 5."""
     from matplotlib.ticker import LogFormatterSciNotation, LogLocator
 
+    class Plain(LogFormatterSciNotation):
+        """Numbers as they are where all of the axis has few digits: 20, not 2 x 10^1."""
+
+        def __call__(self, x: float, pos: Any = None) -> str:
+            text: str = super().__call__(x, pos)
+            low, high = axes.xaxis.get_view_interval()
+            return f"{x:g}" if text and PLAIN[0] <= low and high <= PLAIN[1] else text
+
     axes.set(xscale="log", yscale="log")
+    axes.xaxis.set_major_formatter(Plain())
     axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
-    axes.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(2.0, 2.0)))
+    axes.xaxis.set_minor_formatter(Plain(minor_thresholds=(2.0, 2.0)))
     axes.grid(True, which="major", alpha=0.3)
 
 

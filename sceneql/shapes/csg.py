@@ -28,11 +28,11 @@ class Combination(Solid):
             yield Problem(f"{type(self).__name__.lower()} joins at least two objects", ("of",))
 
     def members(self) -> tuple[Ref, ...]:
-        """Its members."""
+        """References to the members, in order."""
         return tuple(self.of.values()) if isinstance(self.of, dict) else self.of
 
     def joins(self) -> tuple[Ref, ...]:
-        """All of its members."""
+        """References to all members: the solid is made from the insides of all."""
         return self.members()
 
     def width(self, moment: Moment) -> float:

@@ -62,7 +62,7 @@ def outline(shape: Shape) -> Floats:
 
 
 def outermost(points: Floats) -> Floats:
-    """Those of the points (n, 3) that are farthest in one of the DIRECTIONS; all where there are at most COUNT."""
+    """The points, of (n, 3), that are farthest along any of the DIRECTIONS; all points if there are at most COUNT."""
     if len(points) <= COUNT:
         return points
     found: Floats = points[np.unique(_farthest(points, 0.0))]

@@ -92,7 +92,7 @@ class Part(Record):
         return given[0] if len(given) == 1 else None
 
     def now(self, moment: Moment) -> Shape:
-        """Its parts at a moment; empty for a line or polygon whose varying number of points is too small then.
+        """Parts of the skeleton at a moment; empty for a line or polygon whose varying number of points is too small.
 
         Raises RunFailure for radii or weights of another number than the points, and where a fixed number of points is
         too small.

@@ -59,7 +59,7 @@ class Solid(Placed):
         return mapped_box(compose(place, self.local(moment)), *self.reach(moment))
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
-        """Its field as a tape."""
+        """The solid as a shape with its field as a tape."""
         return traced(self, name, place, moment)
 
     def read(self, output: str, moment: Moment) -> Any:

@@ -29,11 +29,11 @@ class Warp(Solid):
     of: ObjectRef = field("The object, which needs an inside; several are one as a union or group.")
 
     def members(self) -> tuple[Ref, ...]:
-        """Its object."""
+        """Reference to the warped object."""
         return (self.of,)
 
     def joins(self) -> tuple[Ref, ...]:
-        """Its object."""
+        """Reference to the warped object."""
         return (self.of,)
 
     def back(
@@ -87,7 +87,7 @@ class Warp(Solid):
         return super().extent(place, moment) if (high > low).all() else (low, high)
 
     def lower(self, name: str, place: Floats, moment: Moment) -> Iterable[frame.Shape]:
-        """Its field as a tape; a warp without material and color has those of its object."""
+        """The warped solid as a tape; a warp without material and color has those of its object."""
         child, own = moment.object(self.of), self
         if self.material is None and self.color is None:
             own = self.model_copy(update={"material": child.material, "color": child.color})

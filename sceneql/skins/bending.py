@@ -1,4 +1,4 @@
-"""The energy of bending of skins, as terms of the island and in numbers. Imports numpy."""
+"""Bending energy of skins: its terms in the island, and its value. Imports numpy."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 
 def add_to_line(skin: Membrane, bend: float, assembly: Assembly) -> None:
-    """``bend``: its stiffness times the depth [N m^2]."""
+    """Add the bending term of a closed line; ``bend``: bending stiffness times depth [N m^2]."""
     ints = (skin.count, skin.position_at, skin.force_at, assembly.floats([bend]))
     assembly.term("internal", "sceneql.skins.bend_line_kernels:bend", ints)
 
 
 def add_to_sheet(skin: Membrane, bend: float, assembly: Assembly) -> None:
-    """``bend``: its stiffness [J]."""
+    """Add the bending term of a closed sheet; ``bend``: bending stiffness [J]."""
     folds = folds_of(skin.faces)
     head = (skin.count, skin.position_at, skin.force_at, assembly.floats([bend]))
     sums = assembly.floats(np.zeros(2 * skin.count))
@@ -30,7 +30,7 @@ def add_to_sheet(skin: Membrane, bend: float, assembly: Assembly) -> None:
 
 
 def folds_of(triangles: NDArray[int64]) -> NDArray[int64]:
-    """(k, 4) of the sides of a closed sheet (m, 3): both vertices, and those across from it on its left and right."""
+    """Edges (k, 4) of a closed sheet (m, 3): both vertices, then the vertices opposite on the left and the right."""
     ways = np.concatenate([np.roll(triangles, -k, axis=1) for k in range(3)])
     up = ways[ways[:, 0] < ways[:, 1]]
     down = ways[ways[:, 0] > ways[:, 1]]
@@ -39,7 +39,7 @@ def folds_of(triangles: NDArray[int64]) -> NDArray[int64]:
 
 
 def of_line(points: Floats) -> float:
-    """The integral of half the square of the curvature along a closed line (n, 2) [1/m]."""
+    """Integral of half the squared curvature along a closed line (n, 2) [1/m]."""
     sides = np.roll(points, -1, axis=0) - points
     before = np.roll(sides, 1, axis=0)
     across = before[:, 0] * sides[:, 1] - before[:, 1] * sides[:, 0]
@@ -49,7 +49,7 @@ def of_line(points: Floats) -> float:
 
 
 def of_sheet(points: Floats, triangles: NDArray[int64]) -> float:
-    """The integral of half the square of twice the mean curvature over a closed sheet of vertices (n, 3)."""
+    """Integral of half the square of twice the mean curvature over a closed sheet with vertices (n, 3) [1]."""
     a, b, c, d = (points[one] for one in folds_of(triangles).T)
     along = b - a
     left, right = np.cross(along, c - a), np.cross(d - a, along)

@@ -1,4 +1,4 @@
-"""The outline of an object in the plane z = 0 as a closed line of vertices, evenly apart."""
+"""Outline of an object in the plane z = 0 as a closed line of equally spaced vertices."""
 
 from __future__ import annotations
 
@@ -18,15 +18,18 @@ if TYPE_CHECKING:
 
 SKINS = "a skin is that of a bounded object with an inside, as a `sphere`, an `implicit`, or a closed `mesh`"
 LOOKED = 256
-"""Cells along the longer side of the box around an object in which its outline is looked for."""
+"""Cells along the longer side of an object's box, in which the contour is sampled."""
 FINER = 8
-"""Points of that outline for a vertex."""
+"""Points of the contour per vertex."""
 EVEN = 60
-"""Updates of vertices towards equal sides."""
+"""Largest number of iterations towards sides of equal length."""
 
 
 def closed_line(ref: Ref, spacing: float, assembly: Assembly) -> Floats:
-    """(n, 2) vertices counterclockwise, all sides equal and at most ``spacing`` [m]. Raises ScriptError."""
+    """Vertices (n, 2) [m], counterclockwise, all sides equal and at most ``spacing`` [m] long.
+
+    Raises ScriptError for an object without an inside, and for one without exactly one outline in the plane.
+    """
     start = cast("Moment", Start(assembly))
     try:
         level, low, high, _ = inside(ref, True, start)
@@ -47,7 +50,7 @@ def closed_line(ref: Ref, spacing: float, assembly: Assembly) -> Floats:
 
 
 def _contour(level: Any, low: Floats, high: Floats) -> list[Floats]:
-    """The closed lines (k, 2) on which a level is 0."""
+    """Closed lines (k, 2) [m] on which a level is 0 in the plane z = 0."""
     from contourpy import contour_generator
 
     sides = (high - low)[:2]
@@ -60,7 +63,7 @@ def _contour(level: Any, low: Floats, high: Floats) -> list[Floats]:
 
 
 def _towards(level: Any, size: float) -> Any:
-    """A function that moves points (k, 2) onto the surface of a level."""
+    """Function that moves points (k, 2) [m] onto the zero line of a level."""
 
     def polish(points: Floats) -> Floats:
         found: Floats = onto(level, size, np.column_stack([points, np.zeros(len(points))]), 2)[:, :2]
@@ -70,7 +73,7 @@ def _towards(level: Any, size: float) -> Any:
 
 
 def even(line: Floats, spacing: float, polish: Any = None) -> Floats:
-    """(n, 2) vertices on a closed line (k, 2), counterclockwise, all sides equal; ``polish`` moves points onto it."""
+    """Vertices (n, 2) on a closed line (k, 2), counterclockwise, sides equal; ``polish`` projects points onto it."""
     if signed_area(line) < 0.0:
         line = line[::-1]
     count = int(np.ceil(_chords(line).sum() / spacing))
@@ -91,19 +94,19 @@ def even(line: Floats, spacing: float, polish: Any = None) -> Floats:
 
 
 def signed_area(line: Floats) -> float:
-    """What a closed line (k, 2) goes around counterclockwise [m^2]."""
+    """Area inside a closed line (k, 2), positive if it runs counterclockwise [m^2]."""
     x, y = (line - line[0]).T
     return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
 
 
 def _chords(line: Floats) -> Floats:
-    """(k,) the lengths of its sides, each from a point to the next [m]."""
+    """Lengths (k,) [m] of the sides of a closed line, each from a point to the next."""
     found: Floats = np.hypot(*(np.roll(line, -1, axis=0) - line).T)
     return found
 
 
 def _at(line: Floats, places: Floats) -> Floats:
-    """(m, 2) the points at parts of its length."""
+    """Points (m, 2) of a closed line at fractions (m,) of its length."""
     ends = np.append(0.0, np.cumsum(_chords(line)))
     closed = np.vstack([line, line[:1]])
     return np.column_stack([np.interp(places * ends[-1], ends, closed[:, k]) for k in range(2)])

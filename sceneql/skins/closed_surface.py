@@ -1,4 +1,4 @@
-"""The surface of an object as a closed sheet of triangles, evenly fine."""
+"""Surface of an object as a closed sheet of triangles of about equal size."""
 
 from __future__ import annotations
 
@@ -22,17 +22,20 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 MOST = 20_000_000
-"""Places at which an object is looked at."""
+"""Largest number of lattice points at which a level is evaluated."""
 SMOOTHED = 12
-"""Rounds in which vertices move to the mean of those beside them, and back onto the surface."""
+"""Rounds of smoothing: vertices move half the way to the mean of their neighbors, then back onto the surface."""
 SQUARES = tuple(
     (axis, np.eye(3, dtype=np.int64)[[(axis + 1) % 3, (axis + 2) % 3]]) for axis in range(3)
-)  # of the lattice's sides along an axis: steps to the cells around them
+)  # for lattice edges along each axis: steps to the four cells around them
 
 
 def closed_surface(ref: Ref, spacing: float, assembly: Assembly) -> tuple[Floats, NDArray[int64]]:
-    """Vertices (n, 3) about ``spacing`` [m] apart and triangles (m, 3), counterclockwise from outside. Raises
-    ScriptError for an object without an inside, in several pieces, or finer than the spacing."""
+    """Vertices (n, 3) [m] about ``spacing`` [m] apart, and triangles (m, 3), counterclockwise from outside.
+
+    Raises ScriptError for an object without an inside, in several pieces, or with parts finer than the spacing, and
+    LimitRefused for too many lattice points.
+    """
     try:
         level, low, high, _ = inside(ref, False, cast("Any", Start(assembly)))
         if getattr(level, "flat", False):
@@ -52,7 +55,7 @@ def closed_surface(ref: Ref, spacing: float, assembly: Assembly) -> tuple[Floats
 
 
 def wrong(count: int, triangles: NDArray[int64]) -> str:
-    """Why triangles are not one closed sheet of so many vertices; empty where they are."""
+    """Reason why triangles (m, 3) with ``count`` vertices are not one closed sheet; empty if they are."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -67,12 +70,12 @@ def wrong(count: int, triangles: NDArray[int64]) -> str:
 
 
 def _sides(triangles: NDArray[int64]) -> tuple[NDArray[int64], NDArray[int64]]:
-    """The ends (3 m,) of all sides, each triangle's in order."""
+    """First and second vertices, (3 m,) each, of the directed sides of triangles (m, 3)."""
     return triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
 
 
 def _means(points: Floats, triangles: NDArray[int64]) -> Floats:
-    """(n, 3) the mean of the vertices beside each."""
+    """Mean (n, 3) of the neighbors of each vertex."""
     a, b = _sides(triangles)
     sums = np.column_stack([np.bincount(a, points[b, k], len(points)) for k in range(3)])
     found: Floats = sums / np.bincount(a, minlength=len(points))[:, None]
@@ -80,8 +83,10 @@ def _means(points: Floats, triangles: NDArray[int64]) -> Floats:
 
 
 def _nets(level: Any, low: Floats, high: Floats, spacing: float, assembly: Assembly) -> tuple[Floats, NDArray[int64]]:
-    """One vertex in each cell of a lattice that the surface crosses, two triangles for each side of the lattice that
-    it crosses (surface nets: Gibson 1998, MICCAI 1998, 888-898)."""
+    """Surface nets: one vertex in each lattice cell that the surface crosses, two triangles for each crossed edge.
+
+    Gibson 1998, MICCAI 1998, 888-898.
+    """
     begin = low - 2.3 * spacing
     counts = np.ceil((high - low) / spacing).astype(np.int64) + 6
     if float(np.prod(counts.astype(float))) > MOST:
@@ -112,7 +117,7 @@ def _nets(level: Any, low: Floats, high: Floats, spacing: float, assembly: Assem
 
 
 def _halves(points: Floats, quads: NDArray[int64]) -> NDArray[int64]:
-    """(2 k, 3) triangles of squares (k, 4), each cut along its shorter diagonal."""
+    """Triangles (2 k, 3) of quadrilaterals (k, 4), each split along its shorter diagonal."""
     a, b, c, d = quads.T
     across = ((points[a] - points[c]) ** 2).sum(axis=1) <= ((points[b] - points[d]) ** 2).sum(axis=1)
     one = np.where(across[:, None], np.column_stack([a, b, c]), np.column_stack([a, b, d]))

@@ -1,4 +1,4 @@
-"""A deep skin, a closed sheet of triangles around fluid, as state, numbers and terms of an island."""
+"""Skin in a deep flow, a closed sheet of triangles around fluid: its state, numbers and terms in the island."""
 
 from __future__ import annotations
 
@@ -22,41 +22,41 @@ if TYPE_CHECKING:
 
 KERNELS = "sceneql.skins.closed_sheet_kernels"
 EVEN = 2.0 / 3.0
-"""Of the stretch of a sheet: what springs along sides have, k = EVEN stretch (areas beside)/length^2, so that the
-tension of an even stretch is stretch times it (after Van Gelder 1998, J. Graphics Tools 3, 21-41)."""
+"""Factor of the stiffness of springs along sides, k = EVEN stretch (adjacent areas)/length^2. A uniform relative
+stretch then makes a tension of ``stretch`` times it (after Van Gelder 1998, J. Graphics Tools 3, 21-41)."""
 ASIDE = 1e-7 * np.array([1.0, 0.6180339887])
-"""How far off the middles of cells, in cells, the lines run along which the inside is told: past vertices there."""
+"""Offset [cells] along y and z of the test lines from centers of cells, so that none meets a vertex there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
-    """A closed sheet of vertices (n, 3) in a deep flow."""
+    """Closed sheet with vertices (n, 3) in a deep flow."""
 
     flow: Flow
     membrane: Membrane
     triangles: NDArray[int64]
-    """(m, 3) counterclockwise from outside."""
+    """(m, 3): vertices, counterclockwise from outside."""
     sides: NDArray[int64]
-    """(k, 2)."""
+    """(k, 2): vertices of each side."""
     lengths: Floats
-    """(k,) of the sides at the start [m]."""
+    """(k,) [m]: lengths of sides at the start."""
     stiffness: Floats
-    """(k,) of their springs [N/m]."""
+    """(k,) [N/m]: stiffness of the springs along sides."""
     rest: Floats
-    """(m, 4) of each triangle the inverse of its sides at the start, in its plane, (p, q; 0, r), and its area."""
+    """(m, 4): inverse (p, q; 0, r) [1/m] of each triangle's sides in its plane at the start, and its area [m^2]."""
     law: Elasticity
 
     def volume(self, points: Floats) -> float:
-        """What it holds [m^3]."""
+        """Volume inside the sheet [m^3]."""
         a, b, c = self._corners(points - points[0])
         return float((a * np.cross(b, c)).sum() / 6.0)
 
     def area(self, points: Floats) -> float:
-        """Its own [m^2]."""
+        """Area of the sheet [m^2]."""
         return float(_areas(points, self.triangles).sum())
 
     def potential(self, points: Floats) -> float:
-        """The energy of its tension and law [J], 0 at the start, and of its bending."""
+        """Energy of tension and elasticity [J], 0 at the start, plus that of bending."""
         found = self.law.tension * (self.area(points) - float(self.rest[:, 3].sum()))
         if self.law.stretch > 0.0:
             more = self.sides_of(points) - self.lengths
@@ -78,7 +78,7 @@ class Sheet:
         return found
 
     def moments(self, points: Floats) -> tuple[Floats, Floats]:
-        """The center (3,) [m] of what it holds, and the mean products (3, 3) of places from there [m^2]."""
+        """Center (3,) [m] of the volume inside, and its mean products (3, 3) [m^2] of coordinates from there."""
         base = points.mean(axis=0)
         a, b, c = self._corners(points - base)
         parts = (a * np.cross(b, c)).sum(axis=1) / 6.0
@@ -88,7 +88,7 @@ class Sheet:
         return base + center, second / (20.0 * whole) - np.outer(center, center)
 
     def holds(self, places: Floats, points: Floats) -> NDArray[bool_]:
-        """(k,) whether it holds the centers (k, 3) of cells, by what it crosses on lines along x to them."""
+        """(k,): whether centers of cells (k, 3) [m] lie inside, by the parity of crossings on lines along x."""
         low, spacing = np.array(self.flow.low), np.array(self.flow.spacing)
         lines = (points - low)[:, 1:] / spacing[1:] - 0.5 - ASIDE  # in cells from the first one's center
         corners = lines[self.triangles]
@@ -118,7 +118,7 @@ class Sheet:
         return found
 
     def encloses(self, places: Floats, points: Floats) -> NDArray[bool_]:
-        """(k,) whether it goes around places (k, 3), by solid angles."""
+        """(k,): whether places (k, 3) [m] lie inside, by solid angles."""
         from sceneql.bodies.filling.clusters import Clusters, tiled
         from sceneql.bodies.filling.winding_kernels import hold
 
@@ -127,7 +127,7 @@ class Sheet:
         return found
 
     def sides_of(self, points: Floats) -> Floats:
-        """(k,) the lengths of its sides [m]."""
+        """Lengths (k,) [m] of the sides."""
         found: Floats = np.linalg.norm(points[self.sides[:, 1]] - points[self.sides[:, 0]], axis=1)
         return found
 
@@ -137,13 +137,13 @@ class Sheet:
 
 
 def _turn(a: Floats, b: Floats) -> Floats:
-    """(k,) cross products of vectors (k, 2)."""
+    """Cross products (k,) of vectors (k, 2)."""
     found: Floats = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
     return found
 
 
 def _areas(points: Floats, triangles: NDArray[int64]) -> Floats:
-    """(m,) [m^2]."""
+    """Areas (m,) [m^2] of triangles."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     found: Floats = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
     return found
@@ -152,10 +152,10 @@ def _areas(points: Floats, triangles: NDArray[int64]) -> Floats:
 def add_sheet(
     of: Ref, spacing: float, law: Elasticity, largest: float, kept: bool, flow: Flow, assembly: Assembly
 ) -> Sheet:
-    """Reserve the vertices of an object's surface, and add its tension and its law; ``kept``: its volume is;
-    ``largest``: of Membrane.largest_tension.
+    """Reserve the vertices of an object's surface, and add the terms of its elasticity.
 
-    Raises ScriptError.
+    ``kept``: whether its volume is conserved; ``largest`` [N/m]: as in Membrane.largest_tension.
+    Raises ScriptError for an object that is no closed surface.
     """
     points, triangles = closed_surface(of, spacing, assembly)
     count, areas = len(points), _areas(points, triangles)
@@ -195,7 +195,7 @@ def add_sheet(
 
 
 def _inverses(points: Floats, triangles: NDArray[int64], areas: Floats) -> Floats:
-    """(m, 4) of each triangle p, q, r so that (p, q; 0, r) is the inverse of its sides in its plane; its area."""
+    """(m, 4): p, q, r [1/m] of each triangle, (p, q; 0, r) being the inverse of its sides in its plane; its area."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     length = np.linalg.norm(b - a, axis=1)
     along, height = ((b - a) * (c - a)).sum(axis=1) / length, 2.0 * areas / length

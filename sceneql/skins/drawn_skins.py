@@ -1,4 +1,4 @@
-"""How a skin is drawn."""
+"""Shapes that draw a skin."""
 
 from __future__ import annotations
 
@@ -27,8 +27,11 @@ def drawn(
     state: ModelState,
     place: Floats | None = None,
 ) -> Iterator[Shape]:
-    """A closed line of a thickness [m], by default that of its sides, and a face of what it holds half as high; of a
-    deep skin a smooth mesh."""
+    """Shapes of a skin: a smooth mesh in a deep flow, a closed line in a flat one.
+
+    ``thickness`` of the line [m], by default the length of its longest side at the start. ``filled``: adds a face of
+    the inside, raised by a quarter of the thickness.
+    """
     place = np.eye(3, 4) if place is None else place
     points = positions(skin, state)
     if len(skin.triangles):
@@ -49,7 +52,7 @@ def drawn(
 
 
 def _normals(points: Floats, triangles: Ints) -> Floats:
-    """(n, 3) unit normals: the mean of those beside each vertex, by their areas."""
+    """Unit normals (n, 3) of vertices: means of the adjacent triangles' normals, weighted by area."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
     own = np.cross(b - a, c - a)
     sums = np.column_stack([np.bincount(triangles.ravel(), np.repeat(own[:, k], 3), len(points)) for k in range(3)])

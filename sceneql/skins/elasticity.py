@@ -1,4 +1,4 @@
-"""How skins pull, in numbers."""
+"""Elastic constants of skins."""
 
 from __future__ import annotations
 
@@ -11,24 +11,26 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Elasticity:
-    """What a skin resists with; none of it is 0 or more of it."""
+    """Elastic constants of a skin; any of them may be 0, and several may act at once."""
 
     tension: float = 0.0
-    """The same always [N/m]."""
+    """Constant tension [N/m]."""
     stretch: float = 0.0
-    """Tension of springs for a relative stretch [N/m]."""
+    """Tension of springs per relative stretch [N/m]."""
     modulus: float = 0.0
-    """Shear modulus of a neo-Hookean sheet, over its thickness [N/m]."""
+    """Shear modulus of a neo-Hookean sheet, times its thickness [N/m]."""
     shear: float = 0.0
-    """That of Skalak's law [N/m]."""
+    """Shear modulus of Skalak's law [N/m]."""
     area: float = 0.0
-    """How much it resists a change of area, in parts of that."""
+    """Resistance to changes of area in Skalak's law, relative to ``shear``."""
     bend: float = 0.0
-    """Stiffness against bending [J]."""
+    """Bending stiffness [J]."""
 
 
 def stiffness_in(flow: Flow, largest: float) -> tuple[float, float]:
-    """The pressure by which contacts push a skin off [Pa], and the side of a cell [m];
-    ``largest``: of Membrane.largest_tension [N/m]."""
+    """Pressure of contacts on a skin [Pa], and the shortest side of a cell [m].
+
+    ``largest`` [N/m]: as in Membrane.largest_tension.
+    """
     cell = min(flow.spacing[: len(flow.areas)])
     return largest / cell, cell

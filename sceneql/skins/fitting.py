@@ -1,4 +1,4 @@
-"""Whether a skin fits its flow."""
+"""Checks of a skin against the cells of its flow."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Flow
 
 APART = {2: 0.25, 3: 0.5}
-"""Distance of vertices in cells, by the flow's axes. What a curve through them holds is then kept to 1e-7 where it has
-25 cells across; twice as far apart it loses ten times as much."""
+"""Default distance of vertices [cells], by the number of the flow's axes. The area inside a curve 25 cells wide is
+then conserved to 1e-7; twice this distance loses ten times as much."""
 WIDE = 4.0
-"""Cells that a skin is wide, at least: its forces are spread over as many."""
+"""Least width of a skin [cells]: as many as its forces are spread over."""
 
 
 def spacing_in(flow: Flow, spacing: float | None, of: Ref, assembly: Assembly) -> float:
-    """Its vertices' distance [m], at most a cell. Raises ScriptError where that leaves gaps, and around solids."""
+    """Distance of a skin's vertices [m]. Raises ScriptError for a given ``spacing`` larger than a cell."""
     cell = min(flow.spacing[: len(flow.areas)])
     apart = APART[len(flow.areas)] * cell
     if spacing is not None and spacing > cell:
@@ -30,7 +30,7 @@ def spacing_in(flow: Flow, spacing: float | None, of: Ref, assembly: Assembly) -
 
 
 def must_fit(skin: Line | Sheet, of: Ref, assembly: Assembly) -> None:
-    """Raises ScriptError where a skin stands outside its flow, or is smaller than what its cells tell."""
+    """Raise ScriptError for a skin outside its flow or its fluid, too small for its cells, or longer than a period."""
     flow, membrane = skin.flow, skin.membrane
     axes = len(flow.areas)
     points = assembly.start()[membrane.position_at : membrane.position_at + 3 * membrane.count].reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""A flat skin, a closed line around fluid, as state, numbers and terms of an island."""
+"""Skin in a flat flow, a closed line around fluid: its state, numbers and terms in the island."""
 
 from __future__ import annotations
 
@@ -25,34 +25,34 @@ KERNELS = "sceneql.skins.closed_line_kernels"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Line:
-    """A closed line of vertices (n, 2) in a flat flow."""
+    """Closed line with vertices (n, 2) in a flat flow."""
 
     flow: Flow
     membrane: Membrane
     lengths: Floats
-    """(n,) of its sides at the start [m]."""
+    """(n,) [m]: lengths of sides at the start."""
     law: Elasticity
 
     @property
     def triangles(self) -> NDArray[int64]:
-        """(0, 3): none."""
+        """Empty array (0, 3): a line has no triangles."""
         return np.zeros((0, 3), dtype=np.int64)
 
     @property
     def depth(self) -> float:
-        """Of the flow [m]."""
+        """Depth of the flow along z [m]."""
         return self.flow.spacing[2]
 
     def volume(self, points: Floats) -> float:
-        """What it holds [m^3]."""
+        """Volume inside the line over the flow's depth [m^3]."""
         return self.depth * signed_area(points[:, :2])
 
     def area(self, points: Floats) -> float:
-        """Its own [m^2]."""
+        """Area of the skin: length times depth [m^2]."""
         return self.depth * float(self.sides_of(points).sum())
 
     def potential(self, points: Floats) -> float:
-        """The energy of its tension [J], 0 at the start, and of its bending."""
+        """Energy of tension and elasticity [J], 0 at the start, plus that of bending."""
         law, s = self.law, self.sides_of(points) / self.lengths
         dense = law.tension * (s - 1.0) + 0.5 * law.stretch * (s - 1.0) ** 2
         dense += 0.5 * law.modulus * (s**2 + 1.0 / s**2 - 2.0) + 0.25 * law.shear * (1.0 + law.area) * (s**2 - 1.0) ** 2
@@ -64,7 +64,7 @@ class Line:
         return self.depth * found
 
     def moments(self, points: Floats) -> tuple[Floats, Floats]:
-        """The center (3,) [m] of what it holds, and the mean products (2, 2) of places from there [m^2]."""
+        """Center (3,) [m] of the area inside, and its mean products (2, 2) [m^2] of coordinates from there."""
         base = points[:, :2].mean(axis=0)
         a = points[:, :2] - base
         b = np.roll(a, -1, axis=0)
@@ -77,7 +77,7 @@ class Line:
         return np.append(base + center, points[0, 2]), second
 
     def holds(self, places: Floats, points: Floats) -> NDArray[bool_]:
-        """(k,) whether it holds places (k, 3), by what it crosses on the way to the left."""
+        """(k,): whether places (k, 3) [m] lie inside, by the parity of crossings to their left."""
         found = np.zeros(len(places), dtype=bool)
         ends = np.roll(points, -1, axis=0)
         for height in np.unique(places[:, 1]):
@@ -89,11 +89,11 @@ class Line:
         return found
 
     def encloses(self, places: Floats, points: Floats) -> NDArray[bool_]:
-        """(k,) whether it goes around places (k, 3)."""
+        """(k,): whether places (k, 3) [m] lie inside."""
         return self.holds(places, points)
 
     def sides_of(self, points: Floats) -> Floats:
-        """(n,) the lengths of its sides [m]."""
+        """Lengths (n,) [m] of the sides."""
         found: Floats = np.hypot(*(np.roll(points, -1, axis=0) - points)[:, :2].T)
         return found
 
@@ -101,10 +101,10 @@ class Line:
 def add_line(
     of: Ref, spacing: float, law: Elasticity, largest: float, kept: bool, flow: Flow, assembly: Assembly
 ) -> Line:
-    """Reserve the vertices of an object's outline, and add its tension; ``kept``: its area is; ``largest``: of
-    Membrane.largest_tension.
+    """Reserve the vertices of an object's outline, and add the terms of its elasticity.
 
-    Raises ScriptError.
+    ``kept``: whether its area is conserved; ``largest`` [N/m]: as in Membrane.largest_tension.
+    Raises ScriptError for an object that is no closed line.
     """
     points = closed_line(of, spacing, assembly)
     count, depth = len(points), flow.spacing[2]

@@ -1,4 +1,4 @@
-"""Skins in a flow that is solved: it carries them, and they push it."""
+"""Terms of skins in a solved flow: the flow moves them, and their forces act on it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ BY_MASS = "sceneql.skins.spline_by_mass_kernels"
 
 
 def immerse(flow: Flow, skin: Membrane, peskin: bool, assembly: Assembly) -> None:
-    """Add what the flow does to a skin, and the skin to it, by splines or Peskin's kernel."""
+    """Add the terms by which the flow moves a skin and the skin's forces act on the flow.
+
+    ``peskin``: whether Peskin's kernel interpolates and spreads, instead of splines.
+    """
     box, kernels = assembly.floats([*flow.low, *flow.spacing]), KERNELS
     if flow.varying:
         from sceneql.flows.varying.fluid_layout import MASSES

@@ -1,4 +1,4 @@
-"""Masses in a flow that is solved: it carries them, they push it, and their inertia is part of its."""
+"""Terms of masses in a solved flow: it moves them, their forces act on it, and their inertia adds to its own."""
 
 from __future__ import annotations
 
@@ -17,13 +17,16 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, Flow
 
 UPDATES = 40
-"""Of the mode that swings fastest, by powers: it is then known to a few percent."""
+"""Power iterations for the fastest mode: its rate is then known to a few percent."""
 KERNELS = "sceneql.skins.immersed_kernels"
 LADEN = "sceneql.skins.laden_kernels"
 
 
 def immerse_masses(flow: Flow, bodies: Bodies, peskin: bool, assembly: Assembly) -> None:
-    """Add what the flow does to masses, and the masses to it, by splines or Peskin's kernel."""
+    """Add the terms between masses and the flow, by splines or Peskin's kernel.
+
+    Raises ScriptError for Peskin's kernel in a flow of varying density.
+    """
     assert bodies.immersed is not None
     if flow.varying and peskin:
         text = "Peskin's kernel is here to compare, in flows of one density and viscosity"
@@ -49,9 +52,9 @@ def immerse_masses(flow: Flow, bodies: Bodies, peskin: bool, assembly: Assembly)
 
 
 def fastest(flow: Flow, bodies: Bodies, ints: Sequence[int], assembly: Assembly) -> float:
-    """The largest rate at which springs have masses swing, or damp them, in a flow that may be compressed [1/s].
+    """Largest rate [1/s] at which springs swing or damp masses, in the flow as if its fluid were compressible.
 
-    By powers of the matrix (von Mises & Pollaczek-Geiringer 1929); the pressure lets none be faster.
+    Power iteration (von Mises & Pollaczek-Geiringer 1929). The pressure, left out here, makes no mode faster.
     """
     from sceneql.skins.swing_kernels import give_way
 

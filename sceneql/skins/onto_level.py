@@ -1,4 +1,4 @@
-"""Points moved onto the surface of an object."""
+"""Projection of points onto the zero surface of a level."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 POLISH = 40
-"""Updates."""
+"""Largest number of Newton steps."""
 STEP = 1e-6
-"""Difference of places, in parts of the object's size, by which slopes are taken."""
+"""Step of central differences, relative to the object's size."""
 ROUNDING = 1e-13
 
 
 def onto(level: Any, size: float, points: Floats, axes: int = 3) -> Floats:
-    """(k, 3) points moved along the slope of a level set to where it is 0, along the first ``axes`` only."""
+    """Points (k, 3) [m] moved along a level's gradient to where it is 0; only the first ``axes`` coordinates change."""
     found, step = points.copy(), STEP * size
     for _ in range(POLISH):
         values = level.values(found)

@@ -1,4 +1,4 @@
-"""What can be read of a skin at an instant."""
+"""Outputs of a skin at an instant."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     from sceneql.system import ModelState
 
 OFF = 3
-"""Cells off the skin from which on the pressure is taken, as its force is spread over those nearer."""
+"""Distance from the skin [cells] beyond which its pressure jump is measured: its forces spread over nearer cells."""
 
 
 def positions(skin: Line | Sheet, state: ModelState) -> Floats:
-    """(n, 3) [m]."""
+    """Positions (n, 3) [m] of the vertices."""
     at, count = skin.membrane.position_at, skin.membrane.count
     return state.y[at : at + 3 * count].reshape(-1, 3).copy()
 
@@ -54,12 +54,12 @@ def measure(what: str, skin: Line | Sheet, state: ModelState) -> Any:
 
 
 def widest(skin: Line | Sheet, state: ModelState) -> float:
-    """The longest side, in cells."""
+    """Length of the longest side [cells]."""
     return float(skin.sides_of(positions(skin, state)).max() / min(skin.flow.spacing[: len(skin.flow.areas)]))
 
 
 def turned(skin: Line | Sheet, state: ModelState) -> str:
-    """How a skin has turned inside out, as a run says it; empty where it has not."""
+    """Message for a skin that is inside out or crosses itself at the end of a run; empty for others."""
     points = positions(skin, state)
     if not np.isfinite(points).all():
         return ""
@@ -75,7 +75,7 @@ def turned(skin: Line | Sheet, state: ModelState) -> str:
 
 
 def _crossing(line: Floats) -> Floats | None:
-    """Where two sides of a closed line (n, 2) cross each other; None where none do."""
+    """Place (2,) near which two sides of a closed line (n, 2) cross each other; None if none do."""
     from scipy.spatial import cKDTree
 
     ends = np.roll(line, -1, axis=0)
@@ -95,7 +95,7 @@ def _crossing(line: Floats) -> Floats | None:
 
 
 def _pressure_jump(skin: Line | Sheet, points: Floats, state: ModelState) -> float:
-    """The mean of the pressure in the cells that it holds, less that in all others, but for those beside it [Pa]."""
+    """Mean pressure inside minus that outside [Pa], without cells within OFF of the skin, or fewer in a thin skin."""
     flow = skin.flow
     shape, low, spacing = np.array(flow.cells.shape), np.array(flow.low), np.array(flow.spacing)
     flat = shape[2] == 1
@@ -118,7 +118,7 @@ def _pressure_jump(skin: Line | Sheet, points: Floats, state: ModelState) -> flo
 
 
 def _beside(points: Floats, off: int, flow: Any) -> Any:
-    """(cells,) whether a vertex is less than about so many cells off."""
+    """(cells,): whether a vertex lies at most ``off`` cells away along each axis."""
     shape = np.array(flow.cells.shape)
     axes = 2 if shape[2] == 1 else 3
     cell = np.floor((points - np.array(flow.low)) / np.array(flow.spacing)).astype(np.int64)

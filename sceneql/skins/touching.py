@@ -1,4 +1,4 @@
-"""Contacts of skins in flows: with what stands, with masses and rigid bodies, and with one another. Imports numpy."""
+"""Contacts of skins in flows with objects, with masses and rigid bodies, and with one another. Imports numpy."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BODIES = "sceneql.skins.touch_bodies_kernels"
 
 @dataclass(frozen=True, slots=True)
 class Touch:
-    """What the contacts of a script say: friction, as offset of its value, and the gap [m]."""
+    """Numbers of a script's contacts: offset of the friction's value, whether there is friction, and the gap [m]."""
 
     friction_at: int
     rubs: bool
@@ -37,11 +37,11 @@ class Touch:
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A mass or rigid body that skins touch, and its surface."""
+    """Mass or rigid body that skins may touch, and its surface."""
 
     ref: Ref
     head: tuple[int, ...]
-    """Of contacts/layout.py, without the last."""
+    """Integers of an object by contacts/layout.py, without the last."""
     data: tuple[int, ...]
     place: tuple[int, ...]
     """BODY integers of touch_layout."""
@@ -56,10 +56,10 @@ def assemble(
     friction: Value,
     gap: float | None,
 ) -> tuple[int, ...]:
-    """Add what keeps skins off objects, masses, rigid bodies and each other; the offset of the gap in the floats.
+    """Add contacts of skins and carried masses with objects, bodies and each other; the offset of the gap.
 
-    Masses that a flow carries are kept off all but each other and its skins: what one flow moves stays apart. Raises
-    ScriptError for what cannot be collided with, and for what starts too near.
+    Carried masses get no contacts with each other or with skins of their flow: one flow moves both, and keeps them
+    apart. Raises ScriptError for objects without a surface to touch, and for skins that start too near one.
     """
     them = [(name, made.membrane) for name, made in skins]
     them += [(bodies.model, bodies.immersed.points) for bodies in carried if bodies.immersed is not None]
@@ -89,7 +89,7 @@ def assemble(
 
 
 def _ints(assembly: Assembly, skin: Membrane, count: int, objects: Sequence[int], touch: Touch) -> tuple[int, ...]:
-    """Of kernels, with a number of objects whose integers are given."""
+    """Integers of the contact kernels of a skin with ``count`` objects, whose integers are ``objects``."""
     pairs = skin.count * count
     head = [0] * layout.HEAD
     head[layout.POSITION], head[own.FORCE], head[layout.NODES] = skin.position_at, skin.force_at, skin.count
@@ -111,7 +111,7 @@ def _add(
     kernels: str,
     limit: str,
 ) -> None:
-    """Add the terms of a skin and what it touches. Raises ScriptError where it starts there."""
+    """Add the contact terms of a skin with objects ``refs``. Raises ScriptError for a skin that starts inside one."""
     places = assembly.start()[skin.position_at :][: 3 * skin.count].reshape(-1, 3)
     d = must_be_apart(name, refs, places, ints, touch.gap, assembly)
     if not assembly.went_on:
@@ -124,7 +124,7 @@ def _add(
 
 
 def _solids(bodies: Bodies, assembly: Assembly) -> list[Solid]:
-    """The surfaces of a model's masses, which are spheres, or rigid bodies. Raises ScriptError."""
+    """Surfaces of a model's masses, which are spheres, or rigid bodies. Raises ScriptError for unfit models."""
     from sceneql.system import Place
 
     must_be_free(bodies.model, assembly)
@@ -142,7 +142,7 @@ def _solids(bodies: Bodies, assembly: Assembly) -> list[Solid]:
 
 
 def _mass(bodies: Bodies, number: int, assembly: Assembly) -> Solid:
-    """A mass as a sphere of its radius."""
+    """Mass ``number`` as a sphere with its radius."""
     from sceneql.contacts.colliders import shape_kernels
     from sceneql.kinds import Collider
     from sceneql.system import Place
@@ -156,7 +156,7 @@ def _mass(bodies: Bodies, number: int, assembly: Assembly) -> Solid:
 
 
 def _moved(head: Sequence[int]) -> tuple[int, ...]:
-    """The integers of a surface that is not where it was, so that no distance from it is known."""
+    """Integers of a surface that moves, with no distances kept from one step to the next."""
     found = list(head)
     found[contacts.MOVING], found[contacts.FLAT] = found[contacts.PLACE], 0
     return tuple(found)

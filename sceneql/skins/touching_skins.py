@@ -22,13 +22,13 @@ KERNELS = "sceneql.skins.touch_pairs_kernels"
 
 
 NEAR = 0.01
-"""Part of the gap below which skins touch at the start."""
+"""Fraction of the gap below which skins count as touching at the start."""
 
 
 def add_pairs(
     assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], friction_at: int, rubs: bool, gap: float
 ) -> None:
-    """Add what keeps skins apart, and each from itself. Raises ScriptError where they cross or touch at the start."""
+    """Add contacts between skins and of each with itself. Raises ScriptError for skins that touch at the start."""
     skins = [one.membrane for _, one in made]
     counts = [skin.count for skin in skins]
     firsts, count, corners = np.cumsum([0, *counts]), sum(counts), skins[0].faces.shape[1]
@@ -67,7 +67,7 @@ def add_pairs(
 
 
 def _periods(flow: Flow) -> list[float]:
-    """How long a flow is along x, y and z where it is periodic [m], else 0."""
+    """Length of a flow along x, y and z [m] where it is periodic, else 0."""
     sides = zip(flow.cells.periodic, flow.cells.shape, flow.spacing, strict=True)
     return [n * side if around and n > 1 else 0.0 for around, n, side in sides]
 
@@ -75,9 +75,9 @@ def _periods(flow: Flow) -> list[float]:
 def _must_be_apart(
     assembly: Assembly, made: Sequence[tuple[str, Line | Sheet]], places: Sequence[Floats], ints: Any, gap: float
 ) -> float:
-    """The least distance between skins at the start [m], endless beyond the gap.
+    """Least distance between skins at the start [m], infinite beyond the gap.
 
-    Raises ScriptError where one crosses or touches another; one may stand inside another.
+    Raises ScriptError for a skin that crosses or touches another; one may lie inside another.
     """
     from sceneql.skins.touch_start_kernels import least
 

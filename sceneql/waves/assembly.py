@@ -1,4 +1,4 @@
-"""A wave on cells, as state, numbers and a term of an island."""
+"""Wave on cells: state, numbers and term in the island."""
 
 from __future__ import annotations
 
@@ -23,32 +23,32 @@ if TYPE_CHECKING:
 
 
 class Wave(Protocol):
-    """What a script says of a wave."""
+    """Fields of a word that describes a wave."""
 
     @property
     def speed(self) -> Formula:
-        """c [m/s] by place."""
+        """Wave speed c [m/s] by place."""
 
     @property
     def initial(self) -> Formula | Picture | None:
-        """The field at the start; None: 0."""
+        """Field at the start; None: 0."""
 
     @property
     def velocity(self) -> Formula | None:
-        """How fast it changes at the start; None: 0."""
+        """Rate of the field at the start; None: 0."""
 
     @property
     def damping(self) -> Formula | None:
-        """Decay of amplitudes [1/s] by place; None: 0."""
+        """Decay rate of amplitudes [1/s] by place; None: 0."""
 
     @property
     def source(self) -> Formula | None:
-        """An acceleration; None: 0."""
+        """Second time derivative that is added to the field; None: 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Field:
-    """The part of a wave that is as of a field that spreads; its coefficient is the square of the speed."""
+    """Wave as a spreading field (grids.assembly.Spreading) with the squared speed as its coefficient."""
 
     coefficient: Formula
     initial: Formula | Picture | None
@@ -60,8 +60,8 @@ class _Field:
 def add_wave(wave: Wave, boundary: Mapping[str, Part], ground: Ground, assembly: Assembly) -> tuple[int, ...]:
     """Reserve the field, its velocity and their tallies, and add the term of their rates.
 
-    The offset of the field, and of the numbers that `energy` reads. Raises ScriptError for numbers that are not finite,
-    a speed or damping below 0, and boundary parts that overlap.
+    Returns the offset of the field and the offsets that `energies` reads. Raises ScriptError for numbers that are not
+    finite, a speed or damping below 0, and boundary parts that overlap.
     """
     n = ground.count
     square = Call("mul", (wave.speed.expr, wave.speed.expr), wave.speed.expr.type)
@@ -102,9 +102,9 @@ def add_wave(wave: Wave, boundary: Mapping[str, Part], ground: Ground, assembly:
 def energies(
     at: int, ints: tuple[int, ...], shape: tuple[int, int, int], volumes: Floats, state: ModelState
 ) -> tuple[float, ...]:
-    """The terms of the energy: half the sum of V v^2, of sink u^2, of g (difference)^2 over faces; and less fed u.
+    """Parts of the energy: half the sums of V v^2, of sink u^2 and of g (difference)^2 over faces; minus that of fed u.
 
-    ``at``: of the field; ``ints``: offsets of sink, fed and conductances.
+    ``at``: offset of the field; ``ints``: offsets of sink, fed and conductances.
     """
     n = len(volumes)
     u, v = state.y[at : at + n], state.y[at + n + 1 : at + 2 * n + 1]
@@ -117,7 +117,7 @@ def energies(
 
 
 def _finite(what: str, formula: Formula | None, ground: Ground) -> Floats:
-    """(cells,) values of a formula of the place inside the domain, 0 outside. Raises ScriptError where not finite."""
+    """Values (cells,) of a formula inside the domain, 0 outside. Raises ScriptError for values that are not finite."""
     if formula is None:
         return np.zeros(ground.count)
     with np.errstate(all="ignore"):

@@ -1,4 +1,4 @@
-"""Spheres that glow, sorted into a tree by which many far ones are summed up as one."""
+"""Glowing spheres in a tree, by which a far group of them counts as one light."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 def embers_of(shapes: Iterable[Shape], lights: Iterable[LightSource]) -> Floats:
-    """(2 n - 1, EMBER) of the n spheres that glow, but for those that show a lamp; (0, EMBER) if there are none.
+    """Tree (2 n - 1, EMBER) of the n glowing spheres, except those that display a lamp; (0, EMBER) without any.
 
-    Nodes of a binary tree stand in depth-first order, halves of as many spheres as can be.
+    Rows are the nodes of a balanced binary tree in depth-first order.
     """
     glowing = [s for s in shapes if isinstance(s, Points) and s.soft is None and any(s.surface.emission)]
     places = np.concatenate([np.empty((0, 3)), *(s.centers for s in glowing)])
@@ -33,7 +33,7 @@ def embers_of(shapes: Iterable[Shape], lights: Iterable[LightSource]) -> Floats:
 
 
 def _tree(places: Floats, radii: Floats, intensity: Floats) -> Floats:
-    """Rows of the tree, level by level; a level halves its parts across their longest side."""
+    """Rows of the tree, built level by level; each level halves the groups across their longest side."""
     count = len(places)
     rows = np.empty((max(2 * count - 1, 0), layout.EMBER))
     sizes, at = np.full(min(count, 1), count), np.zeros(min(count, 1), dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Packets of rays for implicit solids: rays are collected, intersected together, and then traced with the answers."""
+"""Packets of rays for implicit solids: rays are collected, intersected together, then traced with the answers."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 
 _of_thread = threading.local()
-"""What each thread has made for the last picture: a solid that moves as a whole is the same in its own coordinates."""
+"""Memories of each thread from the last picture; a rigidly moved solid has the same tape in its own coordinates."""
 
 
 def _memory(tape: Tape, kept: list[Memory]) -> Memory:
-    """Working memory for a tape, taken from ``kept`` if there is one for the same numbers."""
+    """Working memory for a tape, taken from ``kept`` if that has one for an equal tape."""
     for i, memory in enumerate(kept):
         if memory.tape is tape or all(
             np.array_equal(one, other)
@@ -44,7 +44,7 @@ def _memory(tape: Tape, kept: list[Memory]) -> Memory:
 
 
 class Packets:
-    """One thread's memory to intersect rays with the implicit solids ``solids`` (indices) among ``shapes``."""
+    """Memory of one thread to intersect rays with implicit solids; ``solids``: their indices among ``shapes``."""
 
     def __init__(self, shapes: tuple[Shape, ...], solids: list[int]) -> None:
         self.solids = solids
@@ -79,13 +79,13 @@ class Packets:
         self.of_skins = *memory, np.empty((2, rows, 4), dtype=np.int32), np.empty((parts, 8)), every, bases, listed
 
     def asked(self, rays: int) -> Floats:
-        """An empty list of rays (1 + rays, columns), see scene_kernels.ASKED."""
+        """Empty list of rays (1 + rays, columns); see scene_kernels.ASKED."""
         asked = np.zeros((1 + rays, layout.ANSWERS + len(self.solids)))
         asked[0, layout.ANSWERS :] = self.solids
         return asked
 
     def meet(self, asked: Floats) -> None:
-        """Write the first crossings of all listed rays with the solids."""
+        """Write the first crossings of all listed rays with the solids into ``asked``."""
         if self.asked_last is not asked:
             self.asked_last, self.calls = asked, []
             for k, (memory, bounds) in enumerate(zip(self.memories, self.bounds, strict=True)):
@@ -100,5 +100,5 @@ class Packets:
 
 
 def solids_in_lanes(shapes: tuple[Shape, ...]) -> list[int]:
-    """Indices of the implicit solids that packets know."""
+    """Indices of the implicit solids that packets intersect: all but sheets."""
     return [i for i, shape in enumerate(shapes) if isinstance(shape, Implicit) and shape.within is None]

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 
 def found_by_cells(scene: Scene) -> Scene:
-    """The scene with the addresses of the kernels for grids."""
+    """Scene with the addresses of the kernels for grids."""
     return scene._replace(grid=address(crossing, CROSSING), grid_skin=address(skin, SKIN))
 
 
 def row(shape: Grid) -> Floats:
-    """The reals (1, r) of a GRID (see grid_kernels)."""
+    """Reals (1, r) of a GRID (see grid_kernels)."""
     counts = shape.values.shape[::-1]
     bounds = np.empty(0) if shape.bounds is None else shape.bounds
     head = [*np.asarray(shape.to_nodes).ravel(), *shape.low, *shape.high, *counts, float(shape.bounds is not None)]
@@ -32,7 +32,7 @@ def row(shape: Grid) -> Floats:
 
 
 def box(shape: Grid) -> Floats:
-    """(1, 6) low and high corner in the world [m]."""
+    """Low and high corner (1, 6) in the world [m]."""
     to_world = np.linalg.inv(np.asarray(shape.to_nodes)[:, :3])
     low, high = np.array(shape.low), np.array(shape.high)
     middle = to_world @ (0.5 * (low + high) - np.asarray(shape.to_nodes)[:, 3])
@@ -41,12 +41,12 @@ def box(shape: Grid) -> Floats:
 
 
 def met(values: Floats) -> NDArray[bool_]:
-    """(bz, by, bx) mask of the blocks with cells that have corners of both signs."""
+    """Mask (bz, by, bx) of the blocks with corners of both signs, in which the surface may lie."""
     return blocks_with(values < 0.0) & blocks_with(values >= 0.0)
 
 
 def blocks_with(corners: NDArray[bool_]) -> NDArray[bool_]:
-    """Whether any corner of a block's cells is set."""
+    """Mask (bz, by, bx) of the blocks of cells with any corner set; ``corners`` (nz, ny, nx)."""
     for axis in range(3):
         starts = np.arange(0, corners.shape[axis] - 1, BLOCK)
         ends = np.minimum(starts + BLOCK, corners.shape[axis] - 1)

@@ -1,4 +1,4 @@
-"""The bounding volume hierarchy of a scene: one for all items, and one for each mesh that is held."""
+"""Bounding volume hierarchies: one for all items of a scene, and one for each large mesh that is held."""
 
 from __future__ import annotations
 
@@ -17,34 +17,34 @@ if TYPE_CHECKING:
 
 
 class Hierarchy(NamedTuple):
-    """Items by leaf, and nodes in depth-first order, for an eye (hierarchy_kernels.build)."""
+    """Items in the order of leaves, and nodes in depth-first order for an eye (hierarchy_kernels.build)."""
 
     order: NDArray[int64]
-    """(m,)"""
+    """(m,): indices of the items, leaf by leaf."""
     nodes: Floats
-    """(n, 6) low and high corners."""
+    """(n, 6) [m]: low and high corners."""
     links: Ints
-    """(n, 3) skip link, first item, number of items."""
+    """(n, 3): skip link, first item, number of items."""
 
 
 class Tree:
-    """Splits of items by their bounds, which are the same for all eyes, and the hierarchy for the last eye."""
+    """Splits of items by their bounds, which do not depend on the eye, and the hierarchy for the last eye."""
 
     def __init__(self, boxes: Floats) -> None:
-        """``boxes`` (m, 6)."""
+        """``boxes`` (m, 6) [m]: low and high corners of the items."""
         self.boxes = boxes
         self.bounds = np.concatenate([boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)])
         self._splits: Floats | None = None
         self._seen: tuple[bytes, Hierarchy] | None = None
 
     def seen_from(self, eye: Floats) -> Hierarchy:
-        """The hierarchy of the items for an eye (3,), the same as if it were built anew."""
+        """Hierarchy of the items for an eye (3,) [m], identical to a newly built one."""
         if self._seen is None or self._seen[0] != eye.tobytes():
             if self._splits is not None:
                 made = _built(self.boxes, eye, self._splits, True)
             elif self._seen is None:
                 made = _built(self.boxes, eye)
-            else:  # the eye moves: keep the splits from now on
+            else:  # the eye moves: the splits are kept from now on
                 splits = np.empty((2 * len(self.boxes), hierarchy_kernels.SPLIT_SIZE))
                 made = _built(self.boxes, eye, splits)
                 self._splits = splits[: len(made.nodes)].copy()
@@ -53,9 +53,9 @@ class Tree:
 
 
 def hierarchy(boxes: Floats, eye: Floats, trees: Sequence[Tree] = ()) -> Hierarchy:
-    """The hierarchy of items with bounds ``boxes`` (m, 6), followed by those of ``trees``, for an eye (3,).
+    """Hierarchy of items with bounds ``boxes`` (m, 6) [m] and of the items of ``trees``, for an eye (3,) [m].
 
-    A tree is an item of the hierarchy of all others, and its nodes follow the leaf that contains it.
+    A tree is one item of the upper hierarchy, and its nodes follow the leaf that contains it.
     """
     count = len(boxes)
     order, nodes, links = _built(np.concatenate([boxes, *(tree.bounds[None] for tree in trees)]), eye)
@@ -88,7 +88,7 @@ def hierarchy(boxes: Floats, eye: Floats, trees: Sequence[Tree] = ()) -> Hierarc
 
 
 def _followed(rows: NDArray[Any], at: NDArray[int64], blocks: Sequence[NDArray[Any]]) -> NDArray[Any]:
-    """Rows with blocks of rows inserted behind those of the given numbers, which ascend."""
+    """Rows with blocks of rows inserted after the rows ``at``, which ascend."""
     parts, done = [], 0
     for row, block in zip(at, blocks, strict=True):
         parts += [rows[done : row + 1], block]
@@ -97,7 +97,7 @@ def _followed(rows: NDArray[Any], at: NDArray[int64], blocks: Sequence[NDArray[A
 
 
 def _built(boxes: Floats, eye: Floats, splits: Floats | None = None, known: bool = False) -> Hierarchy:
-    """The hierarchy of items with bounds ``boxes`` (m, 6); see hierarchy_kernels."""
+    """Hierarchy of items with bounds ``boxes`` (m, 6); arguments as in hierarchy_kernels.build."""
     count = len(boxes)
     order = np.arange(count)
     nodes = np.empty((2 * count, 6))

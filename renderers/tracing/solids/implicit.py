@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 
 def prepared(scene: Scene, *, sheets: bool, march: bool, certain: bool) -> Scene:
-    """The scene with the addresses of the kernels for its implicit objects.
+    """Scene with the addresses of the kernels for its implicit objects.
 
-    Solids and ``sheets`` by certified roots in the cells that are not proved empty; with ``march`` by samples on the
-    ray, with ``certain`` by certified intervals alone, both without cells.
+    Solids and ``sheets`` are intersected by certified roots, in cells that are not proved empty. With ``march`` they
+    are intersected by samples on the ray, with ``certain`` by certified intervals alone, both without cells.
     """
     scene = scene._replace(skin=address(skin, SKIN))
     if march or certain:

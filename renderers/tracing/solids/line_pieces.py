@@ -1,4 +1,4 @@
-"""Lines that capsules are pieces of: those that have an end in common."""
+"""Lines made of capsules that share ends."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def line_lengths(ends: Floats, same: float) -> Floats:
-    """(n,) length [m] of the line that each capsule, from end to end (n, 2, 3), is a piece of, along all its pieces.
+    """Length (n,) [m] of the line that each capsule, with ends (n, 2, 3) [m], belongs to, along all its pieces.
 
-    Ends that differ by less than ``same`` [m] are one place.
+    Ends rounded to the same multiple of ``same`` [m] count as one place.
     """
     places = np.round(ends.reshape(-1, 3) / same)
     order = np.lexsort(places.T)

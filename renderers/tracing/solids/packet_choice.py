@@ -1,4 +1,4 @@
-"""Decides whether a frame's rays use packets, and lends each thread its memory."""
+"""Choice of packets for a frame's rays, and working memory for each thread."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Result = TypeVar("Result")
 
 
 def packets_for(frame: SeenFrame, tolerance: float) -> Callable[[], Packets] | None:
-    """Maker of a thread's Packets; None if no shape suits them. Their kernels are for implicit shapes alone."""
+    """Factory of a thread's Packets; None without implicit solids, or at a tolerance other than TOLERANCE."""
     if tolerance != TOLERANCE or not any(isinstance(shape, Implicit) for shape in frame.shapes):
         return None
     from renderers.tracing.solids.bundles import Packets, solids_in_lanes
@@ -29,7 +29,7 @@ def packets_for(frame: SeenFrame, tolerance: float) -> Callable[[], Packets] | N
 
 
 def lender(make: Callable[[], Made]) -> Callable[[Callable[[Made], Result]], Result]:
-    """Function that lends one thing for each thread: memory that changes threads moves between cores' caches."""
+    """Function that runs work with an object of its own for each thread, so that memory stays in a core's cache."""
     own = threading.local()
 
     def lend(work: Callable[[Made], Result]) -> Result:

@@ -1,4 +1,4 @@
-"""Decides whether listed rays meet in lanes all that packets do not know."""
+"""Choice of SIMD lanes to intersect listed rays with the half-spaces and quadrics of a scene."""
 
 from __future__ import annotations
 
@@ -14,11 +14,14 @@ if TYPE_CHECKING:
 
 KINDS = (layout.HALF_SPACE, layout.QUADRIC)
 MOST = 8
-"""Items: each is met by all rays, without a hierarchy."""
+"""Largest number of items: each is tested against all rays, without a hierarchy."""
 
 
 def lanes_for(scene: Scene, packets: bool) -> Floats | None:
-    """Working memory for ``meet_plain``; None for scenes with anything else, or nothing, but what ``packets`` know."""
+    """Working memory for ``meet_plain``; None unless all items are of KINDS, or implicit ones of ``packets``.
+
+    There must be 1 to MOST items of KINDS.
+    """
     kinds = scene.ints[layout.ITEMS + layout.KIND :][: 4 * int(scene.ints[layout.ITEM_COUNT]) : 4]
     plain = np.isin(kinds, KINDS)
     others = kinds[~plain]

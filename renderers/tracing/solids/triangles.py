@@ -1,4 +1,4 @@
-"""Packing of meshes; the data of large meshes that are held is kept from frame to frame."""
+"""Packing of meshes; the data of large held meshes is reused from frame to frame."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Mesh
 
 LARGE = 4096
-"""Triangles from which on a held mesh has a hierarchy of its own: below it would save less than it costs."""
+"""Least number of triangles for which a held mesh gets its own hierarchy: for fewer it costs more than it saves."""
 
 
 class Packed(NamedTuple):
-    """A mesh with a hierarchy of its own."""
+    """Mesh with its own hierarchy."""
 
     tree: Tree
     rows: Floats
-    """(m, 27) reals of its items."""
+    """(m, 27): reals of its items."""
 
 
 _trees: OfHeld[Tree] = OfHeld()
@@ -30,7 +30,7 @@ _rows: OfHeld[Floats] = OfHeld()
 
 
 def still_mesh(mesh: Mesh) -> Packed:
-    """The hierarchy and the reals of a mesh that is held: those of the last frame, if it is the same."""
+    """Hierarchy and reals of a held mesh: those of the last frame, if the mesh is the same."""
     corners = cache(lambda: corners_of(mesh))
     tree = _trees.get((mesh.vertices, mesh.triangles), None, lambda: Tree(boxes_of(corners())))
     whole = mesh.vertices, mesh.triangles, mesh.normals, told_at_corners(mesh)
@@ -38,18 +38,21 @@ def still_mesh(mesh: Mesh) -> Packed:
 
 
 def corners_of(mesh: Mesh) -> Floats:
-    """(m, 3, 3) vertices of the triangles."""
+    """Vertices (m, 3, 3) [m] of the triangles."""
     return np.asarray(mesh.vertices, dtype=np.float64)[mesh.triangles]
 
 
 def boxes_of(corners: Floats) -> Floats:
-    """(m, 6) bounds of triangles (m, 3, 3)."""
+    """Bounds (m, 6) of triangles (m, 3, 3)."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     return np.concatenate([np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)], axis=1)
 
 
 def rows_of(mesh: Mesh, corners: Floats) -> Floats:
-    """(m, 27) reals of triangles (m, 3, 3): a corner, two edges; normals, and what is told, at the corners (NaN)."""
+    """Reals (m, 27) of triangles (m, 3, 3): corner, two edges, normals, and colors or rest places at the corners.
+
+    Absent normals, colors and places are NaN.
+    """
     rows = np.full((len(corners), 27), np.nan)
     rows[:, :3] = corners[:, 0]
     rows[:, 3:9] = (corners[:, 1:] - corners[:, :1]).reshape(-1, 6)
@@ -62,5 +65,5 @@ def rows_of(mesh: Mesh, corners: Floats) -> Floats:
 
 
 def told_at_corners(mesh: Mesh) -> Floats | None:
-    """(n, 3) the places of the material of a mesh that is painted, else its colors."""
+    """Rest places (n, 3) [m] of the vertices of a painted mesh, colors (n, 3) of others; None without either."""
     return mesh.colors if mesh.paint is None else mesh.rest

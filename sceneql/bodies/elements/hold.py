@@ -44,7 +44,7 @@ class Part(Record):
             yield Problem("a distance is from a place: say `near`", ("within",), at_key=True)
 
     def place(self) -> Span | None:
-        """Where it stands in the script."""
+        """Place in the script; None if unknown."""
         told = self.where or self.object
         return None if told is None else told.span
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 ENDS = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 """The edges of a tetrahedron, by its corners; edges k and 5 - k are opposite."""
 FACES = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
-"""Its faces, counterclockwise from outside; face k is opposite to corner k."""
+"""The faces of a tetrahedron, counterclockwise from outside; face k is opposite to corner k."""
 
 
 def volumes(points: Floats, tetrahedra: Ints) -> Floats:

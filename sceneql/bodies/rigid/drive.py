@@ -42,7 +42,7 @@ class Driven(Joint):
         raise NotImplementedError
 
     def driver(self) -> Motor | None:
-        """Its motor; None without one."""
+        """Motor of the tie; None without one."""
         raise NotImplementedError
 
     def problems(self) -> Iterator[Problem]:

@@ -35,7 +35,7 @@ class Errors(NamedTuple):
     center: float
     """Distance [m]."""
     inertia: float
-    """In the Frobenius norm [m^5]."""
+    """Frobenius norm of the error of the inertia tensor [m^5]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

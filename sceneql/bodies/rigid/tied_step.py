@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 OFTEN = 1 / 240
 """Longest step [s] that an adaptive solver takes."""
 FOLLOWS = ("nothing", "speed", "place")
-"""What a motor follows, in the order of the kernel's numbers."""
+"""Targets of a motor, in the order of the kernel's numbers."""
 
 
 @dataclass(frozen=True, slots=True)

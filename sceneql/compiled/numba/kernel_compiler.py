@@ -39,13 +39,20 @@ FRONT = (
 
 
 class KernelLibrary(JITCodeLibrary):
-    """Code of a kernel: without LLVM's verification, and without passes before those over all of its code."""
+    """Code of a kernel: without LLVM's verification, and without its function passes over declarations.
+
+    Without those over functions, before helpers are inlined, most loops over lanes of a tape stay loops over numbers.
+    """
 
     def add_ir_module(self, ir_module):
         """Add a module of LLVM code."""
         module = binding.parse_assembly(cgutils.normalize_ir_text(str(ir_module)))
         module.name = ir_module.name
         module.data_layout = self._codegen._data_layout
+        passes, builder = self._codegen._function_pass_manager()
+        for function in module.functions:
+            if not function.is_declaration:
+                passes.run(function, builder)
         self._final_module.link_in(module)
 
     def serialize_using_object_code(self):

@@ -40,11 +40,17 @@ def _walk(start: Place, needs: _Needs, done: set[Place], found: Diagnostics) -> 
             done.add(place)
         elif place in path:
             circle = " -> ".join(".".join(part for part in one if part) for one in [*path[path.index(place) :], place])
-            found.error("circular-link", f"this needs itself: {circle}", span)
+            found.error("circular-link", f"this needs itself: {circle}", span, help=_way_out(place))
         elif place not in done:
             path.append(place)
             stack.append((place, span, True))
             stack += [(other, where, False) for other, where in needs.of(place)]
+
+
+def _way_out(place: Place) -> str:
+    if not place[1]:
+        return "an object holds no part that it is in: leave one of these names out"
+    return f"write one of these values without the others: a number for `{'.'.join(place)}`, or a formula of `time`"
 
 
 class _Needs:

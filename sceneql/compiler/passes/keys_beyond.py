@@ -10,7 +10,7 @@ from sceneql.kinds import Clock
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Expr, Keys, Number, each_once
 
-FEWEST = 10.0
+FEWEST = 2.0
 """Time of the second key, relative to the clock's end, from which on it is far beyond."""
 
 
@@ -24,9 +24,10 @@ def warn_of_keys(tasks: Mapping[str, Task], clock: Clock, found: Diagnostics) ->
                     second = float(node.keys[1].time.value)  # type: ignore[union-attr]
                     text = f"the second of these keys is at {second:g} s, and the clock ends at {clock.end:g} s"
                     help = f"times of keys are seconds: frame {second:g} of {clock.fps:g} a second is at"
-                    found.warning("keys-beyond", text, node.span, help=f"{help} `{second / clock.fps:.4g} s`")
+                    help += f" `{second / clock.fps:.4g} s`; if {second:g} s is meant write it so, `{second:g} s`"
+                    found.warning("keys-beyond", text, node.span, help=help)
             known.add(id(value.expr))
 
 
 def _in_frames(time: Expr, clock: Clock) -> bool:
-    return isinstance(time, Number) and time.bare and time.value.is_integer() and time.value >= FEWEST * clock.end
+    return isinstance(time, Number) and time.bare and time.value.is_integer() and time.value > FEWEST * clock.end

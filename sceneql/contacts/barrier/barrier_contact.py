@@ -1,4 +1,4 @@
-"""The contacts of elastic solids, whose skins nothing passes, and of rigid bodies beside them. Imports numpy."""
+"""Barrier contacts of elastic solids, and of rigid bodies with them. Imports numpy."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
 
 GAP = 0.05
-"""The gap, where the script tells none: part of the mean side of the triangles of the skins."""
+"""Default gap, relative to the mean side of the skins' triangles."""
 SLIP = 1e-4
-"""Speed of slip below which friction is smooth: part of the size of the solids, a second."""
+"""Slip speed below which friction is smooth, relative to the size of all solids per second [1/s]."""
 COARSER = 3.0
-"""Longest edges of the triangles of rigid bodies, in mean sides of those of the skins."""
+"""Longest edge of triangles on rigid bodies, relative to the mean side of the skins' triangles."""
 
 
 def assemble(
     assembly: Assembly, everyone: Sequence[Bodies], refs: Sequence[Ref], friction: Value, gap: float | None
 ) -> tuple[int, ...]:
-    """Add the barriers of all elastic solids and rigid bodies; what the word remembers: -3, offset of gap and slip in
-    the floats.
+    """Add the barriers of all elastic solids and rigid bodies.
 
-    Raises ScriptError for masses without surfaces, and for what starts too near.
+    Returns the integers that `collision` remembers: -3, then the offset of gap and slip in the floats.
+    Raises ScriptError for masses without surfaces, and for surfaces that touch or cross at the start.
     """
     for bodies in everyone:
         if bodies.skin is None and bodies.turning is None:

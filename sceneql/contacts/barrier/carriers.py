@@ -1,4 +1,4 @@
-"""Where the derivatives of a barrier stand: of solids alone, or with rigid bodies, too. Imports numpy."""
+"""Sparsity pattern of a barrier's derivatives, without and with rigid bodies. Imports numpy."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ KERNEL = "sceneql.contacts.barrier.carried_slopes_kernels:slopes"
 
 @dataclass
 class Places:
-    """The pairs of vertices that have been near so far."""
+    """Pairs of vertices that have been near each other so far."""
 
     count: int
     keys: NDArray[int64]
-    """Ascending, i * count + j."""
+    """Pairs (i, j) as i * count + j, ascending."""
     rows: NDArray[int64]
-    """(n, VERTEX) of pairs_layout."""
+    """(n, VERTEX): rows of the vertices by pairs_layout."""
 
     def add(self, vertices: Any) -> bool:
-        """Add all pairs among rows of four vertices (k, 4); whether any is new."""
+        """Add all pairs among rows of four vertices (k, 4); returns whether any is new."""
         fours = np.asarray(vertices, dtype=np.int64).reshape(-1, 4)
         more = (fours[:, :, None] * self.count + fours[:, None, :]).ravel()
         before = len(self.keys)
@@ -40,7 +40,7 @@ class Places:
         return len(self.keys) > before
 
     def slopes(self, ints: NDArray[int64]) -> Slopes:
-        """The blocks of all these pairs; ``ints``: the integers of the term."""
+        """Derivatives as blocks of all pairs; ``ints``: integers of the term."""
         from sceneql.system import Slopes
 
         row, column = np.divmod(self.keys, self.count)
@@ -52,18 +52,18 @@ class Places:
 
 @dataclass
 class Carriers(Places):
-    """The pairs of carriers that have been near so far: of vertices of elastic solids, and of rigid bodies."""
+    """Pairs of carriers that have been near each other so far; a carrier is an elastic vertex or a rigid body."""
 
     carrier: NDArray[int64]
-    """(n,) of each vertex."""
+    """(n,): carrier of each vertex."""
     turns: NDArray[Any]
-    """(count,) whether a carrier is a rigid body."""
+    """(count,): whether a carrier is a rigid body."""
     first: NDArray[int64]
-    """(count,) a vertex of each carrier."""
+    """(count,): index of a carrier's first vertex."""
 
     @classmethod
     def of(cls, surfaces: Sequence[Surface], rows: NDArray[int64]) -> Carriers:
-        """Each with itself alone; ``rows``: of Places."""
+        """Carriers of surfaces, each paired with itself alone; ``rows``: as in Places."""
         found: list[NDArray[int64]] = []
         first: list[int] = []
         turns: list[bool] = []
@@ -78,11 +78,11 @@ class Carriers(Places):
         return cls(count, keys, rows, np.concatenate(found), np.array(turns), np.array(first))
 
     def add(self, vertices: Any) -> bool:
-        """Add all pairs among rows of four vertices (k, 4); whether any is new."""
+        """Add all pairs of carriers among rows of four vertices (k, 4); returns whether any is new."""
         return super().add(self.carrier[np.asarray(vertices, dtype=np.int64)])
 
     def slopes(self, ints: NDArray[int64]) -> Slopes:
-        """The entries of all these pairs; ``ints``: the integers of the term."""
+        """Derivatives as entries of all pairs; ``ints``: integers of the term."""
         from sceneql.system import Slopes
 
         row, column = np.divmod(self.keys, self.count)
@@ -98,13 +98,13 @@ class Carriers(Places):
         return Slopes(KERNEL, np.concatenate(rows), np.concatenate(columns), own)
 
     def _felt(self, carrier: int) -> list[int]:
-        """The rates in which forces on a carrier stand."""
+        """Indices of the rates that a carrier's forces change: velocity, and momentum of a rigid body."""
         place = self.rows[self.first[carrier]].tolist()
         found = [place[layout.VELOCITY] + k for k in range(3)]
         return found + [place[layout.MOMENTUM] + k for k in range(3)] if self.turns[carrier] else found
 
     def _moved(self, carrier: int) -> list[int]:
-        """The numbers that move a carrier: of a body in the order of place_slopes_kernels."""
+        """Indices in y of a carrier's position and velocity; of a body in the order of place_slopes_kernels."""
         place = self.rows[self.first[carrier]].tolist()
         x, v = ([place[which] + k for k in range(3)] for which in (layout.POSITION, layout.VELOCITY))
         if not self.turns[carrier]:

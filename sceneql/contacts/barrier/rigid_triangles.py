@@ -1,4 +1,4 @@
-"""The surface of a rigid body as triangles in its axes, small enough for contacts. Imports numpy."""
+"""Surface of a rigid body as triangles in its axes, small enough for contacts. Imports numpy."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 MOST = 4000
-"""Triangles of a body, roughly, above which they stay larger than asked for."""
+"""Approximate limit of triangles per body; beyond it they stay larger than requested."""
 ROUND = 0.2
-"""Longest edge on a ball, part of its radius: its triangles are within half a hundredth of it."""
+"""Longest edge on a ball, relative to its radius: its triangles are then within 0.5 % of the radius."""
 CELLS, MOST_CELLS = 12.0, 40.0
-"""Least and largest number of cells along the longest side of what is no polyhedron."""
+"""Least and largest number of cells along the longest side of a shape that is no polyhedron."""
 
 Triangles = tuple["Floats", "NDArray[int64]"]
 
@@ -32,7 +32,8 @@ Triangles = tuple["Floats", "NDArray[int64]"]
 def triangles_of(ref: Ref | None, center: Floats, side: float, assembly: Assembly) -> Triangles:
     """Vertices (n, 3) [m] from the center of mass and triangles (m, 3), counterclockwise from outside.
 
-    ``center`` (3,): in the axes of the body's object. Raises ScriptError where there is no surface.
+    ``center`` (3,) [m]: in the axes of the body's object; ``side`` [m]: longest edge.
+    Raises ScriptError for an object without a surface, or with one that varies in time.
     """
     if ref is None:
         message = "a body without an object has no shape to touch with"
@@ -53,13 +54,13 @@ def triangles_of(ref: Ref | None, center: Floats, side: float, assembly: Assembl
         raise ScriptError([Diagnostic("no-collider", message, ref.span, help)]) from None
     a, b, c = points[triangles].transpose(1, 0, 2)
     area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-    # Equilateral triangles of a side have an area of 0.43 of its square.
+    # Equilateral triangles have an area of 0.43 side^2.
     points, triangles = refined(points, triangles, max(side, float(np.sqrt(area / (0.43 * MOST)))))
     return points - center, triangles
 
 
 def _surface(kind: Any, side: float, assembly: Assembly) -> Triangles:
-    """In the axes of the object."""
+    """Vertices and triangles in the axes of the object."""
     from sceneql.contacts.distance import convex
 
     start: Any = Start(assembly)
@@ -95,7 +96,7 @@ def _polyhedron(shape: Convex) -> Triangles:
 
 
 def _ball(radius: float, center: Floats, side: float) -> Triangles:
-    """An icosahedron, its triangles halved until they are small."""
+    """Icosahedron with triangles refined and projected until they are small."""
     from scipy.spatial import ConvexHull
 
     golden = 0.5 * (1.0 + np.sqrt(5.0))
@@ -136,7 +137,7 @@ def _of_field(kind: Any, side: float, start: Any) -> Triangles:
 
 
 def refined(points: Floats, triangles: NDArray[int64], longest: float) -> Triangles:
-    """Triangles with edges halved, each the same way on both its sides, until none is longer than ``longest`` [m]."""
+    """Triangles with edges halved, consistently on both sides, until none is longer than ``longest`` [m]."""
     while True:
         sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         edges, which = np.unique(sides, axis=0, return_inverse=True)
@@ -151,7 +152,7 @@ def refined(points: Floats, triangles: NDArray[int64], longest: float) -> Triang
 
 
 def _cut(triangles: NDArray[int64], middles: NDArray[int64], pattern: int) -> NDArray[int64]:
-    """The pieces of the triangles whose sides, from corner k to the next, are halved as the bits of a pattern say."""
+    """Pieces of the triangles with halved sides k, from corner k to the next, for the set bits of ``pattern``."""
     mine = ((middles >= 0) @ np.array([1, 2, 4])) == pattern
     (a, b, c), (d, e, f) = triangles[mine].T, middles[mine].T
     match pattern.bit_count():
@@ -159,11 +160,11 @@ def _cut(triangles: NDArray[int64], middles: NDArray[int64], pattern: int) -> ND
             pieces = [(a, b, c)]
         case 3:
             pieces = [(a, d, f), (d, b, e), (f, e, c), (d, e, f)]
-        case 1:  # turned so that the side that is halved is the first
+        case 1:  # rotated so that the halved side is the first
             turn = pattern.bit_length() - 1
             (a, b, c), d = np.roll((a, b, c), -turn, axis=0), (d, e, f)[turn]
             pieces = [(a, d, c), (d, b, c)]
-        case _:  # turned so that the last side is whole
+        case _:  # rotated so that the last side is not halved
             turn = {3: 0, 6: 1, 5: 2}[pattern]
             (a, b, c), (d, e, _) = np.roll((a, b, c), -turn, axis=0), np.roll((d, e, f), -turn, axis=0)
             pieces = [(d, b, e), (a, d, e), (a, e, c)]

@@ -1,4 +1,4 @@
-"""The barrier between surfaces: of several solids, and of an elastic one with itself. Imports numpy."""
+"""Barrier between surfaces of several solids, and of an elastic one with itself. Imports numpy."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ LIMIT = "sceneql.contacts.barrier.skins_limit_kernels:limit"
 AFTER = "sceneql.contacts.barrier.held_friction_kernels:rub_skins"
 
 ROOM = 48
-"""Pairs for each vertex that there is room for, and for each edge; of those that press, a quarter."""
+"""Storage for pairs: per vertex and per edge; for pairs that press, a quarter per edge."""
 AHEAD = 0.3
-"""Pairs within the gap and this part of the mean side of triangles get places together."""
+"""Margin beyond the gap, relative to the mean side of triangles, within which pairs enter the pattern together."""
 
 
 def add_pairs(
@@ -37,10 +37,10 @@ def add_pairs(
     side: float,
     rubs: bool,
 ) -> None:
-    """Add the barrier between surfaces; ``side``: the mean side of the triangles of elastic ones [m]; ``rubs``: whether
-    there may be friction.
+    """Add the barrier between surfaces.
 
-    Raises ScriptError where they cross or touch at the start.
+    ``side`` [m]: mean side of the elastic surfaces' triangles; ``rubs``: whether there may be friction.
+    Raises ScriptError for surfaces that cross or touch at the start.
     """
     firsts = np.cumsum([0, *(len(one.at) for one in surfaces)])
     corners = np.concatenate([first + one.triangles for first, one in zip(firsts, surfaces, strict=False)])
@@ -99,7 +99,7 @@ def add_pairs(
 
 
 def listed(floats: Floats, ints: Any) -> Floats:
-    """(k, 5) distance and four vertices of each pair that is listed."""
+    """(k, 5): distance [m] and four vertices of each listed pair."""
     from sceneql.contacts.barrier.growth_kernels import measure
 
     memory = int(ints[layout.MEMORY])
@@ -110,7 +110,7 @@ def listed(floats: Floats, ints: Any) -> Floats:
 
 
 def _must_be_apart(start: tuple[Floats, Floats], ints: Any, rest: Floats, names: Any, assembly: Assembly) -> None:
-    """Raise ScriptError where two surfaces touch or cross at the start."""
+    """Raise ScriptError for two surfaces that touch at the start."""
     from sceneql.contacts.barrier.pairs_kernels import known
 
     y, floats = start
@@ -122,8 +122,10 @@ def _must_be_apart(start: tuple[Floats, Floats], ints: Any, rest: Floats, names:
 
 
 def _must_not_cross(rest: Floats, corners: Any, edges: Any, rows: Any, names: Any, assembly: Assembly) -> None:
-    """Raise ScriptError where an edge passes through a triangle at the start: each pair that is near, but those of one
-    rigid body and of what is fixed."""
+    """Raise ScriptError for an edge that passes through a triangle at the start.
+
+    All near pairs are tested except those of one rigid body and those of fixed bodies.
+    """
     from scipy.spatial import cKDTree
 
     a, b, c = (rest[corners[:, k]] for k in range(3))
@@ -151,7 +153,7 @@ def _must_not_cross(rest: Floats, corners: Any, edges: Any, rows: Any, names: An
 
 
 def _refuse(what: str, one: int, other: int, rest: Floats, names: Any, assembly: Assembly) -> None:
-    """Raise the ScriptError that skins touch or cross at a vertex."""
+    """Raise the ScriptError for skins that touch or cross, near vertex ``one``."""
     x, y, z = rest[one]
     first, second = str(names[one]), str(names[other])
     told = f"'{first}' {what} itself" if first == second else f"'{first}' {what} '{second}'"

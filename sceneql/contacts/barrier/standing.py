@@ -1,4 +1,4 @@
-"""A barrier between what moves, the skin of a solid or a rigid body, and what stands. Imports numpy."""
+"""Barrier between the skin of a solid or a rigid body and objects whose motion is given. Imports numpy."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ def add_objects(
     numbers: tuple[float, float, float],
     rubs: bool,
 ) -> None:
-    """Add the barrier between the skin of ``bodies`` and objects; ``numbers``: of objects_layout.NUMBERS;
-    ``rubs``: whether there may be friction.
+    """Add the barrier between the skin of ``bodies`` and objects.
 
-    Raises ScriptError for an object that cannot be collided with, or that the skin touches at the start.
+    ``numbers``: by objects_layout.NUMBERS; ``rubs``: whether there may be friction.
+    Raises ScriptError for an object without a collider, or one that the skin touches at the start.
     """
     skin = bodies.skin
     assert skin is not None
@@ -46,7 +46,7 @@ def add_objects(
     edges, of_side = np.unique(sides, axis=0, return_inverse=True)
     places = assembly.start()[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)
     areas = areas_of(places[skin.triangles])
-    # Of the four triangles between corners and middles each corner of each has a third.
+    # Corners and edge middles cut a triangle into four; each small corner gets a third of its triangle.
     own = np.bincount(corners.ravel(), np.repeat(areas / 12.0, 3), len(nodes))
     middle = np.bincount(of_side.ravel(), np.repeat(areas / 4.0, 3), len(edges))
     objects = surfaces(refs, assembly, layout.HEAD)
@@ -84,7 +84,7 @@ def add_objects_to_body(
     numbers: tuple[float, float, float],
     rubs: bool,
 ) -> None:
-    """Add the barrier between a rigid body and objects, as `add_objects`: at its vertices."""
+    """Add the barrier between a rigid body's vertices and objects; arguments and errors as in `add_objects`."""
     thirds = np.repeat(areas_of(surface.at[surface.triangles]) / 3.0, 3)
     count = len(surface.at)
     position, velocity, work, inverse = surface.places[0, :4].tolist()
@@ -120,14 +120,14 @@ def _add(assembly: Assembly, ints: tuple[int, ...], slopes: Callable[[], Slopes]
 
 
 def areas_of(corners: Floats) -> Floats:
-    """(k,) [m^2] of triangles (k, 3, 3)."""
+    """Areas (k,) [m^2] of triangles (k, 3, 3)."""
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     found: Floats = 0.5 * np.linalg.norm(across, axis=1)
     return found
 
 
 def must_be_apart(model: str, refs: Sequence[Ref], places: Floats, ints: Any, gap: float, assembly: Assembly) -> float:
-    """The least distance from an object at the start [m]; raises ScriptError where a node starts on or in one."""
+    """Least distance of nodes from objects at the start [m]. Raises ScriptError for a node on or in an object."""
     from sceneql.contacts.barrier.nearest_node_kernels import nearest
 
     d, node, other = nearest(assembly.start(), assembly.numbers(), np.array(ints, dtype=np.int64))

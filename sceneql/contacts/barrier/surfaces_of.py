@@ -1,4 +1,4 @@
-"""The surfaces between which a barrier acts: skins of elastic solids, and rigid bodies by triangles. Imports numpy."""
+"""Surfaces between which a barrier acts: skins of elastic solids, triangles on rigid bodies. Imports numpy."""
 
 from __future__ import annotations
 
@@ -20,30 +20,30 @@ FIXED = -1
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
-    """Triangles between places of a solid."""
+    """Triangulated surface of an elastic solid or a rigid body."""
 
     model: str
     number: int
-    """Of an elastic solid; FIXED of what is rigid and fixed, below that of a rigid body."""
+    """Number of the solid: 0 or more if elastic, FIXED for fixed rigid bodies, less for rigid bodies that move."""
     places: NDArray[int64]
-    """(n, 8) system.Place.ints of the vertices."""
+    """(n, 8): system.Place.ints of the vertices."""
     held: NDArray[int64]
-    """(n, 3) 1 where a component does not move freely."""
+    """(n, 3): 1 for components that do not move freely."""
     at: Floats
-    """(n, 3) where they start [m]."""
+    """(n, 3) [m]: positions of the vertices at the start."""
     triangles: NDArray[int64]
-    """(m, 3) vertices, counterclockwise from outside."""
+    """(m, 3): vertices, counterclockwise from outside."""
     stiffness: float
-    """[Pa], as of system.Skin; infinite of a rigid body."""
+    """[Pa], as in system.Skin; infinite for a rigid body."""
 
     @property
     def rigid(self) -> bool:
-        """Whether it is that of a rigid body."""
+        """Whether this is the surface of a rigid body."""
         return self.number < 0
 
 
 def elastic_surfaces(everyone: Sequence[Bodies], assembly: Assembly) -> list[Surface]:
-    """Those of elastic solids."""
+    """Surfaces of elastic solids."""
     found = []
     for number, bodies in enumerate(everyone):
         skin = bodies.skin
@@ -60,9 +60,9 @@ def elastic_surfaces(everyone: Sequence[Bodies], assembly: Assembly) -> list[Sur
 
 
 def rigid_surfaces(everyone: Sequence[Bodies], side: float, assembly: Assembly) -> list[Surface]:
-    """Those of rigid bodies, with edges of not much more than ``side`` [m].
+    """Surfaces of rigid bodies, with edges of not much more than ``side`` [m].
 
-    Raises ScriptError for a body without a surface, and for one that ties hold.
+    Raises ScriptError for a body without a surface, and for one with ties.
     """
     from sceneql.contacts.barrier.rigid_triangles import triangles_of
     from sceneql.contacts.colliders import must_be_free

@@ -1,4 +1,4 @@
-"""Skins of shapes: points of their surfaces and fields, for contacts in which a shape is curved or not convex.
+"""Contact skins: points of a shape's surface, and its field, for contacts of curved or nonconvex shapes.
 
 Imports numpy: to be imported by the method that runs.
 """
@@ -27,30 +27,30 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 LEAF = 8
-"""Most points of a leaf of their tree."""
+"""Largest number of points in a leaf of the box tree."""
 PIECES = 8
-"""Pieces of the longest straight edge that a polyhedron can have."""
+"""Number of pieces of the longest straight edge that a polyhedron can have."""
 ON_BALL = 400
-"""Points of a ball."""
+"""Number of points on a ball."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Points:
-    """Points of a surface, in the object's own axes [m]."""
+    """Points of a surface in the object's axes; spacing of the points and thickness of the solid [m]."""
 
     edges: Floats
-    """(n, 12) of edges and corners (contact_skin_kernels.RECORD)."""
+    """(n, 12): records of points on edges and corners (contact_skin_kernels.RECORD)."""
     smooth: Floats
-    """(m, 12) likewise, of the smooth surface."""
+    """(m, 12): records of points on the smooth surface."""
     spacing: float
     thickness: float
 
 
 def skin_of(ref: Ref, center: Floats, shape: Convex | None, place: Floats | None, assembly: Assembly) -> Skin:
-    """The skin of an object, of a body with this center in the object's axes, or of one that starts at a place (7,).
+    """Skin of an object: of a body with ``center`` (3,) [m] in the object's axes, or of one that starts at ``place``.
 
-    ``shape``: its convex shape from the center, where it has one. Raises TypeError and ValueError where it has no
-    inside.
+    ``shape``: its convex shape from the center, if it has one; ``place`` (7,): position and quaternion.
+    Raises TypeError and ValueError for an object without an inside.
     """
     kind: Any = assembly.object(ref)
     if isinstance(kind, Placed):
@@ -67,27 +67,27 @@ def skin_of(ref: Ref, center: Floats, shape: Convex | None, place: Floats | None
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Skin:
-    """A shape as points of its surface and a field."""
+    """Shape as points of its surface and a field."""
 
     collider: Collider
     center: Floats
-    """Of the body, in the object's axes (3,) [m]."""
+    """(3,) [m]: center of the body, in the object's axes."""
     points: Points
     unbounded: bool
 
     @property
     def reach(self) -> float:
-        """Distance of its farthest point from the center [m]."""
+        """Distance of the farthest point from the center [m]; infinite for a half space."""
         every = np.concatenate([self.points.edges, self.points.smooth])
         return inf if self.unbounded else float(np.linalg.norm(every[:, :3] - self.center, axis=1).max())
 
     def shape(self) -> Convex:
-        """In the place of a convex shape: a ball around it, for the boxes that it sweeps."""
+        """Ball around the skin, in place of a convex shape, for its swept boxes."""
         floats = np.concatenate([[self.reach, self.reach], np.zeros(3)])
         return Convex(SKINNED, floats, np.array([1, 0, 0, 0, 0], dtype=np.int64))
 
     def written(self, at: int, assembly: Assembly) -> list[int]:
-        """Its integers, to stand at ``at``: of contact_skin_kernels, of its object and of the links of its trees."""
+        """Integers of the skin, to stand at index ``at``: by contact_skin_kernels, of its object, of its trees."""
         from sceneql.compiled.numbered_kernels import number_of
         from sceneql.contacts.distance import contact_skin_kernels as kernels
         from sceneql.contacts.shape_kernels import SURFACE_TYPE
@@ -137,7 +137,7 @@ def _records(places: Floats, normals: Floats | None = None, along: Floats | None
 
 
 def _points_of_convex(shape: Convex, center: Floats) -> Points:
-    """Of a polyhedron its corners and edges; of a ball points all over it; of a half space none."""
+    """Points of a convex shape: corners and edges of a polyhedron, points all over a ball, none of a half space."""
     none = np.zeros((0, 12))
     if shape.kind != CORE:
         return Points(none, none, inf, inf)
@@ -163,7 +163,7 @@ def _points_of_convex(shape: Convex, center: Floats) -> Points:
 
 
 def _cut(ends: Floats, longest: float) -> Floats:
-    """Records of edges between points (e, 2, 3), in pieces not much longer than a length."""
+    """Records of edges (e, 2, 3) [m], cut into pieces no longer than ``longest`` [m]."""
     found = [np.zeros((0, 12))]
     for a, b in ends:
         pieces = max(1, int(np.ceil(np.linalg.norm(b - a) / longest)))
@@ -173,7 +173,7 @@ def _cut(ends: Floats, longest: float) -> Floats:
 
 
 def _points(kind: Any, collider: Collider, assembly: Assembly) -> Points:
-    """Of any object with an inside."""
+    """Points of any object with an inside."""
     triangles = getattr(kind, "triangles_at", None)
     if triangles is not None:
         return _points_of_mesh(triangles(Start(assembly)))
@@ -184,7 +184,7 @@ def _points(kind: Any, collider: Collider, assembly: Assembly) -> Points:
 
 
 def _points_of_mesh(corners: Floats) -> Points:
-    """The corners and edges of a mesh that stick out."""
+    """Points on the convex edges of a mesh and at their corners."""
     from sceneql.contacts.shapes.closed_mesh import closed
     from sceneql.mesh.holes import welded
     from sceneql.mesh.measures import area, volume

@@ -1,4 +1,4 @@
-"""Objects that move by keys or formulas, for rigid bodies that touch them."""
+"""Objects moved by keys or formulas, in contacts with rigid bodies."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 MOVING = ("position", "rotation", "height")
-"""Fields of an object that move it and leave its shape; `height` is a plane's."""
+"""Fields of an object that move it without changing its shape; `height` belongs to planes."""
 
 
 def is_led(kind: Object) -> bool:
-    """Whether an object moves by itself."""
+    """Whether an object's given place varies in time."""
     return any(name in MOVING and isinstance(value, Value) and not value.constant for name, value in kind)
 
 
 def lead(ref: Ref, kind: Object, place: Floats, assembly: Assembly) -> tuple[int, ...]:
-    """The integers of an object that moves (led_kernels); ``place``: position and quaternion (7,) at the start.
+    """Integers of an object with given motion (led_kernels); ``place`` (7,): position and quaternion at the start.
 
-    Raises ScriptError for one that follows what is solved.
+    Raises ScriptError for an object that follows a solved model.
     """
     import numpy as np
 

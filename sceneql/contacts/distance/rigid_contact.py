@@ -1,4 +1,4 @@
-"""Contacts of rigid bodies with one another and with objects: their shapes, and the arrays of the kernel."""
+"""Contacts of rigid bodies with one another and with objects: shapes, and the kernel's arrays."""
 
 from __future__ import annotations
 
@@ -18,10 +18,12 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
 
 CONTACTS = 24
-"""Contacts by the body whose forces are told and kept."""
+"""Contacts per body whose forces are kept for outputs and for the next step."""
 DEEP = 1e-6
-"""Part of a body's size by which it may start inside another: rounding in a script."""
+"""Depth, relative to a body's size, to which it may start inside another: rounding in a script."""
 KERNEL = "sceneql.contacts.distance.rigid_local_kernels:back_off"
+ANSWERS = ("sceneql.bodies.rigid.groups_kernels", "sceneql.bodies.rigid.moved_bodies_kernels")
+"""The modules of kernels that find the forces of contacts, and move by them."""
 
 
 def assemble(
@@ -33,11 +35,16 @@ def assemble(
     rolling: Value,
     masses: Masses | None = None,
 ) -> tuple[int, ...]:
-    """Add the contacts of rigid bodies; the offsets of count, points, normals, forces, loose and crowded steps.
+    """Add the contacts of rigid bodies.
 
-    Raises ScriptError for a shape that is not covered, and for bodies that start inside each other.
+    Returns the offsets of count, points, normals, forces, and of the numbers of loose and crowded steps.
+    Raises ScriptError for a shape that is not supported, and for bodies that start inside each other.
     """
     import numpy as np
+
+    from sceneql.compiled.compile_beside import compile_beside
+
+    compile_beside(ANSWERS)  # while what finds contacts is compiled here
 
     from sceneql.bodies.rigid.point_list import WHO
     from sceneql.bodies.rigid.tied_step import body_integers, tied_step
@@ -144,7 +151,7 @@ def must_be_apart(
     joined: set[tuple[int, int]],
     assembly: Assembly,
 ) -> None:
-    """Raise ScriptError for bodies that start inside one another or inside what stands; all such pairs at once."""
+    """Raise ScriptError for bodies that start inside one another or inside fixed shapes; it lists all such pairs."""
     found = Diagnostics()
     for (a, b), gap in known.gaps(shapes, places, moving):
         if (a, b) in joined:
@@ -157,7 +164,7 @@ def must_be_apart(
 
 
 def place_of(ref: Ref, assembly: Assembly) -> Floats:
-    """Position and quaternion (7,) of an object at the start. Raises ScriptError for one that changes its shape."""
+    """Position and quaternion (7,) of an object at the start. Raises ScriptError for one whose shape varies."""
     import numpy as np
 
     kind: Any = assembly.object(ref)

@@ -1,4 +1,4 @@
-"""Masses that rigid bodies collide with: their rows among the bodies, and the surfaces that they meet."""
+"""Masses in contacts with rigid bodies: their rows among the bodies, and the surfaces they collide with."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies
 
 MOST_CUT = 4096
-"""Masses above which no step is cut at an impact: looking costs more than it gives."""
+"""Number of masses above which no step is cut at an impact: the search costs more than it gains."""
 
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """What masses meet."""
+    """Solid that masses collide with."""
 
     number: int
-    """Among the shapes of the step."""
+    """Index among the shapes of the step."""
     ref: Ref
     center: Floats
-    """(3,) the center of mass in the axes of its object [m]."""
+    """(3,) [m]: center of mass in the axes of its object."""
     place: Floats
-    """(7,) center of mass and quaternion at the start."""
+    """(7,): center of mass [m] and quaternion at the start."""
 
 
 def masses_of(everyone: Sequence[Bodies], thickness: float, assembly: Assembly) -> Masses:
-    """The masses of a contact, with their tally and memory; bounds the steps that a tolerance chooses."""
+    """Masses of a contact, with their tally and memory; also bounds adaptive steps by the springs' shortest period."""
     from sceneql.contacts.impact_kernels import MOST_CUTS
 
-    # Impulses at the end of a step are to springs as an explicit method is: stable up to 2 / (2 pi / period).
+    # For springs, impulses at the end of a step act as an explicit method: stable up to 2 / (2 pi / period).
     longest = min(bodies.springs.period if bodies.springs else math.inf for bodies in everyone) / math.pi
     assembly.step_at_most(longest)
     few = sum(bodies.count for bodies in everyone) <= MOST_CUT
@@ -47,22 +47,22 @@ def masses_of(everyone: Sequence[Bodies], thickness: float, assembly: Assembly) 
 
 @dataclass(frozen=True, slots=True)
 class Masses:
-    """The models of masses of a contact."""
+    """Models of masses in a contact."""
 
     everyone: Sequence[Bodies]
     thickness: float
-    """Distance to keep besides the radii [m]."""
+    """Distance kept in addition to the radii [m]."""
     tally_at: int
     """Offset of the tally of impacts."""
     memory_at: int
     """Offset of the memory of mass_points_kernels."""
 
     def rows(self, assembly: Assembly) -> list[tuple[int, ...]]:
-        """The integers of the masses as bodies of the step (velocity_step_kernels).
+        """Integers of the masses as bodies of the step (velocity_step_kernels).
 
-        Raises ScriptError for masses that ties hold.
+        Raises ScriptError for masses with ties.
         """
-        # Nothing turns them: any inertia does.
+        # Masses do not turn: the inertia is arbitrary.
         inertia_at = assembly.floats([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
         found: list[tuple[int, ...]] = []
         for bodies in self.everyone:
@@ -73,9 +73,9 @@ class Masses:
         return found
 
     def written(self, at: int, first: int, solids: Sequence[Solid], assembly: Assembly) -> list[int]:
-        """The integers of mass_near_kernels, to stand at ``at``; ``first``: number of the first mass.
+        """Integers of mass_near_kernels, to stand at index ``at``; ``first``: number of the first mass.
 
-        Raises ScriptError for masses that start inside a solid, and for one that cannot be collided with.
+        Raises ScriptError for masses that start inside a solid, and for a solid without a collider.
         """
         from sceneql.contacts.distance import mass_near_kernels as kernels
 
@@ -102,7 +102,7 @@ class Masses:
 
 
 def _laid(surfaces: Sequence[tuple[tuple[int, ...], tuple[int, ...]]], at: int) -> list[int]:
-    """The integers of surfaces, to stand at ``at``, and behind them those of their shapes."""
+    """Integers of surfaces, to stand at index ``at``, followed by the data of their shapes."""
     heads: list[int] = []
     tail: list[int] = []
     for head, data in surfaces:

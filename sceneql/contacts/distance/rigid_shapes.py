@@ -1,4 +1,4 @@
-"""The shapes of the bodies and objects of a contact: convex ones, and the skins of all where one is not.
+"""Shapes of the bodies and objects in a contact: convex shapes, and skins of all if one is not convex.
 
 Imports numpy: to be imported by the method that runs.
 """
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Shapes:
-    """Shapes as they were asked for, and how their skins are made."""
+    """Shapes requested so far, with skins made on demand."""
 
     def __init__(self, assembly: Assembly) -> None:
         self._assembly = assembly
@@ -32,9 +32,10 @@ class Shapes:
         self._skins: list[tuple[Convex, Skin]] = []
 
     def of(self, ref: Ref | None, center: Floats, place: Floats | None = None) -> Convex:
-        """The shape of an object in its own axes from a center; of one that stands or is led, at a place (7,).
+        """Shape of an object in its own axes from ``center`` (3,) [m].
 
-        Raises ScriptError where it is not covered.
+        ``place`` (7,): position and quaternion of an object with given motion. Raises ScriptError for an object
+        without a shape to touch with.
         """
         if ref is None:
             message = "a body without an object has no shape to touch with"
@@ -61,7 +62,7 @@ class Shapes:
             raise ScriptError([Diagnostic("no-collider", message, ref.span, help)]) from None
 
     def skin(self, shape: Convex) -> Skin:
-        """The skin of a shape."""
+        """Skin of a shape that `of` returned; it is made at the first call."""
         for one, skin in self._skins:
             if one is shape:
                 return skin
@@ -71,7 +72,7 @@ class Shapes:
         return made
 
     def written(self, shapes: Sequence[Convex], at: int) -> list[int]:
-        """Where the skin of each shape begins, and the skins, to stand at ``at``; nothing where all are convex."""
+        """Indices of each shape's skin, then the skins, to stand at index ``at``; empty if all shapes are convex."""
         if all(shape.kind != SKINNED for shape in shapes):
             return []
         begins: list[int] = []
@@ -85,7 +86,7 @@ class Shapes:
     def gaps(
         self, shapes: Sequence[Convex], places: Sequence[Floats], moving: int
     ) -> Iterator[tuple[tuple[int, int], float]]:
-        """Pairs whose boxes meet at places (7,), of which one moves, and gaps [m]; infinity of skins apart."""
+        """Pairs with overlapping boxes at ``places`` (7,), one of them moving, and gaps [m]; infinite if skins miss."""
         from sceneql.contacts.distance.gap_kernels import gap
         from sceneql.contacts.distance.near_shapes_kernels import standing_pairs
 

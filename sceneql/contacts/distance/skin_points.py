@@ -1,4 +1,4 @@
-"""Points of implicit surfaces for contacts: of the smooth surface, and of its edges and corners, on the true surface.
+"""Contact points on implicit surfaces: of the smooth surface, and of its edges and corners.
 
 Imports numpy: to be imported by the method that runs.
 """
@@ -24,22 +24,22 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 CELLS = 20
-"""Cells along the longest side to begin with."""
+"""Initial number of cells along the longest side."""
 MOST_CELLS = 160
 THIN = 2.0
-"""Cells that the thickness of a wall must have."""
+"""Least number of cells in the mean thickness of the solid."""
 SHARP = 0.9
-"""Cosine of the angle between the normals of neighboring triangles from which on an edge is sharp."""
+"""Cosine of the angle between normals of neighboring triangles below which an edge is sharp."""
 TURNS = 8
-"""Steps in which a corner or a point of an edge is brought onto its faces."""
+"""Newton steps that move corners and points of edges onto their faces."""
 
 Found = tuple["Floats", "Floats", float, float]
 
 
 def points_of_field(kind: Any, collider: Collider, assembly: Assembly) -> Found:
-    """Records of edges and corners, of the smooth surface, their distance and how thick the solid is [m].
+    """Records (n, 12) of edges and corners, (m, 12) of the smooth surface; spacing, and half the solid's thickness [m].
 
-    Raises TypeError where it is unbounded, ValueError where it is empty.
+    Raises TypeError for an unbounded object, ValueError for an empty one.
     """
     start: Any = Start(assembly)
     found = field_in_box(kind, "it", np.eye(3, 4), start, "collided with")
@@ -75,7 +75,7 @@ def _of_tape(tape: Tape, low: Corner, high: Corner) -> Found:
 
 
 def _slopes(tape: Tape, points: Floats) -> tuple[Floats, Floats]:
-    """Of points (n, 3) the field over its slope [m] (n,), and the unit gradient (n, 3)."""
+    """Field over the size of its gradient (n,) [m], and unit gradient (n, 3), at points (n, 3) [m]."""
     from sceneql.contacts.distance.skin_slopes_kernels import slopes
     from sceneql.field.tape.tape_ops import SCRATCH_COLUMNS, scratch_rows
 
@@ -88,12 +88,12 @@ def _slopes(tape: Tape, points: Floats) -> tuple[Floats, Floats]:
 
 
 def _split(tape: Tape, vertices: Floats, triangles: Ints, cell: float) -> tuple[Floats, Floats]:
-    """Records of edges and corners, and of the smooth rest."""
+    """Records (n, 12) of edges and corners, and (m, 12) of the smooth rest."""
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     normals = np.cross(b - a, c - a)
     length = np.linalg.norm(normals, axis=1)
     normals /= np.where(length > 0, length, 1.0)[:, None]
-    # The normals of faces are those of the field in their middle, pushed onto the surface.
+    # Normals of triangles are the field's gradients at their centers, projected onto the surface.
     middles = (a + b + c) / 3
     for _ in range(2):
         away, up = _slopes(tape, middles)
@@ -108,7 +108,7 @@ def _split(tape: Tape, vertices: Floats, triangles: Ints, cell: float) -> tuple[
     one, other = owner[twins], owner[twins + 1]
     ends = np.stack(np.divmod(keys[twins], len(vertices)), axis=1)
     sharp = np.einsum("ij,ij->i", up[one], up[other]) < SHARP
-    # Edges that go inwards touch nothing first.
+    # Concave edges never touch first.
     out = np.einsum("ij,ij->i", middles[other] - middles[one], up[one]) < 0.0
     chosen = sharp & out
     on = np.zeros(len(vertices), dtype=bool)
@@ -130,7 +130,7 @@ def _on_surface(tape: Tape, points: Floats, cell: float) -> Floats:
 def _creases(
     tape: Tape, vertices: Floats, ends: NDArray[int64], triangles: Ints, middles: Floats, cell: float
 ) -> Floats:
-    """Records of the points of sharp edges, each on the faces that meet there, with the edge's bend."""
+    """Records (n, 12) of points on sharp edges, each on the faces that meet there, with the edge's curvature."""
     beside: dict[int, list[int]] = {}
     for i, j in ends.tolist():
         beside.setdefault(i, []).append(j)
@@ -157,7 +157,7 @@ def _creases(
                 square = float(bend @ bend)
                 tangent = u * lv / lu + v * lu / lv
                 tangent /= np.linalg.norm(tangent)
-                # A little more than half way to both, so that nothing is left out between two points.
+                # A little more than half way to both neighbors, so that no gap remains between points.
                 record[6:9] = 0.55 * max(lu, lv) * tangent
                 if square > (1e-9 * lu * lv) ** 2:
                     # The circle through the three points.
@@ -170,7 +170,7 @@ def _creases(
 
 
 def _at_corner(tape: Tape, p: Floats, middles: Floats, cell: float) -> Floats:
-    """The point near p where the planes of the faces around it meet: what moves it least (Newton's method)."""
+    """Point (3,) near p in which the tangent planes of the faces around it meet; least displacement (Newton)."""
     start, part = p.copy(), 0.2
     for _ in range(TURNS):
         toward = middles - p
@@ -185,6 +185,6 @@ def _at_corner(tape: Tape, p: Floats, middles: Floats, cell: float) -> Floats:
         moved = np.linalg.lstsq(up, heights, rcond=0.05)[0]
         if not np.linalg.norm(p + moved - start) < cell:
             return start
-        # Curved faces leave the square of what is looked at beside the corner.
+        # The error of curved faces is quadratic in the distance sampled around the corner.
         p, part = p + moved, 0.15 * part
     return p

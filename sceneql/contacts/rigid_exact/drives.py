@@ -1,4 +1,4 @@
-"""Stops, motors and dry friction of ties among exact contacts of rigid bodies: their integers and floats."""
+"""Stops, motors and dry friction of ties in exact contacts of rigid bodies: their integers and floats."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 def drives_of(
     assembly: Assembly, movers: list[tuple[int, ...]], works: list[int]
 ) -> tuple[list[list[float]], list[list[int]]]:
-    """The floats (stop_kernels) and the integers (motion_kernels) of the ties that have stops, a motor or friction.
+    """Floats (stop_kernels) and integers (motion_kernels) of the ties with stops, a motor or friction.
 
-    From now on no step of velocities moves these. What they hold is added to the movers. Raises ScriptError for a motor
-    that follows what has no known rate.
+    Adds the tied bodies to ``movers`` and ``works``, and marks the assembly as driven, so that no velocity step moves
+    these ties. Raises ScriptError for a motor whose target has no known rate.
     """
     from sceneql.bodies.rigid.drive_kernels import ROW_AT
     from sceneql.bodies.rigid.tie_rows_kernels import AT_J, SCRATCH
@@ -55,7 +55,7 @@ def drives_of(
 
 
 def _rates(tie: Tied, drive: Drive, assembly: Assembly) -> tuple[int, int]:
-    """Offsets of the first and the second derivative of what a motor follows; -1 where that is constant."""
+    """Offsets of the first and second time derivatives of a motor's target; -1 if it is constant."""
     target = drive.target
     if target is None or target.constant:
         return -1, -1

@@ -1,4 +1,4 @@
-"""The shapes of bodies and objects in exact contacts of rigid bodies, and how objects move that do so by themselves.
+"""Shapes of bodies and objects in exact contacts of rigid bodies, and the given motion of objects.
 
 Imports numpy: to be imported by the method that runs.
 """
@@ -43,9 +43,9 @@ HELP = "mode `exact` takes spheres, ellipsoids, cylinders, tori, boxes, planes, 
 
 
 def exact_shape(ref: Ref | None, center: Floats, place: Floats | None, known: Shapes, assembly: Assembly) -> Convex:
-    """The shape of an object from a center (3,) in its own axes; of one that stands, at a place (7,).
+    """Shape of an object from ``center`` (3,) [m] in its own axes; ``place`` (7,): position and quaternion if fixed.
 
-    Raises ScriptError where points of its surface would stand for it.
+    Raises ScriptError for a shape that only points of its surface could represent.
     """
     if ref is None:
         return known.of(ref, center, place)
@@ -64,7 +64,7 @@ def exact_shape(ref: Ref | None, center: Floats, place: Floats | None, known: Sh
 
 
 def point(radius: float, size: float) -> Convex:
-    """The shape of a mass: a ball, or without a radius a point, whose gaps are small against ``size`` [m]."""
+    """Shape of a mass: a ball, or for radius 0 a point, whose gap tolerances are relative to ``size`` [m]."""
     ball = convex.ball(radius)
     numbers = ball.floats.copy()
     numbers[REACH] = radius or size
@@ -72,13 +72,16 @@ def point(radius: float, size: float) -> Convex:
 
 
 def upright(x: Floats) -> Floats:
-    """The place (7,) of what does not turn."""
+    """Place (7,): position x (3,) and the identity quaternion."""
     return np.concatenate([x, [1.0, 0.0, 0.0, 0.0]])
 
 
 def field_shape(kind: Any, ref: Ref, center: Floats, assembly: Assembly) -> Convex:
-    """A shape whose surface is where a field is zero, from a center (3,) in its own axes; its integers are those of an
-    object (contacts/layout.py), which `finish_fields` completes. Raises ScriptError where it cannot be touched."""
+    """Shape of an object's field, from ``center`` (3,) [m] in its own axes.
+
+    Its integers are those of an object (contacts/layout.py), which `joined_fields` completes.
+    Raises ScriptError for an object without a field or an extent.
+    """
     own = kind
     if isinstance(kind, Placed):
         own = kind.model_copy(update={"position": implicit.ORIGIN, "rotation": UPRIGHT})
@@ -99,7 +102,7 @@ def field_shape(kind: Any, ref: Ref, center: Floats, assembly: Assembly) -> Conv
 
 
 def joined_fields(shapes: Sequence[Convex], floats_at: int, ints_at: int) -> tuple[Floats, NDArray[np.int64]]:
-    """As `convex.joined`, with where the integers of fields stand."""
+    """Floats and integers as from `convex.joined`, with the indices of the fields' integers filled in."""
     floats, ints = convex.joined(shapes, floats_at, ints_at)
     for k, shape in enumerate(shapes):
         if is_field(shape):
@@ -110,29 +113,29 @@ def joined_fields(shapes: Sequence[Convex], floats_at: int, ints_at: int) -> tup
 
 
 def is_field(shape: Convex) -> bool:
-    """Whether a shape is where a field is below zero, which balls alone meet."""
+    """Whether a shape is given by a field; only balls can touch such shapes."""
     numbers = shape.floats
     return bool(shape.kind == CURVED and numbers[FORM] == FIELD)
 
 
 def is_column(shape: Convex) -> bool:
-    """Whether a shape is a round column."""
+    """Whether a shape is a circular cylinder."""
     numbers = shape.floats
     return bool(shape.kind == CURVED and numbers[FORM] == COLUMN)
 
 
 def comes_first(one: Convex, other: Convex) -> bool:
-    """Whether a pair is one's with the other: a curved shape comes first, and of two a column last."""
+    """Whether ``one`` is first in a pair: curved shapes come first, and of two curved ones a column comes last."""
     return one.kind == CURVED and (other.kind != CURVED or (is_column(other) and not is_column(one)))
 
 
 def is_ball(shape: Convex) -> bool:
-    """Whether a shape is a point with a radius."""
+    """Whether a shape is a ball: a single point with a radius."""
     return bool(shape.kind == convex.CORE and shape.ints[0] == 1)
 
 
 def led_by(ref: Ref, assembly: Assembly) -> Led | None:
-    """How an object moves by itself; None for one that stands. Raises ScriptError where that is not known."""
+    """Given motion of an object; None if it is fixed. Raises ScriptError for a plane whose height varies."""
     kind: Any = assembly.object(ref)
     if not is_led(kind):
         return None
@@ -156,9 +159,9 @@ def apart_exactly(
     joined: set[tuple[int, int]],
     assembly: Assembly,
 ) -> None:
-    """Raise ScriptError for bodies that start inside one another or inside what stands, and for two curved shapes.
+    """Raise ScriptError for bodies that start inside each other or inside fixed shapes, and for unsupported pairs.
 
-    ``names``: the object of each shape, or what it is said to be.
+    ``names``: object of each shape, or its description in messages.
     """
     flat = [k for k, shape in enumerate(shapes) if shape.kind != CURVED]
     number = {old: new for new, old in enumerate(flat)}
@@ -204,18 +207,20 @@ def apart_exactly(
 
 
 def said(name: Ref | str) -> str:
-    """What a message says of a shape."""
+    """Name of a shape in messages."""
     return f"'{name.name}'" if isinstance(name, Ref) else name
 
 
 def _place(name: Ref | str, assembly: Assembly) -> Span | None:
-    """Where it stands in the script."""
+    """Place in the script for messages about a shape."""
     return (name.span if isinstance(name, Ref) else None) or assembly.line()
 
 
 def gap_of(curved: Convex, place: Floats, other: Convex, there: Floats, numbers: Floats) -> tuple[float, bool]:
-    """The gap [m] of a curved shape at a place (7,) and another, and whether a contact is known there; ``numbers``:
-    those of the island."""
+    """Gap [m] between a curved shape at ``place`` (7,) and another at ``there`` (7,), and whether a contact was found.
+
+    ``numbers``: floats of the island.
+    """
     from sceneql.bodies.rigid.tie_rows_kernels import AT_R, AT_X, MOVED
     from sceneql.contacts.rigid_exact.contact_kernels import RECORD
     from sceneql.contacts.rigid_exact.curved_find_kernels import (

@@ -1,4 +1,4 @@
-"""Contacts of rigid bodies in mode `exact`: shapes, movers and ties of an island as the arrays of its kernels."""
+"""Contacts of rigid bodies in mode `exact`: shapes, movers and ties of an island as arrays for the kernels."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ ROOM = "sceneql.contacts.rigid_exact"
 HOLD, SETTLE = f"{ROOM}.exact_hold_kernels:hold", f"{ROOM}.exact_hold_kernels:settle"
 CONTACTS = f"{ROOM}.watch_kernels:gap", f"{ROOM}.strike_kernels:impact"
 MOST = 24
-"""Bodies of one contact: all their conditions are one dense system."""
+"""Largest number of bodies: all their conditions form one dense system."""
 ADVICE = "`mode: local` takes what jams or tumbles without end"
-"""What is said where there is no way on."""
+"""Help of the message for a contact that cannot go on."""
 FEW = 8
-"""Contacts by the body that there is room for, and besides."""
+"""Contacts that storage is reserved for: this many per body, and this many more."""
 
 
 def assemble(
@@ -41,11 +41,11 @@ def assemble(
     *,
     gives_way: bool = False,
 ) -> tuple[int, ...]:
-    """Add the exact contacts of rigid bodies and of masses with them: what outputs read (Collision).
+    """Add the exact contacts of rigid bodies, and of masses with them; returns the integers that outputs read.
 
-    ``gives_way``: whether another mode goes on where this one finds no way, or has taken more work than it may.
+    ``gives_way``: whether another mode takes over after this one fails or exceeds its share of work.
 
-    Raises ScriptError for a shape that is not covered, for bodies that start inside each other, for too many bodies.
+    Raises ScriptError for an unsupported shape, for bodies that start inside each other, for too many bodies.
     """
     import numpy as np
 
@@ -149,26 +149,26 @@ def assemble(
 
 @dataclass(frozen=True, slots=True)
 class Touching:
-    """What collides."""
+    """Shapes and bodies of an exact contact."""
 
     shapes: list[Convex]
-    """Of the bodies that move, then of what stands."""
+    """Shapes of the moving bodies, then of fixed and led ones."""
     moving: list[tuple[Bodies, int]]
-    """The bodies that move: of which, and its number among these."""
+    """Moving bodies: their model, and their number in it."""
     standing: list[tuple[Floats, Led | None]]
-    """Position and quaternion (7,) of what stands, or how it moves by itself."""
+    """Position and quaternion (7,) of each fixed or led shape at the start, and its given motion or None."""
     joined: set[tuple[int, int]]
-    """Pairs of bodies that a tie joins: they do not touch."""
+    """Pairs of bodies joined by a tie, which do not touch each other."""
 
     def is_mass(self, number: int) -> bool:
-        """Whether a shape is a mass: these are left to `mutual_collision` among themselves."""
+        """Whether a shape is a mass; contacts among masses belong to `mutual_collision`."""
         return number < len(self.moving) and self.moving[number][0].turning is None
 
 
 def _shapes(
     assembly: Assembly, everyone: Sequence[Bodies], others: Sequence[Ref], masses: Masses | None = None
 ) -> Touching:
-    """The shapes of a contact. Raises ScriptError for one that is not covered, or inside another at the start."""
+    """Shapes of a contact. Raises ScriptError for an unsupported one, or one that starts inside another."""
     import numpy as np
 
     from sceneql.contacts.distance.rigid_shapes import Shapes
@@ -221,7 +221,10 @@ def _shapes(
 def _tied(
     assembly: Assembly, movers: list[tuple[int, ...]], works: list[int], row: int, integers: Any, position: int
 ) -> tuple[list[tuple[int, int, int]], tuple[int, ...]]:
-    """Movers and floats of each row of the island's ties, and the integers of all; adds what is tied to the movers."""
+    """Both movers and offset of floats of each row of the island's ties, and the integers of all ties.
+
+    Adds the tied bodies to ``movers`` and ``works``.
+    """
     rows = []
     for tie in assembly.ties:
         sides = []

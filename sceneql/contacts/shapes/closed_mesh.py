@@ -1,4 +1,4 @@
-"""Closed meshes: holes closed, the normals of their features, and a tree of boxes around their triangles.
+"""Closed meshes: fills holes, computes normals of faces, edges and vertices, and a box tree of the triangles.
 
 For the nearest points of `contacts/shapes/mesh_kernels.py`. Imports numpy: to be imported by the method that runs.
 """
@@ -21,31 +21,31 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 LEAF = 4
-"""Most triangles of a leaf of the tree."""
+"""Largest number of triangles in a leaf of the tree."""
 MISSING = 0.55
-"""Most area of what closes the holes, in parts of what is there: half of a sphere (0.5) may be closed."""
+"""Largest area of the hole fillings, relative to the mesh: a hemisphere (0.5) may be closed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClosedMesh:
-    """A closed surface whose triangles face outwards, in the order of the tree around them."""
+    """Closed surface with outward triangles and a box tree."""
 
     vertices: Floats
-    """(n, 3)."""
+    """(n, 3) [m]."""
     corners: Floats
-    """(m, 3, 3)."""
+    """(m, 3, 3) [m]: corners of the triangles, outward."""
     rows: Floats
-    """(m, 30): corners, then unit normals of the face, of the edges 01, 12, 20 and of the vertices."""
+    """(m, 30), in the tree's order: corners, then unit normals of the face, the edges 01, 12, 20 and the vertices."""
     boxes: Floats
-    """(b, 6) low and high corners, depth first."""
+    """(b, 6) [m]: low and high corners of boxes, depth first."""
     tree: NDArray[int64]
-    """(b, 3) next box outside this one in depth-first order, first triangle, number of triangles (0: no leaf)."""
+    """(b, 3): next box outside this one in depth-first order, first triangle, number of triangles (0: no leaf)."""
 
 
 def closed(vertices: Floats, triangles: Ints) -> ClosedMesh:
-    """From vertices (n, 3) and triangles (m, 3); fans of triangles close holes.
+    """Closed mesh of vertices (n, 3) [m] and triangles (m, 3); fans of triangles fill holes.
 
-    Raises ValueError for a mesh of which too much is missing, and for one whose edges have other than two triangles.
+    Raises ValueError for a mesh with too large holes, and for one with edges of more than two triangles.
     """
     return _KNOWN.get((vertices, triangles), lambda: _closed(vertices, triangles))
 
@@ -65,7 +65,7 @@ def _closed(vertices: Floats, triangles: Ints) -> ClosedMesh:
 
 
 def _filled(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
-    """A welded mesh without its holes. Raises ValueError unless every edge then has two triangles, one to each side."""
+    """Welded mesh with holes filled. Raises ValueError unless every edge then has two triangles, one on each side."""
     if not len(triangles):
         raise ValueError("its mesh has no triangle of any area")
     sides = open_sides(triangles)
@@ -80,7 +80,7 @@ def _filled(vertices: Floats, triangles: Ints) -> tuple[Floats, Ints]:
 
 
 def _doubled(triangles: Ints) -> bool:
-    """Whether two triangles have the same edge in the same direction."""
+    """Whether two triangles share an edge in the same direction."""
     sides = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).astype(np.int64)
     keys = np.sort(sides @ (int(sides.max()) + 1, 1))
     return bool((keys[1:] == keys[:-1]).any())
@@ -92,7 +92,7 @@ def _area(vertices: Floats, triangles: Ints) -> float:
 
 
 def _normals(vertices: Floats, triangles: Ints) -> Floats:
-    """(m, 21) unit normals of each triangle's face, edges 01, 12, 20, and vertices, the latter weighted by angle."""
+    """Unit normals (m, 21) of each triangle's face, edges 01, 12, 20 and vertices, the last weighted by angle."""
     corners = vertices[triangles]
     faces = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     faces /= np.linalg.norm(faces, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""Colliders of all objects with a field: the field's tape in the object's own coordinates."""
+"""Colliders of objects with a field, by the field's tape in the object's own coordinates."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ ORIGIN = Value(Vector((Number(0.0), Number(0.0), Number(0.0)), Type((3,), LENGTH
 
 
 def collider(kind: Object, assembly: Assembly) -> Collider:
-    """The surface of any object with an inside, which may move but not change its shape.
+    """Collider of any object with an inside, which may move but not change its shape.
 
-    Raises TypeError for an object that has no inside, ValueError for one that changes its shape.
+    Raises TypeError for an object without an inside, ValueError for one whose shape varies.
     """
     import numpy as np
 
@@ -64,7 +64,7 @@ def collider(kind: Object, assembly: Assembly) -> Collider:
 
 
 def place(kind: Object, assembly: Assembly) -> tuple[int, int]:
-    """Offsets in the floats of an object's position and rotation."""
+    """Offsets of an object's position and rotation in the floats."""
     position, rotation = (kind.position, kind.rotation) if isinstance(kind, Placed) else (ORIGIN, UPRIGHT)
     return assembly.value(position), assembly.value(rotation)
 
@@ -76,7 +76,7 @@ def changes(kind: Object, assembly: Assembly) -> bool:
 
 
 def packed(tape: Tape) -> NDArray[int64]:
-    """The tape's code (n, 4) int32, packed into two int64 a row."""
+    """Code of a tape, (n, 4) int32, packed into (2 n,) int64."""
     import numpy as np
 
     return np.ascontiguousarray(tape.code, dtype=np.int32).reshape(-1).view(np.int64)

@@ -23,9 +23,9 @@ THINNEST = 1e-4
 
 
 def collider(vertices: Floats, triangles: Ints, position_at: int, rotation_at: int, assembly: Assembly) -> Collider:
-    """The surface of vertices (n, 3) and triangles (m, 3) in the mesh's own coordinates.
+    """Collider of a mesh of vertices (n, 3) [m] and triangles (m, 3) in its own coordinates.
 
-    Raises ValueError for a mesh that is not closed, LimitRefused for one that is too large.
+    Raises ValueError for a mesh that cannot be closed, LimitRefused for one with too many triangles.
     """
     if len(triangles) > MOST_TRIANGLES:
         raise LimitRefused(f"a mesh of {len(triangles)} triangles is too large for contacts, at most {MOST_TRIANGLES}")

@@ -1,4 +1,4 @@
-"""Solids that move through a flow: what its kernels need to cut its cells anew after each step."""
+"""Solids that move through a flow: numbers and terms by which kernels cut the cells again at each instant."""
 
 from __future__ import annotations
 
@@ -28,44 +28,44 @@ if TYPE_CHECKING:
 GO = "sceneql.flows.obstacles.cut_anew_kernels:go"
 GO_ON = "sceneql.flows.obstacles.cut_anew_kernels:go_on"
 UNSOLVED = ("direct",)
-"""Solvers of the pressure whose factors would have to be made anew in each step."""
+"""Linear solvers of the pressure that are refused, since they would factor the matrix again in each step."""
 
 
 def moving(refs: Sequence[Ref], assembly: Assembly) -> bool:
-    """Whether any of some solids moves."""
+    """Whether any of the solids moves."""
     return any(is_moving(cast(Object, assembly.object(ref))) for ref in refs)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Known:
-    """What does not change of a flow whose solids move: by face but where said."""
+    """The constant data of a flow with moving solids; arrays are (faces,) unless stated."""
 
     passage: Passage
-    """Of the uncut box."""
+    """The faces of the box without solids."""
     given: Any
-    """Whether the velocity is given, on the boundary."""
+    """Whether the velocity is given by the boundary."""
     outside: Floats
     """Acceleration by the pressure outside."""
     base: int
     weights: int
-    """Offsets of accelerations without the force that a script gives, and of what that is multiplied with; or -1."""
+    """Offsets of the accelerations without the script's force, and of the factor of this force; or -1."""
     edge_weights: Floats
-    """By edge: ties to the box's walls [m^3/s]."""
+    """(edges,) [m^3/s] viscous ties to the box's walls."""
     sinks: int
     solved: int
-    """Offsets of these arrays of the components (system.Grid)."""
+    """Offsets of the sinks and volumes of the components (system.Grid)."""
     density: float
     viscosity: float
-    """[kg/m^3], kinematic [m^2/s]"""
+    """Density [kg/m^3] and kinematic viscosity [m^2/s]."""
     held: int
-    """Offset of the sinks of the pressure's equation as a linear solver by name sees them; or -1."""
+    """Offset of the pressure equation's sinks for a linear solver chosen by name; or -1."""
 
 
 class MovingSolids:
-    """Solids of which some move, by the surfaces of contacts."""
+    """Solids in a flow, some of which move; their distances are those of the contacts' surfaces."""
 
     def __init__(self, refs: Sequence[Ref], model: Any, faces: Faces, assembly: Assembly) -> None:
-        """Raises ScriptError for solids that change their shape, and for what does not go with solids that move."""
+        """Raises ScriptError for solids that change their shape, and for settings that moving solids do not allow."""
         self.faces, self.assembly, count = faces, assembly, len(refs)
         line = refs[0].span or assembly.line()
         if model.edges == "staircase":
@@ -91,14 +91,15 @@ class MovingSolids:
         self.seeping = assembly.floats(np.zeros(2 * cells + 1))
 
     def describe(self, ints: Any) -> None:
-        """Write what the flow's own integers say of solids."""
+        """Write the entries on solids into the flow's integers."""
         ints[layout.OWNERS], ints[layout.SEEPING], ints[layout.LED] = self.owners, self.seeping, self.whole
         ints[layout.MIDDLES], ints[layout.CUT_FACES] = self.middles, self.faces.count
 
     def start(self, known: Known, x: Floats, flow: NDArray[int64]) -> None:
-        """Cut all cells at the start, and add what cuts them anew; ``x``: the velocities, as solids leave them then.
+        """Cut the cells at the start, and add the terms that cut them again.
 
-        Raises ScriptError where they leave nothing, or push more than a closed box has room for.
+        ``x`` (faces,): the velocities, changed where solids stand. Raises ScriptError where the solids fill the box, or
+        displace fluid in a closed box.
         """
         from sceneql.flows.obstacles.cut_anew_kernels import cut_anew, settle
 
@@ -139,7 +140,7 @@ class MovingSolids:
         assembly.after_step(GO_ON, ints)
 
     def fractions(self) -> Floats:
-        """The open part of each cell at the start (obstacles.Solids.fractions)."""
+        """The open fraction (cells,) of each cell at the start (obstacles.Solids.fractions)."""
         n = int(np.prod(self.faces.cells.shape))
         found: Floats = self.assembly.numbers()[self.whole : self.whole + n]
         return found

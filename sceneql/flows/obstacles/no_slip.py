@@ -1,10 +1,10 @@
-"""No-slip walls of solids that cut cells: what they do to the viscous ties of velocities, of second order.
+"""No-slip walls of solids that cut cells: the viscous operator near them, of second order.
 
-A velocity that is solved for is the mean over its face's open part. Near a wall it is w + d g, where w is the wall's
-velocity, d the distance from it and g all but constant, so it tells the velocity at the middle of the face too, which
-viscosity acts on: between middles of faces, and from these to the wall at its true distance along each axis (Gibou,
-Fedkiw, Cheng & Kang 2002, J. Comput. Phys. 176, 205-227). Where the middle stands in the solid or next to it, the
-velocity is drawn to that of the next face off the wall by the ratio of their distances. All of it stays symmetric.
+The unknown velocity of a face is the mean over its open part. Near a wall the velocity is w + d g, with the wall's
+velocity w, the distance d from it and a nearly constant g; this gives the velocity at the face's center. Viscosity acts
+between centers of faces, and from these to the wall at its true distance along each axis (Gibou, Fedkiw, Cheng & Kang
+2002, J. Comput. Phys. 176, 205-227). If a face's center lies in the solid or close to it, the face's velocity is tied
+to that of the next face away from the wall, scaled by the ratio of distances. The operator stays symmetric.
 """
 
 from __future__ import annotations
@@ -25,16 +25,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Skin:
-    """Of a component's faces (nz, ny, nx) each: V du/dt = sum of ties (neighbor - u) - friction u + gains."""
+    """The viscous operator of a component, arrays (nz, ny, nx) of its faces.
+
+    V du/dt = sum of ties (u of neighbor - u) - friction u + gains, V the control volume.
+    """
 
     ties: list[Floats]
-    """Along x, y, z: conductance of viscosity to the face before [m^3/s]."""
+    """[m^3/s] for x, y, z: viscous conductance to the face before."""
     friction: Floats
-    """[m^3/s]; below 0 next to faces that have more."""
+    """[m^3/s] drag coefficient of the wall; may be negative next to faces with a larger one."""
     gains: Floats
-    """What the wall's own velocity adds [m^4/s^2]."""
+    """[m^4/s^2] contribution of the wall's velocity."""
     scale: Floats
-    """The velocity at the middle of the face over that of its open part, of a wall at rest."""
+    """Velocity at the face's center over the mean of its open part, next to a wall at rest."""
 
 
 class _Component:
@@ -62,7 +65,7 @@ class _Component:
         self.friction, self.gains = np.zeros(shape), np.zeros(shape)
 
     def _wall(self, points: Floats) -> Floats:
-        """The velocity of the wall nearest to points."""
+        """The component of the velocity (k,) [m/s] of the wall nearest to points (k, 3)."""
         return self.velocity(points, self.component)
 
     def skin(self) -> Skin:
@@ -71,7 +74,7 @@ class _Component:
         return Skin(ties, self.friction, self.gains, np.where(self.beside, 0.0, self.scale))
 
     def _along(self, axis: int, base: Floats) -> Floats:
-        """The ties along an axis between middles in the fluid; friction at what is a wall between them."""
+        """Viscous ties along an axis between face centers in the fluid; adds friction where a wall is in between."""
         line = 2 - axis
         found = np.zeros(base.shape)
         for way in (-1, 1):
@@ -94,8 +97,10 @@ class _Component:
         return found
 
     def _share(self, chosen: Any, axis: int, way: int) -> Floats:
-        """How far the wall is from the middles of faces along an axis, in cells; drawn on where it is beyond the
-        next."""
+        """Distance (k,) [cells] of the wall from the centers of the chosen faces along an axis.
+
+        By bisection; extrapolated where the wall is beyond the next center.
+        """
         move = np.zeros(3)
         move[axis] = way * self.solids.spacing[axis]
         points, values = self.points[chosen], self.solids.values
@@ -114,7 +119,7 @@ class _Component:
         return found
 
     def _drawn(self, ties: list[Floats]) -> None:
-        """Tie velocities beside the wall to those of the next faces off it."""
+        """Tie the velocities of faces close to the wall to those of the next faces away from it."""
         flat = [tie.reshape(-1) for tie in ties]
         mine = np.flatnonzero(self.beside)
         strength = sum(2.0 * self._largest(axis) for axis in range(self.faces.axes))
@@ -149,16 +154,18 @@ class _Component:
 
 
 def skin(solids: Solids, component: int, ties: Sequence[Floats], velocity: Callable[[Floats, int], Floats]) -> Skin:
-    """What solids do to a component's ``ties`` along x, y, z; ``velocity``: points (k, 3) and a component to the
-    velocity of the nearest wall (k,)."""
+    """The viscous operator of a component with solids; ``ties``: that without solids, along x, y, z.
+
+    ``velocity``: from points (k, 3) and a component to the nearest wall's velocity (k,) [m/s].
+    """
     return _Component(solids, component, ties, velocity).skin()
 
 
 def seeping(solids: Solids, velocity: Callable[[Floats, int], Floats], areas: Floats) -> Floats:
-    """By cell: what walls that move push through its open faces [m^3/s], ``areas`` by face.
+    """Volume flux (cells,) [m^3/s] that moving walls displace through each cell's open faces (``areas`` by face).
 
-    The walls' velocity, drawn on into the fluid, leaves this of its own outflow where the cell's faces and its wall do
-    not close exactly; a wall that moves along itself pushes nothing through the whole of them.
+    Computed as the outflow of the walls' velocity, extended into the fluid, minus that of the uncut cell. The sum over
+    all cells is made zero, since tangentially moving walls displace nothing.
     """
     faces = solids.faces
     found = np.zeros(faces.cells.shape[::-1])

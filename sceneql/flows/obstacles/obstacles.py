@@ -1,7 +1,7 @@
-"""Solids that stand in a flow: open parts of faces and of cells, and where these parts are.
+"""Standing solids in a flow: open fractions of faces and cells, and their centroids.
 
-Near the surface each of the few parts of a box is cut by the plane of the level's value and gradient in its middle
-(grids/domain/cut.py).
+Near the surface a face or cell is divided into a few boxes; each is cut by the plane of the level set's value and
+gradient at its center (grids/domain/cut.py).
 """
 
 from __future__ import annotations
@@ -28,29 +28,29 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 SPLITS = (4, 4, 2)
-"""Parts along each axis of a box of one, two and three axes that the surface may cut."""
+"""Subdivisions along each axis of boxes with one, two and three axes that the surface may cut."""
 ROUND = 2.5
-"""How many cells off the surface its distance is known."""
+"""Distance [cells] from the surface within which distances are computed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Opened:
-    """How solids cut boxes (k,)."""
+    """Cuts of k boxes (faces or cells) by solids."""
 
     parts: Floats
-    """The open part of each."""
+    """(k,) open fraction of each box."""
     depths: Floats
-    """The mean distance of the open part from the surface [m]."""
+    """(k,) [m] mean distance of the open part from the surface."""
     centers: Floats
-    """(k, 3) the middle of the open part [m]."""
+    """(k, 3) [m] centroid of the open part."""
     levels: Floats
-    """The distance of the box's own middle, below 0 in solids [m]; endless but beside the surface."""
+    """(k,) [m] signed distance of the box's center, negative in solids; a huge number far from the surface."""
     normals: Floats
-    """(k, 3) away from the surface; 0 but beside it."""
+    """(k, 3) unit normals away from the surface; 0 far from it."""
 
 
 class Solids:
-    """Solids by their level sets, where they stand at the start."""
+    """The union of solids, as level sets at the start of the run."""
 
     def __init__(
         self,
@@ -61,9 +61,10 @@ class Solids:
         domain: Ref | None = None,
         named: Container[str] = (),
     ) -> None:
-        """``domain``: what the flow fills; what is around it is the last solid; ``named``: sides of the box by name.
+        """``domain``: the object that the fluid fills, whose complement is the last solid; ``named``: sides of the box
+        that the script names.
 
-        Raises ScriptError for an object without an inside, and where nothing is left of the box.
+        Raises ScriptError for an object without an inside, and where the solids fill the box.
         """
         self.faces, self.staircase, self.spacing = faces, staircase, np.array(faces.cells.spacing)
         self.refs = refs if domain is None else (*refs, domain)
@@ -98,12 +99,12 @@ class Solids:
         return found
 
     def values(self, points: Floats) -> Floats:
-        """The level of the union (k,): above 0 in the fluid."""
+        """Level set (k,) of the union at points (k, 3), positive in the fluid."""
         found: Floats = np.min([level.values(points) for level in self.levels], axis=0)
         return found
 
     def fractions(self, areas: Floats) -> Floats:
-        """The open part of each cell, at least LEAST of those with an open face, by the open ``areas`` of faces."""
+        """Open fraction (cells,) of each cell, at least LEAST if a face is open; ``areas``: open areas of faces."""
         alive = np.zeros(len(self.parts), dtype=bool)
         for axis in range(self.faces.axes):
             own = areas[self.faces.index(axis)] > 0.0
@@ -115,17 +116,17 @@ class Solids:
         return parts
 
     def owners(self) -> Any:
-        """By face, then by cell: the number of the nearest solid."""
+        """The number of the nearest solid, for all faces, then for all cells."""
         return np.concatenate(
             [*(self.nearest(self.faces.points(axis)) for axis in range(self.faces.axes)), self.nearest(self._centers())]
         )
 
     def nearest(self, points: Floats) -> Any:
-        """(k,) the number of the solid nearest to each point."""
+        """The number (k,) of the solid nearest to each point (k, 3)."""
         return np.argmin([level.values(points) for level in self.levels], axis=0)
 
     def planes(self, points: Floats, reach: float = 0.5) -> tuple[Floats, Floats]:
-        """The level (k,) and its gradient (k, 3), by differences over twice the ``reach`` in cells."""
+        """Level set (k,) and its gradient (k, 3) at points (k, 3), by central differences over +-``reach`` cells."""
         slopes = np.zeros((len(points), 3))
         for axis in range(self.faces.axes):
             step = np.zeros(3)
@@ -134,8 +135,10 @@ class Solids:
         return self.values(points), slopes
 
     def cut(self, points: Floats, shape: tuple[int, ...], axes: Sequence[int]) -> Opened:
-        """How solids cut boxes of a cell's sides along these axes, of no extent along others, around points that are
-        (nz, ny, nx) next to each other."""
+        """Cuts of boxes around points, which form a grid of ``shape`` (nz, ny, nx).
+
+        A box has a cell's sides along ``axes``, and no extent along other axes: a face, or a cell.
+        """
         phi = self.values(points)
         beside = np.flatnonzero(np.abs(phi) <= ROUND * _steps(phi.reshape(shape)).ravel())
         slopes, steep = np.zeros((len(phi), 3)), np.full(len(phi), 1e-300)
@@ -169,7 +172,7 @@ class Solids:
         return Opened(parts, depths, centers, levels, slopes / steep[:, None])
 
     def _around(self, points: Floats, axes: Sequence[int], splits: int) -> dict[tuple[int, ...], Floats]:
-        """The level in the middles of parts of boxes around points (k,), from 1 on, and one further on both sides."""
+        """Level set (k,) at the centers of the subdivisions of boxes, by their indices 1..splits, and one beyond."""
         found = {}
         for place in product(range(splits + 2), repeat=len(axes)):
             if sum(not 0 < one <= splits for one in place) <= 1:
@@ -179,13 +182,13 @@ class Solids:
         return found
 
     def face_parts(self) -> Floats:
-        """By face: its open part."""
+        """Open fraction (faces,) of each face."""
         if self.staircase:
             return np.concatenate([self._between(component) for component in range(self.faces.axes)])
         return np.concatenate([one.parts for one in self.opened])
 
     def middles(self) -> tuple[Any, Floats]:
-        """The numbers of faces that are cut, and the middles of what is open of them (k, 3)."""
+        """Numbers (k,) of the cut faces, and centroids (k, 3) [m] of their open parts."""
         if self.staircase:
             return np.zeros(0, dtype=int), np.zeros((0, 3))
         parts = self.face_parts()
@@ -193,7 +196,7 @@ class Solids:
         return cut, np.concatenate([one.centers for one in self.opened])[cut]
 
     def _between(self, component: int) -> Floats:
-        """Of a component's faces: 1 where the cells on both sides are open."""
+        """For a component's faces 1 where the cells on both sides are open, else 0 (staircase)."""
         cells = (self.parts > 0.0).reshape(self.faces.cells.shape[::-1])
         line = 2 - component
         if self.faces.periodic[component]:
@@ -205,15 +208,18 @@ class Solids:
         return found
 
     def steps(self, component: int, axis: int, closed: Any) -> Floats:
-        """Of a component's faces (nz, ny, nx) in a staircase: viscous ties to the ones before along an axis, of one
-        in the open. Walls are halfway to ``closed`` faces, which are shut, across a component."""
+        """Factors (nz, ny, nx) of a component's viscous ties to the faces before along an axis, for a staircase.
+
+        2 between an open and a ``closed`` face across the component's axis, where the wall is halfway; 0 between closed
+        ones.
+        """
         before = np.roll(closed, 1, axis=2 - axis)
         found: Floats = np.where(closed != before, 1.0 if axis == component else 2.0, np.where(closed, 0.0, 1.0))
         return found
 
 
 def _steps(phi: Floats) -> Floats:
-    """The largest differences from the values before and behind along each axis (nz, ny, nx), their sum."""
+    """Sum over the axes of the larger difference from the two neighbors' values, (nz, ny, nx)."""
     total = np.zeros(phi.shape)
     for line in range(3):
         step = np.abs(np.diff(phi, axis=line))

@@ -1,4 +1,4 @@
-"""The faces of a flow as numbers: areas, volumes, viscous ties; whole, and as solids leave them."""
+"""Geometry and viscous operator of a flow's faces: areas, control volumes, ties; without and with solids."""
 
 from __future__ import annotations
 
@@ -19,37 +19,37 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Passage:
-    """By face (f,) but where said."""
+    """Data of a flow's faces; arrays are (faces,) unless stated."""
 
     areas: Floats
-    """What is open [m^2]."""
+    """[m^2] open area."""
     volumes: Floats
-    """Inertia of its own cell over the density [m^3]."""
+    """[m^3] inertia of the face's control volume, divided by the density."""
     fills: Floats
-    """How far a force moves its own cell, whose inertia may be that of more fluid than is there."""
+    """Volume of fluid over ``volumes``, which small control volumes enlarge: the factor of a body force."""
     ties: tuple[Floats, ...]
-    """Along each axis: conductance of viscosity to the face before, over the density [m^3/s]."""
+    """For each axis [m^3/s]: kinematic viscous conductance to the face before."""
     friction: Floats
-    """That to the walls of solids."""
+    """[m^3/s] viscous conductance to the walls of solids."""
     gains: Floats
-    """What these walls add by their own velocity [m^4/s^2]."""
+    """[m^4/s^2] contribution of these walls' velocity."""
     walls: Floats
-    """Their velocity along the face's axis [m/s]."""
+    """[m/s] these walls' velocity along the face's axis."""
     edges: Floats
-    """What is left of a tie to the edge of a wall of the box."""
+    """Factor that solids leave of a tie to an edge on the box's wall."""
     seeping: Floats | None
-    """By cell: what walls that move push through its open faces [m^3/s]; None where none moves."""
+    """(cells,) [m^3/s] volume flux that moving walls displace through the open faces; None where no wall moves."""
 
 
 def whole(faces: Faces, areas: Floats, volumes: Floats, viscosity: float) -> Passage:
-    """Faces without solids, of a kinematic viscosity [m^2/s]."""
+    """The faces without solids; kinematic viscosity [m^2/s]."""
     zeros, ones = np.zeros(faces.count), np.ones(faces.count)
     ties = tuple(_ties(faces, axis, viscosity) for axis in range(faces.axes))
     return Passage(areas, volumes, ones, ties, zeros, zeros, zeros, ones, None)
 
 
 def _ties(faces: Faces, axis: int, viscosity: float) -> Floats:
-    """By face: the conductance to the one before along an axis; 0 where there is none."""
+    """Viscous conductance (faces,) [m^3/s] to the face before along an axis; 0 where there is none."""
     spacing = faces.cells.spacing
     strength = faces.volume / spacing[axis] ** 2 * viscosity
     found = []
@@ -63,7 +63,7 @@ def _ties(faces: Faces, axis: int, viscosity: float) -> Floats:
 
 
 def obstructed(solids: Solids, skins: SkinVelocities, open_: Passage, viscosity: float) -> Passage:
-    """What solids leave of a passage."""
+    """The faces ``open_`` cut by solids; kinematic viscosity [m^2/s]."""
     faces = solids.faces
     parts = solids.face_parts()
     areas = open_.areas * parts
@@ -82,7 +82,7 @@ def obstructed(solids: Solids, skins: SkinVelocities, open_: Passage, viscosity:
             row += 2.0 * (tie + np.roll(tie, -1, axis=2 - axis))
         rows[mine] = np.where((own.friction != 0.0) | (own.scale != 1.0), row, 0.0).ravel()
     fastest = 4.0 * viscosity * float((1.0 / faces.cells.spacing[: faces.axes] ** 2).sum())
-    least = rows / fastest if fastest > 0.0 else 0.0  # so that an explicit step bears what it bears in the open
+    least = rows / fastest if fastest > 0.0 else 0.0  # the explicit step limit stays that of open faces
     full = open_.volumes * parts
     volumes = np.maximum(np.maximum(full, LEAST * open_.volumes), least)
     walls = np.concatenate([skins.at(faces.points(axis), axis) for axis in range(faces.axes)])
@@ -91,7 +91,7 @@ def obstructed(solids: Solids, skins: SkinVelocities, open_: Passage, viscosity:
 
 
 def _stepped(solids: Solids, skins: SkinVelocities, open_: Passage, areas: Floats) -> Passage:
-    """Of a staircase."""
+    """The faces cut by solids of whole cells (staircase)."""
     faces = solids.faces
     ties = [tie.copy() for tie in open_.ties]
     for axis, tie in enumerate(ties):

@@ -1,4 +1,4 @@
-"""The velocity of the walls of solids that stand in a flow and turn in place, or whose skin moves along itself."""
+"""Wall velocities of standing solids in a flow, which rotate in place or whose surface moves tangentially."""
 
 from __future__ import annotations
 
@@ -17,18 +17,17 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 THROUGH = 0.05
-"""Velocity across a wall, in parts of the largest on it, from which on it counts as one through it."""
+"""Largest normal component of a wall's velocity, relative to the largest velocity on the wall."""
 
 NEAR = 0.05
-"""Reach of the differences that feet of walls are found by, in cells."""
+"""Half width [cells] of the differences by which the nearest points of walls are found."""
 
 
 class SkinVelocities:
-    """By parts of a boundary that are named like solids."""
+    """Wall velocities by the entries of a boundary that are named like solids."""
 
     def __init__(self, solids: Solids, boundary: Mapping[str, Side]) -> None:
-        """Raises ScriptError where a velocity varies in time, has other components than the box sides, or leads
-        through its wall."""
+        """Raises ScriptError for a velocity that varies in time, is not tangential or has too many components."""
         self.solids = solids
         named = ((number, boundary.get(ref.name)) for number, ref in enumerate(solids.refs))
         self.formulas = [(number, part.velocity) for number, part in named if part is not None and part.velocity]
@@ -52,7 +51,8 @@ class SkinVelocities:
                 raise ScriptError([Diagnostic("invalid", text, formula.span, "turn it about its own axis: `[-y, x]`")])
 
     def _feet(self, points: Floats) -> tuple[Floats, Floats, Floats]:
-        """Points of walls nearest to those that are beside them, else these; normals (k, 3); which are beside."""
+        """(nearest wall points (k, 3), normals (k, 3), whether near a wall (k,)); points far from walls are returned
+        unchanged."""
         level, slopes = self.solids.planes(points, NEAR)
         steep = np.maximum(np.linalg.norm(slopes, axis=1), 1e-9)
         spacing = self.solids.spacing[: self.solids.faces.axes]
@@ -61,7 +61,7 @@ class SkinVelocities:
         return feet, slopes / steep[:, None], beside
 
     def at(self, points: Floats, component: int) -> Floats:
-        """A component (k,) of the velocity of the wall nearest to points (k, 3) [m/s]."""
+        """A component (k,) [m/s] of the velocity of the wall nearest to each point (k, 3)."""
         found = np.zeros(len(points))
         if not self.formulas or not len(points):
             return found

@@ -1,4 +1,4 @@
-"""Force and torque of a flow on the solids in it: what momentum and its moment the fluid loses at their walls."""
+"""Force and torque of a flow on solids, as the momentum and angular momentum that the fluid loses at their walls."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def on_solid(
     what: str, number: int, cells: FieldLayout, ints: tuple[int, ...], density: float, state: ModelState
 ) -> Floats:
-    """(3,) `force` [N] on a solid, or `torque` about the origin [N m]."""
+    """`force` (3,) [N] on the solid of a number, or `torque` (3,) [N m] about the origin."""
     force, torque = np.zeros(3), np.zeros(3)
     floats, axes = state.floats, ints[layout.AXES]
     count = ints[layout.FACES]
@@ -47,14 +47,14 @@ def on_solid(
 
 
 def _shape(axis: int, cells: FieldLayout, ints: tuple[int, ...]) -> tuple[int, ...]:
-    """Faces of a component along z, y, x."""
+    """Numbers of a component's faces along z, y, x."""
     shape = list(cells.shape)
     shape[axis] += not ints[layout.PERIODIC + axis]
     return tuple(shape[::-1])
 
 
 def _points(axis: int, cells: FieldLayout, ints: tuple[int, ...], floats: Floats) -> Floats:
-    """(m, 3) the middles of what is open of a component's faces [m]."""
+    """Centroids (m, 3) [m] of the open parts of a component's faces."""
     shape, first = _shape(axis, cells, ints), ints[layout.STARTS + axis]
     index = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij")[::-1], axis=-1).reshape(-1, 3) + 0.5
     index[:, axis] -= 0.5
@@ -69,7 +69,10 @@ def _points(axis: int, cells: FieldLayout, ints: tuple[int, ...], floats: Floats
 
 
 def _carried_in(ints: tuple[int, ...], state: ModelState) -> Floats:
-    """By face: what is carried into the own cells of shut faces, whose momentum the solid takes [m^4/s^2]."""
+    """Momentum over density (faces,) [m^4/s^2] advected per second into control volumes of closed faces.
+
+    The solid takes it up.
+    """
     from sceneql.flows.advection_kernels import advected
 
     count, at = ints[layout.FACES], ints[layout.AT]
@@ -78,14 +81,14 @@ def _carried_in(ints: tuple[int, ...], state: ModelState) -> Floats:
     advected(state.y, rate, floats, np.array(ints))
     shut = floats[ints[layout.AREAS] : ints[layout.AREAS] + count] == 0.0
     carried = rate[at : at + count]
-    if ints[layout.LED] > 0:  # what a wall that moves takes up itself it had given
+    if ints[layout.LED] > 0:  # without what a moving wall had given itself
         carried = carried + _pushed(ints, floats) * state.y[at : at + count]
     found: Floats = np.where(shut, carried, 0.0)
     return found
 
 
 def _pushed(ints: tuple[int, ...], floats: Floats) -> Floats:
-    """By face: what walls push through its own cell [m^3/s]."""
+    """Volume flux (faces,) [m^3/s] that walls displace through each face's control volume."""
     shape = ints[layout.CELLS : layout.CELLS + 3]
     at = ints[layout.SEEPING]
     out = floats[at : at + int(np.prod(shape))].reshape(shape[::-1])
@@ -104,10 +107,11 @@ def _pushed(ints: tuple[int, ...], floats: Floats) -> Floats:
 def _lost(
     axis: int, field: Floats, owned: Floats, cells: FieldLayout, ints: tuple[int, ...], state: ModelState
 ) -> float:
-    """What walls take of the sum of ``field`` (m,) times a component's momentum over the density [m^4/s^2, times it].
+    """Rate at which walls take up sum(field * momentum) of a component, over the density [m^4/s^2 times the field].
 
-    In the open viscosity passes it on, where the field is one that it leaves alone: of a rigid motion. So it is the
-    velocities times what it makes of the field beside the walls, by symmetry, less what these add.
+    ``field`` (m,): a component of a rigid motion, which viscosity leaves unchanged away from walls. By the symmetry of
+    the viscous operator the rate is the velocities times the operator applied to the field beside the walls, less the
+    walls' own contributions.
     """
     floats = state.floats
     shape, first = _shape(axis, cells, ints), ints[layout.STARTS + axis]

@@ -1,4 +1,4 @@
-"""The additive Runge-Kutta pair of order 3(2) for flows, and how its steps are prepared."""
+"""The additive (implicit-explicit) Runge-Kutta pair of order 3(2) for flows, and the preparation of its steps."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ IMPLICIT = (
 
 
 FIXED = 1e-6
-"""Stands in for the tolerance of steps of one length."""
+"""Tolerance of the linear solves in steps of fixed length."""
 
 
 def stepper(tolerance: float, step: float | None, largest: float | None) -> Stepper:
-    """Steps by the tolerance, or of one length [s]."""
+    """The stepper: adaptive steps by a tolerance up to ``largest`` [s], or steps of a fixed length [s]."""
     tableau = (
         *(one for row in EXPLICIT for one in row),
         *(one for row in IMPLICIT for one in row),
@@ -60,7 +60,7 @@ def stepper(tolerance: float, step: float | None, largest: float | None) -> Step
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """The arrays of a step. Raises ScriptError where the island has no flow."""
+    """Settings, numbers and scratch of additive_kernels.step. Raises ScriptError for an island without a flow."""
     import numpy as np
 
     from sceneql.flows.schemes.additive_kernels import HEAD
@@ -82,7 +82,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
 
 def growth(decay: float, turn: float, step: float) -> float:
-    """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
+    """Growth factor of a step for y' = -decay y + i turn y, the first part implicit, the second explicit."""
     implicit, explicit = -step * decay, 1j * step * turn
     stages: list[complex] = []
     for e, d in zip(EXPLICIT, IMPLICIT, strict=True):

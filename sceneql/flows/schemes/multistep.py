@@ -1,4 +1,4 @@
-"""How the solvers of flows are prepared, and what their steps bear."""
+"""Preparation of the multistep solvers of flows, and their stability."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 CHORIN, CNAB2, SBDF2 = range(3)
 UNSOLVED = "a value is no longer finite, or the pressure and viscosity of a step are not solved for: it is too long"
-"""What a failed step of these solvers is told as."""
+"""Message on a failed step of these solvers."""
 SAME = 1e-9
-"""Difference from a box of one coefficient, in parts of the largest, that counts as rounding."""
+"""Difference from a box with a constant coefficient, relative to the largest number, that counts as rounding."""
 
 
 def stepper(scheme: int, order: int, step: float) -> Stepper:
-    """Fixed steps [s] of multistep_kernels.step."""
+    """The stepper of multistep_kernels.step with fixed steps [s]."""
     kernel = "sceneql.flows.schemes.multistep_kernels:step"
     method = Method(step=kernel, order=order, numbers=(scheme, 0, 0), settings=(), last_stage=0)
     return Stepper(
@@ -30,7 +30,7 @@ def stepper(scheme: int, order: int, step: float) -> Stepper:
 
 
 def control(step: float | None, tolerance: float, largest: float | None, unsolved: str) -> Control:
-    """Of steps of one length [s], or by a tolerance; ``unsolved``: what a failed one is told as."""
+    """Step control: fixed steps [s], or adaptive ones by a tolerance; ``unsolved``: message on a failed step."""
     by = 0.0 if step is not None else tolerance
     return Control(
         first_step=step or 0.0,
@@ -43,21 +43,22 @@ def control(step: float | None, tolerance: float, largest: float | None, unsolve
 
 
 class Tables:
-    """Numbers that the transforms of operators read."""
+    """Numbers that the operators' transforms read, collected."""
 
     def __init__(self) -> None:
         self.numbers: list[float] = []
 
     def store(self, values: Any) -> int:
-        """Keep numbers; the offset of the first."""
+        """Append numbers; returns the offset of the first."""
         self.numbers += [float(one) for one in values]
         return len(self.numbers) - len(values)
 
 
 def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[int]:
-    """The integers of a field's operator (multistep_kernels): what solves it on a box of one coefficient is at hand.
+    """The integers of a field's diffusion operator (multistep_kernels), with transforms that solve it on a plain box.
 
-    ``tallied``: whether what has come in follows its entries in y.
+    The transforms are the exact solver for a box with a constant coefficient, else a preconditioner. ``tallied``:
+    whether an entry for the total inflow follows the field in y.
     """
     import numpy as np
 
@@ -96,7 +97,7 @@ def operator(grid: Grid, floats: Floats, tables: Tables, tallied: bool) -> list[
 
 
 def _line(count: int, rate: float, periodic: bool, zero: tuple[bool, bool], faces: bool) -> tuple[Any, Any, Any]:
-    """Volumes, conductances to the one before and sinks (count,) of the line whose modes are `modes`."""
+    """Volumes, conductances to the cell before and sinks, (count,) each, of the row with eigenmodes `modes`."""
     import numpy as np
 
     volumes, ties, sinks = np.ones(count), np.full(count, rate), np.zeros(count)
@@ -111,7 +112,7 @@ def _line(count: int, rate: float, periodic: bool, zero: tuple[bool, bool], face
 
 
 def _is_product(volume: Floats, sink: Floats, whole: float, axes: list[tuple[Any, ...]]) -> bool:
-    """Whether a field (nz, ny, nx) is the box whose lines along each axis are these, so that transforms solve it."""
+    """Whether a field (nz, ny, nx) is the tensor product of rows along its axes, which transforms solve exactly."""
     import numpy as np
 
     def spread(axis: int, values: Any) -> Any:
@@ -131,7 +132,7 @@ def _is_product(volume: Floats, sink: Floats, whole: float, axes: list[tuple[Any
 
 
 def _alike(found: Any, wanted: Any, chosen: Any) -> bool:
-    """Whether the chosen numbers of two arrays are the same but for rounding."""
+    """Whether two arrays agree up to rounding at the chosen entries."""
     import numpy as np
 
     wanted = np.broadcast_to(wanted, found.shape)
@@ -139,10 +140,9 @@ def _alike(found: Any, wanted: Any, chosen: Any) -> bool:
 
 
 def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, str]:
-    """The flow, the operators (multistep_kernels), how many of them are velocities', the tables of
-    their transforms, and a text for `explain`.
+    """(flow, operators (multistep_kernels), number of velocities among them, tables of transforms, text for `explain`).
 
-    Raises ScriptError where the island has no flow.
+    Raises ScriptError for an island without a flow, or with varying density or viscosity.
     """
     from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
@@ -175,7 +175,7 @@ def operators_of(system: System) -> tuple[Flow, list[list[int]], int, Tables, st
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """The arrays of a step. Raises ScriptError where the island has no flow."""
+    """Settings, numbers and scratch of multistep_kernels.step. Raises ScriptError as ``operators_of``."""
     import numpy as np
 
     from sceneql.flows.schemes.multistep_kernels import ARRAYS, HEAD, OPERATOR
@@ -192,7 +192,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
 
 def _spreads(grid: Grid, floats: object) -> bool:
-    """Whether anything crosses the faces of a field's cells, or leaves them."""
+    """Whether a field has any nonzero conductance or sink."""
     import numpy as np
 
     n = int(np.prod(grid.cells.shape))
@@ -202,7 +202,7 @@ def _spreads(grid: Grid, floats: object) -> bool:
 
 
 def growth(scheme: int, decay: float, turn: float, step: float) -> float:
-    """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
+    """Growth factor of a step for y' = -decay y + i turn y, the first part implicit, the second explicit."""
     implicit, explicit = step * decay, 1j * step * turn
     if scheme == CHORIN:
         return abs((1.0 + explicit) / (1.0 + implicit))
@@ -215,7 +215,7 @@ def growth(scheme: int, decay: float, turn: float, step: float) -> float:
 
 
 def largest_growth(jacobian: Floats, of_mode: Callable[[float, float], float]) -> float:
-    """The largest growth factor of the modes of a Jacobian, by their decay and their turning [1/s]."""
+    """Largest growth factor over the eigenvalues of a Jacobian; ``of_mode``: from decay and angular frequency [1/s]."""
     import numpy as np
 
     return max((of_mode(-float(mode.real), float(mode.imag)) for mode in np.linalg.eigvals(jacobian)), default=0.0)

@@ -1,4 +1,4 @@
-"""A flow of several fluids as numbers of an island: what its kernels (fluid_layout.py) read and write."""
+"""A flow of several fluids, or of varying viscosity: the numbers and terms of its kernels (fluid_layout.py)."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ if TYPE_CHECKING:
 
 FLOW_IN, DRIVE = "sceneql.flows.varying.mass_flow_kernels:flow_in", "sceneql.flows.varying.mass_flow_kernels:drive"
 FIXED = ("fast_transform", "direct")
-"""Solvers of the pressure for one density, whose equation stays."""
+"""Linear solvers of the pressure that require constant coefficients, so equal densities."""
 
 
 class Fluids:
-    """What a flow of several fluids reserves; skins that hold them say so as they are made (`fill`)."""
+    """The additional data of a flow of several fluids; skins register the fluids they enclose by `fill`."""
 
     def __init__(self, model: Model, densities: Sequence[float], laden: bool, faces: Faces, assembly: Assembly) -> None:
-        """``densities``: of the fluids that skins hold [kg/m^3]; ``laden``: whether masses add to its inertia."""
+        """``densities`` [kg/m^3] of the fluids inside skins; ``laden``: whether immersed masses add to the inertia."""
         self.model, self.count, self.faces, self.assembly = model, len(densities), faces, assembly
         self.laden = laden
         self.unequal = laden or any(density != model.density for density in densities)
 
     @property
     def text(self) -> str:
-        """For `explain`."""
+        """Text for `explain`."""
         return (f", of {1 + self.count} fluids" if self.count else "") + (", laden with masses" if self.laden else "")
 
     def solver(self, named: str) -> str:
-        """How the equation of the pressure is solved. Raises ScriptError for one that stays as it is."""
+        """Name of the linear solver of the pressure. Raises ScriptError for one that needs constant coefficients."""
         if not self.unequal:
             return named
         if named in FIXED:
@@ -53,7 +53,7 @@ class Fluids:
         return "multigrid" if named == "auto" else named
 
     def must_stand(self, moving: bool) -> None:
-        """Raise ScriptError where solids in the flow move, or their walls."""
+        """Raise ScriptError where solids in the flow, or their walls, move (``moving``)."""
         if moving:
             what = "masses in it add to its inertia" if self.laden else "its viscosity varies"
             what = "skins in it hold other fluids" if self.count else what
@@ -62,9 +62,10 @@ class Fluids:
             raise ScriptError([Diagnostic("invalid", text, self.assembly.line(), help)])
 
     def add(self, flow: NDArray[int64], held: int, edges: int, open_: Passage, left: Passage) -> tuple[int, ...]:
-        """The integers of all kernels, and the terms; ``held``: fluid_layout.HELD; ``edges``: at walls.
+        """Add the terms; returns the integers of all kernels (fluid_layout).
 
-        ``open_``: the faces without solids; ``left``: as these leave them, the same where there are none.
+        ``flow``: the flow's integers; ``held``: fluid_layout.HELD; ``edges``: number of edges at walls; ``open_``: the
+        faces without solids; ``left``: the faces cut by solids, the same object without any.
         """
         assembly, faces = self.assembly, self.faces
         cells, flat = faces.cells, faces.axes == 2
@@ -103,7 +104,7 @@ class Fluids:
 
             ints[own.CLIPPED] = zeros(ROOM)
         found = (*ints.tolist(), *flow.tolist())
-        if not of_field(self.model.viscosity):  # else `thicken` does it, after what is measured then
+        if not of_field(self.model.viscosity):  # else `thicken` adds it, after the field is evaluated
             measure(found, flat, assembly)
         assembly.term("close", FLOW_IN, found)
         assembly.term("close", DRIVE, found)
@@ -113,9 +114,9 @@ class Fluids:
 def fill(
     flow: Flow, skin: Membrane, triangles: Any, fluid: tuple[float, float], tension: float, assembly: Assembly
 ) -> None:
-    """Say that a skin holds a fluid of a density [kg/m^3] and a viscosity [Pa s].
+    """Register the fluid inside a skin: (density [kg/m^3], viscosity [Pa s]).
 
-    ``triangles``: (m, 3) of a deep one; ``tension``: Membrane.largest_tension [N/m].
+    ``triangles`` (m, 3): of a skin in a 3D flow; ``tension``: Membrane.largest_tension [N/m].
     """
     ints, numbers = flow.varying, assembly.numbers()
     density, viscosity = fluid

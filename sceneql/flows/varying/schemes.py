@@ -1,4 +1,4 @@
-"""How steps of flows of several fluids are prepared (step_kernels.py), and what they bear."""
+"""Preparation of steps of flows of several fluids (step_kernels.py), and their stability."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from sceneql.island.system import System
 
 UNSOLVED = "a value is no longer finite, or fluid crosses more than half a cell in a step: it is too long"
-"""What a failed step is told as."""
+"""Message on a failed step."""
 
 
 def stepper(order: int, step: float | None, tolerance: float = 0.0, largest: float | None = None) -> Stepper:
-    """Steps of one length [s], or by the tolerance."""
+    """The stepper: steps of a fixed length [s], or adaptive ones by a tolerance up to ``largest`` [s]."""
     method = Method(
         step="sceneql.flows.varying.step_kernels:step", order=order, numbers=(order,), settings=(), last_stage=0
     )
@@ -24,7 +24,7 @@ def stepper(order: int, step: float | None, tolerance: float = 0.0, largest: flo
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """The arrays of a step. Raises ScriptError where the island has no flow of several fluids."""
+    """Settings, numbers and scratch of step_kernels.step. Raises ScriptError for an island without such a flow."""
     import numpy as np
 
     from sceneql.flows.layout import FACES
@@ -52,7 +52,10 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
 
 
 def growth(order: int, decay: float, turn: float, step: float) -> float:
-    """Growth factor of a step on y' = -decay y + i turn y, its first part implicit, its second explicit."""
+    """Growth factor of a step for y' = -decay y + i turn y, the first part implicit, the second explicit.
+
+    For order 2 the smaller one of this and ``_swing``.
+    """
     implicit, explicit = -step * decay, 1j * step * turn
     if order == 1:
         return abs((1.0 + explicit) / (1.0 - implicit))
@@ -62,9 +65,9 @@ def growth(order: int, decay: float, turn: float, step: float) -> float:
 
 
 def _swing(decay: float, turn: float, step: float) -> float:
-    """That of x' = v, v' = -turn^2 x - decay v, as skins and springs swing with the fluid around them: order 2."""
+    """Growth factor of order 2 for x' = v, v' = -turn^2 x - decay v: skins and springs oscillating with the fluid."""
     z, d = (step * turn) ** 2, step * decay
-    # v in the middle and at the end, x at the end, by x and step v at the start
+    # v at the middle and the end and x at the end, as functions of x and step v at the start
     half_x, half_v = -0.5 * z / (1.0 + 0.25 * d), (1.0 - 0.25 * d - 0.25 * z) / (1.0 + 0.25 * d)
     end_x = (-z - d / 3.0 * half_x) / (1.0 + d / 3.0)
     end_v = (1.0 - 0.5 * z - d / 3.0 * (1.0 + half_v)) / (1.0 + d / 3.0)

@@ -1,4 +1,4 @@
-"""A viscosity by formula, of place, time and a field that the flow carries, as numbers of its halves of cells."""
+"""A viscosity given by a formula of position, time and a field that the flow carries, evaluated in each half cell."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ FLAT, DEEP = "sceneql.flows.varying.flat_parts_kernels:measure", "sceneql.flows.
 
 
 def measure(ints: Sequence[int], flat: bool, assembly: Assembly) -> None:
-    """Have the coefficients of a flow be those of its fluids where these are; ``ints``: of fluid_layout."""
+    """Add the term that computes density and viscosity of each half cell from its fluids; ``ints``: fluid_layout."""
     assembly.term("velocity", FLAT if flat else DEEP, tuple(ints))
 
 
 def by_formula(formula: Formula, at: int, faces: Faces, assembly: Assembly) -> int:
-    """Offset of the viscosity by half: blocks of those at the same place in their cells, as many as cells.
+    """Offset of the viscosity (halves,) [Pa s]: one block of all cells for each position of a half in its cell.
 
-    Of a field that is `c` in it `thicken` writes them. ``at``: any entry in y. Raises ScriptError where it is not above
-    0 at the start.
+    Where it depends on a field `c`, ``thicken`` writes it later. ``at``: any index in y. Raises ScriptError for a
+    viscosity that is not above 0 at the start.
     """
     halves = Halves(faces.cells.shape, faces.cells.low, faces.cells.spacing)
     values = np.ones(halves.count) if of_field(formula) else halves.at_start(formula)
@@ -47,7 +47,7 @@ def by_formula(formula: Formula, at: int, faces: Faces, assembly: Assembly) -> i
 
 
 def thicken(by: Value, formula: Formula, name: str, assembly: Assembly) -> None:
-    """Have a field in the box of the flow of a model say its viscosity. Raises ScriptError where there is none."""
+    """Add the terms that compute a model's viscosity from a field. Raises ScriptError for a value that is no field."""
     flow = assembly.flow_of(name)
     if flow is None:
         return  # its own assembly has failed
@@ -59,7 +59,7 @@ def thicken(by: Value, formula: Formula, name: str, assembly: Assembly) -> None:
 
 
 class Halves:
-    """The halves of the cells of a box, those at one place in their cells after another."""
+    """Half cells of a box: each cell is divided into 4 (2D) or 8 (3D), ordered by position in the cell."""
 
     def __init__(self, shape: Sequence[int], low: Any, spacing: Any) -> None:
         self.shape, self.flat = (shape[0], shape[1], shape[2]), shape[2] == 1
@@ -71,8 +71,10 @@ class Halves:
         self.count = len(self.shifts) * self.cells
 
     def at_start(self, formula: Formula, field: Floats | None = None) -> Floats:
-        """A formula at the start (halves,), by the field (cells,) that is `c` in it. Raises ScriptError where it is not
-        above 0."""
+        """Values (halves,) of a formula at the start; ``field`` (cells,): its symbol `c`.
+
+        Raises ScriptError where one is not above 0.
+        """
         index = np.stack(np.meshgrid(*map(np.arange, self.shape[::-1]), indexing="ij")[::-1], axis=-1).reshape(-1, 3)
         known = {"t": 0.0, TIME_SYMBOL: 0.0, **({} if field is None else {FIELD: field})}
         places = (self.low + (index + 0.5 + shift) * self.spacing for shift in self.shifts)
@@ -83,7 +85,7 @@ class Halves:
         return values
 
     def write(self, formula: Formula, at: int, target: int, assembly: Assembly) -> None:
-        """Have it written at every instant; ``at``: the field in y that is `c` in it."""
+        """Add the terms that evaluate the formula at every instant; ``at``: start in y of the field `c`."""
         zeros, ones = assembly.floats(np.zeros(self.cells)), assembly.floats(np.ones(self.cells))
         for number, shift in enumerate(self.shifts):
             box = assembly.floats([*(self.low + shift * self.spacing), *self.spacing])

@@ -1,4 +1,4 @@
-"""The conditions on a domain's boundary: the faces of each part of the script, and their exchange with cells."""
+"""Boundary conditions of a domain: the faces that each part of a script selects, and their fluxes into cells."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ GIVEN_FLUX = -1.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Condition:
-    """One part of the boundary on its m faces: a flux w (outside - c) into every cell, or a given flux."""
+    """A boundary condition on m faces: a flux w (outside - c) into each face's cell, or a given flux."""
 
     cells: NDArray[int64]
     areas: Floats
@@ -36,19 +36,19 @@ class Condition:
     points: Floats
     outward: Floats
     formula: Formula | None
-    """The value outside or the flux; None: 0."""
+    """The value outside, or the flux; None: 0."""
     resistance: float
-    """Resistance of the boundary itself [s/m]: 0 where the value is given; or GIVEN_FLUX."""
+    """Resistance of the boundary [s/m]: 0 for a given value (Dirichlet), inf for no exchange; or GIVEN_FLUX."""
     open: bool = False
-    """Whether a drift passes freely, without diffusion."""
+    """Whether a drift passes freely, without diffusive flux."""
 
     @property
     def through(self) -> bool:
-        """Whether a drift passes."""
+        """Whether a drift passes through the boundary."""
         return self.open or self.resistance == 0.0
 
     def weights(self, d: Floats) -> Floats:
-        """Factor of the formula: w = A D/(D r + distance) by the cells' coefficients, or the area."""
+        """Factors (m,) of the formula: w = A D / (D r + distance) with the cells' coefficients D (m,), A for a flux."""
         if self.resistance == GIVEN_FLUX:
             return self.areas
         if self.open:
@@ -58,11 +58,11 @@ class Condition:
 
 
 class Bounded(Protocol):
-    """What has a boundary: cells, or elements."""
+    """A discretized domain with a boundary: cells, or finite elements."""
 
     @property
     def boundary(self) -> BoundaryFaces:
-        """Its faces."""
+        """The faces of its boundary."""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -78,31 +78,31 @@ class Bounded(Protocol):
 
 
 class Part(Protocol):
-    """A part of the boundary as a script says it."""
+    """An entry of a script's `boundary`: a part of the boundary, and where it applies."""
 
     @property
     def periodic(self) -> bool:
-        """Whether the sides of its direction are one."""
+        """Whether the two sides along its axis are identified."""
 
     @property
     def chosen(self) -> bool:
-        """Whether it has a place of its own."""
+        """Whether it is restricted by `where` or `near`."""
 
     @property
     def where(self) -> Formula | None:
-        """Above 0 where it holds."""
+        """A formula of the position that is above 0 where the part applies."""
 
     @property
     def near(self) -> tuple[float, ...] | None:
-        """The place around which it holds."""
+        """Center [m] of the ball in which the part applies."""
 
     @property
     def within(self) -> float | None:
-        """How far around it [m]."""
+        """Radius [m] of this ball."""
 
     @property
     def span(self) -> Span | None:
-        """Its line in the script."""
+        """Line of the part in the script."""
 
 
 Said = TypeVar("Said", bound=Part)
@@ -111,7 +111,7 @@ Said = TypeVar("Said", bound=Part)
 def conditions(
     boundary: Boundary, cells: Bounded, line: Span | None
 ) -> tuple[list[Condition], tuple[bool, bool, bool]]:
-    """The conditions of boundaries that are not closed, and which directions are periodic. Raises ScriptError.
+    """The conditions of all parts that are not closed, and which axes are periodic. Raises ScriptError as ``shares``.
 
     ``line``: the model's place in the script.
     """
@@ -124,7 +124,10 @@ def conditions(
 def shares(
     boundary: Mapping[str, Said], cells: Bounded, line: Span | None
 ) -> tuple[list[tuple[Said, Any]], tuple[bool, bool, bool]]:
-    """The parts with the indices (m,) of their boundary faces, and the periodic directions. Raises ScriptError."""
+    """The parts with the indices (m,) of their boundary faces, and which axes are periodic.
+
+    Raises ScriptError for unknown names, parts that overlap, and parts that cannot be periodic.
+    """
     faces = cells.boundary
     taken = np.zeros(len(faces.cells), dtype=bool)
     owner = np.full(len(faces.cells), -1)
@@ -139,7 +142,7 @@ def shares(
             help = f"it has {known}; a part of it says `where`, or `near` and `within`"
             raise ScriptError([Diagnostic("unknown-boundary", text, part.span or line, help)])
         if part.periodic and name in SIDES and periodic[cells.names.index(name) // 2]:
-            continue  # the side across from it has said so of both
+            continue  # the opposite side has set this axis
         mine = _faces_of(name, part, cells, taken)
         both = mine & taken
         if both.any():
@@ -166,7 +169,7 @@ HELP = "give each face to one part: say `where` or `near`, or name other sides"
 
 
 def _faces_of(name: str, part: Part, cells: Bounded, taken: Any) -> Any:
-    """(faces,) bool."""
+    """Mask (faces,) of a part's boundary faces; ``taken``: those of earlier parts, which `rest` leaves out."""
     faces = cells.boundary
     mine = ~taken if name == "rest" else np.ones(len(faces.cells), dtype=bool)
     if name in cells.names:
@@ -179,7 +182,7 @@ def _faces_of(name: str, part: Part, cells: Bounded, taken: Any) -> Any:
 
 
 def _chosen(part: Part, points: Floats) -> Any:
-    """(m,) bool: whether a part holds at points (m, 3) of the pieces that it is for."""
+    """Mask (m,) of the points (m, 3) at which a part applies, by its `where` and `near`."""
     found = np.ones(len(points), dtype=bool)
     if part.where is not None:
         found &= at_points(part.where, points) > 0.0
@@ -207,7 +210,10 @@ def _condition(part: OfField, cells: Bounded, mine: Any) -> Condition:
 
 
 def held_by(boundaries: Sequence[Boundary], names: tuple[str, ...]) -> Callable[[Floats, Any], Any] | None:
-    """From points of a boundary (m, 3) and their pieces (m,) whether a field's value is given there; None: nowhere."""
+    """A function of boundary points (m, 3) and their pieces (m,) that tells where a field's value is given (Dirichlet).
+
+    None where no part gives a value.
+    """
     if all(part.value is None for boundary in boundaries for part in boundary.values()):
         return None
 

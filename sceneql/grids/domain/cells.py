@@ -1,4 +1,4 @@
-"""The cells of a domain: volumes, areas of faces, and the faces that lie on the boundary."""
+"""Cells of a domain: volumes, areas of faces between cells, and boundary faces."""
 
 from __future__ import annotations
 
@@ -14,53 +14,53 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 SIDES = ("left", "right", "bottom", "top", "back", "front")
-"""The sides of a box: low and high along x, y and z."""
+"""Names of a box's sides: low and high along x, y and z."""
 MOST_CELLS = 50_000_000
 FARTHEST = 1e9
-"""Most cells between a box and the origin: their sides are then right to a part in a million of a cell."""
+"""Largest distance of a box from the origin, in cells: cells' sides are then accurate to a millionth of a cell."""
 
 
 def periodic_axes(boundary: Mapping[str, Any]) -> set[int]:
-    """The axes along which a box is periodic."""
+    """Numbers of the axes along which a box is periodic, by its boundary conditions."""
     return {SIDES.index(name) // 2 for name, part in boundary.items() if part.periodic and name in SIDES}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoundaryFaces:
-    """The faces of a domain's boundary."""
+    """The m faces of a domain's boundary."""
 
     cells: NDArray[int64]
     """(m,) the cell of each face."""
     areas: Floats
-    """(m,) [m^2]."""
+    """(m,) [m^2] areas."""
     distances: Floats
-    """(m,) from the cell's center [m]."""
+    """(m,) [m] distances from the cells' centers."""
     points: Floats
-    """(m, 3) [m]."""
+    """(m, 3) [m] points on the boundary at which formulas are evaluated."""
     outward: Floats
-    """(m, 3) unit normals."""
+    """(m, 3) outward unit normals."""
     pieces: NDArray[int64]
-    """(m,) index into the names of the boundary's pieces."""
+    """(m,) the piece of the boundary that each face is on, an index into `names`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cells:
-    """A regular grid of cells over a domain, x fastest; a flat one has one layer, as thick as its depth."""
+    """A regular grid of cells over a domain, x fastest; a two-dimensional one has one layer, as thick as its depth."""
 
     shape: tuple[int, int, int]
     low: Floats
-    """(3,) [m]."""
+    """(3,) [m] low corner of the grid."""
     spacing: Floats
-    """(3,) [m]."""
+    """(3,) [m] sides of a cell."""
     volumes: Floats
-    """(cells,) [m^3]; 0 outside the domain."""
+    """(cells,) [m^3] volume of each cell inside the domain; 0 for cells outside."""
     areas: tuple[Floats, Floats, Floats]
-    """Along x, y, z, each (cells,) [m^2]: of a cell's face on its low side; 0 on the boundary."""
+    """For x, y, z each (cells,) [m^2]: open area of each cell's low face; 0 on the boundary."""
     boundary: BoundaryFaces
     names: tuple[str, ...]
     """Names of the boundary's pieces."""
     around: tuple[Floats, Floats]
-    """Low and high corner (3,) of the box around the domain [m]; along z of no account where it is flat."""
+    """Low and high corner (3,) [m] of the domain's bounding box; z is meaningless for a two-dimensional domain."""
 
     @property
     def flat(self) -> bool:
@@ -68,7 +68,7 @@ class Cells:
         return self.shape[2] == 1
 
     def centers(self, chosen: Any = slice(None)) -> Floats:
-        """(k, 3) centers of some cells [m]; z is 0 on a flat grid."""
+        """Centers (k, 3) [m] of the chosen cells."""
         import numpy as np
 
         nx, ny, _ = self.shape
@@ -80,7 +80,7 @@ class Cells:
 
 
 def centers_of(shape: tuple[int, int, int], low: Sequence[float] | Floats, spacing: Sequence[float] | Floats) -> Floats:
-    """(cells, 3) centers of the cells of a grid, x fastest [m]."""
+    """Centers (cells, 3) [m] of the cells of a grid, x fastest."""
     import numpy as np
 
     found = np.empty((*shape[::-1], 3))
@@ -91,23 +91,23 @@ def centers_of(shape: tuple[int, int, int], low: Sequence[float] | Floats, spaci
 
 
 MOST_COUNTED = 1e18
-"""Cells along a side from which on all are as many: far too many."""
+"""Bound of the number of cells along a side, so that it stays an integer; far too many in any case."""
 
 
 def too_far(corner: Sequence[float], cell: float) -> str:
-    """What is wrong with cells [m] of a box with a low corner [m]; empty where doubles tell their sides apart."""
+    """The message on a box too far from the origin for its cells of side ``cell`` [m]; empty where float64 suffices."""
     far = max(map(abs, corner))
     return "" if far <= FARTHEST * cell else f"{far:g} m from the origin rounding moves cells of {cell:g} m"
 
 
 def counts(sides: tuple[float, ...], cell: float) -> tuple[int, ...]:
-    """Cells along each side, none longer than ``cell`` [m]; 1 along z where there are two sides."""
+    """Numbers of cells along the sides [m], none longer than ``cell`` [m]; 1 along z for two sides."""
     found = [max(1, math.ceil(min(side / cell * (1.0 - 1e-9), MOST_COUNTED))) for side in sides]
     return (*found, 1) if len(found) == 2 else tuple(found)
 
 
 def box(sides: tuple[float, ...], corner: tuple[float, ...], cell: float, depth: float) -> Cells:
-    """The cells of a box of two or three sides [m] from its low corner on; a flat one has the depth [m]."""
+    """The cells of a box with two or three ``sides`` [m] and a low ``corner`` [m]; ``depth`` [m] of one with two."""
     import numpy as np
 
     shape = counts(sides, cell)

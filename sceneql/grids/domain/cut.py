@@ -1,12 +1,12 @@
-"""Cells that the boundary of a domain cuts: volumes, open areas of faces, and the boundary's own areas.
+"""Cut cells: volumes of cells inside a domain, open areas of their faces, and areas of the boundary in them.
 
-The domain is {phi < 0}. In a cell and in a face the boundary is the plane given by phi's value and gradient at the
-center, and the volume below it has a closed form (Scardovelli & Zaleski 2000, J. Comput. Phys. 164, 228-237). A cell's
-boundary area closes the surface of its open faces. Fluxes between neighbors use the open areas and the distance of the
-centers, which is of second order for zero flux through the boundary (Ng, Min & Gibou 2009, J. Comput. Phys. 228,
-8807-8829). Where a value is given (Dirichlet), the cells with centers inside are whole, and the boundary is at its true
-distance along each axis (Gibou, Fedkiw, Cheng & Kang 2002, J. Comput. Phys. 176, 205-227), which is of second order
-there. ``staircase`` takes whole cells everywhere and half a cell for that distance.
+The domain is {phi < 0}. In each cell and face the boundary is approximated by the plane of phi's value and gradient at
+the center, and the volume below it has a closed form (Scardovelli & Zaleski 2000, J. Comput. Phys. 164, 228-237). The
+vector area of the boundary in a cell balances that of the cell's open faces. Fluxes between neighbors use the open
+areas and the distance of centers, which is of second order for zero flux through the boundary (Ng, Min & Gibou 2009, J.
+Comput. Phys. 228, 8807-8829). Where a value is given (Dirichlet), cells with centers inside are whole, and the boundary
+is at its true distance along each axis, again of second order (Gibou, Fedkiw, Cheng & Kang 2002, J. Comput. Phys. 176,
+205-227). ``staircase`` takes whole cells everywhere, and half a cell for that distance.
 """
 
 from __future__ import annotations
@@ -28,50 +28,50 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 LEAST_SLOPE = 1e-4
-"""Relative slope of a plane along an axis, below which differences of cubes in the closed form would be rounding."""
+"""Least relative slope of a plane along an axis; below it differences of cubes in the closed form cancel."""
 BISECTIONS = 40
-"""Halvings of a spacing to the side of a thin plate."""
+"""Bisections of a spacing in the search for the side of a thin plate."""
 LEAST_VOLUME = 1e-6
-"""Volume of a cell, relative to a whole one, below which it is left out. Its neighbor's open face is then closed, which
-loses second order where that face is no sliver too."""
+"""Least volume of a cell relative to a whole one; smaller cells are left out. Their open faces are then closed, which
+loses second order unless these are slivers, too."""
 CROWDED = 0.3
-"""Least volume of a cell, relative to that with which its open faces have the explicit step limit of a whole cell: a
-larger one would dominate the maximum error."""
+"""Least volume of a cell, relative to the one with which its open faces would allow a whole cell's explicit step. A
+larger constant would dominate the maximum error."""
 NEAREST = 0.2
-"""Least distance of a cell's center from the boundary, relative to the cell's size."""
+"""Least distance of a cell's center from the boundary used in fluxes, relative to the cell's size."""
 NEAREST_HELD = 0.05
-"""The same where the boundary's value is given."""
+"""Value of NEAREST for a boundary with a given value (Dirichlet)."""
 
 
 class Level(Protocol):
-    """A domain as a level set."""
+    """A domain as the level set {phi < 0}."""
 
     names: tuple[str, ...]
     """Names of the pieces of its boundary."""
 
     def values(self, points: Floats) -> Floats:
-        """phi (k,) at points (k, 3), negative inside; near the boundary proportional to the distance."""
+        """phi (k,) at points (k, 3) [m], negative inside; proportional to the distance near the boundary."""
 
     def pieces(self, points: Floats) -> NDArray[int64]:
-        """(k,) indices of the nearest piece of the boundary."""
+        """Index (k,) into ``names`` of the boundary's piece nearest to each point (k, 3)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
-    """The grid that a domain is cut out of."""
+    """A regular grid around a domain."""
 
     shape: tuple[int, int, int]
     low: Floats
     spacing: Floats
-    """The last is the depth where the grid is flat."""
+    """(3,) [m]; the last is the depth of a two-dimensional grid."""
 
     @property
     def axes(self) -> tuple[int, ...]:
-        """Those of the domain."""
+        """Numbers of the domain's axes."""
         return (0, 1) if self.shape[2] == 1 else (0, 1, 2)
 
     def points(self, shift: int | None = None) -> Floats:
-        """(cells, 3): centers, or those of the low faces along an axis; z = 0 where flat."""
+        """Centers (cells, 3) [m] of cells, or of their low faces along the axis ``shift``; z = 0 in two dimensions."""
         nx, ny, nz = self.shape
         cell = np.arange(nx * ny * nz)
         index = np.stack([cell % nx, cell // nx % ny, cell // (nx * ny)], axis=1) + 0.5
@@ -83,7 +83,7 @@ class Frame:
         return points
 
     def cells(self, volumes: Floats, areas: list[Floats], boundary: BoundaryFaces, names: tuple[str, ...]) -> Cells:
-        """Cells of this grid; the box around is that of the grid."""
+        """Cells on this grid, with the grid's box as bounding box."""
         around = self.low, self.low + np.array(self.shape) * self.spacing
         return Cells(
             self.shape, self.low, self.spacing, volumes, (areas[0], areas[1], areas[2]), boundary, names, around
@@ -91,7 +91,7 @@ class Frame:
 
 
 def frame(low: Floats, high: Floats, cell: float, depth: float, flat: bool) -> Frame:
-    """A grid of cells [m] over a box, a little more of it where they do not fit."""
+    """A grid of cells of side ``cell`` [m] centered on a box, slightly larger than it if they do not fit."""
     sides = np.asarray(high, dtype=float) - low
     counts = np.maximum(1, np.ceil(sides / cell * (1.0 - 1e-9))).astype(int)
     middle = 0.5 * (np.asarray(low) + high)
@@ -102,9 +102,9 @@ def frame(low: Floats, high: Floats, cell: float, depth: float, flat: bool) -> F
 
 
 def below(phi: Floats, slopes: Floats, sides: Floats, depth: bool = False) -> Floats:
-    """Part of boxes (m,) in which phi + slopes . x < 0, x from -sides/2 to sides/2: (m,); slopes (m, k), sides (k,).
+    """Fraction (m,) of boxes -sides/2 <= x <= sides/2 in which phi + slopes . x < 0; slopes (m, k), sides (k,).
 
-    ``depth``: instead the mean over the whole box of -(phi + slopes . x) there, and of 0 elsewhere.
+    ``depth``: instead the mean over the box of max(-(phi + slopes . x), 0).
     """
     k = slopes.shape[1]
     power = k + 1 if depth else k
@@ -132,7 +132,7 @@ def below(phi: Floats, slopes: Floats, sides: Floats, depth: bool = False) -> Fl
 
 
 def _slopes(level: Level, points: Floats, grid: Frame, axes: tuple[int, ...]) -> Floats:
-    """Gradient of phi along some axes by central differences: (m, len(axes))."""
+    """Components (m, len(axes)) of the gradient of phi at points (m, 3), by central differences."""
     columns = []
     for axis in axes:
         move = np.zeros(3)
@@ -142,9 +142,10 @@ def _slopes(level: Level, points: Floats, grid: Frame, axes: tuple[int, ...]) ->
 
 
 def _find_sides(level: Level, grid: Frame, centers: Floats, near: Any, phi: Floats, slopes: Floats) -> None:
-    """Set phi and slopes of cells where phi does not change: the faces of a thin plate are nearer there than its sides.
+    """Replace phi and slopes of cells inside where the gradient vanishes, in place.
 
-    They become those of the side that is nearest along an axis, by bisection to the next center.
+    There the faces of a plate, thinner than a cell, are nearer than its sides. The new values are those of the side
+    that is nearest along an axis, found by bisection towards the neighboring center.
     """
     even = np.flatnonzero(~slopes.any(axis=1) & (phi[near] < 0.0))
     at, best = centers[near[even]], np.full(len(even), np.inf)
@@ -163,7 +164,7 @@ def _find_sides(level: Level, grid: Frame, centers: Floats, near: Any, phi: Floa
 
 
 def _near(phi: Floats, grid: Frame) -> Any:
-    """(cells,) whether a cell or one beside it (corners too) has another sign."""
+    """(cells,) whether phi changes its sign among a cell and its 26 neighbors (8 in two dimensions)."""
     inside = (phi < 0.0).reshape(grid.shape[::-1])
     some, all_ = inside.copy(), inside.copy()
     for axis in (0, 1, 2):
@@ -182,7 +183,7 @@ def _near(phi: Floats, grid: Frame) -> Any:
 
 
 def cut(level: Level, grid: Frame, held: Callable[[Floats, Any], Any] | None = None) -> Cells:
-    """The cells of a domain with the parts of them that lie inside.
+    """The cut cells of a domain.
 
     ``held``: from points of the boundary (m, 3) and their pieces (m,) whether a value is given there (m,) bool.
     """
@@ -198,7 +199,7 @@ def cut(level: Level, grid: Frame, held: Callable[[Floats, Any], Any] | None = N
     volumes[volumes < LEAST_VOLUME * whole] = 0.0
     stiff = np.zeros(len(phi), dtype=bool)
     if held is not None:
-        squares = (slopes**2).sum(axis=1)  # zero where a plate is thinner than a cell: its faces are the nearest
+        squares = (slopes**2).sum(axis=1)  # zero in a plate thinner than a cell
         foot = centers[near]
         foot[:, list(axes)] -= (phi[near] / np.where(squares > 0.0, squares, np.inf))[:, None] * slopes
         stiff[near] = held(foot, level.pieces(foot))
@@ -214,7 +215,7 @@ def cut(level: Level, grid: Frame, held: Callable[[Floats, Any], Any] | None = N
     steep = np.linalg.norm(slopes, axis=1)[place[owners]]
     least, away = NEAREST * grid.spacing[list(axes)].min(), -phi[owners] / np.maximum(steep, 1e-300)
     distances = np.maximum(away, least)
-    # Where the boundary is, also beyond a center outside: formulas of it are read there.
+    # Points on the boundary, also if the cell's center is outside: formulas are evaluated there.
     outward = closing[owners] / size[:, None]
     points = centers[owners] + outward * away[:, None]
     boundary = BoundaryFaces(owners, size, distances, points, outward, level.pieces(points))
@@ -225,7 +226,7 @@ def cut(level: Level, grid: Frame, held: Callable[[Floats, Any], Any] | None = N
 
 
 def staircase(level: Level, grid: Frame) -> Cells:
-    """Whole cells, those whose centers lie inside."""
+    """Whole cells: those whose centers lie inside the domain."""
     whole = float(np.prod(grid.spacing))
     centers = grid.points()
     inside = level.values(centers) < 0.0
@@ -255,7 +256,7 @@ def staircase(level: Level, grid: Frame) -> Cells:
 
 
 def _shifted(values: Any, grid: Frame, axis: int) -> tuple[Any, Any]:
-    """The value of the cell before along an axis, periodically, and which cells are the first."""
+    """Values (cells,) of the cell before along an axis, wrapped periodically, and a mask of the first cells."""
     index = np.arange(values.size).reshape(grid.shape[::-1])
     first = np.zeros(index.shape, dtype=bool)
     first[tuple(0 if k == 2 - axis else slice(None) for k in range(3))] = True
@@ -263,7 +264,7 @@ def _shifted(values: Any, grid: Frame, axis: int) -> tuple[Any, Any]:
 
 
 def _after(area: Floats, grid: Frame, axis: int) -> Floats:
-    """A cell's face on its high side: that on the low side of the next; 0 at the end, since the first has none."""
+    """Area (cells,) of each cell's high face, the next cell's low face; 0 for the last cells, like the first's."""
     following: Floats = np.roll(area.reshape(grid.shape[::-1]), -1, axis=2 - axis).ravel()
     return following
 
@@ -273,7 +274,7 @@ def _both(area: Floats, grid: Frame, axis: int) -> Floats:
 
 
 def _held_faces(level: Level, grid: Frame, phi: Floats, cells: Any, areas: list[Floats]) -> BoundaryFaces:
-    """The boundary faces of whole cells where a value is given, at the true distance of the boundary."""
+    """Boundary faces of whole cells where a value is given, at the boundary's true distance along the axis."""
     centers = grid.points()
     index = np.arange(len(phi)).reshape(grid.shape[::-1])
     parts = []
@@ -283,7 +284,7 @@ def _held_faces(level: Level, grid: Frame, phi: Floats, cells: Any, areas: list[
             mine = np.flatnonzero(cells & (area == 0.0))
             beyond = np.roll(index, way, axis=2 - axis).ravel()[mine]
             other = phi[beyond]
-            last = np.flatnonzero((mine - beyond) * way < 0)  # the grid ends here, and its other end is no neighbor
+            last = np.flatnonzero((mine - beyond) * way < 0)  # the grid ends here: the wrapped cell is no neighbor
             outer = centers[mine[last]]
             outer[:, axis] -= way * grid.spacing[axis]
             other[last] = level.values(outer)
@@ -310,7 +311,7 @@ def _joined(one: BoundaryFaces, other: BoundaryFaces) -> BoundaryFaces:
 
 
 def _areas(level: Level, grid: Frame, axis: int, inside: Any, near: Any, stiff: Any) -> Floats:
-    """Open areas of the faces on the low sides along an axis."""
+    """Open areas (cells,) [m^2] of the low faces along an axis."""
     if axis not in grid.axes:
         return np.zeros(len(inside))
     full = float(np.prod(grid.spacing)) / grid.spacing[axis]
@@ -329,9 +330,9 @@ def _areas(level: Level, grid: Frame, axis: int, inside: Any, near: Any, stiff: 
 
 
 def _relieved(volumes: Floats, areas: list[Floats], grid: Frame) -> Floats:
-    """Volumes of which small ones have taken some of their neighbors', so that no explicit step need be much shorter.
+    """Volumes (cells,) with small ones enlarged at their neighbors' expense, so that explicit steps can stay long.
 
-    What a cell takes it takes from the neighbor it has the widest face with; all together stay the same.
+    A small cell takes volume from the neighbor with the largest common face; the total stays the same.
     """
     whole = float(np.prod(grid.spacing))
     n = len(volumes)

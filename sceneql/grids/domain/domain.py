@@ -1,4 +1,4 @@
-"""The cells of a model's domain: a box by its sides, or the inside of an object of the script."""
+"""Cells of a model's domain: a box given by its sides, or the inside of an object of the script."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 
 class TapeLevel:
-    """The inside of an object with a field (cut.Level); its boundary is one piece."""
+    """The inside of an object with an implicit field, as a cut.Level; its boundary is one piece."""
 
     def __init__(self, tape: Tape, name: str) -> None:
         self.tape, self.names = tape, (name,)
 
     def values(self, points: Floats) -> Floats:
-        """The field (k,)."""
+        """Values (k,) of the field at points (k, 3) [m]."""
         from sceneql.field.tape.tape_solid import field_values
 
         return field_values(self.tape, points)
@@ -42,7 +42,10 @@ class TapeLevel:
 
 
 def cells_of(model: Medium, assembly: Assembly) -> cells.Cells:
-    """The grid of a model. Raises ScriptError where its domain is an object without an inside, or holds no cell."""
+    """The cells of a model's domain.
+
+    Raises ScriptError where the domain is an object without an inside, or contains no cell, LimitRefused for too many.
+    """
     if model.size is not None:
         corner = model.corner or (0.0,) * len(model.size)
         return cells.box(model.size, corner, model.cell, model.depth)
@@ -70,9 +73,9 @@ def cells_of(model: Medium, assembly: Assembly) -> cells.Cells:
 
 
 def _of_flow(model: Medium, flat: bool, assembly: Assembly) -> cut.Frame | None:
-    """The grid of the flow in the same domain that carries a model; None where there is none.
+    """The grid of the flow that carries a model in the same domain; None where there is no such flow.
 
-    Raises ScriptError where the model says of its cells other than the flow.
+    Raises ScriptError where the model's cell, section or depth differs from the flow's.
     """
     by = getattr(getattr(model, "drift", None), "by", None)
     if by is None or model.domain is None:
@@ -95,9 +98,9 @@ def _of_flow(model: Medium, flat: bool, assembly: Assembly) -> cut.Frame | None:
 
 
 def inside(ref: Ref, flat: bool, start: Moment) -> tuple[Any, Floats, Floats, bool]:
-    """Level set of an object at the start, low and high corner (3,) of the box around it, whether it is flat.
+    """(level set of an object at the start, low and high corner (3,) [m] of its box, whether it is two-dimensional).
 
-    Raises TypeError or ValueError for an object without an inside.
+    Raises TypeError or ValueError for an object without an inside, or an unbounded one.
     """
     from sceneql.field.tape.builder import TapeBuilder
 

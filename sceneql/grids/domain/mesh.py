@@ -1,4 +1,4 @@
-"""The inside of a closed mesh as a domain (grids.cut.Level)."""
+"""The inside of a closed mesh as a domain (domain.cut.Level)."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 TILE = 4096
 """Points of one task of a thread."""
 REMEMBERED = 32
-"""Lists of points whose distances are kept: those of a grid's cells, which a run ahead of the film asks for too."""
+"""Arrays of points whose distances are cached: those of a grid's cells, which a run before the film evaluates, too."""
 
 
 class MeshLevel:
-    """What lies inside triangles; phi is the distance, and the boundary is one piece."""
+    """The inside of a closed mesh as a level set; phi is the signed distance, and the boundary is one piece."""
 
     flat = False
 
@@ -38,7 +38,7 @@ class MeshLevel:
         self._found: OfContents[Floats] = OfContents(REMEMBERED)
 
     def values(self, points: Floats) -> Floats:
-        """Signed distance at points (k, 3), negative inside: (k,)."""
+        """Signed distances (k,) [m] at points (k, 3) [m], negative inside."""
         return self._found.get((points,), lambda: self._distances(points))
 
     def _distances(self, points: Floats) -> Floats:
@@ -60,7 +60,7 @@ class MeshLevel:
 
 
 def mesh_level(corners: Floats, name: str) -> MeshLevel:
-    """The inside of triangles (m, 3, 3) [m] of an object. Raises ValueError for a mesh that is open."""
+    """The MeshLevel of an object's triangles (m, 3, 3) [m], cached. Raises ValueError for a mesh that is open."""
     return _KNOWN.get((corners, np.frombuffer(name.encode(), np.uint8)), lambda: MeshLevel(corners, name))
 
 

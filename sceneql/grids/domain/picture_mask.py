@@ -1,4 +1,4 @@
-"""Pictures as masks and as fields: brightness, its contours, its values at places. Imports imageio where it reads."""
+"""Pictures as masks and fields: brightness, contours, interpolated values. Imports imageio where a file is read."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 MOST_PIXELS = 20_000_000
 LUMINANCE = (0.2126, 0.7152, 0.0722)
-"""Of red, green and blue (ITU-R BT.709)."""
+"""Weights of red, green and blue (ITU-R BT.709)."""
 LEAST_AREA = 4.0
-"""Pixels that a piece of a mask has at least: less is noise."""
+"""Least area [pixels] of a piece of a mask; smaller ones are noise."""
 
 
 @lru_cache(maxsize=4)
 def brightness(file: str) -> tuple[Floats, Floats]:
-    """Brightness as stored, 0 black to 1 white, and opacity: (height, width) each, top row first.
+    """Brightness as stored (nonlinear), 0 black to 1 white, and opacity, each (height, width), top row first.
 
     Raises ValueError for a file that is no picture or has too many pixels.
     """
@@ -46,9 +46,10 @@ def brightness(file: str) -> tuple[Floats, Floats]:
 
 
 def contours(file: str, threshold: float, bright: bool) -> dict[str, Floats]:
-    """Polygons (k, 2) around what is brighter (or darker) than the threshold, in pixels from the low left corner.
+    """Polygons (k, 2) around the regions brighter (or darker) than the threshold, in pixels from the low left corner.
 
-    What is transparent is outside. The largest is `shore`, then `island1`... Raises ValueError where there is none.
+    Transparent pixels are outside. The largest polygon is named `shore`, then `island1`... Raises ValueError where
+    there is none.
     """
     from contourpy import contour_generator
 
@@ -69,7 +70,7 @@ def _area(ring: Floats) -> float:
 
 
 def _simple(ring: Floats) -> Floats:
-    """Without corners on a straight line and without those that stand twice."""
+    """The polygon (k, 2) without duplicate and collinear corners."""
     ring = ring[np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1) > 1e-9]
     a, b = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
     turns: Floats = ring[np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) > 1e-12]
@@ -77,7 +78,7 @@ def _simple(ring: Floats) -> Floats:
 
 
 def sampled(file: str, shares: Floats) -> Floats:
-    """Brightness at places (k, 2) from the low left (0, 0) to the top right corner (1, 1), between pixels: (k,)."""
+    """Bilinear brightness (k,) at places (k, 2); (0, 0) is the low left corner, (1, 1) the top right."""
     light = brightness(file)[0][::-1]
     height, width = light.shape
     found = np.zeros(len(shares))

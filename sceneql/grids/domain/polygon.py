@@ -1,4 +1,4 @@
-"""Polygons as domains: distances, and which side is nearest."""
+"""Polygons as domains: signed distances, and the nearest side."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 GROUP = 12
-"""Sides in one box of the search for the nearest."""
+"""Sides of a polygon in one bounding box of the search for the nearest side."""
 CORNER = 0.2
-"""Angle [rad] between sides that meet from which on they make a corner."""
+"""Least angle [rad] between the directions of consecutive sides that counts as a corner."""
 TILE = 4096
 """Points of one task of a thread."""
 
 
 class Polygon:
-    """The inside of polygons by the even-odd rule, as a level set (grids.cut.Level); phi is the distance."""
+    """The inside of polygons by the even-odd rule, as a level set (domain.cut.Level); phi is the signed distance."""
 
     flat = True
 
     def __init__(self, rings: Mapping[str, Floats], pieces: Mapping[str, tuple[int, int]]) -> None:
-        """``pieces`` of the ring `shore`: from a corner to another."""
+        """``rings``: corners (k, 2) [m] of closed polygons. ``pieces``: (first, last corner) of parts of `shore`."""
         import numpy as np
 
         self.starts = np.concatenate(list(rings.values()))
@@ -47,13 +47,13 @@ class Polygon:
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Low and high corner (3,) of the box around it."""
+        """Low and high corner (3,) [m] of the bounding box; z is 0."""
         import numpy as np
 
         return np.append(self.starts.min(axis=0), 0.0), np.append(self.starts.max(axis=0), 0.0)
 
     def holds(self, points: Floats) -> NDArray[bool_]:
-        """Which points (k, 3) lie inside, without compiled code: for a few of them."""
+        """Whether each (k,) of points (k, 3) lies inside, by numpy without compiled code: for few points."""
         import numpy as np
 
         x, y = points[:, :1], points[:, 1:2]
@@ -65,7 +65,7 @@ class Polygon:
         return found
 
     def corners(self) -> Floats:
-        """(k, 2) where sides meet at an angle, or pieces."""
+        """Points (k, 2) [m] at which sides meet at an angle (CORNER), or two pieces meet."""
         import numpy as np
 
         before = np.empty(len(self.starts), dtype=np.int64)
@@ -78,16 +78,16 @@ class Polygon:
         return found
 
     def values(self, points: Floats) -> Floats:
-        """Signed distance at points (k, 3), negative inside: (k,)."""
+        """Signed distances (k,) [m] at points (k, 3) [m], negative inside."""
         return self._nearest(points)[0]
 
     def pieces(self, points: Floats) -> NDArray[int64]:
-        """(k,) the piece of the nearest side, an index into `names`."""
+        """Index (k,) into `names` of the piece nearest to each point (k, 3)."""
         found: NDArray[int64] = self._piece[self._nearest(points)[1]]
         return found
 
     def _nearest(self, points: Floats) -> tuple[Floats, NDArray[int64]]:
-        """Signed distance (k,) and number of the nearest side."""
+        """Signed distances (k,) [m] and numbers (k,) of the nearest sides, of points (k, 3)."""
         import numpy as np
 
         from sceneql.compiled.kernels import over_tiles

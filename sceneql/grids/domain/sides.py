@@ -1,4 +1,4 @@
-"""Whether sides of polygons meet where they should not. Without numpy: `check` asks."""
+"""Self-intersections of polygons. Imports no numpy, since the command `check` uses it."""
 
 from __future__ import annotations
 
@@ -9,30 +9,30 @@ Point = tuple[float, float]
 Corners = tuple[Point, ...]
 Place = tuple[str, int]
 MANY = 8
-"""Sides compared with one, on average, from which on boxes around sides are sooner than their order along x."""
+"""Comparisons per side, on average, beyond which a tree of boxes is faster than a sweep along x."""
 LEAF = 8
-"""Most sides of a leaf of the tree of boxes."""
+"""Most sides in a leaf of the tree of boxes."""
 
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """A side of a ring."""
+    """A side of a closed polygon (ring)."""
 
     ring: str
     number: int
-    """Of its first corner."""
+    """Number of its first corner in the ring."""
     first: Point
     last: Point
     count: int
-    """Sides of the ring."""
+    """Number of sides of the ring."""
 
     @property
     def place(self) -> Place:
-        """Ring and number."""
+        """(name of the ring, number of the first corner)."""
         return self.ring, self.number
 
     def wrongly_meets(self, other: Side) -> bool:
-        """Whether they have another point in common than the corner between two that follow each other."""
+        """Whether the two sides intersect, other than in the common corner of consecutive sides."""
         apart = abs(self.number - other.number)
         ends = self.first, self.last, other.first, other.last
         if self.ring == other.ring and (apart in (1, self.count - 1)):
@@ -42,14 +42,14 @@ class Side:
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """Sides, and the box around them."""
+    """A node of a tree of bounding boxes around sides."""
 
     low: Point
     high: Point
     least: int
-    """The least of the sides' places in their order."""
+    """The smallest index of its sides in the sorted order."""
     held: Sequence[tuple[int, float, float, float, float]]
-    """Of a leaf's sides place, low and high corner; of others none."""
+    """For the sides of a leaf: index in the sorted order, low and high corner. Empty for other nodes."""
     halves: tuple[Box, ...] = ()
 
     def touches(self, other: Box) -> bool:
@@ -63,9 +63,9 @@ class Box:
 
 
 def crossing(rings: Mapping[str, Corners]) -> tuple[Place, Place] | None:
-    """Two sides (ring and number of the first corner) that meet where they should not; None where there are none.
+    """The first two sides (ring, number of the first corner) that intersect wrongly; None where there are none.
 
-    In order of their left ends the first that does, and the first that it meets.
+    First in the order of the sides' left ends.
     """
     sides = [
         Side(name, k, ring[k], ring[(k + 1) % len(ring)], len(ring))
@@ -90,7 +90,7 @@ def crossing(rings: Mapping[str, Corners]) -> tuple[Place, Place] | None:
 
 
 def _first_crossing(sides: Sequence[Side]) -> tuple[int, int] | None:
-    """The first two sides, by their places, that meet where they should not: of boxes that touch."""
+    """Indices of the first two of the sorted sides that intersect wrongly, by a tree of boxes."""
     lows = [(min(side.first[0], side.last[0]), min(side.first[1], side.last[1])) for side in sides]
     highs = [(max(side.first[0], side.last[0]), max(side.first[1], side.last[1])) for side in sides]
 
@@ -126,7 +126,7 @@ def _first_crossing(sides: Sequence[Side]) -> tuple[int, int] | None:
 
 
 def _parts(one: Box, other: Box) -> Iterator[tuple[Box, Box]]:
-    """All pairs of parts of two boxes that are not both leaves, each pair once."""
+    """All pairs of children of two boxes, at least one of which is no leaf; each pair once."""
     ones, others = one.halves or (one,), other.halves or (other,)
     for k, part in enumerate(ones):
         for m, counterpart in enumerate(others):
@@ -148,7 +148,7 @@ def _meet(a: Point, b: Point, c: Point, d: Point) -> bool:
 
 
 def _turn_back(a: Point, b: Point, c: Point, d: Point) -> bool:
-    """Whether two sides with a corner in common lie on one another."""
+    """Whether two sides with a common corner overlap: the second runs back along the first."""
     if a in (c, d):
         a, b = b, a
     far = d if b == c else c

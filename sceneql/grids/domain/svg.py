@@ -1,7 +1,7 @@
-"""The closed paths of an SVG file as polygons. Standard library only: a script is checked with it.
+"""Closed paths of an SVG file as polygons. Standard library only, since the command `check` uses it.
 
 Elements: path, polygon, rect, circle, ellipse, in groups, with transforms (Scalable Vector Graphics 2, W3C 2018,
-chapters 8 to 10). Everything is a row of cubic curves of complex numbers x + i y, cut into chords at the end.
+chapters 8 to 10). All shapes become cubic Bezier curves of complex points x + i y, finally approximated by chords.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ MOST_TRANSFORMS = 1_000
 CHORD = 5e-5
 """Largest distance of a chord from its curve, relative to the picture's size."""
 RESOLVED = 1e-9
-"""Least size by the distance from the origin of a picture whose shape rounding leaves."""
+"""Least size of a picture relative to its distance from the origin; below it rounding distorts the shape."""
 DEEPEST = 100
 """Deepest nesting of groups."""
 SHOWN = 40
@@ -35,11 +35,11 @@ UNDRAWN = {"defs", "symbol", "clipPath", "mask", "pattern", "marker"}
 
 Corners = tuple[tuple[float, float], ...]
 Matrix = tuple[complex, complex, complex]
-"""z -> m[0] Re z + m[1] Im z + m[2]."""
+"""An affine map z -> m[0] Re z + m[1] Im z + m[2] of complex points."""
 
 
 def rings(file: str) -> dict[str, Corners]:
-    """Polygons by the id of their element, the largest first, in the file's units but y up.
+    """Polygons by the id of their element, the largest first, in the file's units with y up.
 
     Raises ValueError for a file that is too large or no SVG, and where it has no closed path.
     """
@@ -52,17 +52,17 @@ def rings(file: str) -> dict[str, Corners]:
 
 @lru_cache(maxsize=16)
 def _rings(file: str, version: tuple[int, int, int]) -> dict[str, Corners]:
-    """Those of a file as it is in one version (time, size and inode). Raises OSError, and ValueError as `rings`."""
+    """As `rings`, cached by the file's version (time, size, inode). Raises OSError, and ValueError as `rings`."""
     path = Path(file)
     if version[1] > LARGEST_FILE:
         raise ValueError(f"{path.name} is larger than the {LARGEST_FILE} bytes that an SVG may have")
     text = path.read_bytes()
     declared = text.replace(b"\0", b"")  # UTF-16 has zeros between the letters
-    if b"<!ENTITY" in declared or b"<!ATTLIST" in declared:  # a few bytes of either stand for any number
+    if b"<!ENTITY" in declared or b"<!ATTLIST" in declared:  # entities may expand a few bytes to any number
         raise ValueError(f"{path.name} defines entities, which are not read")
     try:
         root = ElementTree.fromstring(text)
-    except (ElementTree.ParseError, LookupError, ValueError) as error:  # of ValueError and LookupError: encodings
+    except (ElementTree.ParseError, LookupError, ValueError) as error:  # bad encodings raise LookupError or ValueError
         raise ValueError(f"{path.name} is no SVG: {_cut(str(error), 2 * SHOWN)}") from None
     try:
         drawn = _drawn(root)
@@ -94,7 +94,7 @@ def _rings(file: str, version: tuple[int, int, int]) -> dict[str, Corners]:
 
 
 def area(polygon: Corners) -> float:
-    """Signed, counterclockwise above 0."""
+    """Signed area of a polygon, positive if counterclockwise."""
     following = (*polygon[1:], polygon[0])
     return 0.5 * sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(polygon, following, strict=True))
 
@@ -114,12 +114,12 @@ def _drawn(root: ElementTree.Element) -> list[tuple[str, list[Curve]]]:
 
 
 def _cut(text: str, length: int) -> str:
-    """The beginning of a text that a message quotes."""
+    """A text shortened to ``length`` characters, to be quoted in a message."""
     return text if len(text) <= length else f"{text[:length]}..."
 
 
 def _shapes(node: ElementTree.Element, matrix: Matrix, depth: int) -> Iterator[tuple[str, list[list[Curve]]]]:
-    """Name and mapped curves, path by path, of an element and those inside. Raises ValueError."""
+    """Yields (name, mapped curves by path) of an element and its descendants. Raises ValueError."""
     tag = str(node.tag).rpartition("}")[2]
     if tag in UNDRAWN:
         return
@@ -162,13 +162,13 @@ def _map(matrix: Matrix, z: complex) -> complex:
 
 
 def _joined(outer: Matrix, inner: Matrix) -> Matrix:
-    """The inner one, then the outer one."""
+    """The affine map that applies ``inner``, then ``outer``."""
     origin = (outer[0], outer[1], 0j)
     return _map(origin, inner[0]), _map(origin, inner[1]), _map(outer, inner[2])
 
 
 def _transform(text: str) -> Matrix:
-    """The matrix of a transform attribute. Raises ValueError for one that is not read."""
+    """The affine map of a `transform` attribute. Raises ValueError for an unsupported one."""
     matrix: Matrix = (1, 1j, 0)
     text, at, steps = text.strip(), 0, 0
     while at < len(text):
@@ -202,7 +202,7 @@ def _transform(text: str) -> Matrix:
 
 
 def _polygon(row: list[Curve], tolerance: float) -> Corners:
-    """Chords of curves that follow each other, none farther than the tolerance from its curve (Wang 1984)."""
+    """Polygon of chords along consecutive curves, none farther than ``tolerance`` from its curve (Wang 1984); y up."""
     corners: list[complex] = []
     for a, b, c, d in row:
         bend = max(abs(a - 2 * b + c), abs(b - 2 * c + d))

@@ -7,30 +7,30 @@ import math
 import re
 
 Curve = tuple[complex, complex, complex, complex]
-"""Cubic Bezier curve of points x + i y: both ends and the two controls between them."""
+"""A cubic Bezier curve by its four control points x + i y, the first and the last of which are its ends."""
 
 COUNTS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
-"""Numbers that a command takes."""
+"""Number of arguments of each path command."""
 NUMBER = re.compile(r"[\s,]*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)")
 FLAG = re.compile(r"[\s,]*([01])")
 COMMAND = re.compile(r"[\s,]*([MLHVCSQTAZmlhvcsqtaz])")
 BLANK = re.compile(r"\s*")
 MOST_CURVES = 100_000
-"""Most curves of a file: what has more is refused before they fill the memory."""
+"""Most curves of a file; a file with more is refused before they fill the memory."""
 LARGEST = 1e100
-"""Largest number: squares and products of two are finite."""
+"""Largest coordinate, whose square is finite."""
 FLATTEST = 1e-12
-"""Least ratio of the radii of an arc; one that is flatter is a line."""
+"""Least ratio of the radii of an arc; a flatter one is drawn as a line."""
 ARC = math.pi / 8
-"""Largest arc of one curve, which is then within 1e-7 of its radius."""
+"""Largest angle [rad] of an arc drawn by one cubic curve, whose relative error is then below 1e-7."""
 
 STRAIGHT = 1e-9
-"""Largest chord, by the radius, of an arc that is a line to nine digits."""
+"""Half the chord relative to the radius, below which an arc is a line to nine digits."""
 VANISHING = 1e-100
 
 
 def curves(data: str) -> list[list[Curve]]:
-    """The paths of a text, each a row of curves, those that are open closed by a line. Raises ValueError."""
+    """The paths of SVG path data, each a list of consecutive curves, closed by a line if open. Raises ValueError."""
     paths: list[list[Curve]] = []
     here = start = control = 0j
     before, count, at = "", 0, _after_blank(data, 0)
@@ -43,7 +43,7 @@ def curves(data: str) -> list[list[Curve]]:
         elif before in ("", "Z", "z"):
             raise ValueError(f"path data cannot have '{data[at : at + 12].strip()}' there")
         else:
-            letter = {"M": "L", "m": "l"}.get(before, before)  # more numbers: the command again
+            letter = {"M": "L", "m": "l"}.get(before, before)  # further numbers repeat the command
         if not before and letter not in "Mm":
             raise ValueError("path data begins with M")
         kind, relative = letter.upper(), letter.islower()
@@ -74,9 +74,9 @@ def curves(data: str) -> list[list[Curve]]:
 
 
 _LIKE = {"S": "CS", "T": "QT"}
-"""What a smooth curve takes its first control from."""
+"""By smooth command, the preceding commands whose last control point is mirrored."""
 _LAST = 1.5
-"""From a cubic's last control to that of the quadratic which it is."""
+"""Factor from a cubic's last control point, relative to its end, to that of the quadratic curve that it represents."""
 
 
 def _after_blank(data: str, at: int) -> int:
@@ -98,7 +98,7 @@ def _numbers(data: str, at: int, kind: str) -> tuple[list[float], int]:
 
 
 def _along(kind: str, to: float, here: complex, relative: bool) -> complex:
-    """End of a horizontal or vertical line."""
+    """End point of a horizontal (H) or vertical (V) line."""
     if kind == "H":
         return complex(here.real + to if relative else to, here.imag)
     return complex(here.real, here.imag + to if relative else to)
@@ -109,7 +109,7 @@ def _line(a: complex, b: complex) -> Curve:
 
 
 def _curve(kind: str, here: complex, points: list[complex], mirrored: complex) -> Curve:
-    """A line, cubic or quadratic curve; ``mirrored``: the first control of a smooth one."""
+    """The cubic curve of a line, cubic or quadratic command; ``mirrored``: first control point of a smooth one."""
     if kind == "C":
         return here, points[0], points[1], points[2]
     if kind == "S":
@@ -121,7 +121,7 @@ def _curve(kind: str, here: complex, points: list[complex], mirrored: complex) -
 
 
 def _arc(a: complex, numbers: list[float], b: complex) -> list[Curve]:
-    """An elliptical arc by its center (appendix B.2.4), cut into short curves."""
+    """Cubic curves along the elliptical arc from a to b, by its center (appendix B.2.4)."""
     rx, ry, turned, large, sweep = abs(numbers[0]), abs(numbers[1]), numbers[2], numbers[3], numbers[4]
     if a == b:
         return []
@@ -129,11 +129,11 @@ def _arc(a: complex, numbers: list[float], b: complex) -> list[Curve]:
         return [_line(a, b)]
     turn = cmath.rect(1.0, math.radians(turned))
     far, least = max(rx, ry), FLATTEST * abs(b - a)
-    if far < least:  # radii that do not reach are made larger below; these would overflow there
+    if far < least:  # far too small radii would overflow below, where they are enlarged
         rx, ry = rx / far * least, ry / far * least
 
     def unit(z: complex) -> complex:
-        """In the frame where the ellipse is the unit circle."""
+        """The vector in the frame in which the ellipse is the unit circle."""
         z /= turn
         return complex(z.real / rx, z.imag / ry)
 
@@ -141,12 +141,12 @@ def _arc(a: complex, numbers: list[float], b: complex) -> list[Curve]:
     half = 0.5 * abs(chord)
     if half < (VANISHING if large else STRAIGHT):
         return [_line(a, b)]
-    grown = max(1.0, half)  # radii that do not reach are made just large enough
+    grown = max(1.0, half)  # too small radii are enlarged until the ends fit
     way = math.sqrt(max(0.0, grown * grown - half * half)) * (1 if large != sweep else -1)
     center = 0.5 * chord + 1j * way * chord / abs(chord)  # from a
     first = cmath.phase(-center)
     sweep_angle = cmath.phase((chord - center) / -center)
-    if large and abs(sweep_angle) < STRAIGHT:  # rounded away: all but the whole ellipse
+    if large and abs(sweep_angle) < STRAIGHT:  # the ends coincide by rounding: almost the whole ellipse
         sweep_angle = math.tau if sweep else -math.tau
     elif sweep and sweep_angle < 0:
         sweep_angle += math.tau

@@ -1,4 +1,4 @@
-"""Maps from numbers to colors that look evenly spaced: curves through control colors in OKLab."""
+"""Perceptually uniform color maps: curves through control colors in OKLab."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ TO_LAB = np.array(
         [0.0259040371, 0.7827717662, -0.8086757660],
     ]
 )
-"""Linear sRGB to cone responses, and their cube roots to L, a, b (Ottosson 2020, A perceptual color space)."""
+"""TO_CONES maps linear sRGB to cone responses, TO_LAB their cube roots to L, a, b (Ottosson 2020, A perceptual color
+space)."""
 
 
 def oklab(rgb: Any) -> Floats:
@@ -48,16 +49,16 @@ def from_oklab(lab: Any) -> Floats:
 
 @cache
 def table(name: str) -> Floats:
-    """(SIZE, 3) linear RGB of a map from its low to its high end."""
+    """Linear RGB (SIZE, 3) of a color map at even steps from its low to its high end."""
     hexes = CONTROLS[name].split()
     rgb = [linear(int(text[k : k + 2], 16) / 255 for k in (0, 2, 4)) for text in hexes]
     return from_oklab(_curve(oklab(rgb), np.linspace(0.0, len(hexes) - 1.0, SIZE)))
 
 
 def _curve(points: Floats, t: Floats) -> Floats:
-    """The cubics through points (n, 3) at 0, 1, ... with the slopes of chords (Catmull & Rom 1974), at t (k,): (k, 3).
+    """Values (k, 3) at t (k,) of the cubic spline through points (n, 3) at 0, 1, ... (Catmull & Rom 1974).
 
-    Slopes are limited so that components are monotone between points (Fritsch & Carlson 1980: at most three chords).
+    Slopes are limited to three chords, so that components are monotone between points (Fritsch & Carlson 1980).
     """
     chords = np.diff(points, axis=0)
     before, after = np.concatenate([chords[:1], chords]), np.concatenate([chords, chords[-1:]])
@@ -73,7 +74,7 @@ def _curve(points: Floats, t: Floats) -> Floats:
 
 
 def colored(values: Floats, scale: tuple[float, float], name: str) -> Floats:
-    """Linear RGB (n, 3) of values (n,) on a scale from its low to its high end, clipped to the ends."""
+    """Linear RGB (n, 3) of values (n,), mapped from ``scale`` (low, high) to the color map's ends and clipped."""
     low, high = scale
     place = np.clip((values - low) / (high - low), 0.0, 1.0) * (SIZE - 1)
     first = np.minimum(place.astype(int), SIZE - 2)

@@ -1,4 +1,4 @@
-"""Surfaces on which a field is drawn: its flat domain, sections of a deep one, and its surface, whole or cut open."""
+"""Surfaces on which a field is drawn: a 2D domain; sections of a 3D domain, or its surface, whole or cut open."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ if TYPE_CHECKING:
     from sceneql.kinds import Moment, Ref
 
 FINEST = 4
-"""Most steps of a sheet in a cell."""
+"""Most steps of a sheet within a cell."""
 MOST = 25_000
-"""Rough number of parallelograms of a flat sheet."""
+"""Approximate largest number of parallelograms of a flat sheet."""
 CREASE = 0.75
-"""Cosine between a facet and the surface's normal, 41 degrees, from which an edge is sharp."""
+"""Cosine of 41 degrees: a larger angle between a facet's and the surface's normal marks a sharp edge."""
 
 Plane = tuple[Any, Any]
 """A point (3,) and a unit normal (3,)."""
 Numbers = tuple[tuple[tuple[float, ...], tuple[float, ...]], ...]
-"""A point and a direction of each of some planes."""
+"""Point and normal of several planes, hashable."""
 
 
 _sheets: Kept[Sheet] = Kept()
 
 
 def sheet_of(field: Seen, moment: Moment, cut: Numbers, surface: bool) -> Sheet:
-    """A flat domain; or the surface of a deep one, cut open by planes; without it their whole sections."""
+    """The sheet of a 2D domain; of a 3D one its surface, cut open by planes, or without ``surface`` their sections."""
 
     def make() -> Sheet:
         planes = [(np.array(through), unit_vector(normal)) for through, normal in cut]
@@ -56,13 +56,13 @@ def _made(layout: FieldLayout, level: Any, planes: list[Plane], surface: bool) -
 
 
 def sides(layout: FieldLayout) -> Floats:
-    """Sides (3,) of the grid [m]."""
+    """Lengths (3,) [m] of the grid's sides."""
     extent: Floats = np.array(layout.shape) * np.array(layout.spacing)
     return extent
 
 
 def flat(layout: FieldLayout, level: Any) -> Sheet:
-    """A flat domain at z = 0, facing +z, cut along its own boundary."""
+    """The sheet of a 2D domain at z = 0, facing +z, clipped at the domain's boundary."""
     width, height, _ = sides(layout)
     nx, ny, _ = layout.shape
     sheet = lattice((*layout.low[:2], 0.0), (width, 0.0, 0.0), (0.0, height, 0.0), _steps(nx, ny))
@@ -70,13 +70,13 @@ def flat(layout: FieldLayout, level: Any) -> Sheet:
 
 
 def _steps(nx: float, ny: float) -> tuple[int, int]:
-    """Steps over so many cells: several a cell, but not too many in all."""
+    """Numbers of steps of a sheet over nx by ny cells: up to FINEST a cell, about MOST in all."""
     fine = min(FINEST, (MOST / (nx * ny)) ** 0.5)
     return max(1, round(nx * fine)), max(1, round(ny * fine))
 
 
 def section(layout: FieldLayout, level: Any, plane: Plane) -> Sheet:
-    """The section of a deep domain by a plane, facing along its normal."""
+    """The section of a 3D domain by a plane, facing along the plane's normal."""
     through, normal = plane
     low, extent = np.array(layout.low), sides(layout)
     across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
@@ -95,7 +95,7 @@ def section(layout: FieldLayout, level: Any, plane: Plane) -> Sheet:
 
 
 def outside(layout: FieldLayout, level: Any) -> Sheet:
-    """The surface of a deep domain, facing outwards."""
+    """The surface of a 3D domain, facing outwards."""
     if level is None:
         return _box(layout)
     low = np.array(layout.low)
@@ -103,7 +103,10 @@ def outside(layout: FieldLayout, level: Any) -> Sheet:
 
 
 def around(level: Any, low: Floats, high: Floats, cell: float) -> Sheet:
-    """The surface of what lies inside a level set in a box, with edges kept sharp where it is an object's own field."""
+    """The surface of a level set in the box low..high, from cells of side ``cell`` [m].
+
+    By dual contouring, with sharp edges, where the level set is an object's field (TapeLevel), else by marching cubes.
+    """
     if hasattr(level, "tape"):
         from sceneql.mesh.dual.sharp import polygonise_sharp
 
@@ -120,7 +123,7 @@ def around(level: Any, low: Floats, high: Floats, cell: float) -> Sheet:
 
 
 def skin(ref: Ref, layout: FieldLayout, moment: Moment) -> Sheet:
-    """The surface of an object now. Raises TypeError or ValueError for one without an inside."""
+    """The surface of an object at a moment. Raises TypeError or ValueError for one without an inside, or a 2D one."""
     from sceneql.grids.domain.domain import inside
 
     level, low, high, flat = inside(ref, False, moment)
@@ -131,7 +134,10 @@ def skin(ref: Ref, layout: FieldLayout, moment: Moment) -> Sheet:
 
 
 def creased(sheet: Sheet) -> Sheet:
-    """The sheet with corners of its triangles' own, each with the surface's normal or, beside an edge, its facet's."""
+    """The sheet with separate vertices for each triangle's corners.
+
+    A corner's normal is the surface's, or beside a sharp edge (CREASE) the facet's.
+    """
     own = flat_normals(sheet)
     if sheet.normals is None or own.normals is None:
         return own
@@ -141,7 +147,7 @@ def creased(sheet: Sheet) -> Sheet:
 
 
 def _box(layout: FieldLayout) -> Sheet:
-    """The six faces of the grid's box."""
+    """The six faces of the grid's box, as one sheet."""
     low, extent = np.array(layout.low), sides(layout)
     faces = []
     for axis in range(3):
@@ -154,9 +160,9 @@ def _box(layout: FieldLayout) -> Sheet:
 
 
 def cut_open(whole: Sheet, sections: Sequence[Sheet], planes: Sequence[Plane]) -> Sheet:
-    """A surface without its part in front of all of some planes, closed by their sections.
+    """A surface without the part that lies in front of all planes at once, closed by the planes' sections.
 
-    ``sections``: that of each plane.
+    ``sections``: the section by each plane.
     """
     parts, rest = [], whole
     for plane in planes:
@@ -171,6 +177,6 @@ def cut_open(whole: Sheet, sections: Sequence[Sheet], planes: Sequence[Plane]) -
 
 
 def _before(plane: Plane) -> Side:
-    """Signed distances [m] of points in front of a plane."""
+    """A function from points (k, 3) to their signed distances (k,) [m] from a plane, positive in front."""
     through, normal = plane
     return lambda points: (points - through) @ normal

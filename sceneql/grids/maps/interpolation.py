@@ -1,4 +1,4 @@
-"""Linear interpolation of a field between the centers of its cells, extrapolated beyond the boundary of its domain."""
+"""Trilinear interpolation of a field between the centers of its cells, extrapolated beyond its domain's boundary."""
 
 from __future__ import annotations
 
@@ -15,32 +15,32 @@ if TYPE_CHECKING:
     from sceneql.grids.medium import FieldLayout
 
 LAYERS = 3
-"""Layers of cells outside the domain that get values, so that each point of the domain lies between known cells."""
+"""Layers of cells outside the domain that get extrapolated values, so that all points of the domain are surrounded."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Source:
-    """The next three cells along one direction, from which the values of a layer's cells are extrapolated."""
+    """For the cells of a layer (targets), the three next cells along one direction, to extrapolate from."""
 
     cells: tuple[Any, Any, Any]
-    """Each (targets,)."""
+    """Numbers (targets,) of the first, second and third cell."""
     sloped: NDArray[np.bool_]
-    """(targets,) whether all three have values."""
+    """(targets,) whether all three have values, so that a slope is known."""
     used: NDArray[np.bool_]
-    """(targets,) whether they are used: all that are sloped or, where none is, all whose first has a value."""
+    """(targets,) whether this direction is used: if sloped or, where no direction is, if the first cell has a value."""
 
 
 class Interpolation:
-    """The linear interpolant on a grid with a layer of cells around it; x, y, z are the axes 2, 1, 0 of its arrays.
+    """The trilinear interpolant on a grid with one more layer of cells around it; arrays have the axes z, y, x.
 
-    A cell outside the domain has the mean of extrapolations from its neighbors inside, each with the lesser of the two
-    last slopes where these agree in sign, else constant (the minmod limiter: Roe 1986), so that jumps do not overshoot.
+    A cell outside the domain gets the mean of extrapolations from its neighbors inside. Each uses the smaller of the
+    last two slopes if these agree in sign, else no slope (minmod limiter: Roe 1986), so that jumps do not overshoot.
     """
 
     what = "cells"
 
     def __init__(self, layout: FieldLayout, inside: NDArray[np.bool_]) -> None:
-        """``inside`` (cells,)."""
+        """``inside`` (cells,): whether each cell lies in the domain."""
         nx, ny, nz = layout.shape
         self.layout = layout
         self._around = 0 if nz == 1 else 1
@@ -57,11 +57,11 @@ class Interpolation:
         return len(self._own)
 
     def gridded(self, field: Floats) -> Floats:
-        """A filled field is one on its grid."""
+        """The field itself, since `filled` returns it on its grid."""
         return field
 
     def filled(self, values: Floats) -> Floats:
-        """The field with its surroundings, from the values in the domain's cells (k,)."""
+        """The field with extrapolated surroundings, from the values (k,) in the domain's cells."""
         out = np.full(int(np.prod(self.shape)), values.mean())
         out[self._own] = values
         for targets, sources in self._layers:
@@ -75,16 +75,16 @@ class Interpolation:
         return out.reshape(self.shape)
 
     def at(self, field: Floats, points: Floats) -> Floats:
-        """The interpolant of a filled field (or of any array of its shape) at points (k, 3): (k,)."""
+        """Interpolated values (k,) of a filled field (or any array of its shape) at points (k, 3) [m]."""
         layout = self.layout
         places = (points - layout.low) / layout.spacing + 0.5
         return trilinear(field, places)
 
 
 def trilinear(values: Floats, places: Floats) -> Floats:
-    """The interpolant (k,) of values (nz, ny, nx) at places (k, 3) in nodes; along an axis of one node it is even.
+    """Interpolated values (k,) of ``values`` (nz, ny, nx) at places (k, 3) in node coordinates (x, y, z).
 
-    Places beyond the nodes have the values of the sides.
+    Constant along an axis with one node. Places beyond the nodes have the values at the border.
     """
     index, part = [], []
     for axis in range(3):
@@ -102,7 +102,7 @@ def trilinear(values: Floats, places: Floats) -> Floats:
 
 
 def _layer(known: NDArray[np.bool_]) -> tuple[Any, list[Source]] | None:
-    """The cells beside known ones and where their values come from; they are known then. None: there are none."""
+    """The cells next to known ones, and the sources of their values; marks them known. None where there are none."""
     wide = known.copy()
     for axis in range(3):
         high, low = [slice(None)] * 3, [slice(None)] * 3
@@ -139,5 +139,5 @@ def _kept(layout: FieldLayout, mask: bytes) -> Interpolation:
 
 
 def interpolation(layout: FieldLayout, inside: NDArray[np.bool_]) -> Interpolation:
-    """The interpolation of a grid, made once for all frames; ``inside`` (cells,)."""
+    """The interpolation of a grid, cached for all frames; ``inside`` (cells,): which cells lie in the domain."""
     return _kept(layout, np.packbits(inside).tobytes())

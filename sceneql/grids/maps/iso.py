@@ -1,4 +1,4 @@
-"""Marching cubes on the values of a grid (mesh does it on tapes): closed, as the trilinear interpolant is connected."""
+"""Marching cubes on values at a grid's nodes, with the trilinear interpolant's topology (on tapes: mesh.cubes)."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def iso_sheet(axes: tuple[Floats, Floats, Floats], values: Floats) -> Sheet:
-    """The surface between values below 0 and the others, facing these; without normals.
+    """The surface between negative values and the others, facing the latter; without normals.
 
-    ``axes``: places of the nodes along x, y, z [m]; ``values`` (nz, ny, nx). Where the interpolant has a saddle in a
-    cube, one or two vertices inside it are the means of those around (Lorensen & Cline 1987; Chernyaev 1995).
+    ``axes``: positions [m] of the nodes along x, y, z; ``values`` (nz, ny, nx). Where the interpolant has a saddle in a
+    cube, inner vertices are placed at the means of the vertices around them (Lorensen & Cline 1987; Chernyaev 1995).
     """
     table = cases()
     negative = values < 0.0
@@ -51,7 +51,7 @@ def iso_sheet(axes: tuple[Floats, Floats, Floats], values: Floats) -> Sheet:
 
 
 def _on_edges(axes: tuple[Floats, Floats, Floats], values: Floats, negative: Any) -> tuple[Floats, list[Ints]]:
-    """Places (n, 3) where edges are crossed, and for each axis the numbers of its edges' vertices, -1 where none is."""
+    """Crossings (n, 3) [m] of grid edges, and for each axis the number of each edge's vertex, -1 for none."""
     places: list[Floats] = []
     numbers = []
     total = 0
@@ -73,7 +73,7 @@ def _on_edges(axes: tuple[Floats, Floats, Floats], values: Floats, negative: Any
 
 
 def _edge(numbers: list[Ints], cubes: Any, edge: int) -> Ints:
-    """The vertex (m,) on an edge (mesh.cube) of each cube (m, 3), whose columns are the axes z, y, x."""
+    """Number (m,) of the vertex on an edge (mesh.cubes.cube) of each cube (m, 3), whose columns are z, y, x."""
     axis = edge >> 2
     shift = np.zeros(3, dtype=np.int64)
     shift[2 - (axis + 1) % 3], shift[2 - (axis + 2) % 3] = edge & 1, edge >> 1 & 1

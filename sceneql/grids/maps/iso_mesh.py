@@ -1,4 +1,4 @@
-"""The mesh of a surface on a grid, for what draws or measures triangles alone."""
+"""Meshes of frame.Grid surfaces, for renderers and measures that know only triangles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def meshed(grid: Grid) -> Mesh:
-    """Triangles with normals by marching cubes between the nodes of a grid, cut by its box and its bounds."""
+    """The mesh, with normals, of a grid's zero surface by marching cubes, clipped at its box and its ``bounds``."""
     sheet = iso_sheet(*_within(grid))
     if grid.bounds is not None:
         bounds = grid.bounds
@@ -34,7 +34,7 @@ def meshed(grid: Grid) -> Mesh:
 
 
 def polygons_of(grids: Sequence[Grid]) -> tuple[Polygons, float]:
-    """The triangles of some grids' surfaces, and the length [m] of the shortest side of their cells."""
+    """The triangles of several grids' surfaces, and the shortest side [m] of their cells."""
     meshes = [meshed(grid) for grid in grids]
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]
@@ -45,7 +45,7 @@ def polygons_of(grids: Sequence[Grid]) -> tuple[Polygons, float]:
 
 
 def _within(grid: Grid) -> tuple[tuple[Floats, Floats, Floats], Floats]:
-    """Places of nodes along x, y, z where the first and the last are on the sides of the box, and the values there."""
+    """Node positions along x, y, z with the first and last moved to the sides of the box, and the values there."""
     axes, values = [], grid.values
     for axis, (low, high) in enumerate(zip(grid.low, grid.high, strict=True)):
         inner = np.arange(np.floor(low) + 1.0, np.ceil(high))

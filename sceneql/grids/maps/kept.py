@@ -1,4 +1,4 @@
-"""A cache of results made of a field's model once for all frames: domains do not move."""
+"""A cache of results that are computed once from a field's model for all frames, since domains do not move."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ T = TypeVar("T")
 
 
 class Kept(Generic[T]):
-    """The last few results by a model's identity and a key; a model is held, so that its identity stays its own."""
+    """The ``most`` results used last, by identity of the model and a key; models are referenced, so ids stay unique."""
 
     def __init__(self, most: int = 8) -> None:
         self._most = most

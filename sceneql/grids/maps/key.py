@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ColorKey:
-    """A map of colors, the values at its ends and those of its contours, in SI; what it shows, empty for a formula."""
+    """A color scale: color map, values [SI] at its ends and of contours, the field's name (empty for a formula)."""
 
     colors: str
     low: float
@@ -22,7 +22,7 @@ class ColorKey:
     name: str
 
     def ramp(self, places: Any) -> Floats:
-        """Linear RGB (n, 3) at places (n,) from 0 to 1."""
+        """Linear RGB (n, 3) at parameters (n,) from 0 (low end) to 1 (high end)."""
         from sceneql.grids.maps.colors import colored
 
         return colored(places, (0.0, 1.0), self.colors)

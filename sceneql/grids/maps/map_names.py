@@ -1,4 +1,4 @@
-"""The maps of colors by name, for the fields of words; what they are made of is in maps.colors."""
+"""Names and control colors of the color maps, for the fields of words; maps.colors makes the maps."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ CONTROLS: Mapping[str, str] = {
     "gray": "111111 f5f5f5",
     "coolwarm": "3b4cc0 6788ee 9abbff c9d7f0 dddddd edd1c2 f7a889 e26952 b40426",
 }
-"""sRGB colors at even places: viridis and inferno as published by van der Walt & Smith (2015), the blue and red of
-Moreland (2009), Diverging Color Maps for Scientific Visualization; between them the curve is our own."""
+"""sRGB colors at even steps: viridis and inferno as published by van der Walt & Smith (2015), blue and red of coolwarm
+by Moreland (2009), Diverging Color Maps for Scientific Visualization; the curve between the colors is our own."""
 
 if TYPE_CHECKING:
     ColorMap = str

@@ -1,4 +1,4 @@
-"""A field at a moment as words read it: from a script's value to numbers at any place."""
+"""A field at a moment, as words that draw it see it: a script's value, evaluated at any point."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Field = Annotated[Value, Quantity(None, (None,))]
 """An expression of a field's values: ``lake.concentration``, ``dish.u - dish.v``."""
 Levels = Annotated[Value, Quantity(None, None)]
-"""A value or several."""
+"""One value, or a list of values."""
 Bounds = Annotated[Value, Quantity(None, (2,))]
 Corner = tuple[float, float, float]
 
@@ -37,23 +37,23 @@ class Seen:
     layout: FieldLayout
     interpolation: Between
     held: Floats
-    """What it keeps of the field's values."""
+    """The field's values in the form that ``interpolation`` reads (`filled`)."""
     least: float
     largest: float
 
     def at(self, points: Floats) -> Floats:
-        """The field at points (k, 3) [m] in its model's own coordinates: (k,)."""
+        """Values (k,) of the field at points (k, 3) [m] in the model's coordinates."""
         return self.interpolation.at(self.held, points)
 
     @property
     def filled(self) -> Floats:
-        """(nz, ny, nx) at the centers of the cells of its layout, with a layer around them of a deep one."""
+        """Values (nz, ny, nx) at the centers of its cells, with one more layer of cells around."""
         return self.interpolation.gridded(self.held)
 
     def nodes(self, place: Floats) -> tuple[Floats, Corner, Corner]:
-        """(3, 4) map from the world to the nodes of ``filled``, and the corners of the grid's box there.
+        """Map (3, 4) from the world to node coordinates of ``filled``, and the corners of the grid's box in these.
 
-        ``place`` (3, 4): from the model's coordinates to the world. Of a deep field.
+        For a 3D field. ``place`` (3, 4): map from the model's coordinates to the world.
         """
         import numpy as np
 
@@ -63,7 +63,7 @@ class Seen:
         return inverse(compose(place, grid)), (0.5, 0.5, 0.5), high
 
     def bounds(self, moment: Moment) -> Floats | None:
-        """The level set of the domain at these nodes, negative inside; None where the grid's box is the domain."""
+        """Level set (nz, ny, nx) of the domain at the nodes of ``filled``, negative inside; None for a box domain."""
         level = level_of(self, moment)
         return None if level is None else _bounds.get(self.model, self.layout.shape, lambda: self._at_nodes(level))
 
@@ -78,7 +78,7 @@ class Seen:
 
 
 def seen(of: Value, moment: Moment) -> Seen:
-    """The field of a value at a moment. Raises ValueError where the value reads no field."""
+    """The field that a value reads, at a moment. Raises ValueError where it reads no field."""
     import numpy as np
 
     task, output = of.links[0].task, of.links[0].output
@@ -96,14 +96,14 @@ def seen(of: Value, moment: Moment) -> Seen:
 
 
 def between_cells(layout: FieldLayout, state: ModelState) -> Between:
-    """What a field on a grid is between the centers of its cells."""
+    """The interpolation of a field on a grid between the centers of its cells."""
     from sceneql.grids.maps.interpolation import interpolation
 
     return interpolation(layout, state.floats[layout.volumes_at : layout.volumes_at + layout.count] > 0.0)
 
 
 def swings(of: Value, moment: Moment) -> bool:
-    """Whether a value is a field that swings about 0, as its model says of its outputs."""
+    """Whether a value is an output that its model lists as oscillating about 0 (``swinging``)."""
     if not isinstance(of.expr, Link):
         return False
     model: Any = moment.object(Ref(of.expr.task, of.span))
@@ -111,7 +111,7 @@ def swings(of: Value, moment: Moment) -> bool:
 
 
 def called(of: Value, moment: Moment) -> str:
-    """What a legend calls a part's output: `von mises`; nothing for a formula."""
+    """The name of a part's output in a legend, as `von mises`; empty for a formula."""
     if not isinstance(of.expr, Link):
         return ""
     model: Any = moment.object(Ref(of.expr.task, of.span))
@@ -119,9 +119,9 @@ def called(of: Value, moment: Moment) -> str:
 
 
 class AtStart:
-    """The part of kinds.Moment that an object's field and extent may read, at the start of the run.
+    """A stand-in for kinds.Moment at the start of the run, with all that an object's field and extent read.
 
-    Fields spread where an object is at the start. Outputs of other parts are read as they are now.
+    A field's domain is its object as at the start. Outputs of other parts are those of the current moment.
     """
 
     time = 0.0
@@ -137,16 +137,16 @@ class AtStart:
         return self.time if isinstance(node, Symbol) else self._moment.read(node.task, node.output)
 
     def object(self, ref: Ref) -> Any:
-        """The kind of an object."""
+        """The object that a reference names."""
         return self._moment.object(ref)
 
     def kept(self, name: str, key: Hashable, make: Callable[[], Any]) -> Any:
-        """What is made for a part, for this start alone."""
+        """The result of ``make``, not cached."""
         return make()
 
 
 def level_of(field: Seen, moment: Moment) -> Any:
-    """The level set of a field's domain (grids.cut.Level); None for a box by its sides."""
+    """The level set of a field's domain (domain.cut.Level), cached; None for a box given by its sides."""
     if field.model.size is not None:
         return None
     from sceneql.grids.domain.domain import inside
@@ -163,7 +163,7 @@ _bounds: Kept[Any] = Kept()
 
 
 def unfit(of: Value, others: dict[str, Value | None]) -> Iterator[Problem]:
-    """What is wrong with the field that a word draws, and with what must be of its dimension."""
+    """Problems: a value that is not a field of one part; other values whose dimension differs from the field's."""
     parts = {link.task for link in of.links}
     if len(parts) != 1:
         told = f"of {len(parts)} parts" if parts else "of no part"

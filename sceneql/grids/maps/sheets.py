@@ -1,4 +1,4 @@
-"""Sheets of triangles on which a field is drawn, and their clipping."""
+"""Triangulated sheets on which a field is drawn, their clipping, and contour lines on them."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints
 
 POLISH = 6
-"""Root finding steps of a point on a curved boundary."""
+"""Root finding steps for a point on a curved boundary."""
 
 Side = Callable[["Floats"], "Floats"]
-"""Maps points (k, 3) to numbers (k,), negative on the side that is kept."""
+"""A clipping function: maps points (k, 3) to numbers (k,), negative on the side that is kept."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
-    """Triangles, as of frame.Mesh."""
+    """A triangle mesh, with arrays as of frame.Mesh."""
 
     vertices: Floats
     """(n, 3) [m]."""
     triangles: Ints
     """(m, 3)."""
     normals: Floats | None = None
-    """(n, 3) unit."""
+    """(n, 3) unit vertex normals, if any."""
 
 
 def lattice(corner: Any, along: Any, across: Any, counts: tuple[int, int]) -> Sheet:
-    """A parallelogram from a corner (3,) over two sides (3,) in so many steps; its front is at along x across."""
+    """A parallelogram with a corner (3,) and two sides (3,), divided into ``counts`` steps; faces along x across."""
     n, m = counts
     s, t = np.meshgrid(np.arange(n + 1) / n, np.arange(m + 1) / m)
     vertices = np.asarray(corner, dtype=float) + s.ravel()[:, None] * along + t.ravel()[:, None] * across
@@ -45,7 +45,7 @@ def lattice(corner: Any, along: Any, across: Any, counts: tuple[int, int]) -> Sh
 
 
 def joined(sheets: list[Sheet]) -> Sheet:
-    """All sheets as one; with normals where every sheet has them. An empty list is an empty sheet."""
+    """All sheets as one, with normals if every sheet has them. An empty sheet for an empty list."""
     if not sheets:
         return Sheet(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int32))
     starts = np.cumsum([0, *(len(sheet.vertices) for sheet in sheets)])
@@ -60,7 +60,7 @@ def joined(sheets: list[Sheet]) -> Sheet:
 
 
 def flat_normals(sheet: Sheet) -> Sheet:
-    """The sheet with corners of its triangles' own, so that it can stand beside smooth ones."""
+    """The sheet with separate vertices for each triangle's corners, and the triangles' normals."""
     corners = sheet.vertices[sheet.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-300)
@@ -69,7 +69,7 @@ def flat_normals(sheet: Sheet) -> Sheet:
 
 
 def raised(sheet: Sheet, heights: Floats) -> Sheet:
-    """A sheet lifted along z by so much (n,) [m] at its vertices, smooth."""
+    """A sheet with its vertices raised along z by heights (n,) [m], with smooth normals."""
     from sceneql.bodies.spring_look import vertex_normals
 
     vertices = sheet.vertices.copy()
@@ -78,7 +78,7 @@ def raised(sheet: Sheet, heights: Floats) -> Sheet:
 
 
 def kept(sheet: Sheet, side: Side) -> Sheet:
-    """The part of a sheet where ``side`` is negative; on edges that it cuts its root is found."""
+    """The part of a sheet where ``side`` is negative; on crossed edges the root of ``side`` is found."""
     if not len(sheet.triangles):
         return sheet
     value = side(sheet.vertices)
@@ -89,7 +89,7 @@ def kept(sheet: Sheet, side: Side) -> Sheet:
     whole = sheet.triangles[count == 3]
     one, two = (_turned(sheet.triangles[count == k], inside, k) for k in (1, 2))
     ends = np.concatenate([one[:, [0, 1]], one[:, [0, 2]], two[:, [0, 2]], two[:, [1, 2]]])
-    unique, which = np.unique(ends, axis=0, return_inverse=True)  # ends stand inside first, so none is there twice
+    unique, which = np.unique(ends, axis=0, return_inverse=True)  # inside end first: each edge has one direction
     places, shares = _crossings(sheet.vertices, value, unique, side)
     n = len(sheet.vertices)
     ab, ac, p, q = np.split(n + which.ravel(), np.cumsum([len(one), len(one), len(two)]))
@@ -110,14 +110,14 @@ def kept(sheet: Sheet, side: Side) -> Sheet:
 
 
 def _turned(triangles: Ints, inside: Any, count: int) -> Ints:
-    """Triangles with so many corners inside, these first."""
+    """Triangles with ``count`` (1 or 2) corners inside, rotated so that these come first."""
     flags = inside[triangles]
     lone = np.argmax(flags, axis=1) if count == 1 else (np.argmin(flags, axis=1) + 1) % 3
     return np.take_along_axis(triangles, (lone[:, None] + np.arange(3)) % 3, axis=1)
 
 
 def _crossings(vertices: Floats, value: Floats, ends: Ints, side: Side) -> tuple[Floats, Floats]:
-    """Places (k, 3) where edges (k, 2) from the inside out are cut, and the shares (k, 1) of the ways there."""
+    """Roots (k, 3) of ``side`` on edges (k, 2) from inside to outside, and their parameters (k, 1) on the edges."""
     a, b = vertices[ends[:, 0]], vertices[ends[:, 1]]
     low, high = np.zeros(len(ends)), np.ones(len(ends))
     below, above = value[ends[:, 0]], value[ends[:, 1]]
@@ -134,7 +134,7 @@ def _crossings(vertices: Floats, value: Floats, ends: Ints, side: Side) -> tuple
 
 
 def _tidy(sheet: Sheet) -> Sheet:
-    """The sheet without vertices that no triangle has."""
+    """The sheet without unused vertices."""
     used = np.unique(sheet.triangles)
     number = np.zeros(len(sheet.vertices), dtype=np.int32)
     number[used] = np.arange(len(used))
@@ -143,7 +143,7 @@ def _tidy(sheet: Sheet) -> Sheet:
 
 
 def contour(sheet: Sheet, values: Floats, level: float) -> Floats:
-    """The line on which the values at the vertices (n,), linear between them, have a level: its pieces (k, 2, 3)."""
+    """Segments (k, 2, 3) of the contour line of values (n,) at the vertices, interpolated linearly, at a level."""
     above = values >= level
     count = above[sheet.triangles].sum(axis=1)
     pieces = []

@@ -1,8 +1,8 @@
-"""Boxes whose operator is a sum of one for each axis, and the modes of these: sines, cosines, waves, or others.
+"""Separable diffusion operators on boxes, sums of one operator for each axis, and the eigenmodes of these.
 
-On cells of one size with a constant coefficient the modes of an axis are those of the discrete transforms (Strang 1999,
-SIAM Review 41, 135-147): cosines where nothing crosses its ends, sines where their values are given, both of quarter
-waves where one of each is, waves where it is periodic. With an exchange at an end they are found as eigenvectors.
+On equal cells with a constant coefficient the modes along an axis are those of discrete transforms (Strang 1999, SIAM
+Review 41, 135-147): cosines for zero flux at both ends, sines for given values, quarter waves for one of each, and
+complex waves for a periodic axis. With an exchange (Robin) at an end, they are computed as eigenvectors.
 """
 
 from __future__ import annotations
@@ -19,31 +19,31 @@ if TYPE_CHECKING:
     from sceneql.system import Grid
 
 SAME = 1e-12
-"""Relative difference of numbers that count as one."""
+"""Relative difference of numbers that count as equal."""
 MOST_DENSE = 2048
-"""Cells of an axis whose eigenvectors are computed."""
+"""Most cells of an axis whose eigenvectors are computed."""
 
 Transform = Callable[[Any, int], Any]
 """(values, axis) -> values."""
 CLOSED, GIVEN = 0.0, 2.0
-"""Sink at an axis's end, in units of the rate between cells: zero flux, and a given value."""
+"""Sink at an end of an axis, in units of the rate between cells: for zero flux, and for a given value."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """n cells in a row of the equation dc/dt = rate (left + right - 2 c), with sinks at the ends."""
+    """A row of cells with the equation dc/dt = rate (left + right - 2 c), and sinks at its ends."""
 
     count: int
     rate: float
-    """[1/s]"""
+    """[1/s] exchange rate between neighboring cells."""
     low: float
-    """Sink at the low end, then at the high one, in units of the rate."""
+    """Sink at the low end (``high``: at the high end), in units of the rate."""
     high: float
     periodic: bool
 
     @cached_property
     def kind(self) -> str:
-        """The name of its modes."""
+        """The name of its family of eigenmodes."""
         ends = {(CLOSED, CLOSED): "cosines", (GIVEN, GIVEN): "sines", (CLOSED, GIVEN): "quarter cosines",
                 (GIVEN, CLOSED): "quarter sines"}  # fmt: skip
         if self.periodic:
@@ -62,7 +62,7 @@ class Axis:
 
     @cached_property
     def decays(self) -> Floats:
-        """Decay rates (n,) of the modes [1/s]."""
+        """Decay rates (n,) [1/s] of the eigenmodes."""
         n = self.count
         if self.kind == "own modes":
             return self.rate * np.maximum(0.0, self._eigen[0])
@@ -74,11 +74,11 @@ class Axis:
         return decays
 
     def forward(self, values: Any, axis: int) -> Any:
-        """Weights of the modes along an axis of values."""
+        """Coefficients of the eigenmodes along an axis of an array of values."""
         return self._transform(values, axis, True)
 
     def backward(self, weights: Any, axis: int) -> Any:
-        """Values from the weights of the modes."""
+        """Values from the coefficients of the eigenmodes along an axis."""
         return self._transform(weights, axis, False)
 
     def _transform(self, values: Any, axis: int, forward: bool) -> Any:
@@ -100,7 +100,7 @@ class Axis:
 
 
 def axes_of(grid: Grid, floats: Floats) -> tuple[Axis, ...] | None:
-    """The axes z (of a deep grid), y, x of a box, in the order of its arrays; None where it is not separable."""
+    """The axes (z,) y, x of a box, in the order of its arrays; None where the operator is not separable."""
     if grid.varying or grid.fed_at < 0 or grid.cells.outside.any():
         return None
     nx, ny, nz = grid.cells.shape
@@ -124,7 +124,7 @@ def axes_of(grid: Grid, floats: Floats) -> tuple[Axis, ...] | None:
             return None
         if count == 1 or rate == 0.0:
             return None
-        # At the ends, away from the other axes' ends where there is a middle.
+        # The sinks along this axis, at the middle of the other axes, away from their ends.
         ends = np.moveaxis(sink, axis, 0)[(slice(None), *(k // 2 for k in np.moveaxis(sink, axis, 0).shape[1:]))]
         middle = float(ends[count // 2]) if count > 2 else 0.0
         low, high = float(ends[0]) - middle, float(ends[-1]) - middle

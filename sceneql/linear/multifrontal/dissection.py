@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 LEAF = 12
-"""Most vertices of a domain that is not divided any more."""
+"""Largest number of vertices of a domain that is not divided further."""
 
 
 def dissected(graph: Any, points: Floats) -> tuple[list[NDArray[int64]], list[int]]:
-    """Blocks of vertices in the order of their elimination, children before parents, and each one's parent (-1: none).
+    """Blocks of vertices in the order of elimination, children before parents, and each block's parent (-1: none).
 
-    ``graph``: symmetric (n, n) scipy CSR pattern; ``points`` (n, 3). Vertices of two blocks are tied only where one
-    block is above the other in the tree.
+    ``graph``: symmetric (n, n) scipy CSR pattern; ``points`` (n, 3). Vertices of two blocks are coupled only if one
+    block is an ancestor of the other in the tree.
     """
     import numpy as np
 
@@ -44,7 +44,7 @@ def dissected(graph: Any, points: Floats) -> tuple[list[NDArray[int64]], list[in
         separator = np.concatenate([on_left[lesser[block[on_left]]], on_right[~lesser[block[on_right]]]])
         inner = right >= 0
         inner[separator] = False
-        # Every divided block keeps its number for the separator; its halves become new ones.
+        # A divided block keeps its number for the separator; its halves become new blocks.
         divided = np.flatnonzero(open_blocks)
         first = np.full(some, -1, dtype=np.int64)
         first[divided] = some + 2 * np.arange(len(divided))
@@ -72,7 +72,7 @@ def dissected(graph: Any, points: Floats) -> tuple[list[NDArray[int64]], list[in
 
 
 def _halves(block: NDArray[int64], open_blocks: Any, points: Floats) -> NDArray[int64]:
-    """(n,) 0 or 1 for the halves of the open blocks across their longest sides, -1 for all else."""
+    """(n,): 0 or 1 for vertices in the halves of the open blocks, cut across their longest sides; -1 for others."""
     import numpy as np
 
     mine = np.flatnonzero(open_blocks[block])

@@ -1,4 +1,4 @@
-"""Elimination orders of sparse systems: minimum degree on groups of equal unknowns, the tree of eliminations."""
+"""Elimination orders of sparse systems: minimum degree on groups of equal unknowns, and elimination trees."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Groups:
-    """Unknowns coupled to the same others, so that one order and one structure serve for all of a group."""
+    """Groups of unknowns with identical couplings, which share one place in the order and one structure."""
 
     members: list[NDArray[int64]]
     graph: Any
-    """(groups, groups) scipy CSR pattern, with its diagonal."""
+    """(groups, groups): scipy CSR pattern, with its diagonal."""
 
 
 def grouped(pattern: Any) -> Groups:
-    """The groups of a symmetric (n, n) scipy CSR pattern that has its diagonal; indices sorted."""
+    """Groups of a symmetric (n, n) scipy CSR pattern with its diagonal, indices sorted."""
     import numpy as np
     from scipy.sparse import csr_array
 
@@ -42,12 +42,12 @@ def grouped(pattern: Any) -> Groups:
 
 
 def minimum_degree(graph: Any) -> NDArray[int64]:
-    """(n,) vertices of a symmetric pattern by multiple minimum degree (Liu 1985), as SuperLU has it."""
+    """Elimination order (n,) of a symmetric pattern by multiple minimum degree (Liu 1985), from SuperLU."""
     import numpy as np
     from scipy.sparse import csc_array, diags_array
     from scipy.sparse.linalg import splu
 
-    # Dominant diagonal: the factors, of which only the order is used, need no pivoting.
+    # The diagonal dominates, so SuperLU does not pivot. Only the order is used.
     degrees = np.diff(graph.indptr)
     matrix = csc_array(diags_array(2.0 * degrees.astype(np.float64)) - graph)
     factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -55,7 +55,7 @@ def minimum_degree(graph: Any) -> NDArray[int64]:
 
 
 def elimination_tree(graph: Any) -> list[int]:
-    """Parent of each vertex when they are eliminated in order, -1 for a root (Liu 1990, algorithm 4.2)."""
+    """Parent of each vertex in the elimination tree, -1 for a root (Liu 1990, algorithm 4.2)."""
     n = graph.shape[0]
     starts, columns = graph.indptr.tolist(), graph.indices.tolist()
     parent, ancestor = [-1] * n, [-1] * n
@@ -75,7 +75,7 @@ def elimination_tree(graph: Any) -> list[int]:
 
 
 def postorder(parent: list[int]) -> list[int]:
-    """The vertices of a forest, children before parents, every subtree contiguous."""
+    """Vertices of a forest, children before parents, every subtree contiguous."""
     n = len(parent)
     first, following, roots = [-1] * n, [-1] * n, []
     for k in range(n - 1, -1, -1):
@@ -85,7 +85,7 @@ def postorder(parent: list[int]) -> list[int]:
             following[k] = first[parent[k]]
             first[parent[k]] = k
     order: list[int] = []
-    # A stack of unfinished vertices; each child is removed from ``first`` when it is entered.
+    # The stack has unfinished vertices; a child is removed from ``first`` when it is entered.
     for root in reversed(roots):
         stack = [root]
         while stack:
@@ -99,9 +99,9 @@ def postorder(parent: list[int]) -> list[int]:
 
 
 def elimination_order(graph: Any, late: NDArray[bool_] | None = None) -> tuple[NDArray[int64], list[int]]:
-    """Vertices in the order of elimination, postordered, and the parents by place in that order.
+    """Vertices in the order of elimination, postordered, and each one's parent as a place in that order.
 
-    ``late`` (n,): vertices that come after all their neighbors that are not late.
+    ``late`` (n,): mask of vertices that must follow all their neighbors outside the mask.
     """
     import numpy as np
 
@@ -117,7 +117,7 @@ def elimination_order(graph: Any, late: NDArray[bool_] | None = None) -> tuple[N
 
 
 def _put_off(graph: Any, order: NDArray[int64], late: NDArray[bool_]) -> NDArray[int64]:
-    """An order in which late vertices follow the last of their neighbors that are not."""
+    """Order in which late vertices follow the last of their neighbors that are not late."""
     import numpy as np
 
     place = np.empty(len(order))

@@ -1,6 +1,6 @@
-"""Symbolic analysis of sparse systems for the multifrontal method: the fronts, and the entries assembled into each.
+"""Symbolic analysis of sparse systems for the multifrontal method: fronts, and the entries assembled into each.
 
-Done once for a pattern; systems_kernels.py factors any values on it. Sources: Duff & Reid (1983), ACM TOMS 9,
+One analysis serves a pattern; systems_kernels.py factors any values on it. Sources: Duff & Reid (1983), ACM TOMS 9,
 302-325; Liu (1992), SIAM Review 34, 82-109.
 """
 
@@ -24,35 +24,35 @@ if TYPE_CHECKING:
     Rows = NDArray[int64]
 
 MERGED = 12
-"""A front is merged into its parent when both together eliminate no more unknowns than this."""
+"""Largest number of unknowns of a front and its parent together for which they are merged."""
 WORTH_THREADS = 1e7
 """Multiplications of a factorization above which threads share it."""
 WORTH_SINGLE = 1e8
 """Multiplications above which single precision is tried first."""
 PIECE = 0.55
-"""Part of all operations above which a subtree is divided, so that two threads have nearly equal shares."""
+"""Fraction of all operations above which a subtree is divided, so that two threads get nearly equal shares."""
 MOST_PIECES = 16
-"""Most subtrees that threads share."""
+"""Largest number of subtrees that threads share."""
 
 
 @dataclass(slots=True)
 class _Front:
     columns: list[int]
-    """Places (of groups) eliminated in the front, ascending."""
+    """Places of the groups eliminated in the front, ascending."""
     rows: Rows
-    """Row structure of the front, its own columns first, ascending."""
+    """Places of the groups in the front's rows, its own columns first, ascending."""
     parent: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """The plan of a factorization on a pattern: integers for the kernels (layout: systems_kernels)."""
+    """Plan of a factorization on a pattern: integers for the kernels (layout: systems_kernels)."""
 
     numbers: Rows
     factors: int
-    """Floats of the factors."""
+    """Number of floats of the factors."""
     work: int
-    """Floats of scratch."""
+    """Number of scratch floats."""
     operations: float
     """Multiplications of a symmetric factorization; an unsymmetric one takes twice as many."""
 
@@ -66,13 +66,14 @@ def plan(
     border: int = 0,
     symmetric: bool = False,
 ) -> Plan:
-    """Analyze a symmetric (n, n) scipy CSR pattern that has its whole diagonal (and may be grouped already).
+    """Analyze a symmetric (n, n) scipy CSR pattern with a full diagonal.
 
-    ``points`` (n, 3): where the unknowns lie in space, for an order by nested dissection; else by minimum degree.
-    ``unit``: so many unknowns for each of the n; value k of the pattern is a block of unit x unit, row by row. Not
-    ``exact``: solutions may have errors of some percent, for an iteration that corrects them. ``border``: so many of
-    the last unknowns have diagonals that may vanish, and are eliminated after all that they are coupled to.
-    ``symmetric``: all matrices will be, so that there is no room for L.
+    ``groups``: the pattern's groups, if known already.
+    ``points`` (n, 3): positions of the unknowns, for nested dissection; None: minimum degree.
+    ``unit``: number of unknowns for each of the n; value k of the pattern is a block (unit, unit), row by row.
+    ``exact``: False allows errors of some percent in solutions, for an iteration that corrects them.
+    ``border``: number of last unknowns whose diagonals may vanish; they are eliminated after all their neighbors.
+    ``symmetric``: whether all matrices are symmetric, so that L needs no storage.
     """
     import numpy as np
 
@@ -93,7 +94,7 @@ def plan(
 
 
 def _fronts_of_blocks(graph: Any, parents: list[int], blocks: list[Rows]) -> list[_Front]:
-    """A front for each block of a dissection, whose vertices are in the order of the blocks."""
+    """One front for each block of a dissection; vertices are numbered in the order of the blocks."""
     import numpy as np
 
     starts, columns = graph.indptr, graph.indices.astype(np.int64)
@@ -113,7 +114,7 @@ def _fronts_of_blocks(graph: Any, parents: list[int], blocks: list[Rows]) -> lis
 
 
 def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
-    """Fronts of groups by place, children first: columns of one structure, small ones merged into their parents."""
+    """Fronts by places of groups, children first: columns with one structure share a front, small fronts are merged."""
     import numpy as np
 
     starts, columns = graph.indptr.tolist(), graph.indices
@@ -131,7 +132,7 @@ def _fronts(graph: Any, parents: list[int], sizes: Rows) -> list[_Front]:
         if last >= 0:
             own = fronts[last]
             width = sum(weight[k] for k in own.columns) + weight[j]
-            # No fill or little: the column joins the front of the column before.
+            # With little or no fill the column joins the front of the previous column.
             if len(own.rows) - len(own.columns) == len(rows) or width <= MERGED:
                 reached = np.concatenate([own.columns, rows])
                 fronts[last] = _Front([*own.columns, j], reached, parent)
@@ -159,7 +160,7 @@ def _laid_out(
     lengths = np.array([len(front.rows) for front in fronts])
     rows = np.concatenate([front.rows for front in fronts])
     widths = np.array([first[front.columns[-1] + 1] - first[front.columns[0]] for front in fronts])
-    # Where each group starts among the unknowns of its front, found by the number (front, group), which rises.
+    # Start of each group among the unknowns of its front; the number (front, group) ascends, for searchsorted.
     numbered = np.repeat(np.arange(count), lengths) * groups + rows
     before = np.cumsum(sizes[rows]) - sizes[rows]
     row_starts = np.concatenate([[0], before[np.cumsum(lengths)[:-1]], [sizes[rows].sum()]])
@@ -173,14 +174,14 @@ def _laid_out(
     owner = np.repeat(np.arange(count), widths)[np.minimum(i, j)]
 
     def inside(front: Rows, unknown: Rows) -> Rows:
-        """The places in fronts of unknowns."""
+        """Places of unknowns in fronts."""
         group = group_of[unknown]
         found = before[np.searchsorted(numbered, front * groups + group)]
         places: Rows = found - row_starts[front] + unknown - first[group]
         return places
 
     target = inside(owner, i) * heights[owner] + inside(owner, j)
-    # The upper triangle of each front's panel first: symmetric matrices need no more.
+    # The upper triangle of each front's panel comes first: symmetric matrices need only that.
     kinds = 2 * owner + (i > j)
     by_owner = np.argsort(kinds, kind="stable")
     bounds = np.searchsorted(kinds[by_owner], np.arange(2 * count + 1)).tolist()
@@ -228,7 +229,7 @@ def _laid_out(
 
 
 def _of_pieces() -> list[int]:
-    """The kernels that factor a piece, and solve in it."""
+    """Addresses of the kernels that factor a piece and solve in it."""
     from sceneql.compiled.threads_kernels import tile_address
     from sceneql.linear.multifrontal.pieces_kernels import backward_piece, forward_piece, piece
 
@@ -236,7 +237,7 @@ def _of_pieces() -> list[int]:
 
 
 def _single(operations: float) -> list[int]:
-    """The kernels in single precision; -1 where they are not worth it."""
+    """Numbers and addresses of the kernels in single precision; all -1 below WORTH_SINGLE operations."""
     if operations < WORTH_SINGLE:
         return [-1] * 5
     from sceneql.compiled.numbered_kernels import number_of
@@ -250,9 +251,10 @@ def _single(operations: float) -> list[int]:
 
 
 def _runs(places: Rows, counts: Rows) -> tuple[Rows, Rows]:
-    """Maps of so many places each as runs of places in line, (end in its own map, first place), and how many each has.
+    """Maps compressed to runs of consecutive places, and the number of runs of each map.
 
-    A run of one map never goes on in the next.
+    ``places``: all maps, one after another; ``counts``: length of each map. A run is (end in its own map, first
+    place), and never continues into the next map.
     """
     import numpy as np
 
@@ -264,7 +266,10 @@ def _runs(places: Rows, counts: Rows) -> tuple[Rows, Rows]:
 
 
 def _pieces(parents: list[int], operations: list[float]) -> list[tuple[int, int]]:
-    """Subtrees that threads share, none of more than PIECE of all operations: (first front, root), ascending."""
+    """Subtrees that threads share, as (first front, root), ascending; none if there are too few operations.
+
+    The heaviest is divided while it has more than PIECE of all operations and there are fewer than MOST_PIECES.
+    """
     weights, sizes = list(operations), [1] * len(parents)
     children: list[list[int]] = [[] for _ in parents]
     for k, parent in enumerate(parents):
@@ -286,10 +291,10 @@ def _pieces(parents: list[int], operations: list[float]) -> list[tuple[int, int]
 
 
 def _updates(parents: list[int], sizes: list[int], pieces: list[tuple[int, int]]) -> tuple[list[int], int]:
-    """Offsets of the fronts' update matrices, and the floats for all.
+    """Offsets of the fronts' update matrices, and the number of floats for all.
 
-    Updates stand in two stacks by turns, so that a front's own never lies over its children's: those of a depth wait
-    with those of other depths of the same parity. A piece has stacks of its own, the fronts above the pieces too.
+    Updates lie in two stacks, by the parity of the front's depth, so that a front's update never overlaps those of its
+    children. Each piece has its own two stacks, and so have the fronts above the pieces.
     """
     depth = [0] * len(parents)
     for k in range(len(parents) - 1, -1, -1):

@@ -111,7 +111,7 @@ def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, gro
 
 
 def _ends(numbers: Numbering, first: Keys, second: Keys) -> Keys:
-    """As ``pair``, but -1 where both ends lie on the same edge."""
+    """Numbers from ``pair``, but -1 for two ends on the same edge."""
     import numpy as np
 
     return np.where((first == second).all(axis=1), -1, pair(numbers, first, second))

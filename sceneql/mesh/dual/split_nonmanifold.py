@@ -65,7 +65,7 @@ def split_nonmanifold(
 
 
 def _beside(ring: Ints, edge: int, among: set[int]) -> int:
-    """That of an edge's two neighbors in a ring that is in the set ``among``."""
+    """One of an edge's two neighbors in a ring: the one in the set ``among``."""
     members = [int(other) for other in ring if other >= 0]
     at = members.index(edge)
     before, after = members[at - 1], members[(at + 1) % len(members)]

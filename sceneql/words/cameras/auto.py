@@ -13,14 +13,15 @@ if TYPE_CHECKING:
 
 THREE_QUARTER = (0.55, 0.38, 1.0)
 ALONG = ((1.0, 0.1, 0.0), (0.0, 1.0, 0.12), (0.0, 0.1, 1.0))
-"""Towards the camera, for what is flat in x, y or z."""
+"""Directions towards the camera for scenes that are flat in x, y or z."""
 FLAT, EVEN = 0.2, 0.005
-"""What is shallower along an axis than this part of its size along both others is seen along it, nearly, so that bodies
-and their ground are told apart; what is EVEN is seen exactly so, and keeps its right angles."""
-LONG, ACROSS = 0.3, {0: ALONG[2], 2: ALONG[0]}
-"""What is smaller along both other axes than this part of its length, and lies, is seen across: a swing on a spring."""
+"""Largest depth along an axis, relative to the smaller of both other sizes, for a view along that axis. A FLAT scene is
+viewed nearly along it, so that bodies stand out from their ground; an EVEN one exactly, so that right angles stay."""
+LONG, ACROSS = 0.12, {0: ALONG[2], 2: ALONG[0]}
+"""Larger one of both other sides, relative to the length, below which a scene long in x or z is viewed across; and
+directions towards the camera by the long axis."""
 HEADROOM = 0.86
-"""Part of the height between the margins that is filled at most: pictures are wider than what stands in them."""
+"""Largest fraction of the height between the margins that is filled: pictures are wider than most subjects."""
 
 
 class Auto(Camera):
@@ -46,7 +47,7 @@ class Auto(Camera):
 
 
 def _towards(points: Floats) -> tuple[float, float, float]:
-    """The direction from the scene to its camera."""
+    """Direction from the scene to its camera, by the proportions of the box around points (n, 3)."""
     sides = points.max(axis=0) - points.min(axis=0)
     thin = int(sides.argmin())
     others = [float(side) for k, side in enumerate(sides) if k != thin]

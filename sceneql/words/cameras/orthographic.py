@@ -54,7 +54,7 @@ class Orthographic(Camera):
         elif self.follow is not None:
             aim = framing.whereabouts(moment, self.follow)
         now = None if self.height is None or aim is None else moment.around()
-        if now is not None:  # what the film shows before and after moves no window that the script places
+        if now is not None:  # shapes at other instants do not move a window that the script places
             points = around = framing.corners(*now)
         else:
             points = framing.corners(*framing.bounds(moment, self.fit))

@@ -53,7 +53,7 @@ class Perspective(Camera):
 
     @cached_property
     def _followed(self) -> framing.Whereabouts:
-        """What it remembers the places of."""
+        """Part whose past places the camera needs."""
         assert self.follow is not None
         return framing.Whereabouts(self.follow)
 

@@ -1,4 +1,4 @@
-"""turntable: a camera that goes round."""
+"""turntable: a camera that circles around a point."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Turntable(Camera):
         return framing.view(aim + distance * axes[2], axes, size, half)
 
     def _middle(self, moment: Moment) -> Any:
-        """(3,) the point in the middle of the picture now."""
+        """Point (3,) [m] at the center of the picture now."""
         if self.follow is not None:
             return framing.whereabouts(moment, self.follow)
         if self.look_at is not None:
@@ -75,5 +75,5 @@ class Turntable(Camera):
 
 
 def _towards(azimuth: float, tilt: float) -> Any:
-    """Direction from the middle towards the camera."""
+    """Direction (3,) from the center of the picture towards the camera; angles [rad]."""
     return (math.cos(tilt) * math.sin(azimuth), math.sin(tilt), math.cos(tilt) * math.cos(azimuth))

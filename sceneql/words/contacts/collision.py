@@ -34,7 +34,7 @@ NODES = "leave it out; mode `local` has one, of the nodes as masses"
 LOCAL = "sceneql.contacts.back_off_kernels"
 SHAPES = "sceneql.contacts.shapes"
 MOST_CUT = 4096
-"""Bodies above which no step is cut at an impact: looking costs more than it gives."""
+"""Number of bodies above which no step is cut at an impact: the search costs more than it gains."""
 
 
 class Collision(Contact):
@@ -175,15 +175,13 @@ class Collision(Contact):
         exact = self.mode == "exact" or (self.mode == "auto" and assembly.body_count() <= MOST_EXACT)
         compile_beside(
             (EXACT if exact else LOCAL,)
-        )  # the largest of the island, while what the objects are looked at with compiles here
+        )  # the island's largest kernels, in parallel with those for the objects, which compile here
 
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
         objects = surfaces(touched, assembly, layout.HEAD)
         if exact:
-            compile_beside(
-                one for one in lazy_kernels.modules() if one.startswith(f"{SHAPES}.")
-            )  # every gap asks for them
+            compile_beside(one for one in lazy_kernels.modules() if one.startswith(f"{SHAPES}."))  # for every gap
         nan = float("nan")
         period = math.inf if bodies.springs is None else bodies.springs.period
         square = (2.0 * math.pi / period) ** 2 if period > 0.0 else math.inf
@@ -260,7 +258,7 @@ class Collision(Contact):
         yield Diagnostic("no-rolling", message, self.rolling.span, help)
 
     def _refused_by_skins(self, name: str, alone: bool) -> Iterator[Diagnostic]:
-        """What a skin that a flow carries has not; ``alone``: nothing else collides here."""
+        """Errors for settings that skins in a flow do not support; ``alone``: whether nothing else collides here."""
         if self.mode in ("exact", "local"):
             message = f"'{name}' is a skin in a flow, which has no mass of its own: it has no impacts"
             yield Diagnostic("no-collider", message, None, "leave the mode out")
@@ -305,7 +303,7 @@ class Collision(Contact):
                 raise ScriptError([Diagnostic("no-restitution", text, getattr(self, what).span, "leave it out")])
         written = {ref.name: ref for ref in self.between or ()}
         touched = [written.get(ref.name, ref) for ref in others]
-        # Of a skin that could not be made that is told.
+        # A skin that could not be made has its own diagnostic.
         models: list[tuple[str, Any]] = [(skin, assembly.object(Ref(skin))) for skin in skins]
         made = [(skin, model.made) for skin, model in models if assembly.membrane_of(skin) is not None]
         if made or carried:
@@ -339,7 +337,7 @@ class Collision(Contact):
             return
         if self.mode == "auto" and self._exactly(name, assembly, rigid, points, touched):
             return
-        if name in assembly.went_on:  # what was counted until then
+        if name in assembly.went_on:  # the tally up to that time
             tally_at = assembly.floats(tallies.tally(assembly.went_on[name]))
             assembly.remember(tally_at)
         assembly.step_at_most(OFTEN)
@@ -353,7 +351,7 @@ class Collision(Contact):
     def _exactly(
         self, name: str, assembly: Assembly, rigid: list[Bodies], points: list[Bodies], touched: list[Ref]
     ) -> bool:
-        """Add the contacts of few rigid bodies in mode `exact`, if that takes them; whether it does, and why."""
+        """Add the contacts of few rigid bodies in mode `exact`, if it supports them; returns whether it does."""
         from sceneql.contacts.distance.rigid_masses import Masses
         from sceneql.contacts.rigid_exact import group
 
@@ -382,7 +380,7 @@ class Collision(Contact):
 
 
 def _held(bodies: Bodies) -> Slopes:
-    """The slopes of local contacts within a stage."""
+    """Derivatives of local contacts within a stage."""
     import numpy as np
 
     from sceneql.system import Slopes

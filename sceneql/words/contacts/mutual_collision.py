@@ -20,11 +20,11 @@ MOST_EXACT = 8
 EXACT = "sceneql.contacts.mutual.sphere_events_kernels"
 LOCAL = "sceneql.contacts.mutual.sphere_back_off_kernels"
 MOST_DIFFERENCES = 30
-"""Masses up to which implicit solvers take differences for the forces between resting masses, in `exact` mode."""
+"""Largest number of masses for which implicit solvers difference the forces between resting masses, in mode `exact`."""
 SPRINGS, OVERLAPS = 5, 6
-"""Floats after the tally: how many pairs are left out that springs tie, and how many that overlap at the start."""
+"""Places after the tally: numbers of excluded pairs, those tied by springs and those that overlap at the start."""
 FEW = 300
-"""Of so few masses all pairs are looked at, which takes less time than the import of scipy's trees."""
+"""Largest number of masses for which all pairs are tested: that takes less time than importing scipy's trees."""
 
 
 class MutualCollision(Contact):
@@ -144,11 +144,10 @@ class MutualCollision(Contact):
 
 
 def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> tuple[NDArray[int64], int]:
-    """(m, 2) the pairs that do not meet, those that springs tie or that overlap within a net at the start; how many
-    springs tie.
+    """Pairs (m, 2) that do not collide, lower number first, and how many of them springs tie.
 
-    The lower number stands first. In `exact` mode all meet. Raises ScriptError where two moving masses overlap
-    otherwise.
+    They are pairs tied by a spring, and pairs of one net that overlap at the start. In mode `exact` there are none.
+    Raises ScriptError for any other two moving masses that overlap.
     """
     import numpy as np
 
@@ -180,7 +179,7 @@ def _tied(assembly: Assembly, everyone: Sequence[Bodies], exact: bool) -> tuple[
 
 
 def _no_slopes() -> Slopes:
-    """The slopes of what adds nothing, or hardly ever."""
+    """Derivatives of a term that adds nothing, or hardly ever: none."""
     import numpy as np
 
     from sceneql.system import Slopes
@@ -190,7 +189,7 @@ def _no_slopes() -> Slopes:
 
 
 def _partners(tied: NDArray[int64], count: int, start: int) -> tuple[int, ...]:
-    """Of ``count`` masses the tied ones (sphere_pair_kernels), for integers that begin at ``start``."""
+    """Integers of the pairs ``tied`` (m, 2) of ``count`` masses (sphere_pair_kernels), to stand at ``start``."""
     import numpy as np
 
     if not len(tied):
@@ -200,7 +199,7 @@ def _partners(tied: NDArray[int64], count: int, start: int) -> tuple[int, ...]:
 
 
 def _near(places: Floats, reach: float) -> NDArray[int64]:
-    """(m, 2) pairs of places (n, 3) that are no further apart than that [m], and, of a few places, the others too."""
+    """Pairs (m, 2) of places (n, 3) no further apart than ``reach`` [m]; all pairs of up to FEW places."""
     import numpy as np
 
     if len(places) <= FEW:

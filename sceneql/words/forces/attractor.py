@@ -79,6 +79,6 @@ class Attractor(Force):
         p, softening = state.floats[shape_at], state.floats[shape_at + 1]
         moving = masses.moving_masses(bodies, state) > 0
         rho = np.sqrt(np.sum(away[moving] ** 2, axis=1) + softening**2)
-        with np.errstate(divide="ignore"):  # minus infinity at the point itself
+        with np.errstate(divide="ignore"):  # the logarithm is minus infinity at the point itself
             phi = np.log(rho) if p == 1 else -(rho ** (1 - p)) / (p - 1)
         return float(state.floats[strength_at] * (masses.masses(bodies, state)[moving] @ phi))

@@ -1,4 +1,4 @@
-"""emission: masses that give into a field on a grid."""
+"""emission: masses as sources of a field on a grid."""
 
 from __future__ import annotations
 

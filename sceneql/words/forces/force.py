@@ -95,7 +95,7 @@ class Force(Family):
         return float(potential_at(self.potential_, at, state, state.ints, known)[moving].sum())
 
     def _potential_at(self, bodies: Bodies, state: ModelState) -> float:
-        """The potential at the place [J]."""
+        """Potential energy [J] at the force's place."""
         import numpy as np
 
         from sceneql.bodies import bodies as masses

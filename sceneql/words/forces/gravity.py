@@ -60,7 +60,7 @@ class Gravity(Force):
         from sceneql.flows.varying.fluid_layout import WEIGHT
 
         flow = assembly.flow_of()
-        if flow is None or not flow.varying:  # it could not be made, which is told
+        if flow is None or not flow.varying:  # a flow that could not be made has its own diagnostic
             return
         vector = self.direction if self.acceleration is None else self.acceleration
         given, parameters = int(self.acceleration is not None), (assembly.value(vector), assembly.value(self.strength))

@@ -1,4 +1,4 @@
-"""immersion: skins and masses in a flow, which carries them and feels them."""
+"""immersion: skins and masses in a flow, which moves them and takes up their forces."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ if TYPE_CHECKING:
 
 
 SMOOTH = 0.6
-"""How fast splines let a net swing that is much finer than cells, over distance by cell of its fastest swing alone."""
+"""Fastest swing in the flow of a net much finer than cells, over (distance of masses/cell) times that without fluid."""
 BESIDE = 2.5
-"""Cells whose fluid goes along with a net, for each axis across it."""
+"""Width [cells] of the fluid that moves along with a net, along each axis across it."""
 
 
 def swing(name: str, net: Any, density: float, cell: float, axes: int, depth: float, scene: StaticScene) -> float:
-    """The fastest that masses swing, or are damped, which a flow carries [1/s], with the fluid that goes along.
+    """Estimate of the fastest oscillation or decay [1/s] of masses in a flow, with the fluid that moves along.
 
-    Measured beside the largest eigenvalues (skins/immersed_masses.py): at most 1.3 times too fast where it is finer
-    than half a cell (tests/test_immersed_masses.py).
+    ``net``: the model of the masses; ``density`` [kg/m^3] of the fluid; ``cell`` and ``depth`` [m] and ``axes`` of the
+    flow. Compared with the largest eigenvalues (skins/immersed_masses.py), the estimate is at most 1.3 times too large
+    for nets finer than half a cell (tests/test_immersed_masses.py).
     """
     modes = tuple(net.fastest(name, scene))
     alone, damped = max((one.frequency for one in modes), default=0.0), max((one.decay for one in modes), default=0.0)

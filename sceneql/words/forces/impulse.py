@@ -1,4 +1,4 @@
-"""impulse: a blow, which changes velocities at once."""
+"""impulse: a blow, which changes velocities instantaneously."""
 
 from __future__ import annotations
 
@@ -48,5 +48,5 @@ class Impulse(Interaction):
             raise ScriptError([Diagnostic("invalid", text, self.on.span, help)])
         ints = (*place.ints, assembly.value(self.value), assembly.floats([self.at]))
         assembly.after_step("sceneql.words.forces.impulse_kernels:strike", ints)
-        assembly.stop_at(self.at - APART)  # frames within a step see the velocities at both ends: the last is short
+        assembly.stop_at(self.at - APART)  # a short last step: frames within it interpolate velocities
         assembly.stop_at(after(self.at))

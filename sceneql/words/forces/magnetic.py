@@ -79,13 +79,13 @@ class Magnetic(Force):
 
     @staticmethod
     def _turned(formula: Formula) -> list[Expr]:
-        """v x B."""
+        """Components of v x B as expressions."""
         from sceneql.quantities.derivative import components
 
         return _cross([Symbol("vx"), Symbol("vy"), Symbol("vz")], list(components(formula.expr)))
 
 
 def _cross(a: list[Expr], b: list[Expr]) -> list[Expr]:
-    """The vector product."""
+    """Components of the vector product a x b as expressions."""
     pairs = ((1, 2), (2, 0), (0, 1))
     return [Call("sub", (Call("mul", (a[i], b[j])), Call("mul", (a[j], b[i])))) for i, j in pairs]

@@ -59,7 +59,7 @@ class Spring(Force):
             yield Oscillation(math.sqrt(stiffness * inverse), damping * inverse, f"force '{name}'", ("stiffness",))
 
     def _inverse(self, end: Value, on: On) -> float | None:
-        """1/mass [1/kg] at an end, 0 of a place of its own; None where that is not told."""
+        """Inverse mass [1/kg] at an end, 0 for an end without a mass; None if the mass is not known."""
         if not isinstance(end.expr, Link) or end.expr.task not in on:
             return 0.0
         masses = on[end.expr.task]
@@ -104,12 +104,15 @@ class Spring(Force):
         assembly.remember(*ends[0], *ends[1], *law)
 
     def _place(self, value: Value, assembly: Assembly, everyone: Sequence[Bodies]) -> Place | None:
-        """The mass or place on a body at an end; None for a place of its own."""
+        """Mass, or point on a body, at an end; None for an end without either."""
         place = assembly.place(value.expr) if isinstance(value.expr, Link) else None
         return place if place is not None and place.bodies in everyone else None
 
     def _speed(self, mass: Place | None, value: Value, assembly: Assembly) -> int:
-        """Offset of the velocity of a place, -1 of a mass. Raises ScriptError where a damped one's is not known."""
+        """Offset of the velocity of an end that is a place, -1 for a mass.
+
+        Raises ScriptError for a damped spring at a place whose velocity is not known.
+        """
         if mass is not None:
             return -1
         if value.constant:
@@ -138,7 +141,7 @@ class Spring(Force):
 
 
 def _slopes(ends: Sequence[tuple[int, ...]], ints: Sequence[int]) -> Slopes:
-    """Where the blocks of the derivatives stand: see spring_slopes_kernels."""
+    """Derivatives of a spring between masses or places (spring_slopes_kernels)."""
     import numpy as np
 
     from sceneql.system import Slopes
@@ -152,7 +155,7 @@ def _slopes(ends: Sequence[tuple[int, ...]], ints: Sequence[int]) -> Slopes:
 
 
 def _body_slopes(ends: Sequence[tuple[int, ...]]) -> Slopes:
-    """Those of a spring to a point of a body: see spring_on_bodies_slopes_kernels."""
+    """Derivatives of a spring to a point on a body (spring_on_bodies_slopes_kernels)."""
     from sceneql.bodies.rigid.place_slopes import force_places
     from sceneql.system import Slopes
 

@@ -1,4 +1,4 @@
-"""turbulence: drag of air full of eddies."""
+"""turbulence: drag in air with random eddies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""vortex: drag of air that runs round an axis."""
+"""vortex: drag in air that circles around an axis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""wind: drag of air that moves."""
+"""wind: drag in moving air."""
 
 from __future__ import annotations
 
@@ -96,13 +96,13 @@ class Wind(Force):
         )
 
     def _in_flow(self, ref: Ref, assembly: Assembly, bodies: Bodies) -> None:
-        """Have a flow carry the masses. Raises ScriptError where it is none."""
+        """Let a flow drag the masses along. Raises ScriptError for a reference that is no flow."""
         from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
         flow = assembly.flow_of(ref.name)
         if flow is None:
             if getattr(assembly.object(ref), "flows", False):
-                return  # its own assembly has failed
+                return  # the flow's own assembly has failed
             text = f"'{ref.name}' is no flow"
             raise ScriptError([Diagnostic("no-flow", text, ref.span, "name a model `flow`")])
         box = assembly.floats([*flow.low, *flow.spacing])

@@ -12,25 +12,26 @@ if TYPE_CHECKING:
     from sceneql import frame
 
 KEY, KEY_FROM, KEY_ANGLE = 1.0, (-0.50, 0.72, 0.48), math.radians(10.0)
-"""Brightness of a white matte surface that faces the key light, without the dome; its direction; its apparent size."""
+"""Key light: radiance of a white matte surface facing it, without the dome; direction; apparent size [rad]."""
 RIM, RIM_FROM, RIM_ANGLE = 0.30, (0.62, 0.40, -0.68), math.radians(14.0)
-"""The same of the light from behind, which parts edges from the background."""
+"""Rim light from behind, as KEY; it separates edges from the background."""
 DOME = ((0.44, 0.45, 0.47), (0.24, 0.245, 0.25), (0.15, 0.15, 0.15))
-"""Radiance overhead, at the horizon and from below: a white surface has a quarter of its light from it (4:1)."""
+"""Radiance of the dome overhead, at the horizon and from below; key and dome light a white surface 4:1."""
 BOXES = (
     ((-0.50, 0.72, 0.48), (50.0, 38.0), 1.6),
     ((0.93, 0.30, 0.25), (13.0, 62.0), 1.6),
     ((0.10, 0.80, -0.60), (80.0, 16.0), 1.0),
 )
-"""What metal and glass mirror: soft boxes about the key light, as a strip on the right and as a bar behind and above;
-direction, width and height [deg], radiance. Their light on matte surfaces is a part of the dome's."""
+"""Soft boxes that metal and glass mirror: around the key light, a strip on the right, a bar behind and above.
+
+Each has a direction, width and height [deg], and radiance. Their light on matte surfaces is part of the dome's."""
 BACKGROUND, BELOW, SWEEP = (0.325, 0.345, 0.37), (0.655, 0.655, 0.655), 0.16
-"""A cove: what is seen straight ahead, and what below, as bright as the floor of a plane without material
-(words/objects/plane.py); sine of the angle below which the floor bends up, so that no horizon shows."""
+"""Cove: radiance of the background straight ahead, and below, where it equals the floor of a plane without material
+(words/objects/plane.py); sine of the angle below which the floor fades into it, so that there is no horizon."""
 DARK, DARK_BELOW = (0.006, 0.007, 0.012), (0.016, 0.018, 0.026)
 DARK_DOME = ((0.30, 0.31, 0.34), (0.10, 0.105, 0.12), (0.04, 0.042, 0.05))
-"""The same, and the dome, of a dark room: bodies are as bright to the key light, darker away from it, and mirror
-boxes before the dark."""
+"""Background and dome of a dark room: bodies are as bright towards the key light, darker away from it, and mirror
+the boxes before a dark background."""
 
 
 class Studio(Light):

@@ -1,4 +1,4 @@
-"""glow: what shines by itself."""
+"""glow: a surface that emits light."""
 
 from __future__ import annotations
 

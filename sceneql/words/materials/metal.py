@@ -19,7 +19,7 @@ REFLECTED = (
     (1.000, 0.710, 0.291), (0.562, 0.565, 0.578), (0.660, 0.609, 0.526), (0.673, 0.637, 0.585), (0.972, 0.960, 0.915),
     (0.542, 0.497, 0.449),
 )  # fmt: skip
-"""Linear RGB of light that each reflects straight back, from their indices of refraction in the visible spectrum."""
+"""Linear RGB reflectance of metals at normal incidence, from their indices of refraction in the visible spectrum."""
 
 
 class Metal(Material):

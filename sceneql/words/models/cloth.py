@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 MOST_SHEAR = 4.0
-"""Diagonals tear at the tension that tears threads, or at so many times their strain."""
+"""Largest tearing strain of diagonals, relative to that of threads; below it they tear at the threads' tension."""
 
 
 class Cloth(SpringModel):
@@ -104,7 +104,7 @@ class Cloth(SpringModel):
         columns, rows = self.cells
         wide, high = self.size[0] / columns, self.size[1] / rows
         place = np.stack(np.divmod(np.arange(len(net.points)), rows + 1), axis=1)
-        # The part of a strip that lies inside the cloth, for each mass across and along.
+        # Fraction of each mass's strip that lies inside the cloth, across and along.
         parts = np.where((place == 0) | (place == (columns, rows)), 0.5, 1.0)
         weights = self.mass * wide * high * parts.prod(axis=1)
         a, b = net.pairs.T

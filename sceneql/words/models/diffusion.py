@@ -36,11 +36,11 @@ if TYPE_CHECKING:
 UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number": dim.PLAIN}
 
 LEAST_RATES = {1: 8.0, 2: 150.0}
-"""D/cell^2 times so much is no more than the fastest decay on elements of such a degree: what was measured."""
+"""By degree of elements: measured factor of D/cell^2 that is at most the fastest decay rate."""
 
 
 def _names(what: str) -> tuple[str, ...]:
-    """The names of the field among the model's values: a temperature is still read by the one that all once had."""
+    """Names of the field among the outputs; a temperature keeps its former name `concentration` as well."""
     return ("temperature", "concentration") if what == "temperature" else ("concentration",)
 
 

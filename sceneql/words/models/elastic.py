@@ -1,4 +1,4 @@
-"""elastic: solids of finite elements, that deform as much as they like."""
+"""elastic: solids of finite elements, with large deformations."""
 
 from __future__ import annotations
 
@@ -39,30 +39,30 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
 
 LOCKS = 0.4
-"""Poisson's ratio above which elements have one mean dilatation, where the script does not say."""
+"""Poisson's ratio above which elements have one mean dilatation by default."""
 STIFF = 0.45
-"""Poisson's ratio above which others lock so much that `check` warns."""
+"""Poisson's ratio above which other elements lock so much that `check` warns."""
 COARSEST = 2.0
-"""Spacing, in sizes of what is filled, above which no element lies in it."""
+"""Spacing, relative to the size of the filled object, above which no element fits into it."""
 WATER = 1000.0
-"""Density where the script tells none [kg/m^3]."""
+"""Default density [kg/m^3]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Made:
-    """The solid of a run."""
+    """Solid as assembled for a run."""
 
     strain: Strain
     probes: Mapping[str, tuple[Any, Any]]
     """Nodes (k,) and weights (k,) of each probe."""
     forces: Mapping[str, int]
-    """Offset of each hold's force in the floats."""
+    """Offset of each hold's force [N] in the floats."""
     angles: tuple[float, float]
     """Least and largest angle [rad] between faces of an element."""
     skin: Callable[[], Skin | Carried]
-    """What it is drawn by; made at the first call."""
+    """Function that returns the surface to draw, made at the first call."""
     modes: Resting
-    """What its modes are of."""
+    """State of rest whose modes are computed."""
 
 
 class Elastic(Model):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 MOST_STATES = 32
-"""Of a system whose modes `check` looks at."""
+"""Largest number of states for which `check` computes the modes of a system."""
 
 
 class Copies(Record):
@@ -66,7 +66,7 @@ class Equations(Model):
     def formula_symbols(cls, written: Mapping[str, Any]) -> tuple[str, ...]:
         """The free symbols of its formulas, from its fields as plain nested dicts and texts."""
         rate, start = _mapping(written.get("rate")), _mapping(written.get("start"))
-        meant = [*states(rate), *(row.rstrip("'") for row in rate), *start]  # what is wrong with them is told later
+        meant = [*states(rate), *(row.rstrip("'") for row in rate), *start]  # their problems are reported later
         return tuple(dict.fromkeys([*meant, *_mapping(written.get("where")), *TIMES, *_index(written)]))
 
     @classmethod
@@ -110,7 +110,7 @@ class Equations(Model):
         return self.rows.problems() or self._first_rates()
 
     def _first_rates(self) -> list[Problem]:
-        """Rows that have no finite value at the start of the first copy, where nothing is read from other parts."""
+        """Problems of rates not finite at the start of the first copy; none for a system that reads other parts."""
         rows = self.rows
         if rows.links():
             return []
@@ -173,12 +173,12 @@ class Equations(Model):
         assembly.remember(at, *links)
 
     def _name(self, entry: int) -> str:
-        """The state that an entry is, and of which copy."""
+        """Name of the state at an entry, with the number of its copy."""
         copy, number = divmod(entry, len(self.rows.states))
         return self.rows.states[number] + ("" if self.copies is None else f" of copy {copy}")
 
     def _start(self, assembly: Assembly) -> Floats:
-        """(count * states,) start values, after a look at the rates there."""
+        """Start values (count * states,). Raises ScriptError for a rate that is not finite there."""
         import numpy as np
 
         rows = self.rows
@@ -195,7 +195,7 @@ class Equations(Model):
         for state, expr in zip(rows.states, rows.rates(), strict=True):
             try:
                 bad = np.flatnonzero(~np.isfinite(column(expr)))
-            except ScriptError:  # it reads what is solved with it, and has no place yet: the run looks at its own start
+            except ScriptError:  # it reads states of the same island without a place yet: the run checks the start
                 continue
             if len(bad):
                 copy = "" if rows.index is None else f" of copy {bad[0]}"
@@ -236,7 +236,7 @@ class Equations(Model):
         return sum(count * abs(column(term)) for term, count in _terms(self.rows.invariants[output]))
 
     def _columns(self, state: ModelState) -> Callable[[Expr], Floats]:
-        """What evaluates a formula for every copy (count,)."""
+        """Function that evaluates a formula for every copy, (count,), at a state."""
         import numpy as np
 
         rows = self.rows
@@ -258,7 +258,7 @@ class Equations(Model):
 
 
 def _terms(expr: Expr) -> Iterator[tuple[Expr, float]]:
-    """What a formula is a sum or difference of, and how often it has each term."""
+    """Terms of a formula that is a sum or difference, and how often each occurs."""
 
     def added(node: Expr) -> tuple[Expr, ...]:
         return node.args if isinstance(node, Call) and node.op in ("add", "sub", "neg") else ()
@@ -272,7 +272,7 @@ def _terms(expr: Expr) -> Iterator[tuple[Expr, float]]:
 
 
 def _slopes(system: RateSystem, at: int, count: int, assembly: Assembly) -> Slopes | None:
-    """The symbolic Jacobian of each copy; None where an operation has no derivative."""
+    """Symbolic Jacobian of each copy; None if an operation has no derivative."""
     import numpy as np
 
     from sceneql.formulas.rate_program import jacobian_kernel
@@ -298,6 +298,6 @@ def _mapping(item: Any) -> Mapping[str, Any]:
 
 
 def _index(written: Mapping[str, Any]) -> list[str]:
-    """The name of a copy's number, where there are copies."""
+    """Symbol of a copy's number, in a list; empty without copies."""
     copies = written.get("copies")
     return [str(copies.get("as", "i"))] if isinstance(copies, Mapping) else []

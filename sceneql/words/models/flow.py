@@ -130,7 +130,7 @@ class Flow(Model):
     }
 
     _masses_at: int = PrivateAttr(-1)
-    """Where the masses in the own cells of faces stand, of several fluids."""
+    """Offset of the masses in the faces' own cells, for several fluids; else -1."""
 
     @classmethod
     def outputs(cls, written: Mapping[str, Any]) -> Mapping[str, Gives]:
@@ -210,7 +210,7 @@ class Flow(Model):
         yield from self._balanced(len(self.size))
 
     def _thickened(self) -> Iterable[Problem]:
-        """A field that viscosity does not read, or one that it reads and is not said."""
+        """Problems: a field that viscosity does not read, or one that it reads and the script does not name."""
         by = self.viscosity_by
         if by is None and of_field(self.viscosity):
             yield Problem(
@@ -223,7 +223,7 @@ class Flow(Model):
             yield Problem(text, ("viscosity_by",), at_key=True)
 
     def _balanced(self, sides: int) -> Iterable[Problem]:
-        """Velocities with other components than the box has sides; fluid that comes in and cannot leave."""
+        """Problems: velocities with a wrong number of components; fluid that enters and cannot leave."""
         given: dict[str, Formula | None] = {name: part.velocity for name, part in self.boundary.items()}
         wrong = [name for name, one in given.items() if one is not None and one.expr.type.shape != (sides,)]
         for name in wrong:
@@ -238,7 +238,7 @@ class Flow(Model):
             yield Problem(text, ("boundary",), code="no-way-out", help=help)
 
     def _named(self) -> Iterable[Problem]:
-        """Parts of the boundary that do not fit, and a solver that bears no solids."""
+        """Problems: boundary parts that do not fit, and a solver that does not support solids."""
         if self.pressure == "fast_transform" and self.skins:
             yield Problem("a fast transform needs a box without solids: take `auto`", ("pressure",))
         solids = {ref.name for ref in self.skins}
@@ -265,7 +265,7 @@ class Flow(Model):
         if self.size is None:
             return
         turn = fastest_turn(self.initial, self.boundary, self.corner or (0.0,) * len(self.size), self.size, spacing)
-        if turn > 0.0:  # a wave of four cells, which advection turns fastest: viscosity has half its largest rate there
+        if turn > 0.0:  # advection is fastest for waves of four cells, at which viscosity has half its largest rate
             yield Oscillation(0.0, 0.5 * decay, f"the flow through cells of {self.cell:g} m", ("cell",), turn)
 
     def thickest(self) -> float:

@@ -1,4 +1,4 @@
-"""galaxy: a disk of stars on their orbits round a heavy center."""
+"""galaxy: a disk of stars in orbit around a heavy center."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class Galaxy(Model):
         )
 
     def _chance(self, draw: int) -> Floats:
-        """One number in [0, 1) a star."""
+        """Random numbers (stars,) in [0, 1), by the number of the draw."""
         import numpy as np
 
         from sceneql.quantities.chance import philox, unit
@@ -137,14 +137,14 @@ class Galaxy(Model):
 
 
 def _share(x: Any) -> Any:
-    """Mass of an exponential disk within x lengths, as a part of the whole."""
+    """Fraction of an exponential disk's mass within x scale lengths."""
     import numpy as np
 
     return 1 - (1 + x) * np.exp(-x)
 
 
 def _exponential(chance: Floats, most: float) -> Floats:
-    """Distances of an exponential disk cut at ``most``, by bisection of its share."""
+    """Radii [scale lengths] of an exponential disk cut at ``most``, for random numbers, by bisection of `_share`."""
     import numpy as np
 
     low, high = np.zeros_like(chance), np.full_like(chance, most)
@@ -157,7 +157,7 @@ def _exponential(chance: Floats, most: float) -> Floats:
 
 
 def _normal(first: Floats, second: Floats) -> Floats:
-    """Normally distributed (Box & Muller 1958)."""
+    """Standard normal numbers from two arrays in [0, 1) (Box & Muller 1958)."""
     import numpy as np
 
     found: Floats = np.sqrt(-2 * np.log1p(-first)) * np.cos(2 * np.pi * second)
@@ -165,7 +165,7 @@ def _normal(first: Floats, second: Floats) -> Floats:
 
 
 def _frame(axis: Floats) -> tuple[Floats, Floats, Floats]:
-    """Two unit vectors across an axis, and the axis as a unit vector; right-handed."""
+    """Two unit vectors (3,) across an axis, and the axis as a unit vector; right-handed."""
     import numpy as np
 
     up = unit_vector(axis)

@@ -1,4 +1,4 @@
-"""joints: places that turn about each other, as the joints of a creature or a machine do."""
+"""joints: places that rotate about each other, such as the joints of a creature or a machine."""
 
 from __future__ import annotations
 

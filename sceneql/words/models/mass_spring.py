@@ -173,7 +173,7 @@ class MassSpring(SpringModel):
         return net, weights, blocks
 
     def _net(self, assembly: Assembly) -> Net:
-        """Masses and springs, before any rotation at the start."""
+        """Net of masses and springs, before any rotation at the start."""
         import numpy as np
 
         if self.solid is not None:
@@ -269,7 +269,7 @@ class MassSpring(SpringModel):
         }
 
     def _named_pins(self) -> list[str]:
-        """The pins that are names or numbers of masses."""
+        """Pins that are names or numbers of masses."""
         return [pin for pin in self.pins if not isinstance(self.pins, dict) or self.pins[pin].where is None]
 
     def fastest(self, name: str, scene: StaticScene) -> tuple[Oscillation, ...]:
@@ -307,7 +307,7 @@ class MassSpring(SpringModel):
         for sums, each in zip((squares, decays), rows, strict=True):
             k = max(range(len(static_masses)), key=sums.__getitem__)
             if sums[k] > 0.0:
-                # The row may be that of a soft spring beside the stiff one that makes it so.
+                # The largest row may belong to a soft spring beside the stiff one that makes it large.
                 culprits[k] = max(each[k], key=each[k].__getitem__)
         return tuple(
             Oscillation(math.sqrt(squares[k]), decays[k], f"spring {self._spring_name(of)}", ("springs", of))
@@ -319,7 +319,8 @@ class MassSpring(SpringModel):
         return f"'{spring.name}'" if spring.name else f"'{spring.between[0]}'-'{spring.between[1]}'"
 
     def _rows(self, weights: Sequence[float]) -> list[dict[int, float]]:
-        """For each spring, of the springs at its ends: weight |cos of the angle between them| / mass."""
+        """For each spring a row: by number of a spring that shares an end with it, the sum over shared ends of the
+        weight times |cos(angle between them)|/mass."""
         masses = self.masses or {}
         inverse = {name: one.inverse for name, one in self.static_masses().items()}
         directions: list[tuple[float, ...]] = []

@@ -1,4 +1,4 @@
-"""membrane: an elastic skin full of fluid."""
+"""membrane: an elastic skin around fluid."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 ACROSS, ALONG, BENT = 0.55, 0.2, 4.3
-"""Of the largest tension of waves (Membrane.largest_tension): of tension, stretch, bending over a cell's square."""
+"""Factors of tension, of stretch, and of bending over the cell's square in Membrane.largest_tension."""
 
 
 class Springs(Record):
@@ -170,7 +170,7 @@ class Membrane(Model):
         from sceneql.skins.fitting import must_fit, spacing_in
 
         flow = assembly.flow_of()
-        if flow is None:  # it could not be made, which is told
+        if flow is None:  # a flow that could not be made has its own diagnostic
             return
         spacing = spacing_in(flow, self.spacing, self.of, assembly)
         law = Elasticity(

@@ -19,7 +19,7 @@ Place = tuple[float, float, float]
 POINT, NUMBER, TURN = Type((3,), dim.LENGTH), Type(()), Type((4,))
 UP, SIDE = (Vector(tuple(Number(c) for c in axis), Type((3,))) for axis in ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
 PIECES = 24
-"""Of a curve between two of its points, where its length counts."""
+"""Number of segments between two points of a curve, for its length."""
 
 
 class Motion(Model):
@@ -73,18 +73,18 @@ class Motion(Model):
                 yield Problem(f"`{name}` is of a path: give `along`", (name,), at_key=True)
 
     def _place(self) -> Expr:
-        """Its position over time."""
+        """Position as an expression of time."""
         if self.along is None:
             return _point((0.0, 0.0, 0.0)) if self.position is None else self.position.expr
         return self._path(self.progress.expr)
 
     def _path(self, progress: Expr) -> Expr:
-        """The place on the path at a share of it."""
+        """Place on the path as an expression of ``progress``, a fraction of it."""
         keys, lap, _ = path_of(self.along or (), self.even)
         return Keys(progress, keys, "cubic", lap, POINT)
 
     def _turn(self) -> Expr:
-        """Its rotation over time."""
+        """Rotation as an expression of time."""
         if self.heading is None:
             return self.rotation.expr
         half = Number(self.heading / path_of(self.along or (), self.even)[2])
@@ -118,7 +118,10 @@ def _point(place: Place) -> Expr:
 
 @cache
 def path_of(along: tuple[Place, ...], even: bool) -> tuple[tuple[Key, ...], Number | None, float]:
-    """(keys over the share of the path, its period where it is closed, its length [m])."""
+    """Keys of a path over the fraction of its length, its period (1) if it is closed, and its length [m].
+
+    ``even``: whether equal fractions are equal lengths of the curve through the points, not of the polygon.
+    """
     points = finer(along) if even else along
     reached = list(itertools.accumulate((math.dist(p, q) for p, q in itertools.pairwise(points)), initial=0.0))
     keys = tuple(Key(Number(r / reached[-1]), _point(p)) for r, p in zip(reached, points, strict=True))
@@ -126,7 +129,7 @@ def path_of(along: tuple[Place, ...], even: bool) -> tuple[tuple[Key, ...], Numb
 
 
 def finer(points: tuple[Place, ...]) -> tuple[Place, ...]:
-    """More points of the cubic through points with the slopes of chords, over the polygon's length."""
+    """Points of the cubic Hermite curve through points, PIECES for each segment, with slopes of chords."""
     closed = points[0] == points[-1]
     steps = [math.dist(p, q) for p, q in itertools.pairwise(points)]
 

@@ -181,7 +181,7 @@ class Particles(Model):
         return part
 
     def _object(self, assembly: Assembly) -> tuple[Floats, float]:
-        """Place (1, 3) and radius of the object at the start."""
+        """Place (1, 3) [m] and radius [m] of the object at the start."""
         import numpy as np
 
         assert self.of is not None
@@ -222,7 +222,7 @@ class Particles(Model):
         return masses.places(output, state.bodies) if named is None else named
 
     def _seen(self, state: ModelState) -> tuple[Bodies, ModelState, Floats]:
-        """The particles that are there, as bodies of a state, and their ages (n,) [s]."""
+        """Living particles as bodies, their state, and their ages (n,) [s]."""
         import numpy as np
 
         assert state.bodies is not None

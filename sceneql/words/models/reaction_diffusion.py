@@ -135,7 +135,7 @@ class ReactionDiffusion(SpreadingMedium):
                 break
 
     def _starts(self) -> dict[str, Formula]:
-        """The fields at the start, with what `where` says written out."""
+        """Formulas of the fields at the start, with the quantities of `where` substituted."""
         given = {name: one.initial for name, one in self.species.items() if one.initial is not None}
         meanings = {name: formula.expr for name, formula in self.where.items()}
         return {name: Formula(_written_out(one.expr, meanings), one.span) for name, one in given.items()}
@@ -179,7 +179,7 @@ class ReactionDiffusion(SpreadingMedium):
         self.must_hold_probes(layout_of(fields[0], ground.memory, assembly.numbers()), assembly)
 
     def _must_be_finite(self, ground: Ground, fields: list[int], assembly: Assembly) -> None:
-        """Raises ScriptError where a rate has no finite value in a cell at the start."""
+        """Raise ScriptError for a rate that is not finite in a cell at the start."""
         import numpy as np
 
         known: dict[str, Any] = dict.fromkeys(TIMES, 0.0)
@@ -195,7 +195,7 @@ class ReactionDiffusion(SpreadingMedium):
                 with np.errstate(all="ignore"):
                     rate = np.asarray(evaluate(one.rate.expr, look_up, arrays=True))
             except ScriptError:
-                continue  # it reads what is solved, which has no place in the state yet
+                continue  # it reads a solved state that has no place in y yet
             rate = np.broadcast_to(rate, ground.inside.sum())
             bad = np.flatnonzero(~np.isfinite(rate))
             if len(bad):
@@ -242,7 +242,7 @@ class ReactionDiffusion(SpreadingMedium):
 
 
 def _written_out(expr: Expr, meanings: Mapping[str, Expr]) -> Expr:
-    """A formula with symbols replaced by what they stand for."""
+    """Formula with symbols replaced by their expressions."""
 
     def step(node: Expr) -> Generator[Expr, Expr, Expr]:
         if isinstance(node, Symbol) and node.name in meanings:
@@ -259,6 +259,6 @@ def _written_out(expr: Expr, meanings: Mapping[str, Expr]) -> Expr:
 
 
 def _names(written: Mapping[str, Any], field_name: str) -> tuple[str, ...]:
-    """The keys of a mapping that a script writes; what is wrong with it is told later."""
+    """Keys of a mapping in the script; its problems are reported later."""
     item = written.get(field_name)
     return tuple(map(str, item)) if isinstance(item, Mapping) else ()

@@ -1,4 +1,4 @@
-"""rigid: rigid bodies, which move and turn as a whole."""
+"""rigid: rigid bodies."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Bodies, ModelState
 
 MOST_TOLD = 6
-"""Bodies whose masses `explain` tells."""
+"""Largest number of bodies whose masses `explain` lists."""
 TURN, PLACE = Type((4,)), Type((3,), dim.LENGTH)
 
 ONE: Mapping[str, Gives] = {
@@ -95,7 +95,7 @@ class Rigid(Body, Model):
 
     @property
     def _each(self) -> Mapping[str, Body]:
-        """The bodies by name, with the model's fields where they say none; one alone has an empty name."""
+        """Bodies by name, with the model's fields as defaults; a single body has an empty name."""
         if self.bodies is None:
             return {"": self}
         if self._whole:
@@ -106,7 +106,7 @@ class Rigid(Body, Model):
         def whole(body: Body) -> Body:
             density = body.mass is None and body.density is None
             more = {name: value for name, value in said.items() if getattr(body, name) == defaults[name]}
-            if not density:  # one of the two is said
+            if not density:  # either mass or density is given
                 more = {name: value for name, value in more.items() if name not in ("mass", "density")}
             return body.model_copy(update=more)
 
@@ -201,7 +201,7 @@ class Rigid(Body, Model):
                 return masses.accelerations(bodies, state)[k].copy()
             case "origin":
                 return x + arm
-            case "rotation":  # of length 1, since states that are read are settled
+            case "rotation":  # of length 1, because outputs read settled states
                 return state.y[bodies.turning.rotation_at + 4 * k :][:4].copy()
             case "spin":
                 return spin
@@ -239,8 +239,8 @@ class Rigid(Body, Model):
         return list(self._each).index(name), (x, y, z)
 
     def _arm(self, body: str, point: str) -> Sequence[float]:
-        """From the center of mass of a body to one of its points, or to its origin: (3,) in its own axes [m]."""
-        # Before the model is assembled the center is not known, nor asked for.
+        """Vector (3,) [m] from a body's center of mass to one of its points, or to its origin, in its own axes."""
+        # Before assembly the center is neither known nor needed.
         center = self._made[body].center if body in self._made else (0.0, 0.0, 0.0)
         return [p - c for p, c in zip(self._each[body].points[point] if point else (0, 0, 0), center, strict=True)]
 
@@ -283,10 +283,10 @@ class Rigid(Body, Model):
         return [body.of for body in self._each.values() if body.of is not None]
 
     def _said(self, output: str) -> tuple[str, str, str]:
-        """Body, point and output of a name as ``crate.hook.position``; empty where there is none."""
+        """Body, point and output in a name such as ``crate.hook.position``; each empty if absent."""
         rest, _, what = output.rpartition(".")
         body = rest if self.bodies is not None else ""
-        while body and body not in self._each:  # a copy's name has a dot, too: ``stone.0.hook.position``
+        while body and body not in self._each:  # a copy's name contains a dot: ``stone.0.hook.position``
             body = body.rpartition(".")[0]
         return body, rest[len(body) :].removeprefix("."), what
 

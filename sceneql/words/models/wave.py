@@ -1,4 +1,4 @@
-"""wave: a surface or a field that swings, by the wave equation on a grid."""
+"""wave: oscillations of a surface or a field by the wave equation on a grid."""
 
 from __future__ import annotations
 
@@ -219,7 +219,7 @@ class Wave(Medium):
         return self.places_of(self._measured(output), self.layout(state, output), state)
 
     def _measured(self, output: str) -> str:
-        """The name among a medium's measures."""
+        """Name of an output among a medium's measures."""
         if output in (NAMES[self.of], "velocity"):
             return "field"
         return "mass" if output == "volume" else output

@@ -1,4 +1,4 @@
-"""arrow: a vector as it stands in the books."""
+"""arrow: a vector drawn as an arrow."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Arrow(Object):
             yield apply(place, start + head), place[:, :3] @ vector, self.label.at(moment)
 
     def _head(self, moment: Moment, vector: Any, length: float) -> tuple[float, Floats, Floats]:
-        """Radius of the shaft, the axis (3,), and directions (SIDES, 3) around it."""
+        """Radius of the shaft [m], unit axis (3,), and unit vectors (SIDES, 3) around it."""
         import numpy as np
 
         radius = min(positive(moment, self.radius, "radius"), length / (1.5 * HEAD))

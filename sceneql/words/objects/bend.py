@@ -11,7 +11,7 @@ from sceneql.shapes.checked_values import positive
 from sceneql.shapes.warp import AxisName, Registers, Warp, arc
 
 WHOLE = 2 * pi - 1e-9
-"""A beam that is bent by so much [rad] has no ends left."""
+"""Bending angle [rad] at which the ends of a beam meet."""
 
 
 class Bend(Warp):
@@ -35,18 +35,18 @@ class Bend(Warp):
             yield Problem("a beam is bent towards another axis than its own", ("towards",))
 
     def _rate(self, moment: Moment) -> float:
-        """The circle's curvature [1/m], with its sign."""
+        """Curvature of the circle [1/m], with its sign."""
         return float(moment.at(self.angle)) / positive(moment, self.per, "per")
 
     def _axes(self) -> tuple[int, int, int]:
-        """Numbers of the axes x, y, z of the text above."""
+        """Indices of the axes x, y, z of the class's docstring."""
         x, y = "xyz".index(self.towards), "xyz".index(self.along)
         return x, y, 3 - x - y
 
     def _sector(self, low: Any, high: Any, rate: float) -> tuple[float, float, float, float]:
-        """(inner and outer radius, first and last angle) of the bent box, in parts of R, |R| being 1.
+        """Inner and outer radius, relative to the circle's, and first and last angle [rad] of the bent box.
 
-        Raises ValueError where there is none.
+        Raises ValueError for a box that reaches the circle's center, or is bent by a whole turn.
         """
         x, y, _ = self._axes()
         self.bounded("and cannot be bent", low[x], high[x], low[y], high[y])

@@ -30,15 +30,15 @@ if TYPE_CHECKING:
 
 SKELETONS: OfHeld[Skeleton] = OfHeld()
 TINY = 1e-300
-"""Density that its own color is given everywhere, so that it has one where no part reaches."""
+"""Density of the object's own color everywhere, so that there is a color beyond the reach of all parts."""
 OWN = ("points", "segments", "radius", "weight", "kernel")
-"""Fields that its parts are made of, beside `skeleton`."""
+"""Fields that define parts, besides `skeleton`."""
 Kernel = Literal["wyvill", "soft_object", "metaball", "gaussian", "inverse_square"]
 
 
 @dataclass(frozen=True, slots=True)
 class _Same:
-    """A moment, equal to nothing but itself."""
+    """Moment as a key that equals only itself."""
 
     moment: Moment
 
@@ -163,7 +163,7 @@ class Blobby(Object):
         return shapes
 
     def _listed(self, value: Points, moment: Moment) -> Shape:
-        """The parts of `points` and `segments`."""
+        """Parts from `points` and `segments`."""
         import numpy as np
 
         points = numbers(value, moment).reshape(-1, 3)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
 
 PIECES_OF_FIELD = 10
-"""Straight pieces a turn has in its implicit field."""
+"""Number of straight pieces of each turn in the implicit field."""
 
 
 class Coil(Object):

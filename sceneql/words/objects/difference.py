@@ -1,4 +1,4 @@
-"""difference: its first member without the others."""
+"""difference: an object without others."""
 
 from __future__ import annotations
 

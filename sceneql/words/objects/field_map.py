@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 FOREVER = 1e30
 HIGHEST = 1e15
-"""Heights, in parts of the longest side, beyond which float64 does not tell corners apart: no ray would end."""
+"""Largest height, relative to the longest side: above it float64 does not distinguish corners, and rays never end."""
 ROUNDING = 1e-12
-"""Differences below this part of what they are differences of are none."""
+"""Relative difference below which two values count as equal."""
 THIN = 1.5e-3
-"""Radius of a line of one value, in parts of the grid's longest side, where the script does not say."""
+"""Default radius of contour lines, relative to the grid's longest side."""
 
 
 class FieldMap(Object):
@@ -104,7 +104,7 @@ class FieldMap(Object):
 
     @cached_property
     def _ends(self) -> tuple[Value, Value]:
-        """The least and the largest value at an instant."""
+        """Expressions of the least and the largest value at an instant."""
         of = Type((), self.of.expr.type.dimension)
         least, largest = (Value(Call(name, (self.of.expr,), of), self.of.span) for name in ("min", "max"))
         return least, largest
@@ -126,7 +126,7 @@ class FieldMap(Object):
         )
 
     def _map(self, moment: Moment) -> str | None:
-        """The name of its map of colors; None: its material's color alone."""
+        """Name of the color map; None: the material's color alone."""
         if self.colors is None:
             return "coolwarm" if swings(self.of, moment) else "viridis"
         return None if self.colors == "none" else self.colors
@@ -174,7 +174,7 @@ class FieldMap(Object):
             yield Segments(f"{name}.contours", ink, ends, np.full(len(ends), radius * uniform_scale(place)))
 
     def _sheet(self, field: Seen, moment: Moment) -> Sheet:
-        """What the field is seen on, made once for all frames."""
+        """Surface on which the field is drawn, made once for all frames. Raises ValueError for unfit settings."""
         from sceneql.grids.maps.domains import sheet_of, skin
 
         if field.layout.shape[2] == 1 and (self.cut or self.on is not None):

@@ -1,4 +1,4 @@
-"""ground: a floor that nothing has to hit."""
+"""ground: a floor for pictures alone."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import cos, inf, isfinite, pi, sin, sqrt
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -24,13 +24,18 @@ if TYPE_CHECKING:
 
 Corner = tuple[float, float, float]
 PLACES = 200
-"""Of the default bounds, at which a formula is looked at."""
+"""Number of points on the default bounds at which a formula is sampled."""
 ROUNDING = 1e-9
-"""Part of what a formula is half way to them, below which it may be 0 there."""
+"""Tolerance of a formula's values on the bounds, relative to those half way to them."""
 
 
 class Within(Record):
     """Where the formula is looked at: a ball about the origin or a box, in units of the formula."""
+
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("x", "y", "z", "min", "max", "low", "high", "from", "to", "size"),
+        "a box has a low and a high corner: write `bounds: {box: [-2 -2 -2, 2 2 2]}`",
+    )
 
     ball: FixedScalar | None = described("Radius of a ball about the origin.", None, above=0)
     box: tuple[Axis, Axis] | None = described("Low and high corner of a box.", None)
@@ -54,18 +59,18 @@ class Within(Record):
 
 @dataclass(frozen=True, slots=True)
 class _Less:
-    """A formula less the level, at an instant."""
+    """Formula minus the level, at an instant."""
 
     formula: Expr
-    """Where its numbers would overflow, over a power of two."""
+    """Formula minus level, divided by a power of two if its numbers would overflow."""
     alone: frame.Tape
-    """Its tape, in units and without bounds."""
+    """Tape of the formula, in units and without bounds."""
     leveling: float
-    """The power of two that it is multiplied by."""
+    """Power of two by which the formula is multiplied."""
 
 
 def _less(formula: Expr, level: float, low: Corner, high: Corner) -> _Less:
-    """Of a formula that is written out, within the bounds low..high."""
+    """Formula minus the level, for a formula without names, within the bounds low..high."""
     from sceneql.field.tape.builder import TapeBuilder
     from sceneql.field.tape.magnitude import leveling
 
@@ -76,7 +81,7 @@ def _less(formula: Expr, level: float, low: Corner, high: Corner) -> _Less:
 
 
 def _why_nothing(less: _Less, low: Corner, high: Corner) -> str:
-    """Why nothing is to be drawn of a formula within the bounds low..high; empty where something may be."""
+    """Reason why a formula has no surface within the bounds low..high; empty if it may have one."""
     from sceneql.field.tape.emptiness import bottomless, nowhere_defined
 
     if nowhere_defined(less.alone, triple(low), triple(high)):
@@ -87,7 +92,7 @@ def _why_nothing(less: _Less, low: Corner, high: Corner) -> str:
 
 
 def _on_a_ball(count: int) -> Iterator[tuple[float, float, float]]:
-    """Points on the unit ball, evenly: on the spiral of Fibonacci (Gonzalez 2010)."""
+    """Points evenly on the unit sphere, on the Fibonacci spiral (Gonzalez 2010)."""
     for k in range(count):
         z, turn = 1.0 - (2 * k + 1) / count, pi * (3.0 - sqrt(5.0)) * k
         aside = sqrt(1.0 - z * z)
@@ -139,11 +144,11 @@ class Implicit(Solid):
                 within = evaluate(self.field.expr, look_up)
                 known |= zip("xyzt", (*place, 0.0), strict=True)
                 value = evaluate(self.field.expr, look_up)
-            except (AttributeError, KeyError):  # what only a run knows stands in it
+            except (AttributeError, KeyError):  # the formula reads values known only in a run
                 return ""
             low, high = min(low, value), max(high, value)
             size = max(size, abs(within - self.level) if isfinite(within) else 0.0)
-        # The ball itself, written as a formula, is below the level there by rounding alone.
+        # A formula of the same ball is below the level on the bounds by rounding alone.
         goes_on = low < self.level - ROUNDING * size and (self.mode == "solid" or high > self.level + ROUNDING * size)
         return "the ball x^2 + y^2 + z^2 = 1" if goes_on else ""
 
@@ -152,10 +157,10 @@ class Implicit(Solid):
         return build.op("mul", build.op("max", *self._parts(build, x, y, z, moment)), build.constant(self.unit))
 
     def _parts(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> tuple[int, int]:
-        """Registers of the formula less the level, and of the distance to the bounds, in units.
+        """Registers of the formula minus the level, and of the distance to the bounds, in units.
 
-        A formula of a magnitude that no distance has is brought near one by a power of two, so that its bounds and
-        other objects' fields, which are distances, do not pass for it where it is as near 0 as rounding lets it be.
+        A formula much larger or smaller than distances is scaled by a power of two. Otherwise its values near 0, at the
+        level of rounding, could be smaller than the distances to its bounds and to other objects, or hide them.
         """
         per_unit = build.constant(1.0 / self.unit)
         u, v, w = (build.op("mul", register, per_unit) for register in (x, y, z))
@@ -169,7 +174,7 @@ class Implicit(Solid):
         return value, limit
 
     def _now(self, moment: Moment) -> _Less:
-        """The formula now less the level; that of a constant formula is made once in a run."""
+        """Formula minus the level now; for a constant formula it is made once in a run."""
 
         def make() -> _Less:
             return _less(written_out(self.field.expr, moment), self.level, *self.bounds.corners)
@@ -178,7 +183,7 @@ class Implicit(Solid):
         return moment.kept(f"formula {id(self.field)}", key, make) if constant else make()
 
     def _why_nothing(self, moment: Moment) -> str:
-        """Why nothing is to be drawn at any time; empty where something may be."""
+        """Reason why there is nothing to draw at any time; empty if there may be something."""
         if not self.field.constant:
             return ""
         key, less = (self.level, self.bounds.corners), self._now(moment)
@@ -204,7 +209,7 @@ class Implicit(Solid):
             yield shape
 
     def _sheet(self, solid: frame.Implicit, place: frame.Floats, moment: Moment) -> frame.Implicit:
-        """The surface of the solid that it would be."""
+        """Sheet on the surface of the solid."""
         from sceneql.field.tape.builder import TapeBuilder
 
         build = TapeBuilder()

@@ -1,4 +1,4 @@
-"""intersection: what lies in all of its members."""
+"""intersection: the common part of objects."""
 
 from __future__ import annotations
 

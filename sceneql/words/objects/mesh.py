@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 CONVEX = 1e-6
-"""Part of its convex hull that a mesh may leave empty to count as convex."""
+"""Largest empty fraction of a mesh's convex hull for which it counts as convex."""
 
 
 class Mesh(Placed):
@@ -53,7 +53,7 @@ class Mesh(Placed):
 
     @cached_property
     def _loaded(self) -> Loaded:
-        """The file's triangles, the same for all of a run. Raises ValueError for a file that is no mesh."""
+        """Triangles of the file, the same for a whole run. Raises ValueError for a file that is no mesh."""
         try:
             with doing(f"reading {Path(self.file).name}"):
                 return load(self.file, self.crease)

@@ -1,4 +1,4 @@
-"""mist: a deep field as what absorbs light."""
+"""mist: a deep field that absorbs light."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Mist(Object):
         if whole.layout.shape[2] == 1:
             raise ValueError("a flat field is no mist: a `field_map` draws it")
         cells = whole.filled
-        if level_of(whole, moment) is not None:  # nothing outside the domain; the walls of a box cut it sharply
+        if level_of(whole, moment) is not None:  # no mist outside the domain; the walls of a box cut it off sharply
             cells = np.where(whole.interpolation.known, cells, 0.0)
         strength = float(moment.at(self.absorption)) / uniform_scale(place)
         look = frame.Surface(color=linear(moment.at(self.color)))

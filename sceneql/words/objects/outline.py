@@ -82,7 +82,7 @@ class Outline(Object):
                 yield Problem(text, ("pieces", name))
 
     def _own(self) -> dict[str, Corners]:
-        """The polygons without the script's islands, as far as they are known without numpy. Raises ValueError."""
+        """Polygons without the script's islands, as far as known without numpy. Raises ValueError for a bad file."""
         found: dict[str, Corners] = {}
         if self.points is not None:
             found["shore"] = self.points
@@ -95,7 +95,7 @@ class Outline(Object):
         return found
 
     def _named_twice(self, own: Mapping[str, Any]) -> str | None:
-        """What is wrong where an island has the name of another polygon."""
+        """Message for an island with the name of another polygon; None if there is none."""
         for name in self.islands:
             if name == "shore" or name in own:
                 what = "which is the outline itself" if name == "shore" else "which the file has, too"
@@ -107,7 +107,7 @@ class Outline(Object):
         return self.file is not None and self.file.lower().endswith(".svg")
 
     def _scaled(self, rings: Mapping[str, Any]) -> dict[str, Any]:
-        """Polygons of a file, its width and corner as asked for."""
+        """Polygons of a file, scaled and moved to the script's width and corner."""
         shore = rings["shore"]
         low_x, high_x = min(x for x, _ in shore), max(x for x, _ in shore)
         low_y = min(y for _, y in shore)

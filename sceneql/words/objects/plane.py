@@ -1,4 +1,4 @@
-"""plane: all that lies below an infinite plane."""
+"""plane: the half space below an infinite plane."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Plane(Object):
     normal: Direction = field("The direction that it faces, of any length.", "0 1 0")
 
     def _level(self, moment: Moment) -> tuple[Floats, float]:
-        """Unit normal (3,) and its product with the points of the plane [m]."""
+        """Unit normal (3,) n, and n . x [m] for points x of the plane."""
         import numpy as np
 
         n = np.asarray(moment.at(self.normal), dtype=float)
@@ -56,7 +56,7 @@ class Plane(Object):
 
         n, level = self._level(moment)
         low, high = np.full(3, -np.inf), np.full(3, np.inf)
-        # The plane's equation in the world: normals are mapped by the transposed inverse.
+        # Equation of the plane in the world: normals are mapped by the transposed inverse.
         normal = np.linalg.solve(place[:, :3].T, n)
         offset = level + float(normal @ place[:, 3])
         (across,) = np.nonzero(np.abs(normal) > 1e-12 * np.abs(normal).max())
@@ -72,7 +72,7 @@ class Plane(Object):
         from sceneql.frame import Surface
 
         n, level = self._level(moment)
-        if self.material is None and self.color is None:  # a stage: matte, light gray
+        if self.material is None and self.color is None:  # the default stage: matte, light gray
             surface = Surface(color=(0.54, 0.54, 0.54), roughness=1.0, specular=0.0)
         else:
             surface = moment.surface(name, self.material, self.color)
@@ -98,7 +98,7 @@ class Plane(Object):
 
 
 def _rows(normal: Floats, level: float) -> Floats:
-    """(3, 4) map whose first row is the plane's distance."""
+    """Affine map (3, 4) whose first row is the signed distance from the plane."""
     import numpy as np
 
     rows = np.zeros((3, 4))

@@ -1,4 +1,4 @@
-"""polygonised: an object drawn as triangles, with their edges."""
+"""polygonised: an object drawn as triangles with edges."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 THICKNESS = 0.025
-"""Radius of the edges, in parts of the cell, where the script does not say."""
+"""Default radius of the edges, relative to the cell."""
 
 
 class Polygonised(Object):
@@ -87,7 +87,7 @@ class Polygonised(Object):
 
 
 def _has_cells(shape: frame.Shape) -> bool:
-    """Whether triangles are made of a shape itself: a sheet stands for the solid that it is the surface of."""
+    """Whether triangles are made on cells; a sheet is replaced by the solid of which it is the surface."""
     from sceneql import frame
 
     return isinstance(shape, frame.Grid) or (isinstance(shape, frame.Implicit) and shape.within is None)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
 
 DARKEST = 0.3
-"""The brightest channel of a color (sRGB) below which discs that cover are soot: they are seen before what is light."""
+"""Brightest channel (sRGB) below which covering discs count as soot, which needs a light background."""
 
 
 class Sprites(Object):

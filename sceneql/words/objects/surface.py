@@ -58,7 +58,7 @@ class Surface(Object):
 
     @cached_property
     def _ends(self) -> tuple[Value, Value]:
-        """The least and the largest value at an instant."""
+        """Expressions of the least and the largest value at an instant."""
         assert self.shows is not None
         of = Type((), self.shows.expr.type.dimension)
         least, largest = (Value(Call(name, (self.shows.expr,), of), self.shows.span) for name in ("min", "max"))
@@ -118,7 +118,7 @@ class Surface(Object):
             yield drawn
 
     def _carried(self, skin: Membrane, name: str, place: Floats, moment: Moment) -> Iterator[Shape]:
-        """A skin that a flow carries."""
+        """Shapes of a skin in a flow. Raises ValueError for colors by values and for cuts."""
         if self.shows is not None or self.paint is not None or self.cut:
             raise ValueError(f"'{self.of.name}' has one color, and is not cut: it is a skin that a flow carries")
         look = moment.surface(name, self.material, self.color)
@@ -126,7 +126,7 @@ class Surface(Object):
         yield from skin.drawn(name, look, moment.state(self.of.name), thick, place)
 
     def _elastic(self, solid: Elastic, name: str, place: Floats, moment: Moment) -> Iterator[Mesh]:
-        """Its skin, and the faces of what is cut open."""
+        """Meshes of an elastic solid's skin, and of the faces where it is cut open."""
         from sceneql.bodies.elements.skin import Inside
         from sceneql.grids.maps.colors import colored
         from sceneql.shapes.cut_open import cut_open, planes_of
@@ -146,7 +146,7 @@ class Surface(Object):
             yield replace(mesh, colors=colors)
 
     def _values(self, count: int, moment: Moment) -> Floats:
-        """(count,) what it shows of each mass; of a sheet each has two vertices."""
+        """Values (count,) of the masses. Raises ValueError for a wrong number of values."""
         import numpy as np
 
         assert self.shows is not None

@@ -1,4 +1,4 @@
-"""taper: an object that grows thinner or wider along an axis."""
+"""taper: an object that gets thinner or wider along an axis."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Taper(Warp):
             yield Problem("a taper ends above its start", ("to",))
 
     def _ends(self, low: Any, high: Any, moment: Moment) -> tuple[float, float]:
-        """Where it begins and ends [m]. Raises ValueError where it does not end above its start."""
+        """Start and end along the axis [m]. Raises ValueError unless the end lies above the start."""
         along, _, _ = axes(self.along)
         start = float(low[along] if self.from_ is None else moment.at(self.from_))
         stop = float(high[along] if self.to is None else moment.at(self.to))

@@ -1,4 +1,4 @@
-"""trail: the way that points have come."""
+"""trail: the past path of points."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Shape
 
 PIECES = 60
-"""Of a trail, where the script does not say how long they are."""
+"""Default number of pieces of a trail."""
 
 PointOrPoints = Annotated[Value, Quantity(dim.LENGTH, None)]
 

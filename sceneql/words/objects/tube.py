@@ -24,7 +24,7 @@ class Tube(Object):
     closed: bool = field("It runs on from the last point to the first.", False)
 
     def _path(self, moment: Moment) -> Floats:
-        """Points (n, 3) in its parent's coordinates. Raises RunFailure for fewer than two."""
+        """Points (n, 3) [m] in the parent's coordinates. Raises RunFailure for fewer than two."""
         import numpy as np
 
         points = np.asarray(moment.at(self.through), dtype=float).reshape(-1, 3)

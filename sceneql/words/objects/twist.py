@@ -1,4 +1,4 @@
-"""twist: an object turned the further the higher."""
+"""twist: an object rotated in proportion to the height along an axis."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Twist(Warp):
     about: AxisName = field("The twist's own axis that it turns about.", "y")
 
     def _rate(self, moment: Moment) -> float:
-        """[rad/m]"""
+        """Rotation per length along the axis [rad/m]."""
         return float(moment.at(self.angle)) / positive(moment, self.per, "per")
 
     def back(

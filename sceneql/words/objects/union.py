@@ -1,4 +1,4 @@
-"""union: what lies in any of its members."""
+"""union: several objects as one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
 
 SLOPE = 3**-0.5
-"""At least so much of the distance are fields, such as a box's, that measure it in the maximum norm."""
+"""Least ratio of a field to the distance, for fields in the maximum norm such as a box's."""
 
 
 class Union(Combination):
@@ -56,7 +56,7 @@ class Union(Combination):
         return values
 
     def _room(self, moment: Moment) -> tuple[Floats, Floats]:
-        """The box in its own coordinates around those of its members and what is filled between them."""
+        """Low and high corner (3,) [m], in own coordinates, of the box around all members and blends between them."""
         import numpy as np
 
         low, high = self.extents(np.eye(3, 4), moment)

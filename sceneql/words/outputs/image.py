@@ -1,4 +1,4 @@
-"""The word `image`."""
+"""image: one picture of an instant."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Image(Picture):
 
 
 class _Stills:
-    """PNG files: one, or a numbered row of them."""
+    """Sink of PNG files: one, or a numbered sequence."""
 
     def __init__(self, picture: Picture, tools: Tools, *, numbered: bool, compression: int) -> None:
         self.picture, self.tools = picture, tools

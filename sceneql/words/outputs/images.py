@@ -1,4 +1,4 @@
-"""The word `images`."""
+"""images: numbered pictures of the frames."""
 
 from __future__ import annotations
 

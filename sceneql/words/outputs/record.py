@@ -1,4 +1,4 @@
-"""The word `record`."""
+"""record: a table of quantities over time."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class _Table:
         return path
 
     def _columns(self) -> list[Floats]:
-        """Of the time and of each entry an array (rows, ...)."""
+        """Arrays (rows, ...) of the time and of each entry."""
         if not self.rows:
             import numpy as np
 
@@ -88,7 +88,7 @@ class _Table:
 
 
 def _stacked(values: Sequence[Any]) -> Floats:
-    """(n, ...) n arrays of one dimension, filled up with NaN where some are longer than others."""
+    """Stack (n, ...) of n arrays with the same number of axes, shorter ones padded with NaN."""
     import numpy as np
 
     shapes = [np.shape(value) for value in values]

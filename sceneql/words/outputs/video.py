@@ -1,4 +1,4 @@
-"""The word `video`."""
+"""video: a film."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class Video(Picture):
         return times or [0.0]
 
     def _pieces(self, clock: Clock) -> Iterator[tuple[float, float, float]]:
-        """Start and end of each shot [s], and its speed."""
+        """Start [s], end [s] and speed of each shot."""
         start = 0.0
         for shot in self.shots or (Shot(),):
             end = clock.end if shot.until is None else min(shot.until, clock.end)

@@ -1,4 +1,4 @@
-"""caption: words in a picture."""
+"""caption: a line of text in a picture."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ class Formula(Overlay):
         return box_at(place, self._printed(Letterer(page(size), self.size, scale=scale).em)[1], size)
 
     def _printed(self, em: int) -> tuple[Any, tuple[int, int]]:
-        """The formula, and width and height of its panel. Raises ValueError for what is too large to draw."""
+        """Picture of the formula, and width and height [pixels] of its panel. Raises ValueError if it is too large."""
         from sceneql.pictures.mathematics import printed
 
         mask, room = printed(self.tex, em), round(0.45 * em)

@@ -1,4 +1,4 @@
-"""graph: how quantities go, drawn while they go."""
+"""graph: curves of quantities, drawn as time goes on."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ Shares = Annotated[tuple[float, float], Quantity(dim.PLAIN, (2,))]
 
 
 ROOM = 14, 9
-"""Least width and height of its panel, in heights of its letters."""
+"""Least width and height of the panel, in heights of its letters."""
 MOST_NAMED = 12
-"""More curves are a bundle without names."""
+"""Largest number of curves with names."""
 
 
 class Graph(Overlay):
@@ -104,7 +104,7 @@ class Graph(Overlay):
         return box_at(place, self._block(size, scale), size)
 
     def _block(self, size: tuple[int, int], scale: float) -> tuple[int, int]:
-        """Width and height [pixels] in a picture of a size (width, height): its letters need some."""
+        """Width and height [pixels] of the panel in a picture of a size (width, height), at least ROOM."""
         from sceneql.pictures.lettering import least_letters
 
         (width, height), most = size, 2 * round(MARGIN * size[1])
@@ -187,7 +187,7 @@ class Graph(Overlay):
 
 
 def _unfit(name: str, text: str | None, dimension: Dimension | None) -> Iterator[Problem]:
-    """What is wrong with a unit."""
+    """Problems of a unit: an unknown one, or one of another dimension."""
     if text is not None:
         try:
             if parse_unit(text).dimension != (dimension or dim.PLAIN):
@@ -197,11 +197,11 @@ def _unfit(name: str, text: str | None, dimension: Dimension | None) -> Iterator
 
 
 def _written(value: Value) -> str:
-    """An expression as the script has it."""
+    """Text of an expression in the script; empty if unknown."""
     return "" if value.span is None else " ".join(value.span.text.strip("\"'").split())
 
 
 def _unit(text: str | None, dimension: Dimension | None) -> str:
-    """The unit of an axis, nothing for plain numbers."""
+    """Unit of an axis; empty for plain numbers."""
     written = text if text is not None else "1" if dimension is None else unit_of(dimension)
     return "" if written == "1" else written

@@ -1,4 +1,4 @@
-"""labels: the names of things beside them."""
+"""labels: names beside things."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from sceneql.pictures.lettering import Letterer
 
 GAP = 0.35
-"""Between a label and what it names, in heights of letters."""
+"""Gap between a label and the labelled thing, in heights of letters."""
 TEXT = 0.035
-"""Height of the letters of objects' own labels in parts of the picture's."""
+"""Height of the letters of objects' own labels, relative to the picture's."""
 
 
 class Labels(Overlay):
@@ -63,7 +63,7 @@ class Labels(Overlay):
 
 
 def _around(ref: Ref, moment: Moment) -> Any:
-    """Corners (n, 3) of a part's box now; its place alone where it has none."""
+    """Corners (8, 3) [m] of a part's box now; its place (1, 3) if the box is infinite or missing."""
     import numpy as np
 
     part: Any = moment.object(ref)
@@ -80,7 +80,7 @@ def _around(ref: Ref, moment: Moment) -> Any:
 def draw_labels(
     pixels: NDArray[uint8], view: View, tasks: Mapping[str, Task], names: Iterable[str], moment: Moment, scale: float
 ) -> None:
-    """The labels that objects have of their own, and those of their members, beside what they name."""
+    """Draw the labels of named objects and of their members beside the labelled things."""
     from sceneql.pictures.lettering import Letterer
 
     found = [label for name in names for label in _own(tasks, name, moment)]
@@ -96,7 +96,7 @@ def draw_labels(
 def label_boxes(
     letters: Letterer, view: View, labels: Iterable[tuple[Any, Any, str]]
 ) -> list[tuple[tuple[float, float, float, float], Box, str]]:
-    """For each label (Object.labels) that is seen the box of what it names [pixels], its own, and its text."""
+    """For each visible label (Object.labels): box of the labelled thing [pixels], box of the label, and text."""
     seen: list[tuple[Thing, Way, str]] = []
     for points, direction, text in labels:
         thing, ahead = outline(points, view), outline(points + direction, view)

@@ -1,4 +1,4 @@
-"""legend: what the colors of a field mean."""
+"""legend: a bar with the color map of a field."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from sceneql.pictures.lettering import Letterer
 
 LONG = 0.62
-"""Length of the bar in parts of the picture's height."""
+"""Length of the bar, relative to the picture's height."""
 WIDEST = 0.2
-"""Width of a title that the script does not write, in parts of the picture's, from which on there is none."""
+"""Width of a default title, relative to the picture's, above which it is left out."""
 SIDES = ("right", "left")
 
 
@@ -83,7 +83,7 @@ class Legend(Overlay):
         letters.done()
 
     def _told(self, moment: Moment, letters: Letterer) -> _Bar:
-        """What it shows now. Raises ValueError for what shows no field, and for a unit of another dimension."""
+        """Bar to draw now. Raises ValueError for an object without a color key, and for a unit of another dimension."""
         from sceneql.kinds.texts import shown_unit
         from sceneql.pictures.lettering import marked_numbers
 
@@ -107,7 +107,7 @@ class Legend(Overlay):
 
 @dataclass(frozen=True, slots=True)
 class _Bar:
-    """The bar with ticks (number, place from 0 to 1) and marks (place), under lines of words."""
+    """Bar with ticks (number, place from 0 to 1) and marks (place from 0 to 1), under lines of text."""
 
     key: ColorKey
     lines: list[str]
@@ -116,15 +116,15 @@ class _Bar:
 
     @property
     def words(self) -> list[str]:
-        """The numbers."""
+        """Texts of the ticks' numbers."""
         return [f"{value:.6g}".replace("-", "\u2212") for value, _ in self.ticks]
 
     def _head(self, em: int) -> int:
-        """Height of the words above [pixels]."""
+        """Height of the lines of text above the bar [pixels]."""
         return round((1.25 * len(self.lines) + 0.35) * em) if self.lines else 0
 
     def box(self, place: str, letters: Letterer) -> Box:
-        """Left, top, right, bottom [pixels] of its panel at the left or the right of a picture."""
+        """Left, top, right, bottom [pixels] of the panel at the left or the right of a picture."""
         em = letters.em
         widest = max((letters.extent(word)[0] for word in self.words), default=0)
         width = max(em + round(0.5 * em) + widest, *(letters.extent(line)[0] for line in self.lines), 0)
@@ -135,7 +135,7 @@ class _Bar:
         return left, top, left + width + 2 * room, top + height + 2 * room
 
     def draw(self, letters: Letterer, box: Box, develop: Callable[[Any], NDArray[uint8]]) -> None:
-        """Draw it on its panel."""
+        """Draw the bar on its panel."""
         import numpy as np
 
         em = letters.em

@@ -1,4 +1,4 @@
-"""auto: the solver that suits."""
+"""auto: choice of a solver for each island."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
     from sceneql.system import IslandFacts, Stepper
 
 TIGHT = 1e-4
-"""Tolerance from which on order 8 takes less time than order 5 for the same error (tests/bench/bench_auto.py)."""
+"""Tolerance up to which order 8 takes less time than order 5 for the same error (tests/bench/bench_auto.py)."""
 IN_CONTACT = 1e-6
-"""Tolerance below which it does where steps end at impacts, for which it needs its dense output in each."""
+"""Tolerance below which order 8 takes less time with impacts, for which it computes dense output in each step."""
 HOPEFUL = 1e-7
-"""Tolerance above which order 8 gets a tenth: on its long steps it errs more than order 5 with the same would."""
+"""Tolerance above which order 8 gets a tenth of it: with its long steps its error exceeds that of order 5."""
 ORBITS = 1e-10
-"""Tolerance from which on order 15 takes less time on orbits, at IN_ORBITS, where it errs by less than 1e-12."""
+"""Tolerance up to which order 15 takes less time on orbits, with its own tolerance IN_ORBITS and errors < 1e-12."""
 IN_ORBITS = 1e-6
 APART, LEFT = 1.0 / 480.0, 1e-6
-"""Steps [s] where a barrier keeps surfaces apart, and what Newton's method leaves in them: a soft ball that bounces
-loses a twentieth of its energy; by bdf2 in steps of twice that, which take as long, four tenths."""
+"""Step [s] of tr_bdf2 with barriers, and relative residual of Newton's method in it. A bouncing soft ball then loses
+5 % of its energy; with bdf2 in steps of twice that, which take as long, it loses 40 %."""
 MANY = 6000
-"""Unknowns in elastic solids from which on a step of radau, three stages at once in complex numbers, takes seconds."""
+"""Unknowns in elastic solids above which a step of radau, three stages at once in complex numbers, takes seconds."""
 COARSER = 100.0
-"""What the tolerance is times where a method of order 2 takes its place."""
+"""Factor of the tolerance for a method of order 2 that replaces one of order 5."""
 
 
 class Auto(Solver):

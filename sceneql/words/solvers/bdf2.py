@@ -73,7 +73,7 @@ class Bdf2(Solver):
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """What bdf2_kernels.step works with on an island."""
+    """Arrays for bdf2_kernels.step on an island."""
     import numpy as np
 
     from sceneql.linear.stage import stage_plan

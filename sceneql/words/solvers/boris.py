@@ -74,7 +74,7 @@ class Boris(Solver):
         if not decay and not turn:
             return VERLET.oscillation(frequency, decay, step)
         half = cmath.exp(0.5j * turn * step)
-        # e^(i turn step) - 1 over the step, without its rounding.
+        # (e^(i turn step) - 1)/step, without cancellation.
         round_ = 2j * math.sin(0.5 * turn * step) * half / step
         columns = []
         for x, v in ((1.0, 0.0), (0.0, 1.0)):
@@ -86,14 +86,14 @@ class Boris(Solver):
 
 
 def _cross(x: float, y: float, z: float) -> Floats:
-    """(3, 3) matrix of the vector product with (x, y, z) on its left."""
+    """Matrix (3, 3) of the vector product with (x, y, z) on the left."""
     import numpy as np
 
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def _turned(spin: Floats, time: float) -> Floats:
-    """(3, 3) rotation by an angular velocity, as a matrix of its vector product, for a time (Rodrigues 1840)."""
+    """Rotation (3, 3) for ``time`` [s] at an angular velocity, given by its matrix from `_cross` (Rodrigues 1840)."""
     import numpy as np
 
     speed = float(np.sqrt(0.5 * np.sum(spin * spin)))

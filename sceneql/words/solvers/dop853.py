@@ -55,7 +55,7 @@ class Dop853(Solver):
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """The coefficients as the kernels read them; where contacts are exact, every step needs its dense output."""
+    """Coefficients in the layout of the kernels; with exact contacts every step computes its dense output."""
     import numpy as np
 
     from sceneql.stepping.dormand_prince_8 import BEND, DORMAND_PRINCE_8, EXTRA, FIFTH, THIRD

@@ -1,4 +1,4 @@
-"""equilibrium: rest under the loads of each instant."""
+"""equilibrium: static equilibrium under the loads of each instant."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Equilibrium(Solver):
 
 
 def prepare(system: Any, stepper: Stepper) -> Any:
-    """What equilibrium_kernels.step works with on an island."""
+    """Arrays for equilibrium_kernels.step on an island."""
     import numpy as np
 
     from sceneql.linear.stage import stage_plan

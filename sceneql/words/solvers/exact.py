@@ -1,4 +1,4 @@
-"""exact: the solution itself, of a field on a box."""
+"""exact: the exact solution of a field on a box."""
 
 from __future__ import annotations
 

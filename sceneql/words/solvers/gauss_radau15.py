@@ -59,7 +59,7 @@ class GaussRadau15(Solver):
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """Which entries are positions, which their velocities, which neither; and the method's numbers."""
+    """Lists of the entries that are positions, velocities or neither, and the numbers of the method."""
     import numpy as np
 
     from sceneql.stepping.gauss_radau import settings
@@ -75,7 +75,7 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     whole = {at for at, _ in system.alike}
     alike = np.concatenate([np.arange(at, at + n) for at, n in loose] or [np.zeros(0, dtype=int)])
     pushed = np.concatenate([velocities, alike, np.setdiff1d(others, alike)])
-    # A body's components share one time scale; states of equations that of all of their copy, fields of all cells.
+    # Components of a body share one time scale, as do all states of one copy of equations, and all cells of a field.
     sizes = [size for _, v, n in pairs for size in ([3] * (n // 3) if n % 3 == 0 and v not in whole else [n])]
     sizes = sizes + [n for _, n in loose] or [len(pushed)]
     numbers = np.concatenate(

@@ -1,4 +1,4 @@
-"""modal: the linear motion of masses about their rest, by the lowest of its modes."""
+"""modal: linear motion of masses about their rest, by its lowest modes."""
 
 from __future__ import annotations
 

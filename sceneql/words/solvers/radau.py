@@ -79,7 +79,7 @@ class Radau(Solver):
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """What the step works with: see radau_stages_kernels.py."""
+    """Arrays for the step (radau_stages_kernels.py)."""
     import numpy as np
 
     from sceneql.stepping.error_scales import alone, error_scales

@@ -22,7 +22,7 @@ STATES = (
     (2.8029986275628964, 0.5072464736228206, -0.3988312541770524, -0.04721187230404641),
     (-7.502846399306121, 2.561846144803919, -11.627539656261098, -0.18268767659942256, 0.030198172008377946),
 )
-"""Weights of the stages before in the states of the first six."""
+"""Weights of the previous stages in the states of the first six stages."""
 COUPLINGS = (
     (),
     (-14.155112264123755,),
@@ -146,7 +146,7 @@ class Rodas5p(Solver):
 
 
 def prepare(system: System, stepper: Stepper) -> Prepared:
-    """What rodas5p_kernels.step works with on an island."""
+    """Arrays for rodas5p_kernels.step on an island."""
     import numpy as np
 
     from sceneql.linear.stage import stage_plan

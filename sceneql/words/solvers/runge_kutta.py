@@ -1,4 +1,4 @@
-"""runge_kutta: an explicit Runge-Kutta method by the script's own tableau."""
+"""runge_kutta: an explicit Runge-Kutta method with the script's own tableau."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""hinge: a body turns about an axis of the other."""
+"""hinge: a joint with one axis of rotation."""
 
 from __future__ import annotations
 

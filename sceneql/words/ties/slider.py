@@ -1,4 +1,4 @@
-"""slider: a body moves along an axis of the other."""
+"""slider: a joint with one axis of translation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""weld: two bodies become one."""
+"""weld: a rigid connection of two bodies."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ class Law(Record):
     kernels: ClassVar[str]
     """The module of its kernels (law_kernels.py)."""
     recovers: ClassVar[bool] = True
-    """Whether what is turned inside out is pushed back."""
+    """Whether inverted elements are pushed back."""
     turns: ClassVar[bool] = True
     """Whether a rotation makes no stress."""
 
@@ -89,7 +89,7 @@ class Law(Record):
         return formula is not None and _varies(formula)
 
     def warning(self) -> str:
-        """What it cannot do, for `explain`."""
+        """Limitations of the law, for `explain`; empty without any."""
         lost = [] if self.turns else ["rotation makes a false stress"]
         lost += [] if self.recovers else ["what is turned inside out does not come back"]
         return f"; by this law {', and '.join(lost)}" if lost else ""

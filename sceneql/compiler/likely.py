@@ -1,0 +1,113 @@
+"""Fields that a value of the wrong shape was likely meant for: what to write in its place.
+
+``reader`` is the `Reader` (`sceneql.compiler.read`) that met the value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from typing import Any
+
+from pydantic import BaseModel
+
+from sceneql import kinds
+from sceneql.compiler import paint, values
+from sceneql.compiler.annotations import example_of, marks_of, quantities
+from sceneql.compiler.problems import Unreadable
+from sceneql.language.tree import Mapping as MappingNode
+from sceneql.language.tree import Node, Scalar, whole
+from sceneql.quantities.diagnostic import Diagnostics
+
+TRUE = ("true", "yes", "on")
+
+
+def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
+    """The help for a field without its colon, or for a value that suits one field of a record."""
+    required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
+    if not isinstance(node, Scalar):
+        found = required if len(required) == 1 else list(_taking(reader, node, cls))
+        return f"write `{{{found[0]}: {node.span.text}}}`" if len(found) == 1 else None
+    if node.text.lower() in TRUE and not required:
+        return "write `{}`: all of its fields have defaults"
+    name, _, rest = node.text.partition(" ")
+    if name in map(kinds.written_name, cls.model_fields):
+        rest = rest.strip().removeprefix("=").strip()
+        return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {example_of(cls, name)}}}`"
+    if list(cls.model_fields) == [only := next(iter(cls.model_fields), "")]:
+        return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
+    fitting = list(_fitting(reader, node, cls.model_fields)) or list(_formulas(reader, node, cls))
+    alone = required if len(required) == 1 else []
+    likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
+    return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
+
+
+def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
+    """The help for a wrong count of numbers: the one other field that takes them."""
+    found = {name: mark for name, mark in _fitting(reader, node, others).items() if mark.shape}
+    if len(found) > 1:
+        own = [mark.dimension for mark in quantities(info)]
+        found = {name: mark for name, mark in found.items() if mark.dimension in own}
+    if len(found) != 1:
+        return None
+    return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
+
+
+def listed(node: MappingNode, item: Any, what: str) -> str | None:
+    """The help where the items of a list of records stand under names."""
+    if not (isinstance(item, type) and issubclass(item, BaseModel)) or not node.entries:
+        return None
+    known = [kinds.written_name(name) for name in item.model_fields]
+    if not all(isinstance(one, MappingNode) and one.entries.keys() & set(known) for one in node.entries.values()):
+        return None
+    if node.entries.keys() & set(known):
+        return None
+    named = "name" in known
+    items = (f"name: {name}, {_inside(one)}" if named else _inside(one) for name, one in node.entries.items())
+    return f"it is a list: write `{what}: [{', '.join(f'{{{one}}}' for one in items)}]`"
+
+
+def _inside(node: Node) -> str:
+    fields = node.entries if isinstance(node, MappingNode) else {}
+    return ", ".join(f"{name}: {value.span.text}" for name, value in fields.items())
+
+
+def _taking(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
+    """The names of fields that accept a list of values."""
+    nothing = Diagnostics()
+    names = replace(reader.names, found=nothing)
+    trial = replace(reader, found=nothing, names=names, refer=lambda node, mark, name: None)
+    for name, info in cls.model_fields.items() if whole(node) else ():
+        with suppress(Unreadable):
+            trial.field(node, info, name)
+            if not nothing.errors:
+                yield kinds.written_name(name)
+        nothing.found.clear()
+
+
+def _paints(reader: Any, node: Node, cls: type[BaseModel]) -> list[str]:
+    """The field `color`, if there is one and the value is a color."""
+    nothing = Diagnostics()
+    fits = paint.read_color(node, replace(reader.names, found=nothing), nothing) is not None
+    return ["color"] if fits and "color" in cls.model_fields else []
+
+
+def _fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
+    """The fields of quantities that accept a value."""
+    nothing = Diagnostics()
+    names = replace(reader.names, found=nothing)
+    marked = [(name, mark) for name, info in fields.items() for mark in quantities(info)]
+    return {name: mark for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None}
+
+
+def _formulas(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
+    """The names of formula fields that accept a value."""
+    nothing = Diagnostics()
+    trial = replace(reader, found=nothing, names=replace(reader.names, found=nothing))
+    for name, info in cls.model_fields.items():
+        for mark in marks_of(info):
+            if isinstance(mark, kinds.Symbols) and mark.dimension is not None:
+                with suppress(Unreadable):
+                    trial.formula(node, mark, name)
+                    yield name
