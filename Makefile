@@ -3,6 +3,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
+# Bytecode is kept, whatever the shell says: else each process of the suite compiles all tests anew, for 7 s.
+export PYTHONDONTWRITEBYTECODE :=
+
 .PHONY: film test test-long test-fuzz test-whole test-checked test-plain gallery clean
 
 film: $(VENV)/installed

@@ -27,8 +27,12 @@ if TYPE_CHECKING:
 def cli() -> None:
     """A compiler from scene scripts to films."""
     from sceneql.compiled import variables
+    from sceneql.failure import Unsuitable
 
-    variables.check()
+    try:
+        variables.check()
+    except ValueError as error:
+        raise Unsuitable(str(error)) from error
 
 
 def main() -> None:

@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from sceneql.failure import LimitRefused, RunFailure
+from sceneql.march import equilibrium_march
 from sceneql.pipeline import load
 from sceneql.run.run import IslandRun
 
@@ -174,3 +175,19 @@ def test_a_solid_held_across_its_planes_of_symmetry_alone_rests_and_one_that_sli
     assert np.ptp(places(run, 1.0), axis=0) == pytest.approx([1.1, 0.2 * 0.97, 0.2 * 0.97])
     with pytest.raises(LimitRefused, match=r"it is free to move along x\n"):
         run_of(tmp_path, script.replace("HOLDS", f"{holds['y']}, {holds['z']}")).march.advance(1.0)
+
+
+def test_a_rest_that_is_looked_for_is_broken_off_by_a_signal(tmp_path, monkeypatch):
+    calls = []
+
+    def interrupted(*args):
+        calls.append(args)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return relax(*args)
+
+    relax = equilibrium_march.relax
+    monkeypatch.setattr(equilibrium_march, "relax", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        places(run_of(tmp_path, chain(8, 1.0, 0.1, 100.0) + "\nforces: [gravity]"), 0.0)
+    assert len(calls) == 3

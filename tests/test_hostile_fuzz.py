@@ -22,10 +22,10 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 LONG = int(os.environ.get("SCENEQL_FUZZ", "0"))
 SEED = 1_000 * int(os.environ.get("SCENEQL_SEED", "0"))
-SCENES = min(LONG, 100_000) or 800
+SCENES = min(LONG, 100_000) or 2_000
 DRAWINGS = min(LONG, 20_000) or 500
 STILLS = min(LONG // 50, 2_000)
-CHUNKS = 10 if LONG else 4
+CHUNKS = 10
 CHECK = 5.0
 """Seconds of processor time that a check may take."""
 CHECK_MEMORY = 300 * 2**10

@@ -94,4 +94,7 @@ def test_a_kernel_is_made_of_its_file_and_of_all_that_this_imports():
     files = {source.path.name for source in _sources("sceneql.words.forces.gravity_kernels").values()}
     assert files >= {"gravity_kernels.py", "kernels.py", "signatures_kernels.py", "shortcuts.py"}
     assert not files & {"gravity.py", "drag_kernels.py", "cli.py"}
+    # A message or a word of another program that is told from now on makes no machine code anew.
+    for module in ("sceneql.words.forces.gravity_kernels", "sceneql.march.march_kernels"):
+        assert not [name for name in _sources(module) if name.startswith(("sceneql.quantities", "sceneql.failure"))]
     assert all(source.path.is_file() for source in _sources("sceneql.march.march_kernels").values())

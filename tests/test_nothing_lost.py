@@ -236,8 +236,8 @@ def test_a_library_that_would_end_the_process_for_want_of_memory_is_not_loaded(t
     process = started(tmp_path, "render", "f.yaml", preexec_fn=limited(resource.RLIMIT_AS, 150 * 2**20))
     said = process.communicate(timeout=300)[1]
     assert process.returncode == exits.LIMIT_REFUSED, said
-    assert said.startswith("error[out-of-memory]: at 0 s, f: out of memory for ")
-    assert "MiB to load numpy, when starting the run" in said
+    assert said.startswith("error[out-of-memory]: at 0 s, film, data: out of memory for ")
+    assert "MiB to load numpy, when starting the run\n --> f.yaml:5:3" in said
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,7 @@ FEWER = {
     "cushion": ["define.h=2.4 m/40"],
     "dominoes": ["solvers.main.verlet.step=20 ms"],
     "flag": ["define.h=1 m/20"],
+    "lake": ["define.h=40 m"],
     "jelly": ["models.cube.mass_spring.lattice.count=4 4 4"],
     "notes_fluid": ["models.water.flow.pressure=auto"],
     "pile": ["models.bun.elastic.spacing=9 cm"],
@@ -82,17 +83,19 @@ def shortened(graph, variant):
     if not any(call.op == "final" for call in calls) and not any(plain(one.of.expr) for one in held):
         end = max([PART * end, *(instant_of(call) for call in calls if call.op == "at")])
     few = [f"clock.fps={FRAMES * clock.speed / end!r}"] * (graph.name in SLOW_FRAMES)
-    return [*FEWER.get(graph.name, []), *few, f"clock.end={end!r} s"]
+    return [*few, f"clock.end={end!r} s"]
 
 
 def measured(path):
     """What a scene's expectations measure."""
     if LONG:
         return numbers(path)
-    graph = pipeline.load(path)
+    lighter = FEWER.get(path.stem, [])
+    graph = pipeline.load(path, sets=lighter)
     found = []
     for variant in dict.fromkeys(expect.variant for expect in graph.settings.expect.values()):
-        sets = shortened(pipeline.load(path, variant=variant), variant)
+        chosen = graph if variant is None else pipeline.load(path, variant=variant, sets=lighter)
+        sets = [*lighter, *shortened(chosen, variant)]
         found += outcomes(pipeline.load(path, variant=variant, sets=sets, pruned=False), variant)
     return found
 

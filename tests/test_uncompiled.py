@@ -67,7 +67,7 @@ objects:
   brick: {polygonised: {of: form, cell: 0.2 m, edges: no}}
   floor: plane
 cameras: {view: {perspective: {position: 2.1 2.2 4.2 m, look_at: 0 0.8 0.1 m, field_of_view: 38 deg}}}
-outputs: {still: {image: {size: 12 8, time: 0 s, renderer: {trace: {tolerance: TOLERANCE, samples: 1}}}}}
+outputs: {still: {image: {size: 9 6, time: 0 s, renderer: {trace: {tolerance: TOLERANCE, samples: 1}}}}}
 """
 
 

@@ -5,6 +5,7 @@ import os
 import resource
 import subprocess
 import sys
+from functools import cache
 
 import numpy as np
 import pytest
@@ -55,6 +56,7 @@ def holed(corners):
     return corners[kept]
 
 
+@cache
 def shapes():
     ball = cut(BALL, 1.1, 16)
     sphere = ball.vertices[ball.triangles]

@@ -10,23 +10,39 @@ from typing import Any
 import numpy as np
 
 from sceneql.compiled.kernels import address, function_at
-from sceneql.system import signatures_kernels as signatures
+
+# Names, not the module: a file that imports from a package has all of the package in the key of its machine code.
+from sceneql.system.signatures_kernels import (
+    AFTER_STEP_FUNCTION,
+    BACK_OFF_FUNCTION,
+    DENSE_FUNCTION,
+    ENERGY_FUNCTION,
+    EVENT_FUNCTION,
+    FREE_MOTION_FUNCTION,
+    GAP_FUNCTION,
+    IMPACT_FUNCTION,
+    JACOBIAN_FUNCTION,
+    LIMIT_FUNCTION,
+    RATE_FUNCTION,
+    STEP_FUNCTION,
+    TIED_DRIFT_FUNCTION,
+)
 
 KINDS = (
-    signatures.STEP_FUNCTION,
-    signatures.DENSE_FUNCTION,
-    signatures.RATE_FUNCTION,
-    signatures.GAP_FUNCTION,
-    signatures.IMPACT_FUNCTION,
-    signatures.BACK_OFF_FUNCTION,
-    signatures.AFTER_STEP_FUNCTION,
-    signatures.AFTER_STEP_FUNCTION,
-    signatures.FREE_MOTION_FUNCTION,
-    signatures.TIED_DRIFT_FUNCTION,
-    signatures.JACOBIAN_FUNCTION,
-    signatures.EVENT_FUNCTION,
-    signatures.ENERGY_FUNCTION,
-    signatures.LIMIT_FUNCTION,
+    STEP_FUNCTION,
+    DENSE_FUNCTION,
+    RATE_FUNCTION,
+    GAP_FUNCTION,
+    IMPACT_FUNCTION,
+    BACK_OFF_FUNCTION,
+    AFTER_STEP_FUNCTION,
+    AFTER_STEP_FUNCTION,
+    FREE_MOTION_FUNCTION,
+    TIED_DRIFT_FUNCTION,
+    JACOBIAN_FUNCTION,
+    EVENT_FUNCTION,
+    ENERGY_FUNCTION,
+    LIMIT_FUNCTION,
 )
 AT_STEP, AT_DENSE, AT_RATE, AT_GAP, AT_IMPACT, AT_BACK_OFF, AT_AFTER_STEP = range(7)
 AT_SETTLE, AT_FREE_MOTION, AT_TIED_DRIFT, AT_JACOBIAN, AT_EVENT, AT_ENERGY, AT_LIMIT = range(7, len(KINDS))

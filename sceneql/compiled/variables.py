@@ -1,31 +1,32 @@
-"""The variables of the environment that move the cache or choose how kernels run, read and checked."""
+"""The variables of the environment that move the cache or choose how kernels run, read and checked.
+
+Every kernel's machine code has this file in its key, and all that it imports: hence no error of ours, only ValueError.
+"""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
 
-from sceneql.failure import Unsuitable
-
 MOST_THREADS = 1024
 
 
 def threads() -> int | None:
-    """SCENEQL_THREADS; None where it is not set. Raises Unsuitable."""
+    """SCENEQL_THREADS; None where it is not set. Raises ValueError."""
     asked = os.environ.get("SCENEQL_THREADS")
     if not asked:
         return None
     if not (asked.isascii() and asked.isdigit() and len(asked) < 9 and 1 <= int(asked) <= MOST_THREADS):
         told = "it may be a whole number of threads"
-        raise Unsuitable(f"SCENEQL_THREADS is {asked!r}: {told} from 1 to {MOST_THREADS}, or unset")
+        raise ValueError(f"SCENEQL_THREADS is {asked!r}: {told} from 1 to {MOST_THREADS}, or unset")
     return int(asked)
 
 
 def plain() -> bool:
-    """Whether SCENEQL_NUMBA asks for numba without our shortcuts. Raises Unsuitable."""
+    """Whether SCENEQL_NUMBA asks for numba without our shortcuts. Raises ValueError."""
     asked = os.environ.get("SCENEQL_NUMBA")
     if asked and asked != "plain":
-        raise Unsuitable(f"SCENEQL_NUMBA is {asked!r}: it may be 'plain', for numba without our shortcuts, or unset")
+        raise ValueError(f"SCENEQL_NUMBA is {asked!r}: it may be 'plain', for numba without our shortcuts, or unset")
     return bool(asked)
 
 
@@ -41,6 +42,6 @@ def cache_home() -> Path | None:
 
 
 def check() -> None:
-    """Raise Unsuitable where a variable has a value that it may not have."""
+    """Raise ValueError where a variable has a value that it may not have."""
     threads()
     plain()

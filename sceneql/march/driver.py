@@ -17,6 +17,12 @@ if TYPE_CHECKING:
 
     from sceneql.island.system import Structure, System
 
+RATE = "sceneql.march.driver_kernels"
+CONTACTS = "sceneql.march.driver_contacts_kernels"
+LOCAL = "sceneql.march.driver_local_kernels"
+ACTS = "sceneql.march.driver_acts_kernels"
+"""The modules of its kernels: of rates, of contacts in mode exact, in mode local, and of what acts beside steps."""
+
 
 class Driver(NamedTuple):
     """The driver kernels of an island (system/__init__.py has their signatures)."""
@@ -36,15 +42,14 @@ def driver(system: System) -> Driver:
     structure = system.structure
     _write(system, layout.CALLS_AT, _calls(structure))
     none = load("sceneql.march.march_kernels")
-    met = load("sceneql.march.driver_contacts_kernels") if structure.exact else none
+    met = load(CONTACTS) if structure.exact else none
     gap, impact = (met.gap, met.impact) if structure.exact else (none.no_gap, none.no_impact)
-    acting = (structure.after, structure.settling, structure.free, structure.tied)
-    acts = load("sceneql.march.driver_acts_kernels") if any(acting) else none
+    acts = load(ACTS) if _acts(structure) else none
     return Driver(
-        function("sceneql.march.driver_kernels:rate"),
+        function(f"{RATE}:rate"),
         gap,
         impact,
-        function("sceneql.march.driver_local_kernels:back_off") if structure.local else none.no_back_off,
+        function(f"{LOCAL}:back_off") if structure.local else none.no_back_off,
         acts.after_step if structure.after else none.no_act,
         acts.settle if structure.settling else none.no_act,
         acts.free_motion if structure.free else none.no_free_motion,
@@ -83,6 +88,17 @@ def modules(structure: Structure) -> tuple[str, ...]:
     after = (*slopes, *structure.after, *structure.settling, *structure.limits)
     names = (*structure.local, *chain(*structure.exact), *after, *structure.terms)
     return tuple(dict.fromkeys(name.partition(":")[0] for name in names))
+
+
+def own_modules(structure: Structure) -> tuple[str, ...]:
+    """The modules that the driver of an island consists of, beside those of the island's kernels."""
+    asked = {CONTACTS: structure.exact, LOCAL: structure.local, ACTS: _acts(structure)}
+    return (RATE, *(module for module, some in asked.items() if some))
+
+
+def _acts(structure: Structure) -> bool:
+    """Whether anything acts between steps or by itself."""
+    return any((structure.after, structure.settling, structure.free, structure.tied))
 
 
 def lazy_first(structure: Structure) -> list[str]:

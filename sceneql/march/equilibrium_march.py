@@ -11,7 +11,7 @@ from sceneql.failure import LimitRefused, RunFailure
 from sceneql.island import layout
 from sceneql.march import march_kernels as kernels
 from sceneql.march.march import March
-from sceneql.stepping.equilibrium_kernels import ENDED, REACHED, UNSTABLE, relax
+from sceneql.stepping.equilibrium_kernels import ENDED, ON_THE_WAY, PROGRESS, REACHED, UNSTABLE, relax
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -51,8 +51,10 @@ class EquilibriumMarch(March):
     def _relax(self, t: float) -> None:
         grown = True
         while grown:
-            y, ints = self._y1.copy(), self.system.ints
-            found = relax(self._engaged.functions, t, y, self._work, self._settings, self._numbers, self.floats, ints)
+            y, progress, found = self._y1.copy(), np.zeros(PROGRESS), ON_THE_WAY
+            memory = progress, self._work, self._settings, self._numbers, self.floats, self.system.ints
+            while found == ON_THE_WAY:
+                found = relax(self._engaged.functions, t, y, *memory)
             grown = self.floats[channels.GROWS] != 0.0 and self._grow()
         if found == UNSTABLE:
             raise self._failure("the rest that was found is unstable: the least push would leave it")

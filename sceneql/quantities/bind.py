@@ -9,12 +9,12 @@ from typing import Any
 
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, Note
 from sceneql.quantities.dimension import PLAIN
-from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Name, Number, Symbol, Type, Vector, each_once
 from sceneql.quantities.instead import time_meant
 from sceneql.quantities.literal import quantity
-from sceneql.quantities.operations import CONSTANTS, OPERATIONS
+from sceneql.quantities.operations import CONSTANTS, FLOATS, OPERATIONS
 from sceneql.quantities.rules import MismatchError, listed, shape_text
+from sceneql.quantities.scalars import apply
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import parse_unit, stands_below
 
@@ -34,6 +34,8 @@ COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
 
 def bind(expr: Expr, lookup: Lookup, found: Diagnostics) -> Expr | None:
     """The typed tree of a parsed tree; None after reporting all errors (`dimension-mismatch`, ...)."""
+    if isinstance(expr, Number):
+        return expr
     bound: dict[int, Expr | None] = {}
     for node in each_once(expr):
         bound[id(node)] = _bound(node, bound, lookup, found)
@@ -90,8 +92,8 @@ def fold(expr: Call) -> Expr:
     operation = OPERATIONS[expr.op]
     if operation.series or None in expr.type.shape or not all(_constant(arg) for arg in expr.args):
         return expr
-    value = evaluate(expr, {})
-    bare = not operation.angle and all(n.bare for n in each_once(expr) if isinstance(n, Number))
+    value = apply(FLOATS, expr, [_value(arg) for arg in expr.args])
+    bare = not operation.angle and all(_bare(arg) for arg in expr.args)
     return _literal(value, expr, bare) if _finite(value) else expr
 
 
@@ -110,6 +112,21 @@ def _constant(expr: Expr) -> bool:
     if isinstance(expr, Vector):
         return bool(expr.items) and all(_constant(item) for item in expr.items)
     return isinstance(expr, Number)
+
+
+def _value(constant: Expr) -> Any:
+    """The float of a number, the nested tuples of a vector of numbers."""
+    if isinstance(constant, Vector):
+        return tuple(_value(item) for item in constant.items)
+    assert isinstance(constant, Number)
+    return constant.value
+
+
+def _bare(constant: Expr) -> bool:
+    """Whether no number has a unit."""
+    if isinstance(constant, Vector):
+        return all(_bare(item) for item in constant.items)
+    return isinstance(constant, Number) and constant.bare
 
 
 def _finite(value: Any) -> bool:

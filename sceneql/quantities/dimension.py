@@ -22,7 +22,7 @@ class Dimension:
         return Dimension(tuple(a + b if a and b else a or b for a, b in pairs))  # a sum of fractions takes long
 
     def __truediv__(self, other: Dimension) -> Dimension:
-        return Dimension(tuple(a - b for a, b in zip(self.exponents, other.exponents, strict=True)))
+        return Dimension(tuple(a - b if b else a for a, b in zip(self.exponents, other.exponents, strict=True)))
 
     def __pow__(self, power: Fraction | int) -> Dimension:
         return Dimension(tuple(a * power for a in self.exponents))

@@ -140,8 +140,8 @@ _SENTENCES = (
     (
         "field",
         "scale",
-        "write its sizes as they shall be, or let a group scale it, which has the place then:"
-        " `{group: {children: [{sphere: {radius: 1 m}}], scale: 1 1.4 1, position: 0 1 0 m}}`",
+        "write its sizes as they shall be, or let a group scale it, which has the place then, and may be a `rigid`"
+        " body: `{group: {children: [{sphere: {radius: 1 m}}], scale: 1 1.4 1, position: 0 1 0 m}}`",
     ),
     (
         "field",

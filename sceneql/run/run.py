@@ -209,7 +209,7 @@ class IslandRun:
         from sceneql.compiled.generated import function
         from sceneql.island.jacobian import BY_DIFFERENCES
         from sceneql.linear.stage import likely_kernels
-        from sceneql.march.driver import driver, jacobian, lazy_first, modules
+        from sceneql.march.driver import driver, jacobian, lazy_first, modules, own_modules
 
         method, needs = stepper.method, stepper.needs
         compile_beside(needs.beside)
@@ -221,7 +221,9 @@ class IslandRun:
         solving = (method.step.partition(":")[0], *likely(system))
         read = needs.jacobian or not system.structure.local
         dense = (method.dense.partition(":")[0],) if method.dense is not None and read else ()
-        acting = compile_beside((*solving, *modules(system.structure), *events, *dense))
+        drives = own_modules(system.structure) if needs.march is None else ()
+        scales = ("sceneql.stepping.error_scales_kernels",) if stepper.control.by_scale else ()
+        acting = compile_beside((*solving, *drives, *scales, *modules(system.structure), *events, *dense))
         acting(*solving)
         compile_beside(lazy_first(system.structure))
         if needs.march is None:  # meanwhile the second process compiles the solver

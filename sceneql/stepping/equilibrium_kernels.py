@@ -54,8 +54,11 @@ ROOM, PLAN_AT, VELOCITIES, TALLIES, HEAD = range(5)
 SIGN, ENDED, CRAWLED, CAUSE = range(MEMORY, MEMORY + 4)
 SCALES_AT = MEMORY + 4
 ARRAYS = 7
-REACHED, ASTRAY, UNSTABLE = range(3)
-"""What ended a step: a rest; updates that did not converge near the tangent; a rest that is unstable."""
+REACHED, ASTRAY, UNSTABLE, ON_THE_WAY = range(4)
+"""What ended a step: a rest; updates that did not converge near the tangent; a rest that is unstable. `relax` is on the
+way after each of its steps, so that a run may be told of signals and limits of time there."""
+LENGTH, FAILED, PASSED, PUSHED, PROGRESS = range(5)
+"""The progress of `relax`: a [s] of its next step, or 0 at its start; counts of failures, passes and pushes."""
 
 FIRST, LONG = 0.01, 100.0
 """First and last a [s] of the steps to a rest."""
@@ -87,7 +90,7 @@ ROUNDING, STALLS = 100.0, 2
 """Update, in units of the tolerance, below which so many in a row that do not contract are rounding: it is all that
 forces tell of places where some are stiffer than others by many orders, as against a change of volume."""
 
-RELAX = types.int64(I, F, A, A, A, I, A, I)
+RELAX = types.int64(I, F, A, A, A, A, I, A, I)
 
 
 @lean_inlined
@@ -189,51 +192,52 @@ def push(rest, plan):
 
 
 @lean(RELAX)
-def relax(functions, t, y, work, settings, numbers, floats, ints):
-    """Come to rest from any state; REACHED, ASTRAY or UNSTABLE."""
+def relax(functions, t, y, progress, work, settings, numbers, floats, ints):
+    """One step to rest from any state, until all forces are zero; REACHED, ASTRAY, UNSTABLE or ON_THE_WAY.
+
+    ``progress`` and ``work`` are kept from call to call.
+    """
     n = y.size
     base, rest, scratch = work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 7 * n]
     jacobian = work[ARRAYS * n : ARRAYS * n + numbers[ROOM]]
     store = work[ARRAYS * n + numbers[ROOM] :]
     scales, plan = settings[SCALES_AT:], numbers[numbers[PLAN_AT] :]
+    if progress[LENGTH] == 0.0:
+        for k in range(n):
+            rest[k] = y[k]
+        at_rest(rest, rest, numbers)
+        place(rate_at(functions[AT_RATE]), t, rest, scratch[:n], plan, floats, ints)
+        progress[LENGTH] = FIRST
+    a = progress[LENGTH]
+    if a < LONG:
+        settings[CAREFUL] = 1.0  # plain updates may come to rest on a saddle
+    from_rest(rest, plan, base, y)
+    if not newton(functions, t, a, base, rest, y, scratch, jacobian, store, scales, settings, plan, floats, ints):
+        progress[FAILED] += 1.0
+        progress[LENGTH] = a / FASTER
+        return ASTRAY if progress[FAILED] > FAILURES else ON_THE_WAY
+    at_rest(y, rest, numbers)
+    for k in range(n):
+        scratch[k] = y[k] - rest[k]
+    moved = largest(scratch[:n], rest, y, settings)
     for k in range(n):
         rest[k] = y[k]
-    at_rest(rest, rest, numbers)
-    place(rate_at(functions[AT_RATE]), t, rest, scratch[:n], plan, floats, ints)
-    a = FIRST
-    failures = passes = pushes = 0
-    while passes < PASSES:
-        if a < LONG:
-            settings[CAREFUL] = 1.0  # plain updates may come to rest on a saddle
-        from_rest(rest, plan, base, y)
-        if newton(functions, t, a, base, rest, y, scratch, jacobian, store, scales, settings, plan, floats, ints):
-            at_rest(y, rest, numbers)
-            for k in range(n):
-                scratch[k] = y[k] - rest[k]
-            moved = largest(scratch[:n], rest, y, settings)
-            for k in range(n):
-                rest[k] = y[k]
-            if a < LONG:
-                a *= FASTER
-                continue
-            if moved <= 1.0:
-                if not unstable(functions, t, y, jacobian, store, settings, plan, floats, ints):
-                    return REACHED
-                if pushes == PUSHES:
-                    return UNSTABLE
-                push(rest, plan)
-                pushes += 1
-                passes, a = 0, FIRST
-                continue
-            passes += 1
-            if passes > 4:
-                a = min(LONGEST, FASTER * a)
-        else:
-            failures += 1
-            a /= FASTER
-            if failures > FAILURES:
-                return ASTRAY
-    return ASTRAY
+    if a < LONG:
+        progress[LENGTH] = FASTER * a
+        return ON_THE_WAY
+    if moved <= 1.0:
+        if not unstable(functions, t, y, jacobian, store, settings, plan, floats, ints):
+            return REACHED
+        if progress[PUSHED] == PUSHES:
+            return UNSTABLE
+        push(rest, plan)
+        progress[PUSHED] += 1.0
+        progress[PASSED], progress[LENGTH] = 0.0, FIRST
+        return ON_THE_WAY
+    progress[PASSED] += 1.0
+    if progress[PASSED] > 4.0:
+        progress[LENGTH] = min(LONGEST, FASTER * a)
+    return ASTRAY if progress[PASSED] == PASSES else ON_THE_WAY
 
 
 @lean(STEP, inner=True)

@@ -22,6 +22,8 @@ CONTACTS = 24
 DEEP = 1e-6
 """Depth, relative to a body's size, to which it may start inside another: rounding in a script."""
 KERNEL = "sceneql.contacts.distance.rigid_local_kernels:back_off"
+ANSWERS = ("sceneql.bodies.rigid.groups_kernels", "sceneql.bodies.rigid.moved_bodies_kernels")
+"""The modules of kernels that find the forces of contacts, and move by them."""
 
 
 def assemble(
@@ -39,6 +41,10 @@ def assemble(
     Raises ScriptError for a shape that is not supported, and for bodies that start inside each other.
     """
     import numpy as np
+
+    from sceneql.compiled.compile_beside import compile_beside
+
+    compile_beside(ANSWERS)  # while what finds contacts is compiled here
 
     from sceneql.bodies.rigid.point_list import WHO
     from sceneql.bodies.rigid.tied_step import body_integers, tied_step

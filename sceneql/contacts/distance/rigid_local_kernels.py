@@ -96,6 +96,7 @@ tally = lazy(f"{MASSES}:tally", types.void(F, F, A, I, A, I, A, N))
 LAZY_FIRST = (
     "sceneql.contacts.distance.separation_kernels",
     "sceneql.contacts.distance.overlay_kernels",
+    "sceneql.linear.cones.cone_few_kernels",
     TOUCH,
     "sceneql.linear.cones.cone_kernels",
 )

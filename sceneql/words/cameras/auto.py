@@ -17,7 +17,7 @@ ALONG = ((1.0, 0.1, 0.0), (0.0, 1.0, 0.12), (0.0, 0.1, 1.0))
 FLAT, EVEN = 0.2, 0.005
 """Largest depth along an axis, relative to the smaller of both other sizes, for a view along that axis. A FLAT scene is
 viewed nearly along it, so that bodies stand out from their ground; an EVEN one exactly, so that right angles stay."""
-LONG, ACROSS = 0.3, {0: ALONG[2], 2: ALONG[0]}
+LONG, ACROSS = 0.12, {0: ALONG[2], 2: ALONG[0]}
 """Larger one of both other sides, relative to the length, below which a scene long in x or z is viewed across; and
 directions towards the camera by the long axis."""
 HEADROOM = 0.86
