@@ -164,3 +164,17 @@ solvers: {main: {SOLVER}}
         steps.append(island["step_bound"])
     assert steps[0] == pytest.approx(steps[1], rel=1e-9)
     assert setting_of(at(Auto(), 1e-4)) == 1e-4
+
+
+def test_a_cloth_that_lands_leaves_the_stiff_method_to_few_steps(tmp_path):
+    """Landings cut steps of radau to 1e-7 s, and modes of contacts passed for explicit steps that it replaced: the
+    cloth took fifty times what dopri5 takes by name."""
+    script = """
+objects: {ball: {sphere: {radius: 0.6 m, position: 0 0.8 0 m}}}
+models: {sheet: {cloth: {size: 2 2 m, cells: 24 24, center: 0 1.8 0 m}}}
+forces: [gravity]
+contacts: {touch: {collision: {friction: 0.4, restitution: 0}}}"""
+    _, ours = marched(tmp_path, script, "auto: {}", 0.5)
+    _, named = marched(tmp_path, script, "dopri5: {}", 0.5)
+    assert "radau" in taken(ours)
+    assert ours.statistics.evaluations < 2 * named.statistics.evaluations

@@ -91,7 +91,8 @@ class March:
         self._methods = Methods(several=stiff is not None)
         self._switch = None
         if stiff is not None:
-            self._switch = Switch(stepper, stiff, self.rate, system.partner, end)
+            local = bool(system.structure.local)
+            self._switch = Switch(stepper, stiff, self.rate, system.partner, end, local=local)
         self._last_look = 0
         self._at_once = AT_ONCE
         self._from = 0.0 if before is None else self._go_on_from(before, kept)

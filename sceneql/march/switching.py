@@ -41,6 +41,8 @@ LARGE = 100
 """Number of unknowns from which on these costs decrease, as a step takes longer."""
 TRIAL = 100
 """Number of steps of a stiff method before a mean step length is measured, and again until it is first judged."""
+BESIDE_CONTACTS = 20
+"""As TRIAL, where local contacts act: each mass that lands may cut a stiff step short."""
 PATIENCE = 1 / 3
 """Fraction of its cost that a stiff step has to replace: vibrations excited at its start take some time to damp."""
 
@@ -48,9 +50,18 @@ PATIENCE = 1 / 3
 class Switch:
     """The choice of the method of one march."""
 
-    def __init__(self, explicit: Stepper, stiff: Stepper, rate_at: Rate, partner: Partners, end: float) -> None:
-        """``rate_at``, ``partner``: the island's, see `spectrum`; ``end`` [s]: that of the run."""
+    def __init__(
+        self, explicit: Stepper, stiff: Stepper, rate_at: Rate, partner: Partners, end: float, *, local: bool = False
+    ) -> None:
+        """``rate_at``, ``partner``: the island's, see `spectrum`; ``end`` [s]: that of the run; ``local``: whether local
+        contacts act. Their modes hold no explicit step, which backs off: stiff steps are then worth the explicit steps
+        taken before.
+        """
         self.explicit, self.stiff = explicit, stiff
+        self._trial = BESIDE_CONTACTS if local else TRIAL
+        self._local = local
+        self._held = 0.0
+        """Mean explicit step [s] before the stiff method took over; 0 where it was the first."""
         self._rate_at, self._partner, self._end = rate_at, partner, end
         self.size = int((partner < 0).sum())
         """Unknowns of the stiff method's linear systems."""
@@ -99,7 +110,7 @@ class Switch:
     @property
     def _often(self) -> int:
         """Number of stiff steps between two checks: they cost as much as LAST explicit ones."""
-        return max(TRIAL, int(LAST / self.cost))
+        return max(self._trial, int(LAST / self.cost))
 
     def start(self, y: Floats, step: float) -> None:
         """Choose the first method; ``step`` [s]: an estimate of the step that the tolerance allows at the start."""
@@ -137,9 +148,12 @@ class Switch:
             part = self._steps(held, speed)
             self._proven = part >= HELD
             self._part = 1.0 if self._proven else part
+            self._held = held
             self._take(self.stiff, t, f"a mode at {abs(speed):.3g}/s holds the steps, not the tolerance")
             return True
         gain = self._steps(mean, dominant(self._spectrum(t, y))) / self._part
+        if self._local and self._held:
+            gain = min(gain, mean / self._held)
         self._lost = max(0.0, self._lost + steps * (self.cost - gain))
         if gain >= PATIENCE * self.cost:
             self._in_vain, self._proven = 0, True
@@ -147,10 +161,7 @@ class Switch:
         if self._proven and self._lost < self._kept:
             return False
         self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
-        # Wait in proportion to a trial's cost, twice as long after each in vain; it may soon be stiff again.
-        self._between = FIRST
-        self.until_look = max(FIRST, int(TRIAL * self.cost)) << self._in_vain
-        self._in_vain = min(self._in_vain + 1, 5)
+        self._wait()
         return True
 
     def give_up(self, t: float) -> bool:
@@ -162,7 +173,14 @@ class Switch:
             return False
         self._since = t
         self._take(self.explicit, t, f"{self.stiff.method.name} finds no step short enough where the rate jumps")
+        self._wait()
         return True
+
+    def _wait(self) -> None:
+        """Wait in proportion to a trial's cost, twice as long after each in vain; it may soon be stiff again."""
+        self._between = FIRST
+        self.until_look = max(FIRST, int(TRIAL * self.cost)) << self._in_vain
+        self._in_vain = min(self._in_vain + 1, 5)
 
     def refuse(self, t: float, why: str) -> None:
         """Exclude the stiff method, which cannot solve this island: the explicit one continues to the end."""
@@ -186,5 +204,5 @@ class Switch:
         self._warming = stepper is self.stiff
         self._lost = 0.0
         if self._warming:
-            self.until_look = TRIAL
+            self.until_look = self._trial
         self.history.append((t, f"{stepper.method.name}: {why}"))
