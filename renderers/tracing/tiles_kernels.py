@@ -7,7 +7,7 @@ from numba import types
 from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE, camera_ray
 from renderers.tracing.light.light_kernels import backdrop
-from renderers.tracing.light.visibility_kernels import SKY
+from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, SKY
 from renderers.tracing.record_kernels import OWNER, UNSURE, erase
 from renderers.tracing.scene_kernels import SCENE, part
 from sceneql.compiled.kernels import kernel
@@ -164,14 +164,17 @@ def fill_background(scene, start, stop, reached, busy, records, radiance):
 
 
 @part
-def mark_busy(records, visibility, k, x, y, busy):
+def mark_busy(records, visibility, k, x, y, hard, busy):
     """Mark the tile of pixel k, at (x, y): SHOWN where it has a record or a thin capsule before it, and LOSSY where its
-    ``visibility`` tells besides that light of the sky is missing."""
+    ``visibility`` tells besides that light of the sky is missing, or of a lamp where all light is ``hard``."""
     mark = SHOWN if records[0, k, OWNER] != 0.0 or records[0, k, UNSURE] != 0.0 else 0
     for layer in range(len(records)):
         if records[layer, k, OWNER] != 0.0:
             for c in range(SKY, SKY + 3):
                 if not visibility[layer, k, c] == 0.0:
+                    mark = LOSSY
+            for c in range(FIRST_LIGHT, visibility.shape[2] if hard else 0, 2):
+                if not visibility[layer, k, c] == 1.0:
                     mark = LOSSY
     busy[y // TILE, x // TILE] = max(busy[y // TILE, x // TILE], mark)
 

@@ -264,7 +264,7 @@ def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy):
         for layer in range(len(records) if final else 0):
             if records[layer, k, OWNER] != 0.0:
                 add_light(scene, records[layer, k], visibility[layer, k], radiance[k], 1.0)
-        mark_busy(records, visibility, k, x, y, busy)
+        mark_busy(records, visibility, k, x, y, final, busy)
     return doubted, seconds
 
 

@@ -12,7 +12,7 @@ from renderers.tracing.light.shade_kernels import add_light
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, shadow_sample
 from renderers.tracing.record_kernels import OWNER, alike
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
-from renderers.tracing.tiles_kernels import MARKS
+from renderers.tracing.tiles_kernels import LOSSY, MARKS, busiest
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -61,7 +61,8 @@ def list_cuts(start, stop, width, busy, records, visibility, cuts):
     """
     height, lights, n = len(records) // width, (visibility.shape[1] - FIRST_LIGHT) // 2, 0
     for tile in range(busy.shape[1] if lights > 0 else 0):
-        if busy[start // TILE, tile] == 0:
+        row = start // TILE
+        if busy[row, tile] == 0 or busiest(busy, row, tile, tile) < LOSSY:  # all of all lights is seen, around it too
             continue
         for y in range(start, stop):
             for x in range(tile * TILE, min((tile + 1) * TILE, width)):
