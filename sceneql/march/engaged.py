@@ -111,7 +111,8 @@ def engage(system: System, stepper: Stepper, driver: Driver) -> Engaged:
     mixed = between and (local or bool(system.structure.after))
     dense = None if local and not between else method.dense
     interpolant = kernels.hermite if dense is None else function(dense)
-    extend = None if method.extend is None or local else function(method.extend)
+    # With exact contacts steps compute their dense output themselves: after its end a step's contacts may have changed.
+    extend = None if method.extend is None or local or system.pairs else function(method.extend)
     # Islands without exact contacts have no events: the kernels that find them are not even loaded.
     event = function("sceneql.march.events_kernels:find_event") if system.pairs else None
     slopes = jacobian(system) if needs.jacobian else None

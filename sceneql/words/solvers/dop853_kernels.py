@@ -95,11 +95,12 @@ def dense(theta, h, y0, rate0, y1, rate1, work, settings, numbers, out):
     """The interpolant of order 7 (Hairer, Norsett & Wanner 1993, II.6, code DOP853), after ``extend``."""
     n = y0.size
     rest = 1.0 - theta
+    last = work[STAGES * n :]
     bends = work[(LAST + 1) * n :]
     for k in range(n):
         difference = y1[k] - y0[k]
         start = h * rate0[k] - difference
-        end = difference - h * rate1[k] - start
+        end = difference - h * last[k] - start
         high = bends[2 * n + k] + theta * bends[3 * n + k]
         high = h * (bends[k] + theta * (bends[n + k] + rest * high))
         out[k] = y0[k] + theta * (difference + rest * (start + theta * (end + rest * high)))
