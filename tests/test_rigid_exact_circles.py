@@ -118,6 +118,25 @@ def test_a_cylinder_that_is_let_go_on_its_rim_falls_flat_and_makes_no_energy(tmp
     assert x[:, 1].min() > h / 2 - 1e-9
 
 
+@pytest.mark.parametrize("tilt", range(5, 38, 4))
+def test_a_cylinder_that_has_fallen_flat_is_at_rest_and_held_within_the_steps_too(tmp_path, tilt):
+    """Within steps after which a contact changes, or what is found to rounding alone lets it seem to leave."""
+    a, r, h, times = np.radians(tilt), 0.1, 0.1, np.linspace(0, 0.3, 151)
+    place = f"position: 0 {r * np.sin(a) + h / 2 * np.cos(a)} 0 m, rotation: {{about: 1 0 0.3, angle: {tilt} deg}}"
+    rows = watch(
+        tmp_path, f"cylinder: {{radius: {r} m, height: {h} m, {place}}}", "mass: 1 kg", times,
+        "it.position", "it.kinetic", "it.energy", "touch.forces", law="restitution: 0, friction: 0.3",
+    )  # fmt: skip
+    x, kinetic, energy = (np.array(some) for some in list(zip(*rows, strict=True))[:3])
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
+    assert x[:, 1].min() > h / 2 - 1e-9
+    landed = int(np.argmax(x[:, 1] < h / 2 + 1e-9))
+    assert 0 < landed < 130
+    np.testing.assert_allclose(x[landed:, 1], h / 2, atol=1e-9)
+    assert kinetic[landed:].max() < 1e-9
+    np.testing.assert_allclose([forces[:, 1].sum() for *_, forces in rows[landed:]], GRAVITY, rtol=1e-8)
+
+
 def test_a_ring_bounces_and_wobbles_down_without_making_energy(tmp_path):
     body = "torus: {radius: 0.148 m, tube: 0.056 m, position: 0 0.4 0 m, rotation: {about: -1 0 -0.09, angle: 23 deg}}"
     rows = watch(

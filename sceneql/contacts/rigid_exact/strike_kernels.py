@@ -40,6 +40,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     AGAIN,
     AT_CONTACT,
     BEFOREHAND,
+    BEGUN,
     BOUNDED,
     DRIVES,
     ENDURANCE,
@@ -247,15 +248,18 @@ def strike(t, y, floats, ints):
     return True
 
 
-@lean(types.void(A, I, types.boolean))
-def keep(floats, ints, old):
+@lean(types.void(F, A, I, types.boolean))
+def keep(t, floats, ints, old):
     """Keep the contacts that do not part; ``old``: of pairs alone that kept some before."""
     memory, kept = ints[MEMORY_AT], 0
+    h = t - floats[memory + BEGUN] if old else 0.0
     for k in range(int(floats[memory + KEPT])):
         rec, to = ints[RECORDS_AT] + RECORD * k, ints[RECORDS_AT] + RECORD * kept
         a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
         parts = DRIFT if old and floats[rec + PUSHES] > 0.0 else PARTS
-        if abs(floats[rec + SPEED]) > STILL + parts * pace(floats, rec, a, b):
+        pull = weight(floats, ints, int(floats[rec + SHAPE_A])) + weight(floats, ints, int(floats[rec + SHAPE_B]))
+        # (What rests at no pace at all has the rounding of what forces do in a step.)
+        if abs(floats[rec + SPEED]) > STILL + parts * pace(floats, rec, a, b) + PARTS * h * pull:
             continue
         if old and floats[ints[KEPT_AT] + int(floats[rec + PAIR])] == 0.0:
             continue
@@ -285,13 +289,13 @@ def impact(t, y, pair, floats, ints):
             floats[channels.CHANGED] = channels.NO_WAY_ON
         find(t, y, floats, ints, points, names, False)
         strike(t, y, floats, ints)
-        keep(floats, ints, False)
+        keep(t, floats, ints, False)
         begin(t, y, floats, ints, False)
     elif floats[memory + STARTED] == 0.0:
         floats[memory + STARTED] = 1.0
         unseen(t, y, floats, ints, True)
         find(t, y, floats, ints, points, names, False)
-        keep(floats, ints, False)
+        keep(t, floats, ints, False)
         begin(t, y, floats, ints, False)
         floats[channels.CHANGED] = 1.0
     elif ints[DRIVES] > 0 and floats[channels.CHANGED] == channels.DUE and floats[memory + PASSED] == 0.0:
@@ -301,7 +305,7 @@ def impact(t, y, pair, floats, ints):
         floats[memory + AGAIN] = floats[memory + PASSED] = 0.0
         before = floats[memory + KEPT]
         same = find(t, y, floats, ints, points, names, True)
-        keep(floats, ints, True)
+        keep(t, floats, ints, True)
         begin(t, y, floats, ints, same and floats[memory + KEPT] == before)
         floats[channels.CHANGED] = 1.0
     if wrong:
