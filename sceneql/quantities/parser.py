@@ -251,8 +251,8 @@ class _Parser:
             help = (
                 f"write `{self.before}.{'xyz'[min(int(index[1]), 2)]}`, or of a list `item({self.before}, {index[1]})`"
             )
-        elif isinstance(expr, Number) and (unit := _UNIT_IN_BRACKETS.match(self.text, self.start)) is not None:
-            help = f"a unit stands behind its number, without brackets: write `{self.before} {unit[1]}`"
+        elif isinstance(expr, Number) and (of := _UNIT_IN_BRACKETS.match(self.text, self.start)) is not None:
+            help = f"a unit stands behind its number, without brackets: write `{self.before} {of[1]}`"
         elif self.before in FUNCTIONS and self.kind != "sign":
             help = f"write `{self.before}({self.token[:40]})`"
         elif (other := instead("name", self.token) or instead("name", self.before)) is not None:

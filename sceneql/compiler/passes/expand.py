@@ -145,14 +145,13 @@ def _drive(tasks: dict[str, Task]) -> dict[str, Task]:
             driven = target.kind.model_copy(update=links)
             tasks[name] = replace(target, kind=driven, needs=needs, original=target.kind)
     for task in list(tasks.values()) if led else ():
-        if isinstance(task.kind, Interaction):
-            at = {name: value for name, value in task.kind if isinstance(value, Value) and isinstance(value.expr, Link)}
-            own = {
-                name: Value(replace(link, span=value.expr.span), value.span)
-                for name, value in at.items()
-                if (link := led.get((value.expr.task, value.expr.output)))
-            }
-            if own:
-                needs = (*task.needs, *(value.expr.task for value in own.values()))
-                tasks[task.name] = replace(task, kind=task.kind.model_copy(update=own), needs=needs)
+        own: dict[str, Link] = {}
+        for name, value in task.kind if isinstance(task.kind, Interaction) else ():
+            at = value.expr if isinstance(value, Value) else None
+            if isinstance(at, Link) and (link := led.get((at.task, at.output))) is not None:
+                own[name] = replace(link, span=at.span)
+        if own:
+            kind = task.kind.model_copy(update={name: Value(link, link.span) for name, link in own.items()})
+            needs = (*task.needs, *(link.task for link in own.values()))
+            tasks[task.name] = replace(task, kind=kind, needs=needs)
     return tasks
