@@ -495,6 +495,16 @@ def test_a_cube_that_spins_past_a_wall_touches_it_with_its_edge_when_it_is_turne
     assert touch(pair, (200, 0, 0, 0, 0, 30), STILL, 1.0, margin=2e-6, tolerance=1e-9) < 0.03
 
 
+@pytest.mark.parametrize("end", [0.02, 0.05])
+def test_a_crate_that_leaves_a_plank_with_which_it_turns_does_not_touch_it(end):
+    # Along a direction that stands, the plank's far end comes nearer by 0.2 m/s: it takes a thousand advances.
+    spin, away = 0.07244348367272054, 2.4851e-3
+    pair = Pair(convex.box([1.5, 0.04, 0.25]), (0, 0.55, 0), UPRIGHT, convex.box([0.15] * 3), (-1.3, 0.74, 0))
+    motion = (-spin * 0.19, -spin * 1.3 + away, 0, 0, 0, spin)
+    assert touch(pair, (0, 0, 0, 0, 0, spin), motion, end, -2.6e-10, 2.6e-11) == math.inf
+    assert touch(pair, (0, 0, 0, 0, 0, spin), (*motion[:1], motion[1] - 2 * away, *motion[2:]), end) < 1e-12
+
+
 @settings(max_examples=max(20, COUNT // 5))
 @given(SEEDS)
 @example(7)

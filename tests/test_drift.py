@@ -242,7 +242,7 @@ def test_species_that_stay_in_place_are_not_carried(tmp_path):
         ("{}", "one of `velocity`, `stream_function` and `by`"),
         ("{velocity: x}", "a vector of two or three"),
         ("{velocity: '[x, y, z]'}", "needs 2 components"),
-        ("{stream_function: '[x, y]'}", "one number at every place"),
+        ("{stream_function: '[x, y]'}", "one number at each place"),
         ("{velocity: '[1/x, 0]', incompressible: no}", "not finite"),
     ],
 )

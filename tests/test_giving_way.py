@@ -125,3 +125,39 @@ clock: {end: 1.5 s}
     told = [moment.read("under", "energy") + moment.read("it", "energy") for moment in run.moments([0.0, 0.5, 1.5])]
     assert run.islands[0].assembly.contact_mode == "exact"
     np.testing.assert_allclose(told, told[0], rtol=1e-6)
+
+
+SEESAW = """
+objects:
+  wedge: {cylinder: {radius: 0.25 m, height: 0.6 m, position: 0 0.25 0 m, rotation: {about: x, angle: 90 deg}}}
+  plank: {box: {size: 3 0.08 0.5 m, position: 0 0.55 0 m}}
+  crate: {box: {size: 0.3 0.3 0.3 m, position: -1.3 0.745 0 m}}
+  weight: {sphere: {radius: 0.3 m, position: 1.2 2.5 0 m}}
+models:
+  things:
+    rigid:
+      bodies:
+        plank: {of: plank, density: 300 kg/m^3}
+        crate: {of: crate, density: 200 kg/m^3}
+        weight: {of: weight, density: 1000 kg/m^3}
+ties:
+  pivot: {hinge: {between: [things.plank, world], at: 0 0.55 0 m, axis: 0 0 1}}
+forces: [gravity]
+contacts: {touch: {collision: {restitution: 0.2, friction: 0.5}}}
+clock: {end: 2 s}
+"""
+
+
+def test_a_seesaw_that_flings_a_crate_takes_little_work_and_no_solution_fails(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(SEESAW)
+    run = Run(load(path, pruned=False))
+    energies = [moment.read("things", "energy") for moment in run.moments([0, 0.5, 1, 2])]
+    np.testing.assert_allclose(energies, energies[0], rtol=1e-6)
+    island = run.islands[0]
+    hold = island.assembly.ints_of("sceneql.contacts.rigid_exact.exact_hold_kernels:hold")
+    memory = island.march.floats[hold[exact_rows_kernels.MEMORY_AT] :]
+    assert memory[exact_rows_kernels.LOOSE] == memory[exact_rows_kernels.JAMMED] == 0
+    assert memory[exact_rows_kernels.WORK] < 3e8
+    assert island.march.statistics.steps < 200
+    assert not island.notes

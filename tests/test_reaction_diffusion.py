@@ -201,7 +201,7 @@ def wrong(folder, species, more=""):
         ("{u: {rate: u*vv}}", "", "nothing is called 'vv'"),
         ("{u: {initial: 1 + v}, v: {rate: 1}}", "", "'v' has no value before the start"),
         ("{u: {initial: w}}", ", where: {w: t*x}", "'time' has no value before the start"),
-        ("{u: {rate: '[u, 1, 2]'}}", "", "must be one number"),
+        ("{u: {rate: '[u, 1, 2]'}}", "", "one number at each place"),
         ("{u: {rate: 1}}", ", where: {u: 2}", "already"),
         ("{u: {rate: 1, boundary: {top: {flux: 1}, front: {flux: 1}}}}", "", "no side 'front'"),
     ],

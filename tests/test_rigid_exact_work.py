@@ -75,6 +75,21 @@ def test_a_ball_that_bounces_on_another_comes_to_rest_in_few_impacts(tmp_path):
     assert rows[0][1] == rows[1][1] < 400
 
 
+BLOCK = "{{box: {{size: 0.4 0.4 0.4 m, position: 0 {} 0 m}}}}"
+
+
+def test_a_tower_of_equal_blocks_that_a_ball_hits_tips_over_the_borders_of_their_faces(tmp_path):
+    """Corners stand at the very border of the face below, and slide out of it from rest."""
+    objects = {name: BLOCK.format(0.2 + 0.4 * k) for k, name in enumerate("abcd")}
+    objects |= {"floor": "plane", "ball": "{sphere: {radius: 0.2 m, position: -2 1.2 0 m}}"}
+    bodies = {name: f"{{of: {name}, density: 500 kg/m^3}}" for name in "abcd"}
+    bodies["ball"] = "{of: ball, density: 2000 kg/m^3, velocity: 6 0 0 m/s}"
+    law = "restitution: 0.2, friction: 0.5"
+    rows = watch(tmp_path, objects, bodies, [0, 0.4], "it.energy", "it.d.position", law=law)
+    assert rows[1][0] == pytest.approx(rows[0][0], rel=1e-7)
+    assert rows[1][1][0] > 0.05
+
+
 def throw(seed):
     """Objects, bodies and a law by chance."""
     g = np.random.default_rng(seed)

@@ -206,7 +206,10 @@ class Reader:
         of_any = mark.of_field and self.solved is not None and self.solved.plain
         by_of = mark.of_field and self.solved is not None and not self.solved.plain
         of = Wanted(wanted, of_any, mark.at_start, by_of)
-        return kinds.Formula(self._some(read_formula(node, symbols, of, what, self.names, self.found)), node.span)
+        expr = self._some(read_formula(node, symbols, of, what, self.names, self.found))
+        if expr.type.shape and not mark.several and (mark.names is not None or mark.of_field):
+            raise self._fail("wrong-shape", f"{what} is one number at each place, not several", node.span)
+        return kinds.Formula(expr, node.span)
 
     def _union(self, node: Node, arms: tuple[Any, ...], what: str) -> Any:
         if type(None) in arms and isinstance(node, Scalar) and node.kind == "null":

@@ -20,11 +20,11 @@ from sceneql.quantities.expression import TIME_SYMBOL, Link, Symbol, walk
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import describe, in_words
 
-MOVING = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.VELOCITY)]
-VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True)]
+MOVING = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.VELOCITY, several=True)]
+VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True, several=True)]
 STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_start=True)]
 VISCOSITY = Annotated[Formula, Symbols(("x", "y", "z", "t", "c"), dim.PRESSURE * dim.TIME)]
-FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME)]
+FORCE = Annotated[Formula, Symbols(("x", "y", "z", "t"), dim.FORCE / dim.VOLUME, several=True)]
 
 
 ROUNDED = 1e-9

@@ -30,7 +30,7 @@ class Texture(Record):
         "A formula: where it is 0 or less the material has the first of `colors`, where it is 1 or more the last.", None
     )
     colors: tuple[Color, ...] = field("Colors evenly from 0 to 1, mixed in between.", ())
-    color: Annotated[Formula, Symbols(SYMBOLS, PLAIN)] | None = field(
+    color: Annotated[Formula, Symbols(SYMBOLS, PLAIN, several=True)] | None = field(
         "In place of these the color itself, as formulas of its red, green and blue from 0 to 1.", None
     )
 

@@ -12,7 +12,7 @@ from sceneql.quantities.derivative import components, differentiate
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Symbol
 
-VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True)]
+VELOCITY = Annotated[Formula, Symbols(("x", "y", "z"), dim.VELOCITY, at_start=True, several=True)]
 STREAM = Annotated[Formula, Symbols(("x", "y", "z"), dim.AREA / dim.TIME, at_start=True)]
 SAMPLES = {2: 24, 3: 8}
 """Samples of a flow along each side of a 2D or 3D box, before the run."""
@@ -56,8 +56,6 @@ class Drift(Record):
                 yield Problem("a flow that is solved carries as it is: `strength` and `incompressible` are of others")
         elif self.velocity is not None and self.velocity.expr.type.shape not in ((2,), (3,)):
             yield Problem("a velocity is a vector of two or three formulas, `[-y, x]`", ("velocity",))
-        elif self.stream_function is not None and self.stream_function.expr.type.shape != ():
-            yield Problem("a stream function is one number at every place", ("stream_function",))
 
     def components(self) -> tuple[Expr, ...]:
         """The two or three components of the velocity, as scalar expressions."""

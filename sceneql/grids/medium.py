@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Protocol
@@ -208,20 +208,6 @@ def spacing_of(medium: Spaced, scene: StaticScene) -> tuple[float, ...]:
     return (medium.cell,) * (2 if flat else 3)
 
 
-def _vectors(part: object, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-    """Paths of the formulas in a field, in its records and dicts, that are not scalar."""
-    if isinstance(part, Formula) and part.expr.type.shape:
-        yield path
-    elif isinstance(part, dict | Record):
-        items = (
-            part.items()
-            if isinstance(part, dict)
-            else ((name, getattr(part, name)) for name in type(part).model_fields)
-        )
-        for name, item in items:
-            yield from _vectors(item, (*path, name))
-
-
 class Medium(Model):
     """A domain on a grid of cells."""
 
@@ -229,8 +215,6 @@ class Medium(Model):
     is_field = True
     measures: ClassVar[tuple[str, ...]] = ()
     """Outputs besides MEASURES, as which no probe may be called."""
-    vectors: ClassVar[tuple[str, ...]] = ()
-    """Fields whose formulas may be of several numbers."""
 
     domain: kinds.ObjectRef | None = field(
         "The object whose inside, at the start, it spreads in; or give `size`.", None
@@ -273,16 +257,6 @@ class Medium(Model):
         """Problems of domain, cells, formulas, probes and names of boundary parts."""
         if (self.size is None) == (self.domain is None):
             yield Problem("it spreads in one of the two: a box, `size: 1 1 m`, or an object, `domain: plate`")
-        vectors = [
-            path
-            for name in type(self).model_fields
-            if name not in self.vectors
-            for path in _vectors(getattr(self, name), (name,))
-        ]
-        for path in vectors:
-            yield Problem(f"{path[-1]} is one number at each place, not several", path, code="wrong-shape")
-        if vectors:
-            return
         for name, place in self.probes.items():
             if name in MEASURES or name in self.measures or not name.isidentifier():
                 yield Problem(f"a probe cannot be called '{name}'", ("probes", name), at_key=True)

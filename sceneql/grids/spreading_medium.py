@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Annotated, ClassVar
+from typing import Annotated
 
 from sceneql.grids.drift import Drift
 from sceneql.grids.medium import ANY, SHORTEST, Medium, largest_in, number_in, spacing_of
@@ -17,8 +17,6 @@ COEFFICIENT = Annotated[Formula, Symbols(ANY, dim.AREA / dim.TIME)]
 class SpreadingMedium(Medium):
     """A medium whose fields have diffusion coefficients."""
 
-    vectors: ClassVar[tuple[str, ...]] = ("drift",)
-
     drift: Drift | None = field("A flow that carries what spreads.", None)
 
     def coefficients(self) -> Iterable[tuple[Formula | None, tuple[str, ...]]]:
@@ -27,12 +25,7 @@ class SpreadingMedium(Medium):
 
     def problems(self) -> Iterable[Problem]:
         """Problems of any medium; negative coefficients; drifts with a wrong number of components."""
-        told = False
-        for problem in super().problems():
-            told |= problem.code == "wrong-shape"
-            yield problem
-        if told:
-            return
+        yield from super().problems()
         for coefficient, path in self.coefficients():
             d = number_in(coefficient)
             if d is not None and d < 0.0:

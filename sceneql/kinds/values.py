@@ -186,3 +186,5 @@ class Symbols:
     (Kind.formula_dimension)."""
     at_start: bool = False
     """Whether it is evaluated before the run, when no other part has a value yet."""
+    several: bool = False
+    """Whether its values may be vectors."""

@@ -53,9 +53,10 @@ class Switch:
     def __init__(
         self, explicit: Stepper, stiff: Stepper, rate_at: Rate, partner: Partners, end: float, *, local: bool = False
     ) -> None:
-        """``rate_at``, ``partner``: the island's, see `spectrum`; ``end`` [s]: that of the run; ``local``: whether local
-        contacts act. Their modes hold no explicit step, which backs off: stiff steps are then worth the explicit steps
-        taken before.
+        """``rate_at``, ``partner``: the island's, see `spectrum`; ``end`` [s]: that of the run.
+
+        ``local``: whether local contacts act. Their modes hold no explicit step, which backs off: stiff steps are then
+        worth the explicit steps taken before.
         """
         self.explicit, self.stiff = explicit, stiff
         self._trial = BESIDE_CONTACTS if local else TRIAL

@@ -23,9 +23,9 @@ VERTICES, FACES, EDGES, LOOPS, STARTS = range(5)
 PLACE = 7
 """Numbers of a place: center and quaternion."""
 
-GAP, NORMAL, ON_A, ON_B, HEAD = 0, 1, 4, 7, 10
+GAP, NORMAL, ON_A, ON_B, ADVANCES, HEAD = 0, 1, 4, 7, 10, 11
 """What was found, at the beginning of the working memory: the gap [m], the unit normal from b to a, and the witnesses
-[m], relative to the center of body a; the cores follow."""
+[m], relative to the center of body a; in how many advances a first touch was. The cores follow."""
 MOVED = 2 * PLACE
 """Numbers at the end of the working memory, for places of bodies that move."""
 CHOSEN = 48

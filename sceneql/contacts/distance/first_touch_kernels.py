@@ -3,6 +3,8 @@
 
 A direction that separates the shapes now keeps on doing so for a time: along it every vertex goes on at its speed, less
 what turning can bend its way, which is bounded. So nothing is missed, however fast the bodies are and however thin.
+The direction stands still or turns with one of the shapes, whichever lasts longest: what leaves, or slides along, a
+face that turns is seen by that face's own normal in one advance, and by one that stands in a thousand.
 """
 
 import math
@@ -12,6 +14,7 @@ from numba import types
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.distance.convex import CORE
 from sceneql.contacts.distance.core_kernels import (
+    ADVANCES,
     FLOATS,
     GAP,
     HEAD,
@@ -71,24 +74,39 @@ def least_along(room, core, count, cx, cy, cz, x, y, z, wx, wy, wz, t):
     return -far - t * dot(ux, uy, uz, cx, cy, cz)
 
 
-@lean(F(A, I, N, N, A, N, A, N, N, F, A), inner=True)
-def still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, t, room):
-    """A bound from below of the gap [m] after a time t, along the normal that was found now.
+@lean_inlined
+def turned_by(motions, of, x, y, z):
+    """The spin of a body in axes that turn at (x, y, z) [rad/s], and how fast its turning bends ways there [1/s^2]:
+    no vertex at a distance r of its center has a larger acceleration than this times r."""
+    px, py, pz = at3(motions, of + 3)
+    spin, frame_spin = math.sqrt(dot(px, py, pz, px, py, pz)), math.sqrt(dot(x, y, z, x, y, z))
+    px, py, pz = px - x, py - y, pz - z
+    return px, py, pz, math.sqrt(dot(px, py, pz, px, py, pz)) * (spin + frame_spin)
 
-    Each vertex goes on at its speed, less what turning can bend its way: |w|^2 |r| t^2 / 2. So it is a concave function
-    of t. The cores are in the working memory.
+
+@lean(F(A, I, N, N, A, N, A, N, N, N, F, A), inner=True)
+def still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, of_frame, t, room):
+    """A bound from below of the gap [m] after a time t, along the normal that was found now, in axes that turn as the
+    body whose motion begins at ``of_frame`` (-1: that stand, as they must beside a half space).
+
+    Each vertex goes on at its speed, less what turning can bend its way. So it is a concave function of t. The cores
+    are in the working memory.
     """
     fa, ia, fb, ib = ints[a + FLOATS], ints[a + INTS], ints[b + FLOATS], ints[b + INTS]
     x, y, z = at3(room, NORMAL)
     ux, uy, uz = at3(motions, of_a)
     vx, vy, vz = at3(motions, of_b)
-    px, py, pz = at3(motions, of_a + 3)
-    qx, qy, qz = at3(motions, of_b + 3)
-    apart = t * dot(x, y, z, ux - vx, uy - vy, uz - vz)
+    ux, uy, uz = ux - vx, uy - vy, uz - vz
+    wx = wy = wz = 0.0
+    if of_frame >= 0:
+        wx, wy, wz = at3(motions, of_frame + 3)
+    px, py, pz, bends_a = turned_by(motions, of_a, wx, wy, wz)
+    qx, qy, qz, bends_b = turned_by(motions, of_b, wx, wy, wz)
+    apart = t * dot(x, y, z, ux, uy, uz)
     if ints[a + KIND] == CORE:
-        apart -= 0.5 * t * t * dot(px, py, pz, px, py, pz) * floats[fa + REACH]
+        apart -= 0.5 * t * t * bends_a * floats[fa + REACH]
     if ints[b + KIND] == CORE:
-        apart -= 0.5 * t * t * dot(qx, qy, qz, qx, qy, qz) * floats[fb + REACH]
+        apart -= 0.5 * t * t * bends_b * floats[fb + REACH]
     if ints[a + KIND] != CORE or ints[b + KIND] != CORE:
         # One core alone, about its own center, that was nearest the plane by the gap.
         if ints[a + KIND] != CORE:
@@ -98,17 +116,25 @@ def still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, t, room):
         return apart + least_along(room, HEAD, count, 0.0, 0.0, 0.0, x, y, z, px, py, pz, t)
     core_b = end_of(ints, ia, HEAD)
     ox, oy, oz = relative(places, at, at + PLACE)
+    if of_frame >= 0:
+        # The way from center to center turns back, and bends by Coriolis' and the centrifugal acceleration.
+        cx, cy, cz = cross(wx, wy, wz, ox, oy, oz)
+        apart += t * dot(x, y, z, cx, cy, cz)
+        cx, cy, cz = cross(wx, wy, wz, ux, uy, uz)
+        far = math.sqrt(dot(ox, oy, oz, ox, oy, oz)) + t * math.sqrt(dot(ux, uy, uz, ux, uy, uz))
+        bends = 2.0 * math.sqrt(dot(cx, cy, cz, cx, cy, cz)) + dot(wx, wy, wz, wx, wy, wz) * far
+        apart -= 0.5 * t * t * bends
     apart += least_along(room, HEAD, ints[ia + VERTICES], 0.0, 0.0, 0.0, x, y, z, px, py, pz, t)
     apart += least_along(room, core_b, ints[ib + VERTICES], ox, oy, oz, -x, -y, -z, qx, qy, qz, t)
     return apart - floats[fa + RADIUS] - floats[fb + RADIUS]
 
 
-@lean(F(A, I, N, N, A, N, A, N, N, F, F, A), inner=True)
-def advance(floats, ints, a, b, places, at, motions, of_a, of_b, margin, longest, room):
+@lean(F(A, I, N, N, A, N, A, N, N, N, F, F, A), inner=True)
+def advance(floats, ints, a, b, places, at, motions, of_a, of_b, of_frame, margin, longest, room):
     """A time for which the gap surely stays above ``margin`` [m]; longer than ``longest`` where it does so for that."""
-    low, above = 0.0, still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, 0.0, room) - margin
+    low, above = 0.0, still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, of_frame, 0.0, room) - margin
     high = longest
-    below = still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, high, room) - margin
+    below = still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, of_frame, high, room) - margin
     if above <= 0.0:
         return 0.0
     if below >= 0.0:
@@ -116,13 +142,13 @@ def advance(floats, ints, a, b, places, at, motions, of_a, of_b, margin, longest
     for _ in range(CHORDS):
         # The chord of a concave function is below it. Where it is far below, the mean comes nearer.
         low += (high - low) * above / (above - below)
-        above = still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, low, room) - margin
+        above = still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, of_frame, low, room) - margin
         if above <= 0.0:
             break
         if high <= NEARLY * low:
             break
         t = math.sqrt(low * high)
-        value = still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, t, room) - margin
+        value = still_apart(floats, ints, a, b, places, at, motions, of_a, of_b, of_frame, t, room) - margin
         if value > 0.0:
             low, above = t, value
         else:
@@ -160,13 +186,14 @@ def first_touch(floats, ints, a, b, places, at_a, at_b, motions, of_a, of_b, h, 
     vx, vy, vz = at3(motions, of_a)
     ux, uy, uz = at3(motions, of_b)
     vx, vy, vz = ux - vx, uy - vy, uz - vz
-    t = 0.0
-    if ints[a + KIND] == CORE and ints[b + KIND] == CORE:
+    t, solid = 0.0, ints[a + KIND] == CORE and ints[b + KIND] == CORE
+    if solid:
         x, y, z = relative(places, at_a, at_b)
         # The spheres around them; a little larger, for rounding.
         t = spheres_meet(x, y, z, vx, vy, vz, (ra + rb + max(margin, 0.0) + tolerance) * (1.0 + 1e-12), h)
     moved = room.size - MOVED
-    for _ in range(MOST_ADVANCES):
+    for number in range(MOST_ADVANCES):
+        room[ADVANCES] = number
         if not t <= h:
             return math.inf
         move(places, at_a, motions, of_a, t, room, moved)
@@ -178,7 +205,11 @@ def first_touch(floats, ints, a, b, places, at_a, at_b, motions, of_a, of_b, h, 
         if gap == math.inf:
             return math.inf
         longest = h - t
-        step = advance(floats, ints, a, b, room, moved, motions, of_a, of_b, margin, longest, room)
+        step = advance(floats, ints, a, b, room, moved, motions, of_a, of_b, -1, margin, longest, room)
+        if solid and step <= longest:
+            step = max(step, advance(floats, ints, a, b, room, moved, motions, of_a, of_b, of_a, margin, longest, room))
+        if solid and step <= longest:
+            step = max(step, advance(floats, ints, a, b, room, moved, motions, of_a, of_b, of_b, margin, longest, room))
         if step > longest:
             return math.inf
         if step == 0.0:

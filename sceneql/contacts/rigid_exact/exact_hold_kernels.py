@@ -227,6 +227,8 @@ def balance(rate, floats, ints, n):
             for side in range(2):
                 if floats[unit + AT_FIRST + side] == m:
                     push, size = unit + AT_PUSH + 6 * side, abs(floats[found + i])
+                    if i < ints[TIE_ROWS]:
+                        size += abs(floats[ints[ints[TIED_AT] + 3 * i + 2] + AT_FORCE])
                     for c in range(3):
                         force += size * abs(floats[push + c])
                         torque += size * abs(floats[push + 3 + c])

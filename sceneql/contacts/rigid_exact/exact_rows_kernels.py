@@ -103,8 +103,8 @@ left alone; whether a circle that lies flat has few points (rim_kernels); whethe
 BEFOREHAND, A_SECOND = 1e9, 2e8
 """Work that is allowed at the start, and by the second: operations, about as many as nanoseconds of one processor. As
 much as a few steps of mode `local` take in each 1/240 s."""
-A_PAIR, A_COLUMN, A_ROW = 3000.0, 3e4, 100.0
-"""Work of a pair that is looked at, of one of two curved bodies, and of a row that is written."""
+A_PAIR, A_COLUMN, A_ROW, AN_ADVANCE = 3000.0, 3e4, 100.0, 4000.0
+"""Work of a pair that is looked at, of one of two curved bodies, of a row that is written; of an advance of a pair."""
 PATIENCE, ENDURANCE = 20, 200
 """Events at one instant after which no contact is let go any more; after which there is no way on."""
 

@@ -9,7 +9,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.tie_rows_kernels import AT_W, MOVER, POSITION, ROTATION, put
+from sceneql.bodies.rigid.tie_rows_kernels import AT_FORCE, AT_W, MOVER, POSITION, ROTATION, put
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.rigid_exact.contact_kernels import (
     KIND,
@@ -31,8 +31,10 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
 from sceneql.contacts.rigid_exact.exact_law_kernels import BILATERAL, BOUNDED, MOMENT
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     AT_CONTACT,
+    AT_FIRST,
     AT_PUSH,
     AT_ROW,
+    AT_WEIGHED,
     DRIVES,
     FORCES,
     IMPACTS,
@@ -44,6 +46,7 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     ROLLING_AT,
     SPEEDS,
     TIE_ROWS,
+    TIED_AT,
     UNIT,
     UNITS_AT,
     bounds_at,
@@ -157,6 +160,22 @@ def write_moment(floats, ints, n, i, what):
     return n + 3
 
 
+@lean(F(A, I, N))
+def borne(floats, ints, row):
+    """Size of what a row's speeds gain by the ties' own forces, each by itself: together they may cancel all others,
+    and what is left is rounding of these."""
+    at, total = ints[UNITS_AT] + UNIT * row, 0.0
+    for i in range(ints[TIE_ROWS]):
+        unit, force = ints[UNITS_AT] + UNIT * i, abs(floats[ints[ints[TIED_AT] + 3 * i + 2] + AT_FORCE])
+        for side in range(2):
+            for other in range(2):
+                if floats[at + AT_FIRST + side] == floats[unit + AT_FIRST + other]:
+                    for c in range(6):
+                        gain = floats[at + AT_ROW + 6 * side + c] * floats[unit + AT_WEIGHED + 6 * other + c]
+                        total += force * abs(gain)
+    return total
+
+
 @lean(N(A, I, N, N))
 def write_more(floats, ints, n, what):
     """Write the rows behind those of contacts, of which there are n, for FORCES, SPEEDS or IMPACTS; how many there are
@@ -195,6 +214,8 @@ def write_more(floats, ints, n, what):
                 floats[bounds_at(ints) + rooms(ints) + n] = most if sign <= 0.0 else -most
             floats[sizes_at(ints) + n] = 0.0
             n += 1
+    for i in range(n if what == FORCES else 0):
+        floats[sizes_at(ints) + i] = borne(floats, ints, i)
     return n
 
 

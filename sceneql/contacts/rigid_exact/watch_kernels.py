@@ -9,12 +9,11 @@ from sceneql.bodies.rigid.rigid_kernels import to_world
 from sceneql.bodies.rigid.tie_rows_kernels import AT_INVERSE, AT_R, AT_X, MOVED
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import CORE, HALF_SPACE, SHAPE
-from sceneql.contacts.distance.core_kernels import FACES, FLOATS, INTS, KIND, POINTS, RADIUS, REACH
+from sceneql.contacts.distance.core_kernels import ADVANCES, FACES, FLOATS, INTS, KIND, POINTS, RADIUS, REACH
 from sceneql.contacts.distance.first_touch_kernels import MOTION, first_touch, move
 from sceneql.contacts.rigid_exact.contact_kernels import (
     ALONG,
     EXTENT,
-    OF,
     PAIR,
     RECORD,
     SHAPE_A,
@@ -33,6 +32,7 @@ from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     A_COLUMN,
     A_PAIR,
+    AN_ADVANCE,
     BEGUN,
     BEGUN_AT,
     DRIVES,
@@ -163,6 +163,7 @@ def passed(floats, ints, a, b, h, gap, motions, room):
         floats, ints, ints[SHAPES_AT] + SHAPE * a, ints[SHAPES_AT] + SHAPE * b, floats, begun + PLACE * a,
         begun + PLACE * b, motions, 0, 6, h, -1e-9 * size, 1e-10 * size, room,
     )  # fmt: skip
+    floats[ints[MEMORY_AT] + WORK] += AN_ADVANCE * room[ADVANCES]
     if touch == math.inf or touch <= 0.0:
         return gap
     return -(h - touch) * far / h
@@ -264,8 +265,6 @@ def gap(t, y, gaps, floats, ints):
         if floats[rec + EXTENT] < math.inf:
             if floats[rec + EXTENT] > INSIDE * size:
                 gaps[at + 1] = extent(floats, ints, rec)
-            elif floats[rec + OF] >= 0.0 and is_plain(
-                floats, ints, int(floats[rec + SHAPE_A])
-            ):  # at a border, from where it may turn back
+            elif is_plain(floats, ints, int(floats[rec + SHAPE_A])):  # at a border, from where it may turn back
                 gaps[at + 1] = INSIDE * size + extent(floats, ints, rec) - floats[rec + EXTENT]
         gaps[at + 1] = min(gaps[at + 1], lying(floats, ints, rec))

@@ -26,7 +26,7 @@ class Electric(Force):
 
     charge: Charges = field("Charge of every mass, or a list with one for each.")
     field_: ElectricField | None = field("The same field everywhere; it may vary in time.", None)
-    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"), VOLTAGE / dim.LENGTH)] | None = field(
+    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"), VOLTAGE / dim.LENGTH, several=True)] | None = field(
         "Its components [V/m].", None
     )
     potential_: Annotated[Formula, Symbols(("x", "y", "z", "t"), VOLTAGE)] | None = field("Its potential [V].", None)

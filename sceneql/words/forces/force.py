@@ -26,7 +26,7 @@ class Force(Family):
     components does to the masses is counted in the work, so that the energy is conserved with both.
     """
 
-    components: Annotated[Formula, Symbols(SYMBOLS, dim.FORCE)] | None = field(
+    components: Annotated[Formula, Symbols(SYMBOLS, dim.FORCE, several=True)] | None = field(
         "`[fx, fy, fz]`: its components [N].", None
     )
     potential_: Annotated[Formula, Symbols(("x", "y", "z", "t", "m"), dim.ENERGY)] | None = field(

@@ -28,8 +28,8 @@ class Magnetic(Force):
 
     charge: Charges = field("Charge of every mass, or a list with one for each.")
     field_: MagneticField | None = field("The same field everywhere; it may vary in time.", None)
-    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"), VOLTAGE * dim.TIME / dim.AREA)] | None = field(
-        "Its components [T].", None
+    formula: Annotated[Formula, Symbols(("x", "y", "z", "t"), VOLTAGE * dim.TIME / dim.AREA, several=True)] | None = (
+        field("Its components [T].", None)
     )
 
     def problems(self) -> Iterator[Problem]:

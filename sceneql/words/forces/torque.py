@@ -20,9 +20,9 @@ class Torque(Force):
     formulas. Its power is counted in the work, so that the energy is conserved with it.
     """
 
-    components: Annotated[Formula, Symbols(("x", "y", "z", "vx", "vy", "vz", "t", "m"), dim.FORCE * dim.LENGTH)] = (
-        field("`[tx, ty, tz]`: its components [N m].")
-    )
+    components: Annotated[
+        Formula, Symbols(("x", "y", "z", "vx", "vy", "vz", "t", "m"), dim.FORCE * dim.LENGTH, several=True)
+    ] = field("`[tx, ty, tz]`: its components [N m].")
 
     def problems(self) -> Iterator[Problem]:
         """Formulas that are no torque."""
