@@ -74,3 +74,29 @@ def test_a_damped_spring_needs_a_place_whose_velocity_is_known(tmp_path):
     with pytest.raises(ScriptError, match="how fast its ends move") as told:
         Run(loaded_from(tmp_path, script))
     assert "scene.yaml:6:" in str(told.value)
+
+
+@pytest.mark.parametrize("model", ["particles: {of: ball, mass: 2 kg}", "rigid: {of: ball, mass: 2 kg}"])
+def test_a_spring_at_an_object_pulls_what_moves_it(tmp_path, model):
+    """x = 1 + cos(omega t)/2, omega^2 = 32/2, whether the object or the mass is named; it was left out before."""
+    script = f"""
+clock: {{end: 1 s}}
+objects: {{ball: {{sphere: {{position: 1.5 0 0 m}}}}}}
+models: {{body: {{{model}}}}}
+forces: {{tie: {{spring: {{from: ball.position, to: 0 0 0 m, stiffness: 32 N/m, rest: 1 m}}}}}}
+solvers: {{main: {{dopri5: {{tolerance: 1e-11}}}}}}
+"""
+    _, last = watch(tmp_path, script, [0, 1], "body.position", "ball.position")
+    assert [last[0][0], last[1][0]] == pytest.approx(2 * [1 + 0.5 * math.cos(4)], abs=1e-8)
+
+
+def test_keys_of_an_object_that_a_model_moves_are_told_to_be_lost(tmp_path):
+    script = """
+objects: {ball: {sphere: {position: {keys: {0 s: 0 2 0 m, 1 s: 1 2 0 m}}}}}
+models: {fall: {particles: {of: ball}}}
+"""
+    (warning,) = loaded_from(tmp_path, script).warnings
+    assert warning.code == "moved-twice"
+    assert not loaded_from(
+        tmp_path, script.replace("particles: {of: ball}", "particles: {positions: [0 1 0 m]}")
+    ).warnings

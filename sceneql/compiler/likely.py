@@ -39,6 +39,9 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
     fitting = list(_fitting(reader, node, cls.model_fields)) or list(_formulas(reader, node, cls))
     alone = required if len(required) == 1 else []
+    if alone and len(fitting) == 1 and fitting != alone:  # the value is another field's
+        example = f"{alone[0]}: {example_of(cls, alone[0])}"
+        return f"write `{{{example}, {kinds.written_name(fitting[0])}: {node.span.text}}}`"
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
     return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
 

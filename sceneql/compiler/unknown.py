@@ -21,7 +21,7 @@ DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere"}
 MANY = 6
 """Largest number of words of which all that have a field are listed."""
 
-_UNPARTED = re.compile(r"(\w+)(?:(:)| )(.*)")
+_UNPARTED = re.compile(r"(\w+)(?:(:)|\s*=| )(.*)")
 
 
 def report_unknown(
@@ -68,8 +68,9 @@ def _together(name: str, unknown: Sequence[str], node: Mapping, known: Collectio
     while first and names[first] not in known and _empty(node.entries[names[first]]):
         first -= 1
     items = [node.entries[names[first]].span.text, *names[first + 1 : names.index(name) + 1]]
-    if len(items) > 1 and names[first] in known and isinstance(node.entries[names[first]], Scalar):
-        return f"a list stands in brackets: write `{names[first]}: [{', '.join(items)}]`"
+    field = names[first] if names[first] in known else same_as(names[first], known)
+    if len(items) > 1 and field is not None and isinstance(node.entries[names[first]], Scalar):
+        return f"a list stands in brackets: write `{field}: [{', '.join(items)}]`"
     return None
 
 

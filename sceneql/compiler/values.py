@@ -211,10 +211,18 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
     if quantity.direction and Value(expr).constant and not any(numbers(evaluate(expr, {}))):
         found.error("out-of-range", f"{what} gives a direction, which 0 0 0 does not have", span)
         return False
-    if quantity.needs_unit and _bare(expr):
-        found.error("unit-needed", f"{what} needs a unit", span, help=f"write `{span.text} deg` or `{span.text} rad`")
-        return False
-    return True
+    bare = [one for one in _items(expr) if _bare(one)] if quantity.needs_unit else []
+    for one in bare:
+        place = span if one is expr or one.span is None else one.span
+        found.error(
+            "unit-needed", f"{what} needs a unit", place, help=f"write `{place.text} deg` or `{place.text} rad`"
+        )
+    return not bare
+
+
+def _items(expr: Expr) -> list[Expr]:
+    """A value, or those of its keys."""
+    return [key.value for key in expr.keys] if isinstance(expr, Keys) else [expr]
 
 
 def _repeated(expr: Expr, wanted: Quantity) -> str | None:

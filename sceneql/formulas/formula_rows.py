@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
@@ -15,6 +16,7 @@ from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Symbol, walk
 
 TIMES = ("t", "time")
+_DERIVATIVES = tuple(map(re.compile, (r"d(\w+)/dt", r"d(\w+)", r"(\w+?)_?dot")))
 
 
 def states(rows: Iterable[str]) -> list[str]:
@@ -99,6 +101,11 @@ class Rows:
     def _row_problems(self) -> Iterator[Problem]:
         if not self.rate:
             yield Problem("a system needs a rate: `y: ...` is dy/dt, `a'': ...` is d²a/dt²", ("rate",))
+        derived = {row: name for row in self.rate if row not in self.start and (name := self._derived(row))}
+        for row, name in derived.items():
+            yield Problem(f"the rate of {name} is written '{name}', without `{row}`", ("rate", row))
+        if derived:
+            return
         for row in self.rate:
             name = row.rstrip("'")
             order = len(row) - len(name)
@@ -118,6 +125,11 @@ class Rows:
                 yield Problem(
                     f"{name} has a value at the start but no rate{f': {hint}' if hint else ''}", ("start", name)
                 )
+
+    def _derived(self, row: str) -> str:
+        """The state whose rate other notations call so, ``da/dt``, ``da`` or ``a_dot``; empty for none."""
+        named = (found[1] for shape in _DERIVATIVES if (found := shape.fullmatch(row)) is not None)
+        return next((name for name in named if name in self.start), "")
 
     def _name_problems(self) -> Iterator[Problem]:
         taken = dict.fromkeys(TIMES, "the time")

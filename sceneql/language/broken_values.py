@@ -31,6 +31,8 @@ NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _ITEM = r"(?:[^(),]|\([^(),]*\))+"
 _PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
 _ROTATION = re.compile(r"\brotation:\s*\Z")
+_COMMENT = re.compile(r"//|--|%(?=\s)")
+_UNIT_IN_BRACKETS = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?(?:\s+[-+]?[\d.]+)*)\s*\[\s*([^\W\d][^\[\],]*?)\s*\]")
 _UNPARTED = re.compile(r"([^\W\d]\w*)(?:[ ]+|(:))(?=\[)")
 _BLOCK_VALUE = re.compile(r"\s*(?:- +)*(?:[^\s\[{\"'#][^\[{\"'#]*?:\s+)?(?=[\[{])")
 
@@ -114,6 +116,8 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
                     message, help = f"{written} is read as a comment here, so the value is missing", f"quote it: {line}"
                 case "unit-after-bracket":
                     message, help = f"the unit '{written}' cannot stand behind a bracket", f"write: {line}"
+                case _ if _UNIT_IN_BRACKETS.fullmatch(written) is not None:
+                    message, help = "a unit stands behind its number, without brackets", f"write: {line}"
                 case _ if written.startswith("(") and fault.fixed[0] not in "\"'":
                     message, help = "a vector has no parentheses", f"write: {line}"
                 case _:
@@ -186,6 +190,8 @@ class _Scan:
             caret = Span(self.source, start, end).part(*unparted.span(2 if glued else 1))
             diagnostic = Diagnostic("yaml-syntax", missing, caret, f"write `{name}: {written[unparted.end() :]}`")
             return Fault("yaml-syntax", start, end, caret.start, "", diagnostic)
+        if (unit := _UNIT_IN_BRACKETS.fullmatch(written)) is not None:
+            return Fault("torn-expression", start, end, start, f"{unit[1]} {unit[2]}")
         vector = _PARENTHESES.fullmatch(written)  # as other languages write one
         fixed = _quote(written) if vector is None else _with_unit(vector[1], vector[2] or "")
         fixed = without_letters(written) or fixed
@@ -232,9 +238,10 @@ class _Scan:
             return close
         end, _ = self.plain(at, nested=depth > 0)
         rest = self.text[at:end]
-        if rest.startswith("//"):
+        sign = _COMMENT.match(rest)
+        if sign is not None and (sign[0] == "//" or self.text[start] == "{"):
             caret = Span(self.source, at, end)
-            help = f"a comment begins with `#`: write `#{rest[2:]}`"
+            help = f"a comment begins with `#`: write `#{rest[sign.end() :]}`"
             comment = Diagnostic("yaml-syntax", "nothing can stand behind this bracket", caret, help)
             self.faults.append(Fault("yaml-syntax", at, end, at, "", comment, " "))
             return end

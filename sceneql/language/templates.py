@@ -22,6 +22,8 @@ __all__ = ["Entry", "Expanded", "Given", "Scope", "expand", "filled"]
 
 MOST_NESTED: Final = 64
 MOST_PARTS: Final = 100_000
+_ENDING = re.compile(r"(?<=\w)\.(mp4|mov|avi|gif|webm|png|jpe?g|csv|npz)$")
+"""How files are called, whose ending the word of an output tells."""
 _EQUALS = re.compile(r"(\w+)\s*:?=\s*(\S+(?:[ \t]\S+)*)")
 """A value given as in other languages, ``k = 10 N/m``, alone on its line."""
 
@@ -190,7 +192,7 @@ class _Expander:
         if not name.split(".")[0].isidentifier() or (key.text == name and "." in name):
             message = f"'{name}' cannot be the name of a part"
             letters = "a name is made of letters, digits and underscores, and begins with a letter"
-            better = re.sub(r"\W+", "_", name).strip("_")
+            better = re.sub(r"\W+", "_", _ENDING.sub("", name)).strip("_")
             letters = f"write `{better}`: {letters}" if better.isidentifier() else letters
             help = numbered(name) or letters
             self.found.error("part-name", message, key.span, help=help)

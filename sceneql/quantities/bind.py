@@ -13,7 +13,7 @@ from sceneql.quantities.expression import Call, Expr, Name, Number, Symbol, Type
 from sceneql.quantities.instead import time_meant
 from sceneql.quantities.literal import quantity
 from sceneql.quantities.operations import CONSTANTS, FLOATS, OPERATIONS
-from sceneql.quantities.rules import MismatchError, listed, shape_text
+from sceneql.quantities.rules import TURNS, MismatchError, listed, shape_text
 from sceneql.quantities.scalars import apply
 from sceneql.quantities.span import Span
 from sceneql.quantities.units import parse_unit, stands_below
@@ -26,8 +26,8 @@ number (``1500 /s``). None: the name is one of these constants, or its error has
 
 SECONDS = "the time is `t` here, a plain number of seconds, as all numbers here: write `sin(3*t)`, not `sin(3 /s*time)`"
 """The help of the error for `time` with a unit in a formula over plain numbers."""
-TURNS, FEWEST_DEGREES = ("sin", "cos", "tan"), 15.0
-"""Functions of an angle; a bare number that is a multiple of FEWEST_DEGREES is most likely meant in degrees."""
+FEWEST_DEGREES = 15.0
+"""A bare number that is a multiple of it is most likely meant in degrees."""
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
 """Names of a vector's components, by the number of components."""
 

@@ -23,6 +23,11 @@ _SENTENCES = (
         "write `field_of_view: 40 deg`, or of an orthographic one its `height`",
     ),
     ("cameras", "path dolly track", "a camera moves by its position: `{perspective: {position: {keys: {...}}}}`"),
+    (
+        "objects models materials lights",
+        "USE instance instances copy clone ref prototype",
+        "a part like another is `{use: ball}`, with that part's name, and the fields that differ: `sceneql words use`",
+    ),
     ("part", "all everything any", "leave the field out: then it is of all"),
     ("field.overlays", "font font_family typeface weight style bold", "letters have one font, and a `size`"),
     (
@@ -31,6 +36,7 @@ _SENTENCES = (
         "lines have their names, `y: {height: ball.position.y}`, and a graph its `title`",
     ),
     ("field.outputs", "frames count number", "the clock tells how many there are: `clock: {end: 4 s, fps: 30}`"),
+    ("field.outputs", "frame frame_number", "write its time: frame 12 of 30 a second is `time: 0.4 s`"),
     ("field.outputs", "codec bitrate container", "a film is MP4, H.264: `quality: 17` says how large it gets"),
     ("field.lights", "position", "it has a direction: `elevation: 50 deg, azimuth: 30 deg`, or `direction`"),
     ("field.lights", "temperature kelvin", "write its `color`"),
@@ -39,9 +45,26 @@ _SENTENCES = (
         "area softbox rectangle rect",
         "a `point` with a `radius` casts soft shadows: `{point: {radius: 0.5 m}}`",
     ),
+    (
+        "field.models",
+        "forces force",
+        "forces are a section of their own, `forces: [gravity]`; one acts on some models by `on: [NAME]`",
+    ),
+    ("field.models", "solver integrator", "solvers are a section of their own, `solvers: {main: {rk4: {step: 1 ms}}}`"),
+    (
+        "field.models",
+        "kinematic is_kinematic isKinematic",
+        "what stands still is `fixed: yes`; what moves by keys or formulas is an object without a model",
+    ),
+    (
+        "field.models",
+        "count number amount",
+        "many fill an object or are born, `fill: {object: NAME, count: 100}` or `emit: {rate: 100 /s}`",
+    ),
     ("field.models", "feed kill", "what is fed and dies stands in the rates: `rate: -u*v^2 + 0.03*(1 - u)`"),
     ("section", "args arguments inputs", "what an instance may be given stands under `fields: {radius: 1 m}`"),
     ("field.ties", "length distance", "a rod is as long as its ends are apart at the start: `from` and `to`"),
+    ("field.objects", "axis", "it stands along y, and is turned: `rotation: {about: x, angle: 90 deg}`"),
     ("field.objects", "static fixed kinematic dynamic", "an object that no model moves stands still"),
     ("section", "seed", "write `clock: {seed: 5}`"),
     ("behind", "px pixel pixels pt", "letters are as high as a part of the picture: `size: 0.05`"),
@@ -78,7 +101,11 @@ _SENTENCES = (
     ("sign", "&", _AND),
     ("sign", "|", _OR),
     ("sign", "?", _IF),
-    ("sign", "$", "a name stands by itself: write `n`, or `n*(1 cm)` where it is a plain number"),
+    (
+        "sign",
+        "$",
+        "a name stands by itself: write `n`, or `n*(1 cm)` where it is a plain number; the time is `time`",
+    ),
     ("sign", "=", "write `==` to compare; the surface where f = c is that of the formula `f - c`"),
     ("sign", "!", "write `where(a == b, 0, 1)` for a difference, `1 - (a > b)` for 'not'"),
     ("sign", "%", "write `mod(a, b)`"),
@@ -94,8 +121,8 @@ _SENTENCES = (
     (
         "sign",
         "{ }",
-        'only the number of a copy by `repeat` stands in braces, in a name, `"ball.{i}.position"`: '
-        "`sceneql words repeat`",
+        "a name stands by itself, `radius: r`; only the number of a copy by `repeat` stands in braces, in a name,"
+        ' `"ball.{i}.position"`: `sceneql words repeat`',
     ),
     ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
     (
@@ -103,6 +130,7 @@ _SENTENCES = (
         "fps frames frame",
         "a number of frames has no unit: `clock: {fps: 30}`; in a formula write `time`, which is 1 s at frame 30",
     ),
+    ("name", "frame frames", "write `time`, which is 0.4 s at frame 12 of 30 a second"),
     ("name", "t", "the time is written 'time'"),
     ("name behind", "if then else elif when", f"{_IF}: `sceneql words functions`"),
     (
@@ -111,6 +139,7 @@ _SENTENCES = (
         "an axis is `1 0 0`, `0 1 0` or `0 0 1`; the coordinates of a place stand in formulas of fields alone",
     ),
     ("name behind", "to until", "from when to when is two conditions: `(time > 1 s)*(time < 2 s)`"),
+    ("name", "inf infinity", "what never moves is `fixed: yes`; what has no limit is left out"),
     ("name", "true yes", "in a formula write `1`"),
     ("name", "false no", "in a formula write `0`"),
     (
@@ -130,6 +159,7 @@ _SENTENCES = (
         "matte glossy metal glass mirror glow checker",
         "a material is a field of the object: `{sphere: {radius: 1 m, material: {matte: {color: red}}}}`",
     ),
+    ("beside", "DEF", "the part's name is that before the colon: leave `DEF` out"),
     ("beside", "name id", "the name stands before the word, in a section of names: `objects: {ball: {sphere: {...}}}`"),
     (
         "beside",
@@ -172,6 +202,7 @@ _SENTENCES = (
     ),
     ("field.objects", "count copies number amount instances", _REPEAT),
     ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
+    ("field", "solver integrator", "write `solvers: {main: {rk4: {step: 1 ms}}}`: `sceneql words sections`"),
     ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
     ("field", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
     ("field", "distance", "write where it stands, `position: 0 1 5 m`; without that it finds its place"),

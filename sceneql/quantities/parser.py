@@ -26,6 +26,9 @@ TOKEN = re.compile(
     re.DOTALL,
 )
 
+_UNIT_IN_BRACKETS = re.compile(r"\[\s*([^\W\d][^\[\],]*?)\s*\]")
+_INDEX = re.compile(r"\[\s*(\d)\s*\]")
+
 
 def parse_value(text: str, span: Span) -> Expr:
     """A whole scalar: ``2 kN/m``, ``1/60 s``, ``0 1.2 0 m``, or an expression. Raises ScriptError."""
@@ -240,8 +243,16 @@ class _Parser:
             help = "in a formula a vector has brackets, and each of its numbers the unit: `p + [1 m, 0 m, 0 m]`"
         elif (meant := self._unit_behind(expr)) is not None:
             help = f"a unit stands directly after a number: write `{meant}`"
+            if expr.span is not None and any(isinstance(n, Name) and n.parts != ("time",) for n in each_once(expr)):
+                help += f", or `{expr.span.text}` where the name has a unit"
         elif isinstance(expr, Name) and self.kind == "name" and self.token in UNITS:
             help = f"a unit stands directly after a number: write `{self.before}*(1 {self.token})`"
+        elif isinstance(expr, Name) and (index := _INDEX.match(self.text, self.start)) is not None:
+            help = (
+                f"write `{self.before}.{'xyz'[min(int(index[1]), 2)]}`, or of a list `item({self.before}, {index[1]})`"
+            )
+        elif isinstance(expr, Number) and (of := _UNIT_IN_BRACKETS.match(self.text, self.start)) is not None:
+            help = f"a unit stands behind its number, without brackets: write `{self.before} {of[1]}`"
         elif self.before in FUNCTIONS and self.kind != "sign":
             help = f"write `{self.before}({self.token[:40]})`"
         elif (other := instead("name", self.token) or instead("name", self.before)) is not None:

@@ -11,12 +11,14 @@ from fractions import Fraction
 from math import prod
 
 from sceneql.quantities.dimension import PLAIN, TIME, Dimension, common
-from sceneql.quantities.expression import Expr, Number, Shape, Type
+from sceneql.quantities.expression import Call, Expr, Number, Shape, Type
 from sceneql.quantities.units import describe, format_quantity, unit_of
 
 Args = tuple[Expr, ...]
 Rule = Callable[[Args], Type]
 LARGEST_POWER = 100
+TURNS = ("sin", "cos", "tan")
+"""Functions of an angle."""
 MOST_AXES, MOST_NUMBERS = 6, 1_000_000
 """Limits on lists in an expression: with defines that hold one another twice, lists would double with each line."""
 
@@ -99,6 +101,11 @@ def _plain(args: Args, indices: tuple[int, ...], name: str) -> None:
         if dimension is not None and not dimension.plain:
             message = f"{name} needs a plain number, not {describe(dimension)}"
             help = "divide it by a quantity of its kind first"
+            match args[index]:
+                case Call("mul", (Number(bare=True) as number, _)) if name in TURNS and dimension == TIME:
+                    help = f"a speed times the time is an angle: `{number.value:g} rad/s*time`, in degrees"
+                    help += f" `{number.value:g} deg/s*time`"
+                    raise MismatchError("dimension-mismatch", message, index, None, help)
             raise MismatchError(
                 "dimension-mismatch", message, index, None, help, (index, f"{{}}/(1 {unit_of(dimension)})")
             )

@@ -126,7 +126,8 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
 
 
 def _drive(tasks: dict[str, Task]) -> dict[str, Task]:
-    """Link the fields of driven objects to the outputs of the models that drive them."""
+    """Link the fields of driven objects to the outputs of the models that drive them; forces there act on these."""
+    led: dict[tuple[str, str], Link] = {}
     for model in list(tasks.values()):
         if not isinstance(model.kind, Model):
             continue
@@ -139,7 +140,18 @@ def _drive(tasks: dict[str, Task]) -> dict[str, Task]:
                 field: Value(Link(model.name, outputs[field], value.expr.type), value.span)
                 for field, value in old.items()
             }
+            led |= {(name, field): link.expr for field, link in links.items() if isinstance(link.expr, Link)}
             needs = (*target.needs, model.name)
             driven = target.kind.model_copy(update=links)
             tasks[name] = replace(target, kind=driven, needs=needs, original=target.kind)
+    for task in list(tasks.values()) if led else ():
+        own: dict[str, Link] = {}
+        for name, value in task.kind if isinstance(task.kind, Interaction) else ():
+            at = value.expr if isinstance(value, Value) else None
+            if isinstance(at, Link) and (link := led.get((at.task, at.output))) is not None:
+                own[name] = replace(link, span=at.span)
+        if own:
+            kind = task.kind.model_copy(update={name: Value(link, link.span) for name, link in own.items()})
+            needs = (*task.needs, *(link.task for link in own.values()))
+            tasks[task.name] = replace(task, kind=kind, needs=needs)
     return tasks

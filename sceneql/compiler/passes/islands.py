@@ -40,6 +40,12 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
         if targets and not any(_has_mass(tasks[name].kind, weighed) for name in targets):
             text = f"{tasks[force].word} acts on masses, and there are none in {' and '.join(targets)}"
             found.error("no-mass", text, tasks[force].span)
+        named = kind.targets() if isinstance(kind, Interaction) and not isinstance(kind, Tie) else None
+        if named and not targets:
+            text = f"{tasks[force].word} acts on masses, and no model moves {' and '.join(map(repr, named))}"
+            found.error(
+                "no-mass", text, tasks[force].span, help=f"write `models: {{fall: {{particles: {{of: {named[0]}}}}}}}`"
+            )
     report_carried(models, forces, tasks, found)
     driver = {
         name: _body(t.name, led) for t in models if isinstance(t.kind, Model) for name, led in t.kind.drives().items()

@@ -1,13 +1,14 @@
-"""Check of objects whose shape at the start a model takes: the shape must not change."""
+"""Check of objects whose shape or place at the start a model takes: what varies in time of it is lost."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
 from sceneql.kinds import Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.expression import TIME_SYMBOL, Expr, Keys, Symbol, each_once
 
 HELP = "let it move or turn as a whole: by its own `position` and `rotation`"
 PLACES = ("position", "rotation")
@@ -19,6 +20,8 @@ def report_moving(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     for task in tasks.values():
         if not isinstance(task.kind, Model):
             continue
+        for name, fields in task.kind.drives().items():
+            _warn_of_two_movers(task, tasks[name], fields, found)
         for ref in task.kind.standing():
             for _, field, value in _varying(tasks[ref.name], tasks):
                 text = f"'{task.name}' begins as '{ref.name}' is at the start, but its {field} varies in time"
@@ -36,6 +39,22 @@ def report_moving(tasks: Mapping[str, Task], found: Diagnostics) -> None:
                     f"'{task.name}' has cells cut by {which} in its shape at the start, but its {field} varies in time"
                 )
                 found.error("moves", text, value.span or ref.span, help=HELP)
+
+
+def _warn_of_two_movers(model: Task, driven: Task, fields: Iterable[str], found: Diagnostics) -> None:
+    """Warn of fields of a driven object that the script lets vary with the time: only their start counts."""
+    if driven.original is None:
+        return
+    for field in fields:
+        value = getattr(driven.original, field, None)
+        if isinstance(value, Value) and any(map(_timed, each_once(value.expr))):
+            text = f"'{model.name}' moves '{driven.name}' from where it is at the start, and its {field} varies in time"
+            help = "leave the model out, and keys and formulas move it; or give it one place"
+            found.warning("moved-twice", text, value.span, help=help)
+
+
+def _timed(node: Expr) -> bool:
+    return isinstance(node, Keys) or (isinstance(node, Symbol) and node.name == TIME_SYMBOL)
 
 
 def _varying(task: Task, tasks: Mapping[str, Task]) -> Iterator[tuple[str, str, Value]]:
