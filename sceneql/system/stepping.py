@@ -54,8 +54,8 @@ class Method:
     """Index of the array of ``work`` that holds the rate at the step's end (first same as last); -1: none does."""
     extend: str | None = None
     """Function of the step's signature that adds the further stages of dense output to `work`; called once before a
-    frame is read off a step. Where contacts are exact, `dense` is read after every step without this call, so the step
-    computes these stages itself (see `Needs.prepare`)."""
+    frame is read off a step. Where contacts are exact, it is not: `dense` is read after every step, and contacts change
+    at its end, so the step computes these stages itself (see `Needs.prepare`)."""
     stability: tuple[float, ...] = ()
     """Coefficients of an explicit method's stability function, that of z^0 first."""
     name: str = ""
