@@ -294,6 +294,9 @@ def solve_law(n, w, b, kinds, mu, x, s, work, pivots, thorough):
     """
     # Where forces are not unique, those near the guess; else nearly those of rows that yield a little.
     if attempt(n, w, b, kinds, mu, x, s, work, pivots, STIFF, FIRST):
+        # Stiff steps leave the rounding of rows that depend on one another; soft ones from there less, if any.
+        if thorough and left(n, w, b, kinds, mu, x, s, work) > ENOUGH:
+            attempt(n, w, b, kinds, mu, x, s, work, pivots, SOFT, FIRST)
         return True
     if n >= MANY and thorough and interior(n, w, b, kinds, mu, x):
         work[VECTORS * n + n * n + 1] += 30.0 * n * n * n
