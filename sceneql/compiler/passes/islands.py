@@ -11,7 +11,6 @@ from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Interaction, Kind, Model, Object, Solver, Tie
 from sceneql.quantities.diagnostic import Diagnostics, Note
 
-
 _SUITS = {
     "a field": ("is_field", "a field on a grid"),
     "a flow": ("flows", "an island with a flow"),
@@ -115,7 +114,7 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             help = "choose auto, rk4, dop853 or verlet for them"
             found.error("refuses-ties", message, tasks[solver].span, help=help)
         suits = _SUITS.get(marching.marches) if isinstance(marching, Solver) else None
-        if suits is not None and not any(getattr(tasks[name].kind, suits[0], False) for name in group):
+        if suits is not None and not any(getattr(task.kind, suits[0], False) for task in models):
             message = f"{tasks[solver].word} marches {suits[1]}, and '{group[0]}' is none"
             found.error("no-grid" if suits[0] == "is_field" else "no-flow", message, tasks[solver].span, help=_OTHER)
         result.append(
