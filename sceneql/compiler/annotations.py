@@ -46,6 +46,8 @@ def could_be(annotation: Any, node: Node) -> bool:
         return isinstance(node, Mapping)
     if origin in (list, tuple):
         return isinstance(node, Sequence)
+    if base is kinds.Formula:
+        return isinstance(node, Scalar | Sequence)
     if origin is Literal:
         return isinstance(node, Scalar) and node.text in [str(c) for c in get_args(base)]
     return isinstance(node, Scalar)

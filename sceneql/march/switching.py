@@ -41,8 +41,9 @@ LARGE = 100
 """Number of unknowns from which on these costs decrease, as a step takes longer."""
 TRIAL = 100
 """Number of steps of a stiff method before a mean step length is measured, and again until it is first judged."""
-BESIDE_CONTACTS = 20
-"""As TRIAL, where local contacts act: each mass that lands may cut a stiff step short."""
+EARLY = 10
+"""Number of checks in such a trial where local contacts act, since each mass that lands may cut a stiff step short: one
+in which stiff steps are shorter than the explicit ones before ends it."""
 PATIENCE = 1 / 3
 """Fraction of its cost that a stiff step has to replace: vibrations excited at its start take some time to damp."""
 
@@ -55,12 +56,13 @@ class Switch:
     ) -> None:
         """``rate_at``, ``partner``: the island's, see `spectrum`; ``end`` [s]: that of the run.
 
-        ``local``: whether local contacts act. Their modes hold no explicit step, which backs off: stiff steps are then
-        worth the explicit steps taken before.
+        ``local``: whether local contacts act. Their modes hold no explicit step, which backs off: stiff steps that are
+        shorter than the explicit ones before are worth nothing, however fast these modes.
         """
         self.explicit, self.stiff = explicit, stiff
-        self._trial = BESIDE_CONTACTS if local else TRIAL
         self._local = local
+        self._early = 0
+        """Number of checks left of a trial where local contacts act."""
         self._held = 0.0
         """Mean explicit step [s] before the stiff method took over; 0 where it was the first."""
         self._rate_at, self._partner, self._end = rate_at, partner, end
@@ -72,6 +74,8 @@ class Switch:
         self.until_look = self._between = FIRST
         self._since = 0.0
         self._warming = False
+        self._warm = 0.0
+        """Time [s] from which on the steps of a trial in contact are judged."""
         self._lost = 0.0
         """Excess cost of the stiff method so far, in explicit steps."""
         self._proven = True
@@ -111,7 +115,7 @@ class Switch:
     @property
     def _often(self) -> int:
         """Number of stiff steps between two checks: they cost as much as LAST explicit ones."""
-        return max(self._trial, int(LAST / self.cost))
+        return max(TRIAL, int(LAST / self.cost))
 
     def start(self, y: Floats, step: float) -> None:
         """Choose the first method; ``step`` [s]: an estimate of the step that the tolerance allows at the start."""
@@ -131,6 +135,16 @@ class Switch:
         """Whether to switch at t [s], after ``steps`` steps; ``step`` [s] is the next to try."""
         mean = (t - self._since) / max(1, steps)
         self._since = t
+        if self._local and self.active is self.stiff and mean < self._held and self._early < EARLY:
+            self._leave(t, mean / self._held)
+            return True
+        if self._early:
+            self._early -= 1
+            if self._early == EARLY // 2:
+                self._warm = t
+            if self._early:
+                return False
+            mean, steps, self._warming = (t - self._warm) / TRIAL, TRIAL, False
         if self._warming:
             self._warming = False
             return False
@@ -153,16 +167,13 @@ class Switch:
             self._take(self.stiff, t, f"a mode at {abs(speed):.3g}/s holds the steps, not the tolerance")
             return True
         gain = self._steps(mean, dominant(self._spectrum(t, y))) / self._part
-        if self._local and self._held:
-            gain = min(gain, mean / self._held)
         self._lost = max(0.0, self._lost + steps * (self.cost - gain))
         if gain >= PATIENCE * self.cost:
             self._in_vain, self._proven = 0, True
             return False
         if self._proven and self._lost < self._kept:
             return False
-        self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
-        self._wait()
+        self._leave(t, gain)
         return True
 
     def give_up(self, t: float) -> bool:
@@ -176,6 +187,11 @@ class Switch:
         self._take(self.explicit, t, f"{self.stiff.method.name} finds no step short enough where the rate jumps")
         self._wait()
         return True
+
+    def _leave(self, t: float, gain: float) -> None:
+        """Go on with the explicit method; ``gain``: explicit steps that a stiff one replaces."""
+        self._take(self.explicit, t, f"a stiff step replaces but {gain:.2g} explicit ones and costs {self.cost:.2g}")
+        self._wait()
 
     def _wait(self) -> None:
         """Wait in proportion to a trial's cost, twice as long after each in vain; it may soon be stiff again."""
@@ -205,5 +221,6 @@ class Switch:
         self._warming = stepper is self.stiff
         self._lost = 0.0
         if self._warming:
-            self.until_look = self._trial
+            self._early = EARLY if self._local and self._held else 0
+            self.until_look = 2 * TRIAL // EARLY if self._early else TRIAL
         self.history.append((t, f"{stepper.method.name}: {why}"))

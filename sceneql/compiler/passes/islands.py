@@ -11,6 +11,14 @@ from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Interaction, Kind, Model, Object, Solver, Tie
 from sceneql.quantities.diagnostic import Diagnostics, Note
 
+_SUITS = {
+    "a field": ("is_field", "a field on a grid"),
+    "a flow": ("flows", "an island with a flow"),
+    "several fluids": ("flows", "an island with a flow"),
+}
+"""By what a solver marches: what one of its models must be, and its name."""
+_OTHER = "name the models that it is for, `on: [NAME]`, or let `auto` march"
+
 
 def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]:
     """The islands of a script's dynamic models, in script order.
@@ -105,6 +113,10 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             message = f"{word} does not march bodies that ties hold, as '{tied[0]}' does: {marching.refuses_ties}"
             help = "choose auto, rk4, dop853 or verlet for them"
             found.error("refuses-ties", message, tasks[solver].span, help=help)
+        suits = _SUITS.get(marching.marches) if isinstance(marching, Solver) else None
+        if suits is not None and not any(getattr(task.kind, suits[0], False) for task in models):
+            message = f"{tasks[solver].word} marches {suits[1]}, and '{group[0]}' is none"
+            found.error("no-grid" if suits[0] == "is_field" else "no-flow", message, tasks[solver].span, help=_OTHER)
         result.append(
             Island(
                 models=group,
