@@ -33,18 +33,20 @@ def empty(node: Node) -> bool:
     return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
 
 
-def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
-    """The word and fields of an entry; None after reporting a wrong shape."""
+def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[str] = ()) -> Written | None:
+    """The word and fields of an entry; None after reporting a wrong shape, as of one of the ``sections`` in another."""
+    name = what.strip("'")
+    margin = f"`{name}` is a section: write it at the left margin, as `objects`"
     if isinstance(node, Scalar):
         if broken(node):
             return None
         if node.kind == "text":
             return Written(node, None, None)
         message = f"{what} has no word" if empty(node) else f"{what} is the {node.kind} {node.text}, not a part"
-        found.error("entry-shape", message, node.span, help=instead("entry", what.strip("'")) or _ENTRY)
+        found.error("entry-shape", message, node.span, help=instead("entry", name) or _ENTRY)
         return None
     if isinstance(node, Sequence):
-        help = instead("list", what.strip("'")) or _ENTRY
+        help = margin if name in sections else instead("list", name) or _ENTRY
         found.error("entry-shape", f"{what} is a list, not a part", node.span, help=help)
         return None
     words = [key for key in node.entries if key != "repeat"]
@@ -56,9 +58,15 @@ def read_entry(what: str, node: Node, found: Diagnostics) -> Written | None:
     if len(words) > 1:
         first, second = node.keys[words[0]], node.keys[words[1]]
         message = f"{what} holds '{words[0]}' and '{words[1]}', but a part has one word"
-        help = (
-            f"fields stand below the word: {{word: {{{words[0]}: ..., {words[1]}: ...}}}}: `sceneql words` lists them"
-        )
+        both = f"{{{words[0]}: ..., {words[1]}: ...}}"
+        help = f"fields stand below the word: {{word: {both}}}: `sceneql words` lists them"
+        if name in sections:
+            help = margin
+        elif name.isidentifier():
+            help = (
+                f"if '{name}' is the word, a name stands before it: `NAME: {{{name}: {both}}}`; if it is the name, a "
+                f"word stands around the fields: `{name}: {{WORD: {both}}}`: `sceneql words` lists them"
+            )
         beside = (instead("beside", word) for word in words)
         if (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:
             help = other

@@ -199,7 +199,7 @@ class _Expander:
             for part in (name, *re.split(r"\W+", name)):  # as it may be written in an expression
                 self.done.broken.add(part)
             return None
-        written = read_entry(f"'{name}'", node, self.found)
+        written = read_entry(f"'{name}'", node, self.found, self.families)
         if written is None:
             self.done.broken.add(place.front + name)
         return written
