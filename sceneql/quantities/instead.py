@@ -226,7 +226,7 @@ _SENTENCES = (
     ),
     (
         "field",
-        "young youngs_modulus young_modulus poisson poisson_ratio",
+        "young youngs_modulus young_modulus modulus elastic_modulus E nu poisson poisson_ratio",
         "a solid's law says it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`: `sceneql words elastic`",
     ),
     ("field", "opacity alpha transparency transparent", "write `material: glass`: `sceneql words glass`"),
