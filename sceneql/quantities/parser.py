@@ -253,6 +253,10 @@ class _Parser:
             )
         elif isinstance(expr, Number) and (of := _UNIT_IN_BRACKETS.match(self.text, self.start)) is not None:
             help = f"a unit stands behind its number, without brackets: write `{self.before} {of[1]}`"
+        elif self.kind == "name" and self.token in UNITS and expr.span is not None and expr.span.text[-1:] == ")":
+            _, end = read_unit(self.text, self.start, self.span)
+            unit = self.text[self.start : end]
+            help = f"a unit stands directly after a number: write `{expr.span.text[:60]}*(1 {unit})`"
         elif self.before in FUNCTIONS and self.kind != "sign":
             help = f"write `{self.before}({self.token[:40]})`"
         elif (other := instead("name", self.token) or instead("name", self.before)) is not None:
