@@ -232,10 +232,7 @@ class _Checker:
         return self.family_of[name] if cls is None else cls.family
 
     def outputs_of(self, name: str) -> Mapping[str, Gives] | None:
-        """The outputs of a part, found without reading its fields.
-
-        None if there is no such part or they cannot be known.
-        """
+        """The outputs of a part, found without reading its fields; None if it has none that can be known so."""
         if name not in self.entries:
             return None
         entry = self.entries[name]
@@ -307,10 +304,7 @@ class _Checker:
         return cls if fits else None
 
     def refer(self, node: Node, mark: Refers, anonymous: str, entry: Entry) -> Ref | None:
-        """The part that a field refers to; an entry written in place becomes a part of its own first.
-
-        None after an error.
-        """
+        """The part that a field refers to, made of an entry written in place; None after an error."""
         if isinstance(node, Scalar):
             name = entry.scope.resolve(node.text) if entry.scope is not None else node.text
             if mark.bodies and name == WORLD:
@@ -357,10 +351,7 @@ class _Checker:
         return None
 
     def _body(self, node: Scalar, model: str, body: str) -> Ref | None:
-        """A reference to a body of a model, or to the only one (``body`` empty).
-
-        None after reporting that there is none.
-        """
+        """A reference to a body of a model, or to the only one (``body`` empty); None after an error."""
         outputs = self.names.outputs_of(model)
         if outputs is None or self.names.unsure(model):
             return None  # it is reported there

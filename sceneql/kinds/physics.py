@@ -58,10 +58,7 @@ class Model(Kind):
     """Whether a flow may carry it (Interaction.carrier): it is then assembled after the flow."""
 
     def assemble(self, name: str, assembly: Assembly) -> Bodies | None:
-        """Reserve its state with initial values and add the terms of its own rate.
-
-        Returns the masses that forces may act on.
-        """
+        """Reserve its state with initial values, and add its own rate's terms; the masses that forces may act on."""
         raise TypeError(f"{type(self).__name__} has no state")
 
     def assemble_part(
