@@ -219,8 +219,8 @@ class Switch:
     def _take(self, stepper: Stepper, t: float, why: str) -> None:
         self.active = stepper
         self._warming = stepper is self.stiff
+        self._early = EARLY if self._warming and self._local and self._held else 0
         self._lost = 0.0
         if self._warming:
-            self._early = EARLY if self._local and self._held else 0
             self.until_look = 2 * TRIAL // EARLY if self._early else TRIAL
         self.history.append((t, f"{stepper.method.name}: {why}"))
