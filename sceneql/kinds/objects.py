@@ -44,6 +44,10 @@ class Object(Kind):
     color: Color | None = field("Color in place of the material's.", None)
     hidden: bool = field("Not drawn (but may be used by others).", False)
 
+    def own_box(self) -> str:
+        """The fields `size` and `corner` of a model that spreads in the same box, for messages; empty for no box."""
+        return ""
+
     @property
     def traced(self) -> str:
         """The kind of field by which rays are intersected with it (frame.Implicit).

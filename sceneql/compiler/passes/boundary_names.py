@@ -13,18 +13,7 @@ from sceneql.language.tree import Node
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 
 HELP = "a part of it says where it is: `near: 0 0.3 m` with `within: 6 cm`, or `where`"
-
-
 SIDES = ("left", "right", "bottom", "top", "back", "front")
-
-
-def _own_box(box: Any) -> str:
-    """The fields `size` and `corner` that are a box of constant size and place; in general, where they are not."""
-    size, middle = (value.number() if value.constant else None for value in (box.size, box.position))
-    if size is None or middle is None:
-        return "`size` and `corner`"
-    corner = (at - 0.5 * side for at, side in zip(middle, size, strict=True))
-    return f"`size: {' '.join(f'{one:g}' for one in size)} m`, `corner: {' '.join(f'{one:g}' for one in corner)} m`"
 
 
 def report_boundary_names(script: Script, tasks: Mapping[str, Task], found: Diagnostics) -> None:
@@ -48,10 +37,8 @@ def report_boundary_names(script: Script, tasks: Mapping[str, Task], found: Diag
             place = None if entry is None or entry.fields is None else _key(entry.fields, name)
             text = f"the boundary has no part '{name}'"
             help = f"it has {', '.join(known)}; {HELP}"
-            if name in SIDES and type(shape).__name__ == "Box":
-                help = (
-                    f"sides have names in a box that is the model's own: in place of `domain` write {_own_box(shape)}"
-                )
+            if name in SIDES and (own := shape.own_box()):
+                help = f"sides have names in a box that is the model's own: in place of `domain` write {own}"
             found.error("unknown-boundary", text, place or task.span, help=help)
 
 

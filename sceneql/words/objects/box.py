@@ -33,6 +33,14 @@ class Box(Solid):
         """It is met exactly."""
         return ""
 
+    def own_box(self) -> str:
+        """Its size and corner where they are constant; in general, where they are not."""
+        size, middle = (value.number() if value.constant else None for value in (self.size, self.position))
+        if size is None or middle is None:
+            return "`size` and `corner`"
+        corner = (at - 0.5 * side for at, side in zip(middle, size, strict=True))
+        return f"`size: {' '.join(f'{one:g}' for one in size)} m`, `corner: {' '.join(f'{one:g}' for one in corner)} m`"
+
     def _half(self, moment: Moment) -> tuple[float, float, float]:
         half = triple(0.5 * moment.at(self.size))
         if not min(half) > 0:
