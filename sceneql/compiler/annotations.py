@@ -59,6 +59,18 @@ def example_of(cls: type[BaseModel], name: str) -> str:
     dimension = next((mark.dimension for mark in quantities(info) if not mark.shape), None)
     if dimension is not None:
         return format_quantity(1.0, dimension)
+    formula = next((mark.dimension for mark in marks_of(info) if isinstance(mark, kinds.Symbols)), None)
+    if formula is not None:
+        return format_quantity(1.0, formula)
     records = [arm for arm in get_args(info.annotation) if isinstance(arm, type) and issubclass(arm, BaseModel)]
-    needed = [one for record in records for one in record.model_fields.values() if one.is_required()]
-    return "{}" if records and not needed else "{...}"
+    if not records:
+        return "..."
+    needed = [kinds.written_name(key) for key, one in records[0].model_fields.items() if one.is_required()]
+    return f"{{{', '.join(f'{key}: {example_of(records[0], key)}' for key in needed)}}}"
+
+
+def first_field(cls: type[BaseModel]) -> str:
+    """The fields of a record that has to have some, else its first field, with examples: ``{mass: 1 kg}``."""
+    needed = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
+    names = needed or [kinds.written_name(next(iter(cls.model_fields)))]
+    return f"{{{', '.join(f'{name}: {example_of(cls, name)}' for name in names)}}}"

@@ -20,6 +20,7 @@ MOST_COPIES: Final = 10_000
 _MOST_HOPS: Final = 64
 _Known = dict[int, float | None]
 _NUMBERED = re.compile(r"(\w*?)_?[{[(<$%]+(\w+)[}\])>]*\w*?((?:[{[(<$%]+\w+[}\])>]*\w*)*)")
+_RANGE = re.compile(r"\b(?:range|linspace|arange)\(.*?(\w+)\W*\)")
 _LOOP = re.compile(r"for(?:each)?\s+\(?(?:int |let |var )?\s*(\w+)\b.*")
 
 
@@ -68,6 +69,8 @@ def read_repeat(
             return Repeat(len(texts), symbol, key, texts)
     if not isinstance(node, Mapping) or "count" not in node.entries or node.entries.keys() - {"count", "as"}:
         given = node.text if isinstance(node, Scalar) and node.kind in ("integer", "text") else "5"
+        if (loop := _RANGE.search(given)) is not None:
+            given = loop[1]
         help = f"write `repeat: {{count: {given}, as: i}}`"
         found.error("repeat-shape", "`repeat` takes a count, and a name for the number", node.span, help=help)
         return None
