@@ -82,14 +82,21 @@ def by_name(node: Node, item: Any) -> str:
     """The help where records that stand under names are a list, or are named without fields."""
     items = node.items if isinstance(node, Sequence) else []
     record = isinstance(item, type) and issubclass(item, BaseModel)
-    named = [one.entries.get("name") or one.entries.get("id") for one in items if isinstance(one, MappingNode)]
-    if record and items and len(named) == len(items) and all(isinstance(one, Scalar) for one in named):
-        texts = (f"{name.text}: {{{_inside(one, NAMES)}}}" for name, one in zip(named, items, strict=True) if name)
+    texts = [f"{name}: {{{_inside(one, NAMES)}}}" for one in items if (name := _name_in(one))]
+    if record and items and len(texts) == len(items):
         return f"write `{{{', '.join(texts)}}}`, the name of each before its fields"
     first = items[0].span.text if items else "name"
     first = first if first.isidentifier() else "name"
     example = first_field(item) if record else "..."
+    if record and "of" in item.model_fields and first != "name":
+        example = f"{{of: {first}}}"
     return f"write `{{{first}: {example}}}`, each entry under a name of its own"
+
+
+def _name_in(node: Node) -> str:
+    """The name that an item of a list gives itself as other programs do; empty for none."""
+    given = [node.entries[key] for key in NAMES if key in node.entries] if isinstance(node, MappingNode) else []
+    return given[0].text if given and isinstance(given[0], Scalar) else ""
 
 
 def _inside(node: Node, without: Collection[str] = ()) -> str:

@@ -26,6 +26,7 @@ from sceneql.quantities.units import describe, in_words, unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
+_EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
 
@@ -92,7 +93,10 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
     """The bound tree of a scalar's text."""
     text = parsed_text(node)
     if not text.strip():
-        found.error("missing-value", "a value is missing here", node.span)
+        line = node.source.text[node.source.text.rfind("\n", 0, node.start) + 1 : node.start]
+        written = _EQUATED.search(line)
+        help = None if written is None else f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
+        found.error("missing-value", "a value is missing here", node.span, help=help)
         return None
     try:
         return names.parsed.tree(node, text, names.lookup, found)
@@ -256,6 +260,9 @@ def _pointed(expr: Expr, wanted: Quantity) -> str | None:
     size = len(expr.items) if isinstance(expr, Vector) else 0
     if wanted.shape == (3,) and expr.type.shape == (None, 3) and isinstance(expr, Link):
         return f"write one of its points, the first is `item({expr.task}.{expr.output}, 0)`"
+    if wanted.shape == (None, 2, 3) and expr.type.shape == (size, 2):
+        here = "a segment is two points, `[[0 0 0 m, 1 0 0 m], [0 0 0 m, 0 1 0 m]]`"
+        return f"{here}; pairs of numbers, of points from 0, stand beside the `points` of the whole object"
     if wanted.shape == (None, 3) and expr.type.shape == (size,) and size > 3 and size % 3 == 0:
         texts = ["" if item.span is None else item.span.text for item in expr.items]  # type: ignore[union-attr]
         unit = "" if wanted.dimension is None or wanted.dimension.plain else f" {unit_of(wanted.dimension)}"

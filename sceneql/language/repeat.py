@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from collections.abc import Mapping as Table
 from dataclasses import dataclass
 from math import inf
@@ -21,6 +22,7 @@ _MOST_HOPS: Final = 64
 _Known = dict[int, float | None]
 _NUMBERED = re.compile(r"(\w*?)_?[{[(<$%]+(\w+)[}\])>]*\w*?((?:[{[(<$%]+\w+[}\])>]*\w*)*)")
 _RANGE = re.compile(r"\b(?:range|linspace|arange)\(.*?(\w+)\W*\)")
+_COPY = re.compile(r"(.+?)[._\[]\{?([^\W\d]\w*)\}?\]?\s*([-+]\s*\d+)?\]?")
 _LOOP = re.compile(r"for(?:each)?\s+\(?(?:int |let |var )?\s*(\w+)\b.*")
 
 
@@ -54,6 +56,15 @@ def numbered(name: str) -> str | None:
         return None
     copies = f"the copies are {plain}.0, {plain}.1, ..."
     return f"write `{plain}: {{repeat: {{count: 5, as: {index}}}, ...}}`, {copies}: `sceneql words repeat`"
+
+
+def copy_meant(name: str, known: Collection[str]) -> str | None:
+    """The help for the name of a copy whose number is not in braces: ``link.i+1`` where there is ``link.0``."""
+    found = _COPY.fullmatch(name)
+    if found is None or f"{found[1]}.0" not in known:
+        return None
+    number = found[2] if found[3] is None else f"{found[2]} {found[3][0]} {found[3][1:].strip()}"
+    return f'the number of a copy stands in braces, in quotes: write `"{found[1]}.{{{number}}}"`'
 
 
 def read_repeat(

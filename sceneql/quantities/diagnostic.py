@@ -201,7 +201,7 @@ def nearest(name: str, choices: Iterable[str]) -> str | None:
         return same
     name = of_library(name)
     close = get_close_matches(name, choices, n=1, cutoff=0.8)
-    pieces = _PIECE.findall(name)
+    pieces = [] if "." in name else _PIECE.findall(name)
     if not close and len(pieces) > 1:  # AmbientLight, primitive_cube_add
         close = [same for piece in pieces if (same := same_as(piece, choices)) is not None][:1]
     close = close or get_close_matches(name, choices, n=1, cutoff=0.6)

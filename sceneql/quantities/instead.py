@@ -33,5 +33,5 @@ def instead(what: str, word: str) -> str | None:
 
 def anywhere(word: str) -> str | None:
     """The help for a word of another program, whatever it was meant as."""
-    found = [(what, help) for (what, other), help in INSTEAD.items() if other == word.lower()]
+    found = [(what, help) for (what, other), help in INSTEAD.items() if other == word.lower() and what != "before"]
     return min(found, key=lambda one: "." in one[0], default=("", None))[1]

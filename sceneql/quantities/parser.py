@@ -23,6 +23,7 @@ from sceneql.quantities.spaced import bracketed
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
+from sceneql.quantities.units import parse_unit
 
 LONGEST, DEEPEST = 10_000, 100
 """Limits on the number of characters of one expression (each node takes at least one), and on the depth of its tree."""
@@ -210,7 +211,9 @@ class _Parser:
                 help = f"write `{plain}`"
             name = re.match(WORD, self.text[self.end :])
             if self.token == "$" and name is not None:
-                help = f"a name stands by itself: write `{name.group()}`"
+                own = name.group()
+                help = f"a name stands by itself: write `{own}`, or `{own}*(1 cm)` where it is a plain number"
+                help = "the time is `time`" if own in ("t", "T", "F", "FF") else help
             component = re.match(r"\.([xyz])\b", self.text[self.start :])
             if component is not None and self.before in (")", "]"):
                 help = f"a component of an expression is written `component(..., {'xyz'.index(component[1])})`"
@@ -260,6 +263,7 @@ class _Parser:
                 if vector == self.text.strip():  # right as a vector, but a formula stands here
                     *numbers, last = vector.split(" ")
                     unit = "" if last[-1:].isdigit() else f" {last}"
+                    parse_unit(last, self.span) if unit else None  # raises where it is none, as km/hr
                     vector = f"[{', '.join(f'{one}{unit}' for one in (numbers if unit else (*numbers, last)))}]"
                 help = f"write `{vector}`"
         elif self.kind == "number" and self.before[-1:].isdigit():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.operations import CONSTANTS, FUNCTIONS
@@ -29,8 +30,11 @@ def bracketed(text: str, span: Span) -> str | None:
         except ScriptError:
             return None
     plain = [_NUMBER.fullmatch(piece) is not None for piece in pieces]
-    if len(pieces) != SIZE or all(plain) or not any(plain):
+    if len(pieces) != SIZE or all(plain) or not any(plain) or not text.isascii():
         return None
+    for number, piece in pairwise(pieces):  # 1 m*sin 3
+        if _NUMBER.fullmatch(number) and (word := _NAME.match(piece)) is not None and word.group() in UNITS:
+            return None
     if any(piece.startswith(_JOINS) or piece.endswith((*_JOINS, "-")) for piece in pieces):
         return None
     return f"[{', '.join(_with(piece, unit, one) for piece, one in zip(pieces, plain, strict=True))}]"
