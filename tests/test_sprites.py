@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from renderers.tracing.draw import draw
-from renderers.tracing.sprite_light import MANY, ORDERS, left_at, lit
+from renderers.tracing.light.discs import MANY, ORDERS, left_at, lit
 from sceneql.frame import PointLight, Points, SeenFrame, Sky, Sun, Surface, View
 
 BLACK = Sky(zenith=(0, 0, 0), horizon=(0, 0, 0), ground=(0, 0, 0))

@@ -54,7 +54,7 @@ def _radiances(shape: Points, frame: SeenFrame) -> Floats:
     if glows or shape.soft == "adds":
         found[:, 0] = own
         return found
-    from renderers.tracing.sprite_light import lit
+    from renderers.tracing.light.discs import lit
 
     for k, given in enumerate(lit(shape, frame.lights, frame.view.axes)):
         found[:, k] = own * given

@@ -82,7 +82,7 @@ def _radiance(sky: Sky, height: float) -> Floats:
 
 def left_at(places: Floats, shape: Points, towards: Floats) -> Floats:
     """Part (m,) of the light from a direction (3,) that the shape's discs leave at places (m, 3)."""
-    from renderers.tracing.sprite_light_kernels import thin_out
+    from renderers.tracing.light.discs_kernels import thin_out
 
     axes = axes_towards(towards)
     discs, asked, radii = seen_along(shape.centers, axes), seen_along(places, axes), shape.radii
@@ -106,4 +106,5 @@ def left_at(places: Floats, shape: Points, towards: Floats) -> Floats:
 def seen_along(points: Floats, axes: Floats) -> Floats:
     """Coordinates (n, 3) of points along axes (3, 3): products and sums alone, so that all processors find the same."""
     x, y, z = points.T
-    return np.stack([x * a + y * b + z * c for a, b, c in axes], axis=1)
+    along: Floats = np.stack([x * a + y * b + z * c for a, b, c in axes], axis=1)
+    return along
