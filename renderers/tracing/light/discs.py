@@ -77,7 +77,8 @@ def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Floa
 def _radiance(sky: Sky, height: float) -> Floats:
     """Radiance (3,) of a sky in a direction of a sine of elevation."""
     end = sky.zenith if height >= 0.0 else sky.ground
-    return np.array(sky.horizon) + abs(height) * (np.array(end) - np.array(sky.horizon))
+    radiance: Floats = np.array(sky.horizon) + abs(height) * (np.array(end) - np.array(sky.horizon))
+    return radiance
 
 
 def left_at(places: Floats, shape: Points, towards: Floats) -> Floats:
