@@ -83,7 +83,7 @@ OF_PARTS = (
     ("section", "if switch", f"there is no `if` around parts; in a value {IF}"),
     (
         "section",
-        "def function class fn lambda",
+        "def class fn",
         "a piece with fields of its own is a template: `sceneql words templates`",
     ),
     (
