@@ -19,6 +19,7 @@ from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.instead import instead
 
 TRUE = ("true", "yes", "on")
 NAMES = ("name", "id")
@@ -35,6 +36,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         return f"write `{{{found[0]}: {node.span.text}}}`" if len(found) == 1 else None
     if node.text.lower() in TRUE and not required:
         return "write `{}`: all of its fields have defaults"
+    if "value" in cls.model_fields and (held := instead("bare", node.text)) is not None:
+        return held
     name, _, rest = node.text.partition(" ")
     if name in map(kinds.written_name, cls.model_fields):
         rest = rest.strip().removeprefix("=").strip()

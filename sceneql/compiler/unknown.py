@@ -63,6 +63,11 @@ def _together(name: str, unknown: Sequence[str], node: Mapping, known: Collectio
     same = [other for other in unknown if same_as(other, known) == ours]
     if ours == "between" and len(same) == 2 and ours not in node.entries:
         return f"write `{ours}: [{', '.join(node.entries[other].span.text for other in same)}]`"
+    whole, _, part = name.partition(".")
+    parts = [other.partition(".") for other in unknown if other.startswith(f"{whole}.")]
+    if whole in known and part in ("x", "y", "z"):
+        values = (f"{each}: {node.entries[f'{whole}.{each}'].span.text}" for _, _, each in parts)
+        return f"write `{whole}: {{{', '.join(values)}}}`"
     names = list(node.entries)
     first = names.index(name)
     while first and names[first] not in known and _empty(node.entries[names[first]]):
@@ -161,7 +166,12 @@ def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, ca
         word = same_as(name, having) or having[0]
         return f"write `{{{word}: {{color: {name}}}}}`, or `color: {name}` in its place"
     words = catalogue.words(mark.family)
-    hint = instead("part", name) or suggestion(name, [*choices, *words])
+    if names.gives(name) and (readers := names.readers(name, choices)):
+        return f"a part stands here, and none of its outputs: write `{readers[0]}`, which shows it"
+    hint = instead("part", name) or suggestion(name, choices) or suggestion(name, words)
+    if hint is None and mark.panel:
+        hint = f"rows hold names of cameras and graphs, `[[{', '.join(choices[:2]) or 'front, top'}]]`"
+        hint += "; variants stand side by side by `[{each: variant}]`: `sceneql words layout`"
     if hint is None and words:
         hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
     return hint

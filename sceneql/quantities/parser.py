@@ -207,7 +207,9 @@ class _Parser:
         if self.kind == "bad":
             message = f"'{self.token}' cannot stand in an expression"
             help = instead("sign", self.token)
-            if (self.token == "\\" or (self.token == "{" and self.before == "^")) and (plain := from_latex(self.text)):
+            if (self.token == "\\" or (self.token == "{" and self.before[-1:] in ("^", "_"))) and (
+                plain := from_latex(self.text)
+            ):
                 help = f"write `{plain}`"
             name = re.match(WORD, self.text[self.end :])
             if self.token == "$" and name is not None:
@@ -257,6 +259,8 @@ class _Parser:
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
         if isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
             help = formula
+        elif isinstance(expr, Number) and self.kind == "number" and self.before.endswith("%"):
+            help = instead("sign", "%")
         elif isinstance(expr, Number) and self.kind == "number":
             help = "a vector is numbers alone and one unit, `0 1.2 0 m`, or expressions in brackets, `[a, b, c]`"
             if (vector := vector_meant(self.text)) is not None:
