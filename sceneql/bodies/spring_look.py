@@ -51,7 +51,7 @@ def holders(name: str, places: Floats, held: NDArray[Any], triangles: Ints | Non
             yield Segments(f"{name}.pins", HOLDER, ends, np.minimum(RAIL * lengths, thin))
         if len(plates):
             used, corners = np.unique(plates, return_inverse=True)
-            yield sheet(f"{name}.pins", HOLDER, places[used], corners.reshape(-1, 3), 0.5 * thin)
+            yield sheet(f"{name}.pins", HOLDER, places[used], corners.reshape(-1, 3).astype(np.int32), 0.5 * thin)
     if alone.any():
         yield spheres(f"{name}.pins", HOLDER, places[alone], max(BEAD * radius, thin))
 
