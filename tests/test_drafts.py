@@ -93,6 +93,6 @@ def test_the_command_line_has_it(tmp_path, monkeypatch):
 def test_a_draft_never_draws_more_finely_than_is_written():
     full = Trace().draft()
     assert (full.samples, full.diffuse_bounces) == (DRAFT_SAMPLES, DRAFT_BOUNCES)
-    assert DRAFT_SAMPLES < Trace().samples
+    assert Trace().samples > DRAFT_SAMPLES
     plain = Trace(samples=1, diffuse_bounces=0).draft()
     assert (plain.samples, plain.diffuse_bounces) == (1, 0)
