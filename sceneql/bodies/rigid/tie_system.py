@@ -95,7 +95,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         [number for some in shared for number in some],
         starts,
         [starts[k] + along(k, k) for k in range(len(rows))],
-        len(rows) * [0] if planned is None else planned.numbers.tolist(),
+        [] if planned is None else planned.numbers.tolist(),
     ]
     begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
     spent = (0, 0) if planned is None else (planned.factors, planned.work + len(rows))
