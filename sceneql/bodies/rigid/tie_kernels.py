@@ -46,6 +46,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
 )
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.linear.multifrontal import layout
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
 # Compiled at the first system of many rows, or of few.
@@ -61,17 +62,19 @@ begins; the first values of the matrix's rows, and the places of its diagonal's;
 what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels). Few rows have a
 matrix that is whole, its factors in place, and no plan. A mover that ties
 share: their number n and its own; of each tie its first row, how many it has, their floats at its side; then n x n
-places in a row of the first where the rows of the second begin, counted from that row's first value."""
+places in a row of the first where the rows of the second begin, counted from that row's first value (-1: what stands
+there is not read)."""
 
 KEPT = 12
 """Floats of a row that drifts keep of where they began: J."""
 EASE, LITTLE, DEPENDENT = 1e-9, 1e-13, 1e-12
-"""Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: the less where no row follows from others at the
-start, so that light bodies may hold heavy ones; and the part of a diagonal that a pivot of few rows must be above."""
+"""Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: none where no row follows from others at the
+start, so that light bodies may hold heavy ones, but LITTLE where a pivot is not above that part of its diagonal."""
 COARSE = 1e-10
 """Part of an acceleration that sums of large forces may round off."""
-LEFT = 1e-13
-"""What may be left of an equation, against the numbers that it is a sum of."""
+LEFT, LONG = 1e-13, 1000
+"""What may be left of an equation, against the numbers that it is a sum of; rows beyond which it is in proportion to
+their number, as the rounding of the factors is."""
 SHARE = 1e-2
 """Part of LEFT that may be left of the numbers that a gap is the difference of."""
 FEW, MOST_CORRECTIONS = 6, 50
@@ -97,11 +100,10 @@ def survey(t, y, floats, ints):
 
 @lean(types.void(A, I))
 def fill(floats, ints):
-    """Write J T: of a matrix that is whole the upper half."""
+    """Write J T, at least the half of it that is read."""
     values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     for k in range(values.size):
         values[k] = 0.0
-    whole = ints[FACTORS] == 0
     at, starts = ints[SHARED_AT], ints[STARTS_AT]
     for _ in range(ints[SHARED]):
         count, mover = ints[at], ints[MOVED_AT] + MOVED * ints[at + 1]
@@ -119,42 +121,52 @@ def fill(floats, ints):
                         total = six[0] * x + six[1] * y + six[2] * z + six[3] * u
                         total += six[4] * v
                         total += six[5] * w
-                        values[ints[starts + first + i] + across + j] += total
-                        if not whole and (one != other or j > i):
+                        if across >= 0:
+                            values[ints[starts + first + i] + across + j] += total
+                        if along >= 0 and (one != other or j > i):
                             values[ints[starts + last + j] + along + i] += total
         at = table + count * count
 
 
 @lean_inlined
-def ease(values, floats, ints, part):
-    """Add a part of the diagonal to it. A row that no mass can meet, as of two parts that are led, has no force."""
+def depends(values, factors, ints, plan):
+    """Whether a pivot of sparse factors is not above the part DEPENDENT of its diagonal."""
+    for s in range(plan[1]):
+        t = layout.HEAD + layout.FIELDS * s
+        first, width, height, panel = plan[t], plan[t + 1], plan[t + 2], plan[t + 5]
+        for k in range(width):
+            diagonal = values[ints[ints[DIAGONAL_AT] + plan[plan[2] + first + k]]]
+            inverse = factors[panel + k * (height + 1)]
+            if not 0.0 < inverse < 1.0 / (DEPENDENT * diagonal):
+                return True
+    return False
+
+
+@lean(types.boolean(A, I, F))
+def factor_with(floats, ints, part):
+    """Factor J T with a part of its diagonal added; False where that cannot be, or without it where rows depend."""
+    fill(floats, ints)
+    values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     for k in range(ints[ROWS]):
         place = ints[ints[DIAGONAL_AT] + k]
+        # A row that no mass can meet, as of two parts that are led, has no force.
         values[place] = values[place] * (1.0 + part) if values[place] > 0.0 else 1.0
+    if ints[FACTORS] == 0:
+        return factor_dense(values, ints[ROWS], DEPENDENT if part == 0.0 else 0.0)
+    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
+    factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
+    work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
+    return factor_sparse(plan, values, factors, work) and (part > 0.0 or not depends(values, factors, ints, plan))
 
 
 @lean(types.boolean(A, I))
 def factor(floats, ints):
-    """Factor J T with the part at EASE_AT of its diagonal added; False where that cannot be.
+    """Factor J T; False where that cannot be.
 
-    Few rows that depend on none before them do without: only where they come to do so is LITTLE added.
+    Where rows depend on others EASE of the diagonal is added, and LITTLE where they have only come to do so.
     """
-    values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
-    fill(floats, ints)
     part = floats[ints[EASE_AT]]
-    if ints[FACTORS] > 0:
-        ease(values, floats, ints, part)
-        plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
-        factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
-        work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
-        return factor_sparse(plan, values, factors, work)
-    if part <= LITTLE:
-        ease(values, floats, ints, 0.0)
-        if factor_dense(values, ints[ROWS], DEPENDENT):
-            return True
-        fill(floats, ints)
-    ease(values, floats, ints, part)
-    return factor_dense(values, ints[ROWS], 0.0)
+    return factor_with(floats, ints, part) or (part == 0.0 and factor_with(floats, ints, LITTLE))
 
 
 @lean(types.void(A, I))
@@ -178,6 +190,7 @@ def balance(floats, ints, target, size_at):
     """
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     last, found = math.inf, False
+    little = LEFT * max(1.0, ints[ROWS] / LONG)
     for m in range(ints[MOVERS]):
         put(floats, ints[MOVED_AT] + MOVED * m + AT_PUSHED, 0.0, 0.0, 0.0)
         put(floats, ints[MOVED_AT] + MOVED * m + AT_PUSHED + 3, 0.0, 0.0, 0.0)
@@ -197,7 +210,7 @@ def balance(floats, ints, target, size_at):
             right[k] = -left
             if abs(left) > worst * size:
                 worst = abs(left) / size
-        if worst <= LEFT or (corrections >= FEW and worst > GAIN * last):
+        if worst <= little or (corrections >= FEW and worst > GAIN * last):
             break
         last = worst
         solve(floats, ints)
