@@ -7,11 +7,18 @@ from typing import TYPE_CHECKING, Any
 from sceneql.frame import Mesh, Points, Segments, Surface
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Ints
+    from sceneql.frame import Floats, Ints, Shape
 
 TURNS, PIECES = 9, 12
+HOLDER = Surface(color=(0.09, 0.095, 0.105), roughness=0.4)
+"""Rails, plates and beads that hold masses: dark, whatever the color of what they hold."""
+BEAD, RAIL, THIN = 1.4, 0.25, 0.012
+"""Radius of a bead over that of its mass; radius of a rail over its length between two masses; over the diagonal of
+all, the largest radius of a rail and the least of a bead."""
 LEAD = 0.12
 """Share of a coil's length that is straight at each end."""
 
@@ -21,6 +28,32 @@ def spheres(name: str, surface: Surface, places: Floats, radius: float) -> Point
     import numpy as np
 
     return Points(name, surface, places, np.full(len(places), radius))
+
+
+def holders(name: str, places: Floats, held: NDArray[Any], triangles: Ints | None, radius: float) -> Iterator[Shape]:
+    """What holds masses of places (n, 3) [m], by a mask (n,).
+
+    Rails along the rim of a sheet with ``triangles``, plates on the triangles whose corners are all held, beads on
+    other masses, which have a ``radius`` [m].
+    """
+    import numpy as np
+
+    alone, thin = held.copy(), THIN * float(np.linalg.norm(np.ptp(places, axis=0)))
+    if triangles is not None and len(triangles):
+        rim = rim_edges(triangles)
+        rails = rim[held[rim].all(axis=1)]
+        plates = triangles[held[triangles].all(axis=1)]
+        alone[rails] = False
+        alone[plates] = False
+        ends = places[rails]
+        lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        if len(rails):
+            yield Segments(f"{name}.pins", HOLDER, ends, np.minimum(RAIL * lengths, thin))
+        if len(plates):
+            used, corners = np.unique(plates, return_inverse=True)
+            yield sheet(f"{name}.pins", HOLDER, places[used], corners.reshape(-1, 3).astype(np.int32), 0.5 * thin)
+    if alone.any():
+        yield spheres(f"{name}.pins", HOLDER, places[alone], max(BEAD * radius, thin))
 
 
 def lines(name: str, surface: Surface, ends: Floats, radius: float) -> Segments:

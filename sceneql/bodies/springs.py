@@ -84,7 +84,7 @@ class SpringModel(Model):
     )
     look: Literal["auto", "coil", "line", "masses"] = field(
         "How it draws itself: springs as coils or lines, or not at all; `auto`: coils when few, a cloth as a sheet, a "
-        "solid as its surface, where no object shows them.",
+        "solid as its surface, where no object shows them, and what holds masses as dark rails, plates and beads.",
         "auto",
     )
     material: kinds.MaterialRef | None = field("How it looks where no object draws it.", None)
@@ -304,13 +304,19 @@ class SpringModel(Model):
         return self.look != "auto"
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
-        """Its shapes: a cloth as a sheet, a solid as its skin, else masses as spheres and springs as coils or lines."""
+        """Its shapes: a cloth as a sheet, a solid as its skin, else masses as spheres and springs as coils or lines.
+
+        And what holds masses.
+        """
         from sceneql.bodies import spring_look
 
         assert state.bodies is not None
         surface = moment.surface(name, self.material, self.color)
         places = point_masses.positions(state.bodies, state).copy()
         triangles = self.triangles(state)
+        held = point_masses.held(state.bodies, state)
+        if self.look == "auto" and held.any():
+            yield from spring_look.holders(name, places, held, triangles, self.mass_radius())
         if triangles is not None and self.look == "auto":
             yield spring_look.skin(name, surface, places, triangles, 0.5 * self.mass_radius())
             return

@@ -109,7 +109,7 @@ class Elastic(Model):
         f"p2_mean above a Poisson ratio of {LOCKS}, else p2.",
         None,
     )
-    law: Laws = field("How it resists strain.")
+    law: Laws = field("How it resists strain: `{neo_hookean: {modulus: 10 kPa}}`.")
     density: Annotated[Formula, Symbols(AXES, dim.DENSITY, at_start=True)] | None = field(
         f"Its density, {MATERIAL}; by default {WATER:g} kg/m^3.", None
     )
