@@ -300,9 +300,7 @@ class Reader:
 
     def _dict(self, node: Node, arms: tuple[Any, ...], what: str) -> dict[Any, Any]:
         if not isinstance(node, MappingNode):
-            first = node.items[0].span.text if isinstance(node, Sequence) and node.items else "name"
-            first = first if first.isidentifier() else "name"
-            better = f"write `{{{first}: ...}}`, each entry under a name of its own"
+            better = likely.by_name(node, arms[1])
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, better)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():

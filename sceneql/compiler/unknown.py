@@ -10,11 +10,11 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.css_colors import NAMED
 from sceneql.compiler.names import Names
 from sceneql.kinds import Refers, written_name
+from sceneql.language.repeat import copy_meant
 from sceneql.language.scope import Entry
 from sceneql.language.tree import Mapping, Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
 from sceneql.quantities.instead import instead
-from sceneql.quantities.other_words import OURS
 
 DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere"}
 """The word of a family that is shown where several have a field."""
@@ -94,7 +94,7 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
         return f"a part has a name, and a word around its fields: write `{text}`"
     if catalogue.load(family, entry.name) is not None:
         return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
-    having = [] if fields is None or entry.word in OURS else _having([entry.word], family, catalogue)
+    having = [] if fields is None else _having([entry.word], family, catalogue)
     if fields is not None and having:
         near = nearest(entry.name, having) or having[0]
         of = f" of {', '.join(sorted(having))}" if len(having) <= MANY else ""
@@ -144,6 +144,8 @@ def beside_world(place: str) -> str:
 
 def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, catalogue: Catalogue) -> str | None:
     """The help for a name of no part of the mark's families; ``choices``: the names of their parts."""
+    if (copy := copy_meant(name, {*choices, *names.parts})) is not None:
+        return copy
     if mark.bodies and name[:1] in "-[0123456789":
         return f"a place is no body: {beside_world(name)}"
     if "models" in (mark.family, mark.also) and (model := names.model_of(name)):

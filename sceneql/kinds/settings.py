@@ -104,7 +104,8 @@ class Study(Record):
         if not self.sweep:
             yield Problem("a study tries values by path, `{define.k: 1 .. 1e6 N/m}`", ("sweep",))
         if (self.exact is None) == (self.reference is None):
-            yield Problem("a study compares with either `exact` or a `reference`")
+            help = "write what is known, `exact: 9.81 J`, or other values by path to compare with, as in variants"
+            yield Problem("a study compares with either `exact` or a `reference`", help=help)
         yield from _unlike(self.of, {"exact": self.exact})
 
 
