@@ -24,7 +24,7 @@ class Polygons:
     """(n, 3) unit gradients, pointing outward; zero where the field has none, and on edges and corners kept sharp."""
 
 
-def touched(chosen: NDArray[np.bool_], corners: Ints) -> NDArray[np.bool_]:
+def touched(chosen: NDArray[np.bool_], corners: NDArray[np.integer]) -> NDArray[np.bool_]:
     """(t,) whether one of the vertices of polygons (t, n) is among those of the mask ``chosen`` (v,)."""
     found = chosen[corners[:, 0]]
     for k in range(1, corners.shape[1]):  # ``any`` along a short axis takes several times as long

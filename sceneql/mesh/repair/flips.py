@@ -61,7 +61,7 @@ def facing(tape: Tape, corners: Floats) -> Floats:
     return cosines
 
 
-def agreement(tape: Tape, polygons: Polygons, triangles: Rows) -> Floats:
+def agreement(tape: Tape, polygons: Polygons, triangles: NDArray[np.integer]) -> Floats:
     """(t,) how well triangles (t, 3) of the mesh's vertices face outward: the greater of two cosines.
 
     Of ``facing``, and of the least between the triangle's normal and those of its vertices, if all have one: along an
