@@ -26,7 +26,7 @@ class Polygons:
 
 def touched(chosen: NDArray[np.bool_], corners: NDArray[np.integer]) -> NDArray[np.bool_]:
     """(t,) whether one of the vertices of polygons (t, n) is among those of the mask ``chosen`` (v,)."""
-    found = chosen[corners[:, 0]]
+    found: NDArray[np.bool_] = chosen[corners[:, 0]]
     for k in range(1, corners.shape[1]):  # ``any`` along a short axis takes several times as long
         found |= chosen[corners[:, k]]
     return found
