@@ -124,9 +124,10 @@ def _onto_tilted(points: Floats, slopes: tuple[float, float]) -> Toward:
     """
     import numpy as np
 
-    principal = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
-    wide, high, thin = np.ptp(points @ principal.T, axis=0)
-    normal, usual = np.round(principal[2], 9), np.array(THREE_QUARTER) / math.hypot(*THREE_QUARTER)
+    away = points - points.mean(axis=0)
+    principal = np.linalg.eigh(away.T @ away)[1]
+    thin, high, wide = np.ptp(away @ principal, axis=0)
+    normal, usual = np.round(principal[:, 0], 9), np.array(THREE_QUARTER) / math.hypot(*THREE_QUARTER)
     if not thin < FLAT * min(wide, high) or abs(float(normal @ usual)) >= FULL:
         return THREE_QUARTER
     if abs(normal[1]) < STEEP:
