@@ -84,3 +84,10 @@ def test_the_view_of_a_tilted_ring_does_not_hang_on_rounding():
     for seed in range(5):
         off = points + 1e-13 * np.random.default_rng(seed).normal(size=points.shape)
         np.testing.assert_allclose(Auto().view(SIZE, Outlined(off)).axes[2], one, atol=1e-9)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_a_few_points_are_seen_from_somewhere(count):
+    points = np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0], [0.5, 1.0, -1.0]])[:count]
+    view = Auto().view(SIZE, Outlined(points))
+    assert np.isfinite(view.origin).all()

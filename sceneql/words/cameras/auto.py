@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar
 
-from sceneql.kinds import Angle, Camera, FixedScalar, Moment, field
+from sceneql.kinds import Angle, Camera, FixedScalar, FixedTime, Moment, field
 from sceneql.pictures import framing
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from sceneql.frame import Floats, View
 
 Toward = tuple[float, float, float]
@@ -37,14 +39,24 @@ class Auto(Camera):
     """A three-quarter view of all that is drawn, from the right front and above, that holds still over the whole film.
 
     A scene that is flat along an axis is seen along it, one that is flat and tilted from nearer to its normal, one that
-    is long and lies across. The few of many things that
-    leave for good are let go. Panels of variants share one view, and overlays are left room.
+    is long and lies across. The few of many things that leave for good are let go. Panels of variants share one view,
+    and overlays are left room.
+
+    It holds still, so that what moves in the picture moves in the scene, as fast and as far: beside a camera that goes
+    along, a ball that falls hangs before an empty ground. So what is small on a long way is small; where it is hardly
+    seen a warning says so. With a `window` the camera goes along; to one that holds still a `trail` shows the way.
     """
 
     yields: ClassVar[bool] = True
 
     field_of_view: Angle = field("Vertical field of view.", "30 deg", above=0, below=math.pi)
     margin: FixedScalar = field("Part of half the picture that is left free.", "0.12", at_least=0, below=1)
+    window: FixedTime | None = field(
+        "It moves softly and frames, at each instant, what moves within half of this time before and after; by default "
+        "it holds still.",
+        None,
+        above=0,
+    )
 
     def view(self, size: tuple[int, int], moment: Moment) -> View:
         """The view of the whole film."""
@@ -52,8 +64,39 @@ class Auto(Camera):
         points = moment.outline()
         slopes, middle = framing.inner(half, size, self.margin, moment.room, HEADROOM)
         axes = framing.axes_towards(_towards(points, slopes))
-        origin, _ = framing.fitted(points, axes, slopes, middle=middle)
-        return framing.view(origin, axes, size, half)
+        rows = moment.moving() if self.window is not None else points[:0]
+        if self.window is None or len(rows) == 0:
+            origin, _ = framing.fitted(points, axes, slopes, middle=middle)
+            return framing.view(origin, axes, size, half)
+
+        def stand(some: Floats) -> Floats:
+            return framing.fitted(some, axes, slopes, middle=middle)[0]
+
+        return framing.view(_softly(rows, moment.time, self.window, stand), axes, size, half)
+
+
+def _softly(rows: Floats, time: float, window: float, stand: Callable[[Floats], Floats]) -> Floats:
+    """Position (3,) [m] of a camera at a time [s] that follows what moves, softly.
+
+    ``rows``: instants and points (n, 1 + 3) of what moves; ``stand``: where a camera sees points. The position is a
+    mean over the instants of half a window before and after, with weights that fade to none, each of the camera that
+    sees what moves within half a window of its instant. So what moves now is in the picture: each of these sees it, and
+    the places from which cameras of one direction see a point are convex.
+    """
+    import numpy as np
+
+    times = np.unique(rows[:, 0])
+    spacing = float(np.diff(times).max()) if len(times) > 1 else window
+    reach = max(0.5 * window, spacing)
+    ages = (times - time) / reach
+    near = np.abs(ages) < 1.0
+    if not near.any():  # the run ahead failed before
+        near[np.abs(ages).argmin()], ages = True, np.zeros(len(ages))
+    weights = (1.0 - ages[near] ** 2) ** 2
+    seen = [rows[np.abs(rows[:, 0] - at) <= reach + spacing, 1:] for at in times[near]]
+    total = sum((w * stand(some) for w, some in zip(weights, seen, strict=True)), np.zeros(3))
+    position: Floats = total / weights.sum()
+    return position
 
 
 def _towards(points: Floats, slopes: tuple[float, float]) -> Toward:
@@ -81,9 +124,10 @@ def _onto_tilted(points: Floats, slopes: tuple[float, float]) -> Toward:
     """
     import numpy as np
 
-    principal = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2]
-    wide, high, thin = np.ptp(points @ principal.T, axis=0)
-    normal, usual = np.round(principal[2], 9), np.array(THREE_QUARTER) / math.hypot(*THREE_QUARTER)
+    away = points - points.mean(axis=0)
+    principal = np.linalg.eigh(away.T @ away)[1]
+    thin, high, wide = np.ptp(away @ principal, axis=0)
+    normal, usual = np.round(principal[:, 0], 9), np.array(THREE_QUARTER) / math.hypot(*THREE_QUARTER)
     if not thin < FLAT * min(wide, high) or abs(float(normal @ usual)) >= FULL:
         return THREE_QUARTER
     if abs(normal[1]) < STEEP:
