@@ -185,12 +185,14 @@ contacts: {{touch: {{collision: {{mode: exact, between: [it, floor], {law}}}}}}}
 """
 
 
-def test_a_drum_that_stands_and_is_struck_gains_no_energy(tmp_path):
-    """It rocks, and falls past the flat within a step; 124 J once became 1,583."""
+@pytest.mark.parametrize("sideways", [-1.42, -1.43])
+def test_a_drum_that_stands_and_is_struck_gains_no_energy(tmp_path, sideways):
+    """It rocks, and falls past the flat within a step; 124 J once became 1,583. What it loses as it is laid down is
+    little: it rocks lower before."""
     script = struck(
         "radius: 0.324 m, height: 0.279 m, position: 0 0.1395 0 m",
         "radius: 0.114 m, position: 0.264 0.948 -0.155 m",
-        "velocity: -1.420 -2.251 -0.045 m/s, spin: -4.348 -4.944 3.306 rad/s",
+        f"velocity: {sideways} -2.251 -0.045 m/s, spin: -4.348 -4.944 3.306 rad/s",
         "restitution: 0.5, friction: 0.5",
     )
     rows = runs.watch(tmp_path, script, np.linspace(0, 0.3, 121), "it.energy", "it.dissipated", pruned=False)

@@ -125,9 +125,9 @@ def _coarse(reals: Floats, at: int) -> tuple[int, int, int]:
     return z, y, x
 
 
-def directions() -> Floats:
-    """Unit vectors (DIRECTIONS, 3) evenly over the sphere, on a spiral (Gonzalez 2010)."""
-    up = 1.0 - (2.0 * np.arange(DIRECTIONS) + 1.0) / DIRECTIONS
-    turn = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(DIRECTIONS)
+def directions(count: int = DIRECTIONS) -> Floats:
+    """Unit vectors (count, 3) evenly over the sphere, on a spiral (Gonzalez 2010)."""
+    up = 1.0 - (2.0 * np.arange(count) + 1.0) / count
+    turn = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(count)
     across = np.sqrt(1.0 - up * up)
     return np.stack([across * np.cos(turn), up, across * np.sin(turn)], axis=1)

@@ -12,6 +12,7 @@ from sceneql.language.behind_quotes import without_letters
 from sceneql.language.tree import Scalar
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 from sceneql.quantities.instead import instead
+from sceneql.quantities.latex import from_latex
 from sceneql.quantities.operations import FUNCTIONS
 from sceneql.quantities.span import Source, Span
 
@@ -116,6 +117,8 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
                     message, help = f"{written} is read as a comment here, so the value is missing", f"quote it: {line}"
                 case "unit-after-bracket":
                     message, help = f"the unit '{written}' cannot stand behind a bracket", f"write: {line}"
+                case _ if "\\" in written and (plain := from_latex(written)) is not None:
+                    message, help = "commands of LaTeX mean nothing here", f"write `{plain}`"
                 case _ if _UNIT_IN_BRACKETS.fullmatch(written) is not None:
                     message, help = "a unit stands behind its number, without brackets", f"write: {line}"
                 case _ if written.startswith("(") and fault.fixed[0] not in "\"'":

@@ -30,6 +30,10 @@ class Spring(Force):
 
     mutual: ClassVar[bool] = True
 
+    said_by: ClassVar = dict.fromkeys(
+        ("between", "ends", "bodies", "connect"), "write `from: NAME.position, to: NAME.position`, of two masses"
+    )
+
     from_: Position = field("The position of a mass, or a place.")
     to: Position = field("The position of a mass, or a place.")
     stiffness: Stiffness = field("Force for a stretch.", "100 N/m", at_least=0)
