@@ -48,6 +48,8 @@ _MISSING = (
 viscosity to dynamic, conductivity to diffusivity."""
 _CHANCE = re.compile(r"\brandom\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)")
 _EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
+SIDES = (("width", "w", "breadth"), ("height", "h"), ("depth", "d", "length", "l"))
+"""Names of the sides of a box along x, y and z."""
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
 
@@ -162,7 +164,7 @@ def _by_component(
 ) -> Expr | None:
     for key in node.entries:
         if key not in COMPONENTS:
-            help = _timed(node) or suggestion(key, (*COMPONENTS, "keys"))
+            help = _timed(node) or _by_side(node) or suggestion(key, (*COMPONENTS, "keys"))
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"
@@ -179,6 +181,14 @@ def _by_component(
             return None
         items.append(value.expr)
     return Vector(tuple(items), Type((3,), quantity.dimension), node.span)
+
+
+def _by_side(node: MappingNode) -> str | None:
+    """The help where the sides of a box have names: width, height and depth."""
+    sides = [next((key for key in node.entries if key.lower() in names), None) for names in SIDES]
+    if None in sides or len(node.entries) != len(SIDES):
+        return None
+    return f"write `[{', '.join(node.entries[side].span.text for side in sides if side)}]`, along x, y and z"
 
 
 def _timed(node: MappingNode) -> str | None:
@@ -337,6 +347,11 @@ def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
         if dimension in (TIME, LENGTH):
             word = "divide it by" if sign == "/" else "multiply it by"
             return f"{word} {describe(dimension)}: write `{text}{sign}(1 {unit_of(dimension)})`"
+    unit = unit_of(wanted / has)
+    one = next((item for item in expr.items if not _zero(item)), expr) if isinstance(expr, Vector) else expr
+    text = text if one.span is None else one.span.text
+    if unit != "1" and any(isinstance(node, Number) and node.bare and node.value != 0 for node in walk(expr)):
+        return f"a number in it has no unit: write `{text}*(1 {unit})`, or `{unit}` behind that number"
     return None
 
 
