@@ -20,11 +20,15 @@ WALL = (
 )
 
 
-def holders(tmp_path, model, time=0.0, more=""):
+def shapes(tmp_path, model, time=0.0, more=""):
     script = tmp_path / "s.yaml"
     script.write_text(NET.format(model, more))
     (moment,) = simulate(load(script), [time])
-    return [shape for shape in moment.lower(["net"]) if shape.surface == HOLDER]
+    return moment.lower(["net"])
+
+
+def holders(*given, **more):
+    return [shape for shape in shapes(*given, **more) if shape.surface == HOLDER]
 
 
 def test_a_side_that_is_held_has_a_rail_along_its_masses(tmp_path):
@@ -41,12 +45,37 @@ def test_corners_have_a_bead_each(tmp_path):
     assert sorted(np.round(beads.centers[:, 0], 9)) == [-0.5, 0.5]
 
 
-def test_masses_of_a_lattice_and_fixed_ones_have_beads_larger_than_they_are(tmp_path):
+def test_masses_of_a_lattice_and_fixed_ones_have_beads(tmp_path):
     (beads,) = holders(tmp_path, LATTICE)
     assert len(beads.centers) == 9
-    assert (beads.radii > 0.02).all()
+    net = [one for one in shapes(tmp_path, LATTICE) if isinstance(one, Points)]
+    assert sum(len(one.centers) for one in net) == 27  # a bead in place of the mass
     (wall,) = holders(tmp_path, WALL)
     np.testing.assert_allclose(wall.centers, [[0.0, 1.0, 0.0]])
+
+
+BEAM = (
+    "elastic: {{block: {{size: 0.6 0.2 0.2 m, cells: 3 1 1, center: 0 1 0 m}}, "
+    "law: {{neo_hookean: {{modulus: 10 kPa}}}}, hold: {{wall: {{{0}}}}}}}"
+)
+
+
+@pytest.mark.parametrize(
+    ("hold", "count"),
+    [
+        ("where: x < -0.29", 1),
+        ("where: abs(x) > 0.29", 1),
+        ("where: x < 0", 0),  # all around
+        ("where: x < -0.29, components: x", 0),  # it may slide
+        ("where: x < -0.29, shift: ['0.1 m/s*time', 0 m, 0 m]", 0),
+    ],
+)
+def test_a_face_of_elements_that_is_held_still_has_a_plate(tmp_path, hold, count):
+    found = holders(tmp_path, BEAM.format(hold))
+    assert len(found) == count
+    if count:
+        assert found[0].vertices[:, 1].max() > 1.09
+        assert np.abs(found[0].vertices[:, 0]).min() > 0.28
 
 
 def test_the_face_of_a_solid_that_is_held_has_a_plate(tmp_path):

@@ -14,11 +14,13 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Shape
 
 TURNS, PIECES = 9, 12
+PARALLEL = 0.99
+"""Least mean cosine, by area, between the normals of what a plate covers and the largest triangle's."""
 HOLDER = Surface(color=(0.09, 0.095, 0.105), roughness=0.4)
 """Rails, plates and beads that hold masses: dark, whatever the color of what they hold."""
-BEAD, RAIL, THIN = 1.4, 0.25, 0.012
-"""Radius of a bead over that of its mass; radius of a rail over its length between two masses; over the diagonal of
-all, the largest radius of a rail and the least of a bead."""
+RAIL, THIN = 0.25, 0.012
+"""Radius of a rail over its length between two masses; over the diagonal of all, its largest, half a plate's thickness,
+and the least of beads on sheets and lines."""
 LEAD = 0.12
 """Share of a coil's length that is straight at each end."""
 
@@ -30,30 +32,47 @@ def spheres(name: str, surface: Surface, places: Floats, radius: float) -> Point
     return Points(name, surface, places, np.full(len(places), radius))
 
 
-def holders(name: str, places: Floats, held: NDArray[Any], triangles: Ints | None, radius: float) -> Iterator[Shape]:
-    """What holds masses of places (n, 3) [m], by a mask (n,).
+def plates(name: str, places: Floats, held: NDArray[Any], triangles: Ints) -> Iterator[Shape]:
+    """Dark plates on those triangles (k, 3) of places (n, 3) [m] whose corners are held, by a mask (n,), if parallel.
 
-    Rails along the rim of a sheet with ``triangles``, plates on the triangles whose corners are all held, beads on
-    other masses, which have a ``radius`` [m].
+    What is held all around, or on a curved part, is left as it is: a cap would hide its form.
     """
     import numpy as np
 
-    alone, thin = held.copy(), THIN * float(np.linalg.norm(np.ptp(places, axis=0)))
+    found = triangles[held[triangles].all(axis=1)]
+    a, b, c = (places[found[:, k]] for k in range(3))
+    areas = np.cross(b - a, c - a)
+    sizes = np.linalg.norm(areas, axis=1)
+    whole = float(sizes.sum())
+    if whole > 0 and float(np.abs(areas @ areas[sizes.argmax()]).sum()) > PARALLEL * whole * float(sizes.max()):
+        used, corners = np.unique(found, return_inverse=True)
+        half = THIN * float(np.linalg.norm(np.ptp(places, axis=0)))
+        yield sheet(f"{name}.pins", HOLDER, places[used], corners.reshape(-1, 3).astype(np.int32), half)
+
+
+def holders(name: str, places: Floats, held: NDArray[Any], triangles: Ints | None, radius: float) -> Iterator[Shape]:
+    """What holds masses of places (n, 3) [m], by a mask (n,).
+
+    Rails along the rim of a sheet with ``triangles``, plates on the triangles whose corners are all held, beads of a
+    ``radius`` [m] on other masses, but at least THIN on those of a sheet.
+    """
+    import numpy as np
+
+    alone = held.copy()
     if triangles is not None and len(triangles):
+        thin = THIN * float(np.linalg.norm(np.ptp(places, axis=0)))
+        radius = max(radius, thin)
         rim = rim_edges(triangles)
         rails = rim[held[rim].all(axis=1)]
-        plates = triangles[held[triangles].all(axis=1)]
         alone[rails] = False
-        alone[plates] = False
+        alone[triangles[held[triangles].all(axis=1)]] = False
         ends = places[rails]
         lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         if len(rails):
             yield Segments(f"{name}.pins", HOLDER, ends, np.minimum(RAIL * lengths, thin))
-        if len(plates):
-            used, corners = np.unique(plates, return_inverse=True)
-            yield sheet(f"{name}.pins", HOLDER, places[used], corners.reshape(-1, 3).astype(np.int32), 0.5 * thin)
+        yield from plates(name, places, held, triangles)
     if alone.any():
-        yield spheres(f"{name}.pins", HOLDER, places[alone], max(BEAD * radius, thin))
+        yield spheres(f"{name}.pins", HOLDER, places[alone], radius)
 
 
 def lines(name: str, surface: Surface, ends: Floats, radius: float) -> Segments:

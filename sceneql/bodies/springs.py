@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 SPRINGS_A_TILE = 10_000
 """Springs of a tile, a task of one thread in the evaluation of the Jacobian."""
 MOST_COILS = 40
+ROPE_BEAD = 1.6
+"""Radius of what holds a mass of a rope, over the rope's."""
 
 
 class Tear(Record):
@@ -314,16 +316,17 @@ class SpringModel(Model):
         surface = moment.surface(name, self.material, self.color)
         places = point_masses.positions(state.bodies, state).copy()
         triangles = self.triangles(state)
-        held = point_masses.held(state.bodies, state)
-        if self.look == "auto" and held.any():
-            yield from spring_look.holders(name, places, held, triangles, self.mass_radius())
+        held, line = point_masses.held(state.bodies, state), self.net.line
+        if self.look == "auto":
+            bead = ROPE_BEAD * self.mass_radius() if line else self.mass_radius()
+            yield from spring_look.holders(name, places, held, triangles, bead)
         if triangles is not None and self.look == "auto":
             yield spring_look.skin(name, surface, places, triangles, 0.5 * self.mass_radius())
             return
-        yield spring_look.spheres(name, surface, places, self.mass_radius())
+        shown = places[~held] if self.look == "auto" else places
+        yield spring_look.spheres(name, surface, shown, self.mass_radius())
         holding = self.holding(state)
         ends, rest = places[self.net.pairs[holding]], self.rest[holding]
-        line = self.net.line
         if self.look == "coil" or (self.look == "auto" and len(self.net.pairs) <= MOST_COILS and not line):
             yield spring_look.coils(name, surface, ends, rest, self.mass_radius())
         elif self.look != "masses":

@@ -163,15 +163,16 @@ def _account(
     from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
 
     vertices, triangles = polygons.vertices, polygons.triangles
+    edges, boundary, _ = edge_counts(triangles)
     return Account(
         file=output,
         vertices=len(vertices),
         triangles=len(triangles),
         cell=cell,
-        euler=euler_characteristic(triangles),
+        euler=euler_characteristic(triangles, edges),
         volume=volume(vertices, triangles),
         area=area(vertices, triangles),
-        boundary_edges=edge_counts(triangles)[1],
+        boundary_edges=boundary,
         folded=folded,
         unresolved=0 if hidden is None else hidden.cells,
         unresolved_volume=0.0 if hidden is None else hidden.volume,

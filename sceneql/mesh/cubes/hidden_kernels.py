@@ -3,8 +3,9 @@
 
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import box
+from sceneql.field.tape.batch_kernels import evaluate
 from sceneql.field.tape.simplify_kernels import simplify
-from sceneql.field.tape.steepness_kernels import steepness
+from sceneql.field.tape.steepness_kernels import steepness, turning
 from sceneql.field.tape.tape_kernels import value
 from sceneql.field.tape.tape_ops import NOWHERE, TAPE, WHOLE
 from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, verdict
@@ -18,8 +19,12 @@ SHALLOW = 1.0e-12
 
 
 @inlined
-def proved(code, constants, parts, scratch, x, y, z, half, negative):
-    """Whether f is proved to keep its sign in the box of half side ``half`` about a point: by range or mean value."""
+def proved(code, constants, parts, scratch, x, y, z, half, negative, least):
+    """Whether f is proved to keep its sign in the box of half side ``half`` about a point.
+
+    By its range, by the mean value form, or by ``least``, the least |f| at the box's corners: of a function that is
+    monotone along an axis the least value lies on a face.
+    """
     low, high, status = box(
         code, constants, parts, scratch, x - half, x + half, y - half, y + half, z - half, z + half
     )  # fmt: skip
@@ -35,13 +40,15 @@ def proved(code, constants, parts, scratch, x, y, z, half, negative):
     if status != WHOLE:
         return False
     gx, gy, gz = steepness(code, constants, parts, scratch)
+    if gx + gy + gz < 1.0e300 and least > half * turning(scratch, code.shape[0] - 1) * (1.0 + 1.0e-9):
+        return True
     f = value(code, constants, parts, scratch, x, y, z)
     return abs(f) > half * (gx + gy + gz) * (1.0 + 1.0e-9) and (f < 0.0) == negative
 
 
 @inlined
-def doubtful(code, constants, parts, scratch, x, y, z, half, negative, deepest, stack):
-    """Volume [m^3] of the parts of a cube that are not proved to have its corners' sign."""
+def doubtful(code, constants, parts, scratch, x, y, z, half, negative, least, deepest, stack):
+    """Volume [m^3] of the parts of a cube that are not proved to have its corners' sign; |f| there >= ``least``."""
     volume = 0.0
     stack[0, 0] = x
     stack[0, 1] = y
@@ -55,7 +62,7 @@ def doubtful(code, constants, parts, scratch, x, y, z, half, negative, deepest, 
         z = stack[top, 2]
         depth = stack[top, 3]
         side = half * 0.5**depth
-        if proved(code, constants, parts, scratch, x, y, z, side, negative):
+        if proved(code, constants, parts, scratch, x, y, z, side, negative, least if depth == 0.0 else 0.0):
             continue
         if depth == deepest:
             volume += 8.0 * side * side * side
@@ -69,17 +76,35 @@ def doubtful(code, constants, parts, scratch, x, y, z, half, negative, deepest, 
     return volume
 
 
+@inlined
+def crossed(code, constants, parts, registers, points, x, y, z, step, nodes, negative):
+    """Whether f has the other sign at one of ``nodes`` nodes along each axis from (x, y, z) on."""
+    n = nodes * nodes * nodes
+    for lane in range(n):
+        points[0, lane] = x + lane % nodes * step
+        points[1, lane] = y + lane // nodes % nodes * step
+        points[2, lane] = z + lane // (nodes * nodes) * step
+    evaluate(code, constants, parts, registers, points, n)
+    last = code.shape[0] - 1
+    for lane in range(n):
+        if (registers[last, lane] < 0.0) != negative:
+            return True
+    return False
+
+
 @lean(
     f"int64({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int32[:, ::1], float64[::1])"
+    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int64, int32[:, ::1], float64[::1],"
+    " boolean[::1])"
 )
 def hidden(
-    code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks, deepest, cells, rest
-):
+    code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks, deepest, finer,
+    cells, rest, seen,
+):  # fmt: skip
     """Find the cubes of some blocks with corners of one sign, but no proof for their inside; returns their number.
 
     Cubes are halved up to ``deepest`` times. Their places go into ``cells`` (n, 3), the volumes [m^3] without a proof
-    into ``rest``.
+    into ``rest``, and into ``seen`` whether f has the other sign at a node of cells ``finer`` times as fine, at most 5.
     """
     h = grid[3]
     count = 0
@@ -96,7 +121,8 @@ def hidden(
         far = 1.0e300
         if verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK) == CUT:
             gx, gy, gz = steepness(code2, constants, parts2, scratch)
-            far = 0.5 * h * (gx + gy + gz) * (1.0 + 1.0e-9)
+            if gx + gy + gz < 1.0e300:
+                far = 0.5 * h * turning(scratch, rows - 1) * (1.0 + 1.0e-9)
         sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
         for z in range(BLOCK):
             for y in range(BLOCK):
@@ -109,17 +135,22 @@ def hidden(
                         v = values[p + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
                         same = same and (v < 0.0) == negative
                         least = min(least, abs(v) if v == v else 0.0)
-                    # Every point of a cube is within half a side of a corner, along each axis.
+                    # Every point of a cube is within half a side of a corner, along each axis in which f may turn.
                     if not same or least > far:
                         continue
                     rest[count] = doubtful(
                         code2, constants, parts2, scratch,
                         grid[0] + (i + x + 0.5) * h, grid[1] + (j + y + 0.5) * h, grid[2] + (k + z + 0.5) * h,
-                        0.5 * h * (1.0 + 1.0e-12), negative, deepest, stack,
+                        0.5 * h * (1.0 + 1.0e-12), negative, least, deepest, stack,
                     )  # fmt: skip
                     if rest[count] > 0.0:
                         cells[count, 0] = i + x
                         cells[count, 1] = j + y
                         cells[count, 2] = k + z
+                        seen[count] = finer > 1 and crossed(
+                            code2, constants, parts2, registers, points,
+                            grid[0] + (i + x) * h, grid[1] + (j + y) * h, grid[2] + (k + z) * h,
+                            h / finer, finer + 1, negative,
+                        )  # fmt: skip
                         count += 1
     return count

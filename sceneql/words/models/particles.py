@@ -58,6 +58,7 @@ class Particles(Model):
     nothing, is not drawn, and is in no output; births bring energy and deaths take it.
     """
 
+    inert: ClassVar[bool] = True
     gives: ClassVar[Mapping[str, Gives]] = {
         **masses.BODY_OUTPUTS,
         "ages": Gives(quantity_type(dim.TIME, (None,)), "Time since each was born, or since the start.", computed=True),
