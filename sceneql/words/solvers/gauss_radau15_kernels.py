@@ -163,7 +163,7 @@ def shortest_square(n, m, p, groups, h, y0, rate0, vectors, numbers):
     largest = far = loose = 0.0
     for j in range(numbers[ENTRIES - 1 + m + p + groups]):
         largest = max(largest, abs(rate0[numbers[ENTRIES + j]]))
-        if j >= p:
+        if j >= p > 0:  # of bodies
             loose = max(loose, abs(y0[numbers[ENTRIES + j]]))
     for j in range(p):
         far = max(far, abs(y0[numbers[ENTRIES + m + j]]))
