@@ -15,6 +15,8 @@ class Torus(Solid):
     """A tube around the circle x^2 + z^2 = radius^2 of its own plane y = 0.
 
     Its field is the signed distance sqrt((sqrt(x^2 + z^2) - radius)^2 + y^2) - tube.
+
+    For example `ring: {torus: {radius: 0.5 m, tube: 0.1 m, position: 0 1 0 m}}`.
     """
 
     said_by: ClassVar[Mapping[str, str]] = {"R": "did you mean 'radius'?", "r": "the tube's radius is `tube`"}
