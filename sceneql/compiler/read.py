@@ -6,6 +6,7 @@ these. An error is reported where it stands, and reading goes on, so that all er
 
 from __future__ import annotations
 
+import re
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -281,6 +282,9 @@ class Reader:
         marks = [mark for arm in arms for mark in unwrap(arm)[1] if isinstance(mark, kinds.Quantity)]
         vectors = [mark.shape[0] for mark in marks if mark.shape and mark.shape[0]]
         help = by_corners(node, what, vectors[0]) if len(vectors) == 2 == len(arms) else None
+        names = re.split(r"\s*[-/&+>]+\s*", node.text) if isinstance(node, Scalar) else []
+        if len(names) == len(arms) and all(name.isidentifier() for name in names):
+            help = f"write `{what}: [{', '.join(names)}]`"
         return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
 
     def _copies(self, node: Node, annotation: Any) -> list[Node]:

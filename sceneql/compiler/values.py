@@ -10,6 +10,7 @@ from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
+from sceneql.compiler.vector_fields import vector_meant_by
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
@@ -162,7 +163,7 @@ def _by_component(
 ) -> Expr | None:
     for key in node.entries:
         if key not in COMPONENTS:
-            help = _timed(node) or suggestion(key, (*COMPONENTS, "keys"))
+            help = vector_meant_by(node) or suggestion(key, (*COMPONENTS, "keys"))
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"
@@ -179,14 +180,6 @@ def _by_component(
             return None
         items.append(value.expr)
     return Vector(tuple(items), Type((3,), quantity.dimension), node.span)
-
-
-def _timed(node: MappingNode) -> str | None:
-    """The help where times and values stand without `keys` around them."""
-    if not all(key[:1].isdigit() for key in node.entries):
-        return None
-    first = next(iter(node.entries))
-    return f"write `{{keys: {{{first}: {node.entries[first].span.text}, ...}}}}`: `sceneql words keys`"
 
 
 def _keys(
@@ -259,6 +252,8 @@ def _items(expr: Expr) -> list[Expr]:
 def _repeated(expr: Expr, wanted: Quantity) -> str | None:
     """The help where one value is given for a vector."""
     size = (wanted.shape or (None,))[0]
+    if not suits(expr.type.dimension, wanted.dimension):
+        return None
     if expr.type.shape or expr.span is None or len(wanted.shape or ()) != 1 or size is None:
         return None
     text = expr.span.text
@@ -337,6 +332,11 @@ def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
         if dimension in (TIME, LENGTH):
             word = "divide it by" if sign == "/" else "multiply it by"
             return f"{word} {describe(dimension)}: write `{text}{sign}(1 {unit_of(dimension)})`"
+    unit = unit_of(wanted / has)
+    one = next((item for item in expr.items if not _zero(item)), expr) if isinstance(expr, Vector) else expr
+    text = text if one.span is None else one.span.text
+    if unit != "1" and any(isinstance(node, Number) and node.bare and node.value != 0 for node in walk(expr)):
+        return f"a number in it has no unit: write `{text}*(1 {unit})`, or `{unit}` behind that number"
     return None
 
 

@@ -144,6 +144,7 @@ OF_PARTS = (
         "parts in coordinates of their own are a group, `NAME: {group: {children: [{sphere: {radius: 1 m}}],"
         " position: 0 1 0 m}}`",
     ),
+    ("beside", "text content string", "text stands in a caption: `NAME: {caption: {text: hello}}`"),
     ("beside", "DEF", "the part's name is that before the colon: leave `DEF` out"),
     ("beside", "name id", "the name stands before the word, in a section of names: `objects: {ball: {sphere: {...}}}`"),
     (
@@ -209,6 +210,11 @@ OF_PARTS = (
         " objects",
     ),
     ("field", "start", "it begins at 0 s"),
+    (
+        "field.objects",
+        "radius_top radius_bottom top_radius bottom_radius radiustop radiusbottom r1 r2",
+        "a cone is a cylinder that is tapered, `{taper: {of: {cylinder: {height: 2 m}}, factor: 0.1}}`",
+    ),
     (
         "field",
         "constraints constraint copy_location follow_path child_of",
@@ -310,6 +316,8 @@ OF_PARTS = (
         "ellipsoid egg spheroid",
         "write its formula: `{implicit: {field: (x/2)^2 + y^2 + z^2 - 1, bounds: {box: [-2 -1 -1, 2 1 1]}}}`",
     ),
+    ("objects", "boolean bool csg", "write `{difference: {of: [a, b]}}`, or `union`, `intersection`"),
+    ("field.forces", "mass", "write its `strength`, G times the mass: `6.67e-11*1e10 m^3/s^2`"),
     ("objects", "indexedfaceset faces triangles polygons vertices", "a file has them: `{mesh: {file: cow.obj}}`"),
     ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: ...}}}`"),
     (

@@ -39,6 +39,7 @@ TOKEN = re.compile(
 )
 
 _UNIT_IN_BRACKETS = re.compile(r"\[\s*([^\W\d][^\[\],]*?)\s*\]")
+_CROSSED = re.compile(rf"{NUMBER}\s*[a-zµ]*(?:\s*[x×]\s*{NUMBER}\s*[a-zµ]*)+")
 _INDEX = re.compile(r"\[\s*(\d)\s*\]")
 
 
@@ -257,7 +258,10 @@ class _Parser:
             at = self.text.index(odd)
             help = instead("sign", odd)
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
-        if isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
+        crossed = _CROSSED.fullmatch(self.text.strip())
+        if crossed is not None and (sides := vector_meant(re.sub(r"\s*[x×]\s*", ", ", self.text.strip()))):
+            help = f"write `{sides}`"
+        elif isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
             help = formula
         elif isinstance(expr, Number) and self.kind == "number" and self.before.endswith("%"):
             help = instead("sign", "%")

@@ -17,6 +17,8 @@ class Sun(Light):
     """Light from one direction, everywhere equally strong.
 
     At strength 1 a white matte surface that faces it is as bright as its color: it gets the irradiance pi.
+
+    For example `noon: {sun: {elevation: 60 deg, azimuth: 30 deg}}`.
     """
 
     direction: Direction | None = field("From the scene towards it; in place of elevation and azimuth.", None)
