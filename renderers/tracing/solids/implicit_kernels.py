@@ -142,9 +142,10 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             return root if status == HIT else (stop if stop < far else NONE)
         if status == UNDECIDED:
             scratch[last_row, 0] += 1.0
-            scratch[last_row, layout.LOST] += 1.0
             t = root + 4.0 * tolerance * (end - begin) * FARTHER**tries
             tries += 1
+            if tries == RETRIES:
+                scratch[last_row, layout.LOST] += 1.0
         else:
             t = end + past
     return NONE
