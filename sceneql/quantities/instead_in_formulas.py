@@ -16,7 +16,7 @@ OF_FORMULAS = (
     ("function", "if switch select", IF),
     (
         "function",
-        "vec vec2 vec3 vec4 vector vector3 point float3 array tuple xyz",
+        "vec vec2 vec3 vec4 vector vector3 pvector createvector point float3 array tuple xyz",
         "write `[x, y, z]`, or numbers with one unit behind them, `0 1.2 0 m`",
     ),
     ("function", "rgb rgba color colour", _COLOR),
@@ -110,6 +110,9 @@ OF_FORMULAS = (
         "an axis is `1 0 0`, `0 1 0` or `0 0 1`; the coordinates of a place stand in formulas of fields alone",
     ),
     ("name behind", "to until", "from when to when is two conditions: `(time > 1 s)*(time < 2 s)`"),
+    ("name", "clock", "the time is `time`"),
+    ("name unit", "per", "write `10 /s`, or `5 m/s`"),
+    ("name", "null none nil undefined nan", "leave the field out"),
     ("name", "inf infinity", "what never moves is `fixed: yes`; what has no limit is left out"),
     ("name", "true yes", "in a formula write `1`"),
     ("name", "false no", "in a formula write `0`"),
