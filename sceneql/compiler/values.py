@@ -10,6 +10,7 @@ from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
+from sceneql.compiler.vector_fields import vector_meant_by
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
@@ -48,8 +49,6 @@ _MISSING = (
 viscosity to dynamic, conductivity to diffusivity."""
 _CHANCE = re.compile(r"\brandom\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)")
 _EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
-SIDES = (("width", "w", "breadth"), ("height", "h"), ("depth", "d", "length", "l"))
-"""Names of the sides of a box along x, y and z."""
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
 
@@ -164,7 +163,7 @@ def _by_component(
 ) -> Expr | None:
     for key in node.entries:
         if key not in COMPONENTS:
-            help = _timed(node) or _by_side(node) or suggestion(key, (*COMPONENTS, "keys"))
+            help = vector_meant_by(node) or suggestion(key, (*COMPONENTS, "keys"))
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"
@@ -181,22 +180,6 @@ def _by_component(
             return None
         items.append(value.expr)
     return Vector(tuple(items), Type((3,), quantity.dimension), node.span)
-
-
-def _by_side(node: MappingNode) -> str | None:
-    """The help where the sides of a box have names: width, height and depth."""
-    sides = [next((key for key in node.entries if key.lower() in names), None) for names in SIDES]
-    if None in sides or len(node.entries) != len(SIDES):
-        return None
-    return f"write `[{', '.join(node.entries[side].span.text for side in sides if side)}]`, along x, y and z"
-
-
-def _timed(node: MappingNode) -> str | None:
-    """The help where times and values stand without `keys` around them."""
-    if not all(key[:1].isdigit() for key in node.entries):
-        return None
-    first = next(iter(node.entries))
-    return f"write `{{keys: {{{first}: {node.entries[first].span.text}, ...}}}}`: `sceneql words keys`"
 
 
 def _keys(
@@ -269,6 +252,8 @@ def _items(expr: Expr) -> list[Expr]:
 def _repeated(expr: Expr, wanted: Quantity) -> str | None:
     """The help where one value is given for a vector."""
     size = (wanted.shape or (None,))[0]
+    if not suits(expr.type.dimension, wanted.dimension):
+        return None
     if expr.type.shape or expr.span is None or len(wanted.shape or ()) != 1 or size is None:
         return None
     text = expr.span.text

@@ -13,15 +13,22 @@ BEND = 0.5
 
 def volume(vertices: Floats, triangles: Ints) -> float:
     """Volume [m^3] of a closed mesh, triangles counterclockwise seen from outside: the sum of signed tetrahedra."""
+    return volume_and_area(vertices, triangles)[0]
+
+
+def volume_and_area(vertices: Floats, triangles: Ints) -> tuple[float, float]:
+    """Volume [m^3] of a closed mesh as ``volume``, and the sum of its triangles' areas [m^2]."""
     import numpy as np
 
     if not len(triangles):
-        return 0.0
+        return 0.0, 0.0
     # Columns of coordinates, one beside the other in memory: four times as fast as rows of three.
-    x, y, z = (vertices - vertices.mean(axis=0)).T.copy()
-    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (of.take(triangles.T) for of in (x, y, z))
-    six = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
-    return float(np.sum(six) / 6.0)
+    columns = (vertices - vertices.mean(axis=0)).T.copy()
+    corners = triangles.T.astype(np.int64)
+    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (of.take(corners) for of in columns)
+    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
+    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return float((ax * nx + ay * ny + az * nz).sum() / 6.0), float(0.5 * np.sqrt(nx**2 + ny**2 + nz**2).sum())
 
 
 def curved_volume(vertices: Floats, triangles: Ints, normals: Floats) -> float:
@@ -53,11 +60,7 @@ def curved_volume(vertices: Floats, triangles: Ints, normals: Floats) -> float:
 
 def area(vertices: Floats, triangles: Ints) -> float:
     """Sum of the triangles' areas [m^2]."""
-    import numpy as np
-
-    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (of.take(triangles.T) for of in vertices.T.copy())
-    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
-    return float(0.5 * np.sqrt((uy * vz - uz * vy) ** 2 + (uz * vx - ux * vz) ** 2 + (ux * vy - uy * vx) ** 2).sum())
+    return volume_and_area(vertices, triangles)[1]
 
 
 def edge_counts(triangles: Ints) -> tuple[int, int, int]:

@@ -111,6 +111,7 @@ OF_FORMULAS = (
     ),
     ("name behind", "to until", "from when to when is two conditions: `(time > 1 s)*(time < 2 s)`"),
     ("name", "clock", "the time is `time`"),
+    ("name", "end start", "write the time itself, as `4 s`"),
     ("name unit", "per", "write `10 /s`, or `5 m/s`"),
     ("name", "null none nil undefined nan", "leave the field out"),
     ("name", "inf infinity", "what never moves is `fixed: yes`; what has no limit is left out"),

@@ -316,6 +316,8 @@ OF_PARTS = (
         "ellipsoid egg spheroid",
         "write its formula: `{implicit: {field: (x/2)^2 + y^2 + z^2 - 1, bounds: {box: [-2 -1 -1, 2 1 1]}}}`",
     ),
+    ("objects", "boolean bool csg", "write `{difference: {of: [a, b]}}`, or `union`, `intersection`"),
+    ("field.forces", "mass", "write its `strength`, G times the mass: `6.67e-11*1e10 m^3/s^2`"),
     ("objects", "indexedfaceset faces triangles polygons vertices", "a file has them: `{mesh: {file: cow.obj}}`"),
     ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: ...}}}`"),
     (

@@ -88,7 +88,7 @@ _LISTS = (
     ("damping", "c drag friction viscosity"),
     ("spin", "angular_velocity angularvelocity angular_speed omega w rotation_speed"),
     ("rest", "length rest_length natural_length l0"),
-    ("between", "from to ends nodes body bodies connect connects pair a b with against"),
+    ("between", "objects colliders from to ends nodes body bodies connect connects pair a b with against"),
     ("mass", "m weight"),
     ("modulus", "e young youngs_modulus young_modulus stiffness"),
     ("law", "stiffness material_law elasticity"),

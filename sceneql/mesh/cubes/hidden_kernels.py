@@ -1,6 +1,8 @@
 # mypy: ignore-errors
 """Cubes with corners of one sign that may yet contain surface: proved empty or full, or counted."""
 
+import numpy as np
+
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.batch_kernels import evaluate
@@ -12,6 +14,8 @@ from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, verdict
 from sceneql.mesh.cubes.extract_kernels import NODES, sample
 from sceneql.mesh.cubes.grid import BLOCK
 
+SIDE = BLOCK // 2
+"""Pairs of cubes along a block."""
 DEEPEST = 2
 """How often a cube may be halved before it is left unresolved."""
 SHALLOW = 1.0e-12
@@ -77,6 +81,20 @@ def doubtful(code, constants, parts, scratch, x, y, z, half, negative, least, de
 
 
 @inlined
+def of_corners(values, x, y, z):
+    """(whether f < 0 at a cube's first corner, least |f| at its corners); infinite where their signs differ."""
+    p = (z * NODES + y) * NODES + x
+    negative = values[p] < 0.0
+    least = np.inf
+    for c in range(8):
+        v = values[p + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
+        if (v < 0.0) != negative:
+            return negative, np.inf
+        least = min(least, abs(v) if v == v else 0.0)
+    return negative, least
+
+
+@inlined
 def crossed(code, constants, parts, registers, points, x, y, z, step, nodes, negative):
     """Whether f has the other sign at one of ``nodes`` nodes along each axis from (x, y, z) on."""
     n = nodes * nodes * nodes
@@ -124,33 +142,40 @@ def hidden(
             if gx + gy + gz < 1.0e300:
                 far = 0.5 * h * turning(scratch, rows - 1) * (1.0 + 1.0e-9)
         sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
-        for z in range(BLOCK):
-            for y in range(BLOCK):
-                for x in range(BLOCK):
-                    p = (z * NODES + y) * NODES + x
-                    negative = values[p] < 0.0
-                    least = 1.0e300
-                    same = True
-                    for c in range(8):
-                        v = values[p + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
-                        same = same and (v < 0.0) == negative
-                        least = min(least, abs(v) if v == v else 0.0)
-                    # Every point of a cube is within half a side of a corner, along each axis in which f may turn.
-                    if not same or least > far:
-                        continue
-                    rest[count] = doubtful(
-                        code2, constants, parts2, scratch,
-                        grid[0] + (i + x + 0.5) * h, grid[1] + (j + y + 0.5) * h, grid[2] + (k + z + 0.5) * h,
-                        0.5 * h * (1.0 + 1.0e-12), negative, least, deepest, stack,
+        for part in range(SIDE**3):
+            x0, y0, z0 = 2 * (part % SIDE), 2 * (part // SIDE % SIDE), 2 * (part // SIDE**2)
+            some = False
+            for n in range(8):
+                negative, least = of_corners(values, x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2))
+                some = some or least <= far
+            if not some:
+                continue
+            # Of eight cubes at once: most are proved by what is known of all.
+            x, y, z = grid[0] + (i + x0) * h, grid[1] + (j + y0) * h, grid[2] + (k + z0) * h
+            low, high, status = box(code2, constants, parts2, scratch, x, x + 2.0 * h, y, y + 2.0 * h, z, z + 2.0 * h)
+            bound = far
+            if status == WHOLE:
+                gx, gy, gz = steepness(code2, constants, parts2, scratch)
+                if gx + gy + gz < 1.0e300:
+                    bound = min(far, 0.5 * h * turning(scratch, rows - 1) * (1.0 + 1.0e-9))
+            for n in range(8):
+                x, y, z = x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2)
+                negative, least = of_corners(values, x, y, z)
+                if least > bound or (status == WHOLE and high < SHALLOW if negative else low >= -SHALLOW):
+                    continue
+                rest[count] = doubtful(
+                    code2, constants, parts2, scratch,
+                    grid[0] + (i + x + 0.5) * h, grid[1] + (j + y + 0.5) * h, grid[2] + (k + z + 0.5) * h,
+                    0.5 * h * (1.0 + 1.0e-12), negative, least, deepest, stack,
+                )  # fmt: skip
+                if rest[count] > 0.0:
+                    cells[count, 0] = i + x
+                    cells[count, 1] = j + y
+                    cells[count, 2] = k + z
+                    seen[count] = finer > 1 and crossed(
+                        code2, constants, parts2, registers, points,
+                        grid[0] + (i + x) * h, grid[1] + (j + y) * h, grid[2] + (k + z) * h,
+                        h / finer, finer + 1, negative,
                     )  # fmt: skip
-                    if rest[count] > 0.0:
-                        cells[count, 0] = i + x
-                        cells[count, 1] = j + y
-                        cells[count, 2] = k + z
-                        seen[count] = finer > 1 and crossed(
-                            code2, constants, parts2, registers, points,
-                            grid[0] + (i + x) * h, grid[1] + (j + y) * h, grid[2] + (k + z) * h,
-                            h / finer, finer + 1, negative,
-                        )  # fmt: skip
-                        count += 1
+                    count += 1
     return count
