@@ -38,11 +38,10 @@ def direction(u, v, w, slip):
 
 
 @lean_inlined
-def foreseen(p, q, r, u, v, w, x, y, z, a, b, c, slip):
-    """The direction (p, q, r) after an update of the slip from (u, v, w) to (x, y, z), if there is one; (a, b, c): the
-    slip now. Where it is another without an update, as where one was taken back, the direction is its own."""
+def foreseen(p, q, r, u, v, w, x, y, z, slip):
+    """The direction (p, q, r) after an update of the slip from (u, v, w) to (x, y, z), if there is one."""
     if u == x and v == y and w == z:
-        return (p, q, r) if u == a and v == b and w == c else direction(a, b, c, slip)
+        return p, q, r
     if u * x + v * y + w * z < 0.0:
         return 0.0, 0.0, 0.0
     speed = math.sqrt(u * u + v * v + w * w)

@@ -66,7 +66,7 @@ def rubbed(y, old, new, floats, ints, p, j, a, b, c, lagged, slip):
         at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (ints[layout.OBJECTS] * p + j) + layout.HELD
         ou, ov, ow = sliding(old, floats, ints, p, j, a, b, c)
         nu, nv, nw = sliding(new, floats, ints, p, j, a, b, c)
-        q, r, s = foreseen(floats[at], floats[at + 1], floats[at + 2], ou, ov, ow, nu, nv, nw, u, v, w, slip)
+        q, r, s = foreseen(floats[at], floats[at + 1], floats[at + 2], ou, ov, ow, nu, nv, nw, slip)
         floats[at], floats[at + 1], floats[at + 2] = q, r, s
     else:
         q, r, s = direction(u, v, w, slip)

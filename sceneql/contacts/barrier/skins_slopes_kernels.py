@@ -41,7 +41,7 @@ def rubbed(y, old, new, floats, ints, at, lagged, slip):
         f = at + layout.FRICTION_OF
         ou, ov, ow = sliding(old, floats, ints, at)
         nu, nv, nw = sliding(new, floats, ints, at)
-        p, q, r = foreseen(floats[f], floats[f + 1], floats[f + 2], ou, ov, ow, nu, nv, nw, u, v, w, slip)
+        p, q, r = foreseen(floats[f], floats[f + 1], floats[f + 2], ou, ov, ow, nu, nv, nw, slip)
         floats[f], floats[f + 1], floats[f + 2] = p, q, r
     else:
         p, q, r = direction(u, v, w, slip)
