@@ -84,7 +84,7 @@ ULPS, UNTOLD = 1.0 + 4e-16, 100.0
 """Factor by which a state is rounded another way; fall of a potential, over what that changes, up to which likewise."""
 LESS = 0.25
 """Square of the part to which an update must bring down the residual where the potential tells nothing of it."""
-LOOSE = 0.2
+LOOSE = 3e-2
 """Last update, over the largest with the same loads of friction, from which on these are taken anew."""
 UNMOVED = 1e-12
 """Part of an update that a limit allows, below which nothing can move."""
