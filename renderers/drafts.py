@@ -23,10 +23,10 @@ def coarser(view: View) -> View:
 
 
 def enlarged(pixels: NDArray[uint8], size: tuple[int, int]) -> NDArray[uint8]:
-    """Picture of the original view's ``size``, enlarged bicubically from pixels (h, w, 3) of its `coarser` view."""
+    """Picture of the original view's ``size``, enlarged bilinearly from pixels (h, w, 3) of its `coarser` view."""
     import numpy as np
     from PIL import Image
 
     over = [(have - wanted / COARSER) / 2 for have, wanted in zip(pixels.shape[1::-1], size, strict=True)]
     box = (over[0], over[1], over[0] + size[0] / COARSER, over[1] + size[1] / COARSER)
-    return np.array(Image.fromarray(pixels).resize(size, Image.Resampling.BICUBIC, box))
+    return np.array(Image.fromarray(pixels).resize(size, Image.Resampling.BILINEAR, box))

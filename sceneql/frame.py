@@ -157,8 +157,8 @@ class Points:
     colors: Floats | None = None
     """(n, 3) linear RGB."""
     soft: Literal["adds", "covers"] | None = None
-    """None: solid spheres. Discs: their light is added to what is behind, or covers it. They take no light, throw no
-    shadow and are not seen in mirrors."""
+    """None: solid spheres. Discs: their light is added to what is behind, or covers it. Those that add, or whose
+    surface emits, take no light. They throw shadows on one another alone and are not seen in mirrors."""
     opacity: float = 1.0
     """Of a disc in its middle; of one that adds, what its light is multiplied by."""
 

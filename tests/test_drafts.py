@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from renderers import trace
 from renderers.drafts import COARSER, coarser, enlarged
+from renderers.trace import DRAFT_BOUNCES, DRAFT_SAMPLES, Trace
 from sceneql import pipeline
 from sceneql.cli import cli
 from sceneql.failure import Unsuitable
@@ -36,15 +36,15 @@ def test_it_is_the_picture_less_sharp_in_its_own_size_with_its_shadow(tmp_path, 
     script = tmp_path / "scene.yaml"
     script.write_text(SCENE)
     drawn = []
-    draw = trace.Trace.draw
+    draw = Trace.draw
 
     def counted(self, frame):
         drawn.append((frame.view.size, self.samples))
         return draw(self, frame)
 
-    monkeypatch.setattr(trace.Trace, "draw", counted)
+    monkeypatch.setattr(Trace, "draw", counted)
     full, draft = picture(script, "full.png", draft=False), picture(script, "draft.png", draft=True)
-    assert drawn == [((121, 70), 8), ((41, 24), 4)]
+    assert drawn == [((121, 70), 8), ((41, 24), DRAFT_SAMPLES)]
     assert draft.shape == full.shape
     off = np.abs(draft - full).max(axis=2)
     assert np.mean(off) < 4.0
@@ -88,3 +88,11 @@ def test_the_command_line_has_it(tmp_path, monkeypatch):
     told = CliRunner().invoke(cli, ["render", "scene.yaml", "--draft"])
     assert (told.exit_code, (tmp_path / "scene.png").exists()) == (0, True)
     assert "made scene.png" in told.output
+
+
+def test_a_draft_never_draws_more_finely_than_is_written():
+    full = Trace().draft()
+    assert (full.samples, full.diffuse_bounces) == (DRAFT_SAMPLES, DRAFT_BOUNCES)
+    assert Trace().samples > DRAFT_SAMPLES
+    plain = Trace(samples=1, diffuse_bounces=0).draft()
+    assert (plain.samples, plain.diffuse_bounces) == (1, 0)

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from renderers.tracing.draw import draw
-from sceneql.frame import Points, SeenFrame, Sky, Surface, View
+from renderers.tracing.light.discs import MANY, ORDERS, left_at, lit
+from sceneql.frame import PointLight, Points, SeenFrame, Sky, Sun, Surface, View
 
 BLACK = Sky(zenith=(0, 0, 0), horizon=(0, 0, 0), ground=(0, 0, 0))
 SIDE = 96
@@ -59,3 +60,76 @@ def test_a_disc_is_hidden_by_what_stands_before_it_alone():
 
 def test_no_disc_behind_the_camera_is_drawn():
     assert seen(disc((0, 0, 5.0), (0, 0, 4.0))).sum() == 0
+
+
+WHITE = Surface(color=(1.0, 1.0, 1.0))
+FRONT = Sun((0.0, 0.0, 1.0), (math.pi, math.pi, math.pi))
+
+
+def smoke(*centers, opacity=1.0, radius=0.3, surface=WHITE):
+    return Points("s", surface, np.array(centers, float), np.full(len(centers), radius), soft="covers", opacity=opacity)
+
+
+def seen_in(*lights, shapes):
+    view = View((0.0, 0.0, 4.0), np.eye(3), (SIDE, SIDE), 0.25)
+    return draw(SeenFrame(0, 0.0, tuple(shapes), (*lights, BLACK), view), samples=1).linear
+
+
+def test_a_disc_that_faces_the_lamp_is_as_bright_as_a_matte_wall():
+    middle = seen_in(FRONT, shapes=[smoke((0, 0, 0))])[SIDE // 2, SIDE // 2]
+    np.testing.assert_allclose(middle, 1.0, atol=0.01)
+
+
+def test_white_smoke_in_a_sky_that_is_white_all_around_is_as_bright_where_nothing_hides_it():
+    sky = Sky(*[(0.5, 0.5, 0.5)] * 3)
+    middle = seen_in(sky, shapes=[smoke((0, 0, 0), opacity=1e-6)])  # it hides nothing, also of itself
+    before = seen_in(sky, shapes=[])
+    np.testing.assert_allclose(middle, before, atol=1e-6)
+    thin, _, _ = lit(smoke((0, 0, 0), opacity=1e-9), (sky,), np.eye(3))
+    np.testing.assert_allclose(thin, 0.5, rtol=1e-6)
+
+
+@pytest.mark.parametrize("opacity", [0.2, 0.6])
+def test_discs_leave_of_a_sun_what_they_leave_of_the_view(opacity):
+    row = smoke(*[(0, 0, -float(k)) for k in range(4)], opacity=opacity)
+    behind = np.array([[0.0, 0.0, -10.0]])
+    once = left_at(behind, row, np.array([0.0, 0.0, 1.0]))
+    left = (1 - opacity) ** 4
+    assert once[0] == pytest.approx(sum(w * left**p for p, w in zip((1, 0.5, 0.25), ORDERS, strict=True)), abs=0.05)
+
+
+def test_smoke_is_darker_away_from_the_lamp():
+    side = Sun((1.0, 0.0, 0.0), (math.pi, math.pi, math.pi))
+    rng = np.random.default_rng(7)
+    ball = rng.normal(size=(600, 3))
+    ball *= 0.5 * rng.uniform(size=(600, 1)) ** (1 / 3) / np.linalg.norm(ball, axis=1)[:, None]
+    picture = seen_in(side, shapes=[smoke(*ball, opacity=0.2, radius=0.15)])[..., 1]
+    rows = slice(SIDE // 2 - 4, SIDE // 2 + 4)
+    left, right = picture[rows, SIDE // 2 - 18].mean(), picture[rows, SIDE // 2 + 18].mean()
+    assert right > 2.5 * left > 0
+
+
+def test_many_discs_have_the_light_of_few():
+    """So many that each has one light: a sheet that the lamp shines on is as bright as one of fewer discs."""
+    rng = np.random.default_rng(3)
+    sheet = np.column_stack([rng.uniform(-1, 1, (MANY, 2)), np.zeros(MANY)])
+    many, few = smoke(*sheet, opacity=0.01, radius=0.05), smoke(*sheet[1:], opacity=0.01, radius=0.05)
+    one, other = lit(many, (FRONT,), np.eye(3)), lit(few, (FRONT,), np.eye(3))
+    assert not one[1].any()
+    assert one[0].mean() == pytest.approx(other[0].mean(), rel=0.02)
+
+
+def test_glowing_discs_take_no_light():
+    glow = Surface(color=(0.0, 0.0, 0.0), emission=(0.4, 0.4, 0.4))
+    discs = [smoke((0, 0, 0), (0.1, 0, 0.2), surface=glow)]
+    np.testing.assert_array_equal(seen_in(FRONT, shapes=discs), seen_in(shapes=discs))
+
+
+def test_the_light_on_smoke_is_the_same_wherever_its_lamp_shines_from():
+    """A lamp far away is a sun; a lamp in the middle of the discs fails nowhere."""
+    pair = smoke((0, 0, 0), (0.1, 0.2, 0.3), opacity=0.5)
+    far = PointLight((0.0, 0.0, 1e4), (math.pi * 1e8,) * 3)
+    for one, other in zip(lit(pair, (far,), np.eye(3)), lit(pair, (FRONT,), np.eye(3)), strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-3, atol=1e-3)
+    inside = PointLight((0.05, 0.1, 0.27), (1.0, 1.0, 1.0))
+    assert np.isfinite(lit(pair, (inside,), np.eye(3))).all()

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy import float32
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, SeenFrame, View
+    from sceneql.frame import Floats, SeenFrame
 
 SMALLEST = 1.25
 """Radius [pixels] below which a disc is drawn larger and correspondingly fainter, so that none is missed."""
@@ -26,14 +26,15 @@ def over(frame: SeenFrame, records: NDArray[float32], linear: NDArray[float32]) 
     """
     for shape in frame.shapes:
         if isinstance(shape, Points) and shape.soft is not None and len(shape.centers):
-            _draw(shape, frame.view, records, linear)
+            _draw(shape, frame, records, linear)
 
 
-def _draw(shape: Points, view: View, records: NDArray[float32], linear: NDArray[float32]) -> None:
+def _draw(shape: Points, frame: SeenFrame, records: NDArray[float32], linear: NDArray[float32]) -> None:
     from renderers.tracing.sprites_kernels import cover_rows
 
+    view = frame.view
     width, height = view.size
-    discs = _discs(shape, view)
+    discs = _discs(shape, frame)
     if shape.soft == "covers":
         discs = discs[np.argsort(-discs[:, 2], kind="stable")]
     camera = np.array([*view.origin, *view.axes[2]], dtype=np.float64)
@@ -41,24 +42,46 @@ def _draw(shape: Points, view: View, records: NDArray[float32], linear: NDArray[
     over_rows(height, lambda start, stop: cover_rows(start, stop, width, camera, discs, covers, records, linear))
 
 
-def _discs(shape: Points, view: View) -> Floats:
-    """Discs (n, 9) in front of the camera: x, y [pixels], depth [m], radius [pixels], radius [m], color, opacity."""
+def _radiances(shape: Points, frame: SeenFrame) -> Floats:
+    """Radiance (n, 3, 3) of discs in their middle, and its change by a radius to the right and up.
+
+    Covering discs that do not glow have the light that they get.
+    """
+    surface = shape.surface
+    glows = any(surface.emission)
+    own = np.array(surface.emission if glows else surface.color) if shape.colors is None else shape.colors
+    found = np.zeros((len(shape.centers), 3, 3))
+    if glows or shape.soft == "adds":
+        found[:, 0] = own
+        return found
+    from renderers.tracing.light.discs import lit
+
+    for k, given in enumerate(lit(shape, frame.lights, frame.view.axes)):
+        found[:, k] = own * given
+    return found
+
+
+def _discs(shape: Points, frame: SeenFrame) -> Floats:
+    """Discs (n, 15) in front of the camera.
+
+    x, y [pixels], depth [m], radius [pixels], radius [m], opacity, radiance (3), its change to the right (3), up (3).
+    """
+    view = frame.view
     height = view.size[1]
     away = (shape.centers - np.array(view.origin)) @ view.axes.T
     depth = -away[:, 2]
     seen = np.isfinite(depth) & (shape.radii > 0)
     if not view.orthographic:
         seen &= depth > 0
+    radiances = _radiances(shape, frame)[seen]
     away, depth, radii = away[seen], depth[seen], shape.radii[seen]
     scale = 0.5 * height / view.half_height / (1.0 if view.orthographic else depth)
-    surface = shape.surface
-    color = surface.emission if any(surface.emission) else surface.color
-    discs = np.empty((len(depth), 9))
+    discs = np.empty((len(depth), 15))
     discs[:, 0] = 0.5 * view.size[0] + scale * away[:, 0]
     discs[:, 1] = 0.5 * height - scale * away[:, 1]
     discs[:, 2] = depth
     discs[:, 3] = np.maximum(scale * radii, SMALLEST)
     discs[:, 4] = radii
-    discs[:, 5:8] = color if shape.colors is None else shape.colors[seen]
-    discs[:, 8] = shape.opacity * np.minimum(scale * radii / SMALLEST, 1.0) ** 2
+    discs[:, 5] = shape.opacity * np.minimum(scale * radii / SMALLEST, 1.0) ** 2
+    discs[:, 6:] = radiances.reshape(-1, 9)
     return discs

@@ -27,7 +27,7 @@ def depth_of(record, camera):
 
 @lean(types.void(_i, _i, _i, _reals, _table, types.boolean, _rows, _rows))
 def cover_rows(start, stop, width, camera, discs, covers, records, linear):
-    """Draw the discs (n, 9) of sprites.py in their order over the rows start..stop - 1.
+    """Draw the discs (n, 15) of sprites.py in their order over the rows start..stop - 1.
 
     A disc has the profile (1 - q^2)^2 of the distance q from its middle, relative to its radius. It fades within its
     own depth where it cuts through a surface, so that no edge shows.
@@ -46,7 +46,9 @@ def cover_rows(start, stop, width, camera, discs, covers, records, linear):
                     continue
                 pixel = row * width + column
                 before = 0.5 + 0.5 * (depth_of(records[pixel], camera) - depth) / reach
-                part = discs[k, 8] * inside * inside * min(1.0, max(0.0, before))
+                part = discs[k, 5] * inside * inside * min(1.0, max(0.0, before))
                 keep = 1.0 - part if covers else 1.0
+                u, v = dx / radius, -dy / radius
                 for c in range(3):
-                    linear[pixel, c] = linear[pixel, c] * keep + part * discs[k, 5 + c]
+                    own = max(0.0, discs[k, 6 + c] + u * discs[k, 9 + c] + v * discs[k, 12 + c])
+                    linear[pixel, c] = linear[pixel, c] * keep + part * own

@@ -153,6 +153,11 @@ def moving_masses(bodies: Bodies, state: ModelState) -> Floats:
     return masses(bodies, state) * (inverse > 0)
 
 
+def held(bodies: Bodies, state: ModelState) -> Any:
+    """Mask (n,) of the bodies that are fixed now."""
+    return state.floats[bodies.inverse_at : bodies.inverse_at + bodies.count] == 0
+
+
 def weighed(bodies: Bodies, state: ModelState) -> Floats:
     """Gravitational masses (n,) [kg], 0 for a fixed one."""
     at, inverse = bodies.weighed_at, state.floats[bodies.inverse_at : bodies.inverse_at + bodies.count]

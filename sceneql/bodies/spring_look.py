@@ -7,11 +7,20 @@ from typing import TYPE_CHECKING, Any
 from sceneql.frame import Mesh, Points, Segments, Surface
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Ints
+    from sceneql.frame import Floats, Ints, Shape
 
 TURNS, PIECES = 9, 12
+PARALLEL = 0.99
+"""Least mean cosine, by area, between the normals of what a plate covers and the largest triangle's."""
+HOLDER = Surface(color=(0.09, 0.095, 0.105), roughness=0.4)
+"""Rails, plates and beads that hold masses: dark, whatever the color of what they hold."""
+RAIL, THIN = 0.25, 0.012
+"""Radius of a rail over its length between two masses; over the diagonal of all, its largest, half a plate's thickness,
+and the least of beads on sheets and lines."""
 LEAD = 0.12
 """Share of a coil's length that is straight at each end."""
 
@@ -21,6 +30,52 @@ def spheres(name: str, surface: Surface, places: Floats, radius: float) -> Point
     import numpy as np
 
     return Points(name, surface, places, np.full(len(places), radius))
+
+
+def plates(name: str, places: Floats, held: NDArray[Any], triangles: Ints) -> Iterator[Shape]:
+    """Dark plates on those triangles (k, 3) of places (n, 3) [m] whose corners are held, by a mask (n,), if parallel.
+
+    What is held all around, or on a curved part, is left as it is: a cap would hide its form.
+    """
+    import numpy as np
+
+    found = triangles[held[triangles].all(axis=1)]
+    a, b, c = (places[found[:, k]] for k in range(3))
+    areas = np.cross(b - a, c - a)
+    sizes = np.linalg.norm(areas, axis=1)
+    whole = float(sizes.sum())
+    if whole > 0 and float(np.abs(areas @ areas[sizes.argmax()]).sum()) > PARALLEL * whole * float(sizes.max()):
+        used, corners = np.unique(found, return_inverse=True)
+        half = THIN * float(np.linalg.norm(np.ptp(places, axis=0)))
+        yield sheet(f"{name}.pins", HOLDER, places[used], corners.reshape(-1, 3).astype(np.int32), half)
+
+
+def holders(name: str, places: Floats, held: NDArray[Any], triangles: Ints | None, radius: float) -> Iterator[Shape]:
+    """What holds masses of places (n, 3) [m], by a mask (n,).
+
+    Rails along the rim of an open sheet of ``triangles``, plates on flat parts of a closed one; beads of a ``radius``
+    [m], at least THIN on those of sheets, on other masses.
+    """
+    import numpy as np
+
+    if not held.any():
+        return
+    alone = held.copy()
+    if triangles is not None and len(triangles):
+        thin = THIN * float(np.linalg.norm(np.ptp(places, axis=0)))
+        radius = max(radius, thin)
+        rim = rim_edges(triangles)
+        rails = rim[held[rim].all(axis=1)]
+        alone[rails] = False
+        ends = places[rails]
+        lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        if len(rails):
+            yield Segments(f"{name}.pins", HOLDER, ends, np.minimum(RAIL * lengths, thin))
+        if not len(rim):
+            alone[triangles[held[triangles].all(axis=1)]] = False
+            yield from plates(name, places, held, triangles)
+    if alone.any():
+        yield spheres(f"{name}.pins", HOLDER, places[alone], radius)
 
 
 def lines(name: str, surface: Surface, ends: Floats, radius: float) -> Segments:

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 SPRINGS_A_TILE = 10_000
 """Springs of a tile, a task of one thread in the evaluation of the Jacobian."""
 MOST_COILS = 40
+ROPE_BEAD = 1.6
+"""Radius of what holds a mass of a rope, over the rope's."""
 
 
 class Tear(Record):
@@ -84,7 +86,7 @@ class SpringModel(Model):
     )
     look: Literal["auto", "coil", "line", "masses"] = field(
         "How it draws itself: springs as coils or lines, or not at all; `auto`: coils when few, a cloth as a sheet, a "
-        "solid as its surface, where no object shows them.",
+        "solid as its surface, where no object shows them, and what holds masses as dark rails, plates and beads.",
         "auto",
     )
     material: kinds.MaterialRef | None = field("How it looks where no object draws it.", None)
@@ -304,20 +306,27 @@ class SpringModel(Model):
         return self.look != "auto"
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
-        """Its shapes: a cloth as a sheet, a solid as its skin, else masses as spheres and springs as coils or lines."""
+        """Its shapes: a cloth as a sheet, a solid as its skin, else masses as spheres and springs as coils or lines.
+
+        And what holds masses.
+        """
         from sceneql.bodies import spring_look
 
         assert state.bodies is not None
         surface = moment.surface(name, self.material, self.color)
         places = point_masses.positions(state.bodies, state).copy()
         triangles = self.triangles(state)
+        held, line = point_masses.held(state.bodies, state), self.net.line
+        if self.look == "auto":
+            bead = ROPE_BEAD * self.mass_radius() if line else self.mass_radius()
+            yield from spring_look.holders(name, places, held, triangles, bead)
         if triangles is not None and self.look == "auto":
             yield spring_look.skin(name, surface, places, triangles, 0.5 * self.mass_radius())
             return
-        yield spring_look.spheres(name, surface, places, self.mass_radius())
+        shown = places[~held] if self.look == "auto" else places
+        yield spring_look.spheres(name, surface, shown, self.mass_radius())
         holding = self.holding(state)
         ends, rest = places[self.net.pairs[holding]], self.rest[holding]
-        line = self.net.line
         if self.look == "coil" or (self.look == "auto" and len(self.net.pairs) <= MOST_COILS and not line):
             yield spring_look.coils(name, surface, ends, rest, self.mass_radius())
         elif self.look != "masses":

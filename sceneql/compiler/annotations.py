@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
+from sceneql.quantities.dimension import DENSITY, PRESSURE
 from sceneql.quantities.units import format_quantity
+
+_USUAL = {PRESSURE: "10 kPa", DENSITY: "1000 kg/m^3"}
+"""Examples where 1 in SI is far from what things have."""
+_SHOWN = re.compile(r"`([^`]+)`")
 
 
 def unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
@@ -56,9 +62,24 @@ def could_be(annotation: Any, node: Node) -> bool:
 def example_of(cls: type[BaseModel], name: str) -> str:
     """An example of what may stand behind a field of a record, for messages: a quantity in its unit, or fields."""
     (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
-    dimension = next((mark.dimension for mark in quantities(info) if not mark.shape), None)
-    if dimension is not None:
-        return format_quantity(1.0, dimension)
+    dimensions = (mark.dimension for mark in quantities(info) if not mark.shape and mark.dimension is not None)
+    if (one := next(dimensions, None)) is not None:
+        return _USUAL.get(one, format_quantity(1.0, one))
+    refers = any(isinstance(mark, kinds.Refers) for mark in marks_of(info))
+    if (shown := _SHOWN.search(info.description or "")) is not None and not refers:
+        return shown[1]
+    formula = next((mark.dimension for mark in marks_of(info) if isinstance(mark, kinds.Symbols)), None)
+    if formula is not None:
+        return _USUAL.get(formula, format_quantity(1.0, formula))
     records = [arm for arm in get_args(info.annotation) if isinstance(arm, type) and issubclass(arm, BaseModel)]
-    needed = [one for record in records for one in record.model_fields.values() if one.is_required()]
-    return "{}" if records and not needed else "{...}"
+    if not records:
+        return "..."
+    needed = [kinds.written_name(key) for key, one in records[0].model_fields.items() if one.is_required()]
+    return f"{{{', '.join(f'{key}: {example_of(records[0], key)}' for key in needed)}}}"
+
+
+def first_field(cls: type[BaseModel]) -> str:
+    """The fields of a record that has to have some, else its first field, with examples: ``{mass: 1 kg}``."""
+    needed = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
+    names = needed or [kinds.written_name(next(iter(cls.model_fields)))]
+    return f"{{{', '.join(f'{name}: {example_of(cls, name)}' for name in names)}}}"

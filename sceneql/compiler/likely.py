@@ -5,22 +5,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler import paint, values
-from sceneql.compiler.annotations import example_of, marks_of, quantities
+from sceneql.compiler.annotations import example_of, first_field, is_fixed, marks_of, quantities, unwrap
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
-from sceneql.language.tree import Node, Scalar, whole
+from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.instead import instead
 
 TRUE = ("true", "yes", "on")
+_NAME = r"[^\W\d][\w.]*"
+_NAMES = re.compile(rf"{_NAME}(?:\s*[-+&|*/,]\s*{_NAME})+")
+NAMES = ("name", "id")
+"""Fields by which other programs name the items of a list."""
 
 
 def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
@@ -28,12 +34,19 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
     if not isinstance(node, Scalar):
         found = required if len(required) == 1 else list(_taking(reader, node, cls))
+        if len(found) == 1 and "\n" in node.span.text:
+            return f"write `{found[0]}:` in a line of its own above it, and indent it below that"
         return f"write `{{{found[0]}: {node.span.text}}}`" if len(found) == 1 else None
     if node.text.lower() in TRUE and not required:
         return "write `{}`: all of its fields have defaults"
+    if "value" in cls.model_fields and (held := instead("bare", node.text)) is not None:
+        return held
     name, _, rest = node.text.partition(" ")
     if name in map(kinds.written_name, cls.model_fields):
         rest = rest.strip().removeprefix("=").strip()
+        (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
+        if is_fixed(info.annotation) and not quantities(info) and len(items := rest.split()) > 1 and rest[0] != "[":
+            rest = f"[{', '.join(one.strip(',') for one in items)}]"
         return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {example_of(cls, name)}}}`"
     if list(cls.model_fields) == [only := next(iter(cls.model_fields), "")]:
         return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
@@ -42,8 +55,18 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if alone and len(fitting) == 1 and fitting != alone:  # the value is another field's
         example = f"{alone[0]}: {example_of(cls, alone[0])}"
         return f"write `{{{example}, {kinds.written_name(fitting[0])}: {node.span.text}}}`"
+    names = _NAMES.fullmatch(node.text.strip())
+    if alone and names is not None and _listing(cls, alone[0]):
+        return f"write `{{{alone[0]}: [{', '.join(re.findall(_NAME, node.text))}]}}`"
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
     return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
+
+
+def _listing(cls: type[BaseModel], name: str) -> bool:
+    """Whether a field is a list of parts."""
+    (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
+    lists = [arm for arm in (info.annotation, *get_args(info.annotation)) if get_origin(arm) in (list, tuple)]
+    return any(isinstance(mark, kinds.Refers) for arm in lists for mark in unwrap(get_args(arm)[0])[1])
 
 
 def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
@@ -71,9 +94,30 @@ def listed(node: MappingNode, item: Any, what: str) -> str | None:
     return f"it is a list: write `{what}: [{', '.join(f'{{{one}}}' for one in items)}]`"
 
 
-def _inside(node: Node) -> str:
+def by_name(node: Node, item: Any) -> str:
+    """The help where records that stand under names are a list, or are named without fields."""
+    items = node.items if isinstance(node, Sequence) else []
+    record = isinstance(item, type) and issubclass(item, BaseModel)
+    texts = [f"{name}: {{{_inside(one, NAMES)}}}" for one in items if (name := _name_in(one))]
+    if record and items and len(texts) == len(items):
+        return f"write `{{{', '.join(texts)}}}`, the name of each before its fields"
+    first = items[0].span.text if items else "name"
+    first = first if first.isidentifier() else "name"
+    example = first_field(item) if record else "..."
+    if record and "of" in item.model_fields and first != "name":
+        example = f"{{of: {first}}}"
+    return f"write `{{{first}: {example}}}`, each entry under a name of its own"
+
+
+def _name_in(node: Node) -> str:
+    """The name that an item of a list gives itself as other programs do; empty for none."""
+    given = [node.entries[key] for key in NAMES if key in node.entries] if isinstance(node, MappingNode) else []
+    return given[0].text if given and isinstance(given[0], Scalar) else ""
+
+
+def _inside(node: Node, without: Collection[str] = ()) -> str:
     fields = node.entries if isinstance(node, MappingNode) else {}
-    return ", ".join(f"{name}: {value.span.text}" for name, value in fields.items())
+    return ", ".join(f"{name}: {value.span.text}" for name, value in fields.items() if name not in without)
 
 
 def _taking(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from sceneql.compiler.css_colors import NAMED
 from sceneql.kinds import Gives
-from sceneql.language.scope import Broken, Given, Scope
+from sceneql.language.scope import Broken, Entry, Given, Scope
 from sceneql.language.tree import Node, Scalar, Sequence
 from sceneql.quantities.bind import Lookup, bind, component
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, nearest, suggestion
@@ -54,7 +54,7 @@ class Names:
     """The names of a script. ``outputs_of`` returns a part's outputs; ``read`` turns a define's node into a tree."""
 
     defines: Mapping[str, Node]
-    parts: Iterable[str]
+    parts: Mapping[str, Entry]
     outputs_of: Callable[[str], Mapping[str, Gives] | None]
     read: Callable[[Node, Names], Expr | None]
     found: Diagnostics
@@ -176,6 +176,17 @@ class Names:
             part = part.rpartition(".")[0]
         return (part, name[len(part) + 1 :]) if part else (name, "")
 
+    def gives(self, name: str) -> bool:
+        """Whether a dotted name is the output of a part, or a component of one."""
+        part, output = self.part_of(name)
+        known = self.outputs_of(part) or {}
+        return bool(output) and (output in known or output.rpartition(".")[0] in known)
+
+    def readers(self, name: str, parts: Iterable[str]) -> list[str]:
+        """Those of the parts whose fields name a value."""
+        written = {part: self.parts[part].fields for part in parts if part in self.parts}
+        return [part for part, fields in written.items() if fields is not None and name in fields.span.text]
+
     def model_of(self, body: str) -> str | None:
         """The model with a body or mass of this name, written with or without the model's name.
 
@@ -211,7 +222,7 @@ class Names:
         if self.unsure(task):
             return None
         wanted = ".".join(parts[first:])
-        help = self._of_mover(task, parts[first:]) or suggestion(wanted, outputs)
+        help = self._of_mover(task, parts[first:]) or _place(task, wanted, outputs) or suggestion(wanted, outputs)
         help = help or f"it gives {', '.join(sorted(outputs)) or 'nothing'}"
         self.found.error("unknown-output", f"'{'.'.join(parts[:first])}' gives no '{wanted}'", span, help=help)
         return None
@@ -291,6 +302,15 @@ class Names:
         fields = [name for name, gives in outputs.items() if gives.type.shape == (None,)]
         places = [name for name in ("position", "positions") if name in outputs]
         return f"{task}.{next(iter([*places, *fields, *outputs]), 'position')}"
+
+
+def _place(part: str, wanted: str, outputs: Collection[str]) -> str | None:
+    """The help for a coordinate, or for the one place of a part with several bodies: `ball.y`, `fall.position`."""
+    if wanted in ("x", "y", "z") and "position" in outputs:
+        return f"write `{part}.position.{wanted}`"
+    one = next((name for name in outputs if name.endswith(f".{wanted}")), None)
+    many = f", or all of them, `{part}.{wanted}s`" if f"{wanted}s" in outputs else ""
+    return None if one is None else f"it has bodies by name: write `{part}.{one}`{many}"
 
 
 def _words(node: Node) -> list[str]:

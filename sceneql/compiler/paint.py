@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from math import inf
+from math import inf, pi
 
 from sceneql.compiler.css_colors import NAMED, css_color
 from sceneql.compiler.keyframes import read_keys
@@ -27,6 +27,9 @@ _DIGITS = re.compile(r"\d+\.?\d*|\.\d+")
 DARK = 16
 """A color whose numbers are all at most this is not taken as bytes: as such it would be nearly black."""
 BRIGHTER = "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
+_ABOUT = re.compile(r"([-+]?[\d.]+)\s*(?:deg)?\s*\*?\s*([xyz])")
+EULER = ("euler", "angles", "degrees", "euler_angles")
+"""Fields of other programs for angles about x, y and z."""
 ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
 UNTURNED = "`1 0 0 0` turns nothing, and `{about: z, angle: 30 deg}` by an angle"
 
@@ -101,8 +104,8 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
             def key(item: Node) -> Expr | None:
                 return _expr(read_rotation(item, names, found))
 
-            turned = read_keys(node, "rotation", key, None, time_reader(names, found), QUATERNION, found)
-            return None if turned is None else Value(turned, node.span)
+            keyed = read_keys(node, "rotation", key, None, time_reader(names, found), QUATERNION, found)
+            return None if keyed is None else Value(keyed, node.span)
         if given.keys() == {"about", "angle"}:
             axis = _axis(given["about"], names, found)
             angle = read_value(given["angle"], Quantity(ANGLE, needs_unit=True), "angle", names, found)
@@ -116,6 +119,10 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
                 return None
             return Value(Call(f"euler_{order}", (angles.expr,), QUATERNION, node.span), node.span)
     expr = None
+    if isinstance(node, Scalar) and (about := _ABOUT.fullmatch(node.text.strip())) is not None:
+        help = f"write `{{about: {about[2]}, angle: {about[1]} deg}}`"
+        found.error("rotation-shape", "a rotation names its axis or its order", node.span, help=help)
+        return None
     if not isinstance(node, MappingNode):
         expr = read_expr(node, QUATERNION.shape, PLAIN, "rotation", names, found)
         if expr is None:
@@ -125,14 +132,31 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
             if value is not None and value.constant and not any(value.number()):
                 found.error("invalid", "a rotation is a quaternion that is not zero", node.span, help=UNTURNED)
                 return None
+            if value is not None and value.constant and _by_axis(node, value.number(), found):
+                return None
             return value
-    found.error(
-        "rotation-shape",
-        "a rotation names its axis or its order",
-        node.span,
-        help=_turned(node, expr),
-    )
+    turned: Node = node
+    if isinstance(node, MappingNode) and len(node.entries) == 1 and next(iter(node.entries)) in EULER:
+        (turned,) = node.entries.values()
+        expr = read_expr(turned, (3,), None, "rotation", names, Diagnostics())
+    found.error("rotation-shape", "a rotation names its axis or its order", node.span, help=_turned(turned, expr))
     return None
+
+
+def _by_axis(node: Node, numbers: Sequence[float], found: Diagnostics) -> bool:
+    """Whether four numbers are an axis and an angle, which is an error; warns of the quaternion of no turn w last."""
+    *axis, angle = (float(one) for one in numbers)
+    if tuple(axis) == (0.0, 0.0, 0.0) and angle == 1.0:
+        text = "as a quaternion `w x y z` this turns by 180 deg about z"
+        found.warning("quaternion-order", text, node.span, help="w stands first: `1 0 0 0` turns nothing")
+    if abs(sum(c * c for c in axis) - 1.0) > 1e-3 or angle in (0.0, 1.0, -1.0):
+        return False
+    unit = "rad" if abs(angle) <= 2 * pi else "deg"
+    text = "four numbers are a quaternion `w x y z`, of length 1"
+    about = " ".join(f"{c:g}" for c in axis)
+    help = f"an axis and an angle are `{{about: {about}, angle: {angle:g} {unit}}}`"
+    found.error("rotation-shape", text, node.span, help=help)
+    return True
 
 
 def _axis(node: Node, names: Names, found: Diagnostics) -> Expr | None:

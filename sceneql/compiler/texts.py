@@ -19,6 +19,7 @@ from sceneql.quantities.units import Unit, describe, parse_unit, unit_of
 _WORD = re.compile(r"\s?([^\W\d]\w*(?:[/*^]\w+)*)")
 _PRINTED = re.compile(r"%(\.\d+[efg])")
 _SIGN = re.compile(r"\$(\{[^{}]*\})")
+_LINK = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
 PIECE = re.compile(r"\{\{|\}\}|\{(?P<inside>[^{}]*)\}|(?P<odd>[{}])")
 
 
@@ -37,6 +38,10 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
         return None
     text, start = parsed_text(node), node.content.start
     same = text == node.content.text
+    if _LINK.fullmatch(text.strip()) is not None and names.gives(text.strip()):
+        help = f'a text has its values in braces: write `{what}: "{{{text.strip()}:.2f}}"`'
+        found.error("syntax", f"'{text.strip()}' would be drawn as it stands", node.span, help=help)
+        return None
     pieces: list[str | TextValue] = []
     at, ok = 0, True
     for piece in PIECE.finditer(text):
@@ -56,6 +61,8 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
     pieces.append(text[at:])
     if (form := _PRINTED.search(text)) is not None:
         help = f"a text has its values in braces, and behind a colon their form: `{{ball.position.y:{form[1]}}}`"
+        if text[: form.start()].endswith(":"):  # {energy:%.2f}
+            help = f"write `{text[: form.start()]}{form[1]}{text[form.end() :]}`"
         found.error("syntax", f"'{form[0]}' would be drawn as it stands", node.span, help=help)
         return None
     if (sign := _SIGN.search(text)) is not None:
@@ -94,6 +101,8 @@ def _told(
     ``start``: its offset in the source; None where that is not known.
     """
     expression, _, rest = inside.partition(":")
+    if rest.startswith("%"):
+        return None  # the text as a whole is reported
     begin, end = node.start, node.end
     if start is not None:
         begin = start + len(expression) - len(expression.lstrip())

@@ -12,6 +12,7 @@ from sceneql.language.behind_quotes import without_letters
 from sceneql.language.tree import Scalar
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics
 from sceneql.quantities.instead import instead
+from sceneql.quantities.latex import from_latex
 from sceneql.quantities.operations import FUNCTIONS
 from sceneql.quantities.span import Source, Span
 
@@ -31,6 +32,7 @@ NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _ITEM = r"(?:[^(),]|\([^(),]*\))+"
 _PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
 _ROTATION = re.compile(r"\brotation:\s*\Z")
+_NAMED = re.compile(r"\$?\{\{?\s*([^\W\d][\w.]*)\s*\}\}?")
 _COMMENT = re.compile(r"//|--|%(?=\s)")
 _UNIT_IN_BRACKETS = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?(?:\s+[-+]?[\d.]+)*)\s*\[\s*([^\W\d][^\[\],]*?)\s*\]")
 _UNPARTED = re.compile(r"([^\W\d]\w*)(?:[ ]+|(:))(?=\[)")
@@ -110,12 +112,20 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
             called = _CALLED.match(written)
             if called is not None and called[1] not in FUNCTIONS and instead("function", called[1]) is not None:
                 continue  # it is reported where the value is read
+            if (named := _NAMED.fullmatch(written)) is not None:
+                help = f"a name stands by itself: write `{named[1]}`"
+                found.error(
+                    "syntax", "'$' cannot stand in an expression", Span(source, fault.caret, fault.end), help=help
+                )
+                continue
             line = _corrected(source, fault, together)
             match fault.code:
                 case "comment-color":
                     message, help = f"{written} is read as a comment here, so the value is missing", f"quote it: {line}"
                 case "unit-after-bracket":
                     message, help = f"the unit '{written}' cannot stand behind a bracket", f"write: {line}"
+                case _ if "\\" in written and (plain := from_latex(written)) is not None:
+                    message, help = "commands of LaTeX mean nothing here", f"write `{plain}`"
                 case _ if _UNIT_IN_BRACKETS.fullmatch(written) is not None:
                     message, help = "a unit stands behind its number, without brackets", f"write: {line}"
                 case _ if written.startswith("(") and fault.fixed[0] not in "\"'":

@@ -12,7 +12,7 @@ import yaml
 
 from sceneql.language.broken_values import Fault, broken_halves, broken_near, report, swallowed
 from sceneql.language.encoded import MOST_BYTES, too_large
-from sceneql.language.lines import doubled, lacking, left_out, marked, unparted
+from sceneql.language.lines import doubled, lacking, left_out, marked, twice, unparted
 from sceneql.language.plain import cut_off, kind_of
 from sceneql.language.repair import blanked, cut_short, joined, repaired
 from sceneql.language.syntax import explain, place, unprintable
@@ -380,9 +380,7 @@ class _Composer:
         """Report a key that its mapping holds already; the first stays."""
         if key.text in ("", "<<") and not key.quoted:
             return
-        note = Note("it stands here first", mapping.keys[key.text].span)
-        help = "remove one of the two, or give it another name"
-        self.error("duplicate-key", f"the key '{key.text}' is given twice", key.span, help=help, notes=[note])
+        self.add(twice(key, mapping.keys[key.text], section=mapping is self.stack[0]))
 
     def error(self, code: str, message: str, span: Span, *, help: str, notes: list[Note] | None = None) -> None:
         """Record an error; raises _StopError where there are too many."""

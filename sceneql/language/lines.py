@@ -14,10 +14,11 @@ import yaml
 from sceneql.language.broken_values import Fault
 from sceneql.language.repeat import numbered
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, hole
-from sceneql.quantities.diagnostic import Diagnostic
+from sceneql.quantities.diagnostic import Diagnostic, Note
 from sceneql.quantities.span import Source, Span
 
 _HEAD = re.compile(r"[ ]*(?:- +)*")
+_HEAD_KEY = re.compile(r"(?:forces|contacts):\s*$")
 _NAME: Final = r"[^\s:#\[\]{},\"']+"
 _NO_SPACE = re.compile(rf"({_NAME}):(?=[\[{{])")
 _NO_COLON = re.compile(rf"({_NAME})[ ]*(?=[\[{{])")
@@ -68,6 +69,14 @@ def doubled(key: Scalar) -> tuple[Scalar, Diagnostic]:
     help = f"write `{text}:`; a name that holds a colon goes in quotes"
     diagnostic = Diagnostic("yaml-syntax", f"a second colon behind '{text}'", Span(key.source, end, key.end), help)
     return Scalar(text, key.kind, False, key.source, key.start, end), diagnostic
+
+
+def twice(key: Scalar, first: Scalar, *, section: bool) -> Diagnostic:
+    """The diagnostic of a key that its mapping holds already, as ``first``; ``section``: at the left margin."""
+    help = f"write `{key.text}:` once, and below it what stands below both"
+    help = help if section else "remove one of the two, or give it another name"
+    note = Note("it stands here first", first.span)
+    return Diagnostic("duplicate-key", f"the key '{key.text}' is given twice", key.span, help, (note,))
 
 
 def marked(anchor: str, source: Source, faults: Iterable[Fault]) -> bool:
@@ -124,6 +133,9 @@ def _without(source: Source, number: int) -> Fault:
             source, number, head, head, head + len(written), "a line that is no key", _COMMENT.format(written[2:])
         )
     help = f"write `{name}: {rest.strip()}`" if rest else f"write `{name}:` with what belongs to it below, indented"
+    bare = not rest and head and not line[:head].strip() and not _holds(source, number)
+    if bare and _HEAD_KEY.match(source.line(_margin(source, number))):
+        help = f"a word without fields has a name before it: write `{name}: {name}`; or {help.removeprefix('write ')}"
     return _line(source, number, head, head, head + len(written), "a key without a colon", help)
 
 
@@ -156,6 +168,19 @@ def _line(source: Source, number: int, start: int, caret: int, end: int, message
     stop = source.line_starts[last - 1] + len(source.line(last).rstrip())
     diagnostic = Diagnostic("yaml-syntax", message, Span(source, base + caret, base + end), help)
     return Fault("yaml-syntax", base + start, stop, base + caret, "", diagnostic, " " if start == head else "x")
+
+
+def _holds(source: Source, number: int) -> bool:
+    """Whether the next line that is not blank is indented deeper than line ``number``."""
+    below = next((n for n in range(number + 1, len(source.line_starts) + 1) if not _bare(source.line(n))), number)
+    return _head(source.line(below)) > _head(source.line(number))
+
+
+def _margin(source: Source, number: int) -> int:
+    """The line of the section, or of the last key at the left margin, that a line stands below."""
+    while number > 1 and (_bare(source.line(number)) or source.line(number)[:1].isspace()):
+        number -= 1
+    return number
 
 
 def _top(source: Source, number: int) -> int:

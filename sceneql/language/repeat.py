@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from collections.abc import Mapping as Table
 from dataclasses import dataclass
 from math import inf
@@ -20,6 +21,8 @@ MOST_COPIES: Final = 10_000
 _MOST_HOPS: Final = 64
 _Known = dict[int, float | None]
 _NUMBERED = re.compile(r"(\w*?)_?[{[(<$%]+(\w+)[}\])>]*\w*?((?:[{[(<$%]+\w+[}\])>]*\w*)*)")
+_RANGE = re.compile(r"\b(?:range|linspace|arange)\(.*?(\w+)\W*\)")
+_COPY = re.compile(r"(.+?)[._\[]\{?([^\W\d]\w*)\}?\]?\s*([-+]\s*\d+)?\]?")
 _LOOP = re.compile(r"for(?:each)?\s+\(?(?:int |let |var )?\s*(\w+)\b.*")
 
 
@@ -55,6 +58,15 @@ def numbered(name: str) -> str | None:
     return f"write `{plain}: {{repeat: {{count: 5, as: {index}}}, ...}}`, {copies}: `sceneql words repeat`"
 
 
+def copy_meant(name: str, known: Collection[str]) -> str | None:
+    """The help for the name of a copy whose number is not in braces: ``link.i+1`` where there is ``link.0``."""
+    found = _COPY.fullmatch(name)
+    if found is None or f"{found[1]}.0" not in known:
+        return None
+    number = found[2] if found[3] is None else f"{found[2]} {found[3][0]} {found[3][1:].strip()}"
+    return f'the number of a copy stands in braces, in quotes: write `"{found[1]}.{{{number}}}"`'
+
+
 def read_repeat(
     node: Node, scope: Scope | None, define: Table[str, Node], lost: Broken, found: Diagnostics, *, names: bool = False
 ) -> Repeat | None:
@@ -68,6 +80,8 @@ def read_repeat(
             return Repeat(len(texts), symbol, key, texts)
     if not isinstance(node, Mapping) or "count" not in node.entries or node.entries.keys() - {"count", "as"}:
         given = node.text if isinstance(node, Scalar) and node.kind in ("integer", "text") else "5"
+        if (loop := _RANGE.search(given)) is not None:
+            given = loop[1]
         help = f"write `repeat: {{count: {given}, as: i}}`"
         found.error("repeat-shape", "`repeat` takes a count, and a name for the number", node.span, help=help)
         return None

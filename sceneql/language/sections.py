@@ -90,7 +90,7 @@ def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Br
     for key, value in node.entries.items():
         name = key
         if key not in known:
-            other = instead("section", key)
+            other = instead("section", key) or instead("section", key.partition(" ")[0])
             if other is not None and isinstance(value, Scalar) and value.text.lower() in NOTHING:
                 other = instead("absent", key) or other
             near = nearest(key, known) if other is None else None

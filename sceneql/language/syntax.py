@@ -38,6 +38,7 @@ _PROBLEMS: Final = (
     ("tag", "a tag (!) means nothing in a script", "a text that begins with ! goes in quotes"),
 )
 _NO_KEY = re.compile(r"(?:^|[,{\n\r])[ \t]*\Z")
+_PARTED = re.compile(r"([^{},\[;]+);\s*([^\s;,{}\[\]]+)$")
 _KEY: Final = "write `name: value`"
 _LONGEST: Final = 1024
 """Largest length of a key (YAML 1.2, 7.4: implicit keys)."""
@@ -111,6 +112,8 @@ def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
             return _syntax("fields stand in braces, not in parentheses", source, at, braces)
         if source.text[at : at + 1] == ":":
             help = "a text that holds a colon goes in quotes; items are separated by commas"
+            if (parted := _PARTED.search(source.text[opening:at])) is not None:
+                help = f"fields are separated by commas: write `{parted[1].strip()}, {parted[2]}: ...`"
             return _syntax("a second colon in this value, where no key can stand", source, at, help)
         help = "separate the items by commas; an expression with brackets goes in quotes"
         return _syntax("this does not belong here, or a comma is missing before it", source, at, help)

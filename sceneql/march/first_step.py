@@ -26,17 +26,21 @@ def first_step(
     if stepper.method.order == 0:  # it has no steps
         return end
     control = stepper.control
-    scale = np.asarray(control.absolute) + control.tolerance * np.abs(y)
-    scale = np.where(alone, np.where(y == 0.0, np.inf, control.tolerance * np.abs(y)), scale)
+    scale = control.absolute + control.tolerance * np.abs(y)
+    some_alone = alone.any()
+    if some_alone:
+        scale = np.where(alone, np.where(y == 0.0, np.inf, control.tolerance * np.abs(y)), scale)
 
     def norm(x: Floats) -> float:
-        return math.sqrt(float(np.mean((x / scale) ** 2))) if len(x) else 0.0
+        parts = x / scale
+        return math.sqrt(float(np.add.reduce(parts * parts)) / len(x)) if len(x) else 0.0
 
     size, speed = norm(y), norm(rate)
     h = 1e-6 if size < 1e-5 or speed < 1e-5 else 0.01 * size / speed
     h = min(h, control.largest_step, end)
-    change = control.tolerance * h * np.abs(rate)
-    scale = np.where(alone & (scale == np.inf) & (change > 0.0), change, scale)
+    if some_alone:
+        change = control.tolerance * h * np.abs(rate)
+        scale = np.where(alone & (scale == np.inf) & (change > 0.0), change, scale)
     bend = norm(rate_at(h, y + h * rate) - rate) / h
     most = max(speed, bend)
     guess = max(1e-6, 1e-3 * h) if not most > 1e-15 else (0.01 / most) ** (1.0 / stepper.method.order)

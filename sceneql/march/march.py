@@ -37,8 +37,9 @@ TOUCHING = 1e-13
 ENTRIES_A_CALL = 20_000_000
 """Steps times entries of y in one compiled call, so that a long run can be interrupted."""
 
-AT_ONCE = 16
-"""Number of steps in the first call: steps of flows may take as long as all those of later calls."""
+AT_ONCE, ENTRIES_AT_ONCE = 16, 20_000
+"""Number of steps in the first call: steps of flows may take as long as all those of later calls. Where y is short it
+is as many as have so many entries."""
 LARGEST = 1e100
 """Largest number at the start in SI units, so that the square of its growth does not overflow."""
 
@@ -94,7 +95,7 @@ class March:
             local = bool(system.structure.local)
             self._switch = Switch(stepper, stiff, self.rate, system.partner, end, local=local)
         self._last_look = 0
-        self._at_once = AT_ONCE
+        self._at_once = max(AT_ONCE, ENTRIES_AT_ONCE // (n + 1))
         self._from = 0.0 if before is None else self._go_on_from(before, kept)
         """Start of the march [s]."""
         self._look_for_breakpoint(self._from)
@@ -269,17 +270,16 @@ class March:
             self.corrected = settled - y if self._from == 0.0 else None
             y[:] = settled
         self._rate1[:] = self.rate(self._from, y)
-        bad = np.flatnonzero(~(np.maximum(np.abs(y), np.abs(self._rate1)) <= LARGEST))
-        if len(bad):
-            k = int(bad[0])
+        size, speed = np.abs(y).max(initial=0.0), np.abs(self._rate1).max(initial=0.0)
+        if not (size <= LARGEST and speed <= LARGEST):
+            k = int(np.flatnonzero(~(np.maximum(np.abs(y), np.abs(self._rate1)) <= LARGEST))[0])
             finite = math.isfinite(y[k]) and math.isfinite(self._rate1[k])
             what = f"has a value beyond {LARGEST:.0e}" if finite else "has no finite value"
             message = f"the {'state' if abs(y[k]) > LARGEST else 'rate'} {what} at the start"
             raise blamed(self.stopped(), k, message, () if finite else (0.0,))
-        moved = np.abs(self._rate1).max(initial=0.0) * self.end
-        self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, np.abs(y).max(initial=0.0), moved)
-        positions = np.abs(y[self.system.partner >= 0]).max(initial=1.0)
-        self._clock[kernels.SLOP] = TOUCHING * positions
+        self._clock[kernels.LIMIT] = GROWTH_LIMIT * max(1.0, size, speed * self.end)
+        if self.system.pairs:
+            self._clock[kernels.SLOP] = TOUCHING * np.abs(y[self.system.partner >= 0]).max(initial=1.0)
         step = self.stepper.control.first_step
         step = step or first_step(self.stepper, y, self._rate1, self._alone, self.end, self.rate)
         if self._switch is not None:

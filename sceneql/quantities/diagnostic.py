@@ -56,6 +56,7 @@ class Diagnostic:
 
 LONGEST_WORD, LONGEST_TEXT = 80, 1000
 """Most characters of a word, and of a whole line, of a message: a script's names may be megabytes long."""
+_PIECE = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 _LONG_WORD = re.compile(rf"\S{{{LONGEST_WORD + 1},}}")
 
 
@@ -177,13 +178,14 @@ def _place(diagnostic: Diagnostic) -> tuple[str, int]:
 
 def same_as(name: str, choices: Collection[str]) -> str | None:
     """The choice that a name is, but for capitals, or that another program calls so (``pos``), if any."""
-    name = _of_library(name)
+    name = of_library(name)
     close = [choice for choice in choices if choice.lower() == name.lower()]
     close = close or [ours for ours in OURS.get(name.lower(), ()) if ours in choices]
     return close[0] if close else None
 
 
-def _of_library(name: str) -> str:
+def of_library(name: str) -> str:
+    """A name without that of a library before its dot: ``sin`` of ``Math.sin``."""
     library, _, inside = name.partition(".")
     return inside if inside and library in LIBRARIES else name
 
@@ -197,8 +199,13 @@ def nearest(name: str, choices: Iterable[str]) -> str | None:
     choices = list(choices)
     if (same := same_as(name, choices)) is not None:
         return same
-    name = _of_library(name)
+    if "(" in name:  # new THREE.SphereGeometry(1, 32, 32)
+        name = re.split(r"[\s.]", name.partition("(")[0])[-1]
+    name = of_library(name)
     close = get_close_matches(name, choices, n=1, cutoff=0.8)
+    pieces = [] if "." in name else _PIECE.findall(name)
+    if not close and len(pieces) > 1:  # AmbientLight, primitive_cube_add
+        close = [same for piece in pieces if (same := same_as(piece, choices)) is not None][:1]
     close = close or get_close_matches(name, choices, n=1, cutoff=0.6)
     if not close and len(name) > 1:
         close = [choice for choice in choices if name == "".join(part[:1] for part in choice.split("_"))]

@@ -24,6 +24,7 @@ _ITEM = re.compile(rf"\s*([+-]?{NUMBER})\s*([^\W\d][\w^*/·-]*|%)?\s*,?\s*")
 _ITEMS = re.compile(rf"(?:{_ITEM.pattern})+")
 _THOUSANDS = re.compile(r"(?<![\d,.])([1-9]\d{0,2}(?:,\d{3})+)(?![\d,])")
 _DECIMAL = re.compile(r"(?<![\d,])(\d+),(?=\d+(?![\d,]))")
+_ANGLED = re.compile(r"(?:rgb\w*\s*)?<([^<>{}\[\]\n]*)>")
 EXACT = 40
 """Largest number of digits of a literal that is converted exactly and rounded once: 1.7 mm is the double nearest to
 0.0017."""
@@ -50,6 +51,11 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
             raise
         if sign_of(word.group()) is not None:
             raise
+        if word.group()[:1] == "_" and at > 0 and text[at - 1].isdigit():  # 1_000
+            digits = re.match(r"[\d_]*", text[at:]) or word
+            first = re.search(r"[\d_]*$", text[:at]) or word
+            help = f"digits stand together: write `{(first.group() + digits.group()).replace('_', '')}`"
+            raise ScriptError([replace(found, help=help)]) from None
         if (other := instead("behind", word.group())) is not None:
             raise ScriptError([replace(found, help=other)]) from None
         if instead("unit", word.group()) is not None:
@@ -133,9 +139,17 @@ def vector_meant(text: str) -> str | None:
     return " ".join([*(number for number, _ in items), *units])
 
 
+def in_brackets(text: str, at: int = 0) -> str | None:
+    """The vector in angle brackets at ``text[at]`` as a script writes it: ``[0, 1, 0]`` for ``<0, 1, 0>``, if any."""
+    found = _ANGLED.match(text, at)
+    return None if found is None else f"[{', '.join(one.strip() for one in found[1].split(','))}]"
+
+
 def comma_meant(text: str, at: int = 0) -> str:
     """The help for a comma that cannot stand in the value at ``text[at]``: a decimal one, or one between components."""
     point = "a decimal number has a point"
+    if (angled := in_brackets(text, at)) is not None:
+        return f"a vector has square brackets: write `{angled}`"
     if (numbers := _ITEMS.match(text, at, at + 3 * EXACT)) is not None:
         text = numbers.group().strip(", \t\r\n")
     whole = _THOUSANDS.sub(lambda one: one[1].replace(",", ""), text.strip())

@@ -4,14 +4,26 @@ from __future__ import annotations
 
 import re
 
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError, of_library, suggestion
 from sceneql.quantities.expression import Call, Expr, Name, Number, Vector, children, each_once
 from sceneql.quantities.instead import instead
-from sceneql.quantities.literal import NUMBER, WORD, comma_meant, quantity, read_unit, vector_meant, whole_value
+from sceneql.quantities.latex import from_latex
+from sceneql.quantities.literal import (
+    NUMBER,
+    WORD,
+    comma_meant,
+    in_brackets,
+    quantity,
+    read_unit,
+    vector_meant,
+    whole_value,
+)
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
+from sceneql.quantities.spaced import bracketed
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
+from sceneql.quantities.units import parse_unit
 
 LONGEST, DEEPEST = 10_000, 100
 """Limits on the number of characters of one expression (each node takes at least one), and on the depth of its tree."""
@@ -27,16 +39,22 @@ TOKEN = re.compile(
 )
 
 _UNIT_IN_BRACKETS = re.compile(r"\[\s*([^\W\d][^\[\],]*?)\s*\]")
+_CROSSED = re.compile(rf"{NUMBER}\s*[a-zµ]*(?:\s*[x×]\s*{NUMBER}\s*[a-zµ]*)+")
 _INDEX = re.compile(r"\[\s*(\d)\s*\]")
 
 
 def parse_value(text: str, span: Span) -> Expr:
     """A whole scalar: ``2 kN/m``, ``1/60 s``, ``0 1.2 0 m``, or an expression. Raises ScriptError."""
-    if len(text) <= LONGEST:
-        value = whole_value(text, span)
-        if value is not None:
-            return value
-    return parse_expression(text, span)
+    try:
+        value = whole_value(text, span) if len(text) <= LONGEST else None
+        return parse_expression(text, span) if value is None else value
+    except ScriptError as error:
+        (found,) = error.diagnostics
+        spaced = found.code in ("syntax", "unknown-unit") and len(text) <= LONGEST
+        if not spaced or (vector := bracketed(text, span)) is None:
+            raise
+        help = f"a vector with formulas stands in brackets: write `{vector}`"
+        raise ScriptError([Diagnostic("syntax", "two values stand side by side", found.span, help)]) from None
 
 
 def parse_expression(text: str, span: Span) -> Expr:
@@ -118,9 +136,9 @@ class _Parser:
                 raise self._fail("syntax", "an empty bracket has no value", start, self.previous)
             self._no_unit(start, items)
             return Vector(items, span=self._from(start))
-        raise self._fail(
-            "syntax", "something is missing at the end" if kind == "end" else f"'{token}' cannot stand here"
-        )
+        message = "something is missing at the end" if kind == "end" else f"'{token}' cannot stand here"
+        angled = in_brackets(self.text, start) if token == "<" else None
+        raise self._fail("syntax", message, help=None if angled is None else f"write `{angled}`")
 
     def _signed(self, sign: str, start: int) -> Expr:
         # A sign before a literal is part of it: -20 degC is 253.15 K, not minus 293.15 K.
@@ -156,7 +174,7 @@ class _Parser:
         self._advance()
         args = self._items(")", opening)
         if name not in FUNCTIONS:
-            hint = instead("function", name) or suggestion(name, FUNCTIONS)
+            hint = instead("function", name) or instead("function", of_library(name)) or suggestion(name, FUNCTIONS)
             every = "`sceneql words functions` lists all"
             help = every if hint is None else f"{hint}{' ' if hint.endswith('?') else '; '}{every}"
             raise self._fail("unknown-function", f"there is no function '{name}'", start, start + len(name), help=help)
@@ -190,6 +208,15 @@ class _Parser:
         if self.kind == "bad":
             message = f"'{self.token}' cannot stand in an expression"
             help = instead("sign", self.token)
+            if (self.token == "\\" or (self.token == "{" and self.before[-1:] in ("^", "_"))) and (
+                plain := from_latex(self.text)
+            ):
+                help = f"write `{plain}`"
+            name = re.match(WORD, self.text[self.end :])
+            if self.token == "$" and name is not None:
+                own = name.group()
+                help = f"a name stands by itself: write `{own}`, or `{own}*(1 cm)` where it is a plain number"
+                help = "the time is `time`" if own in ("t", "T", "F", "FF") else help
             component = re.match(r"\.([xyz])\b", self.text[self.start :])
             if component is not None and self.before in (")", "]"):
                 help = f"a component of an expression is written `component(..., {'xyz'.index(component[1])})`"
@@ -231,12 +258,20 @@ class _Parser:
             at = self.text.index(odd)
             help = instead("sign", odd)
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
-        if isinstance(expr, Number) and self.kind == "number":
+        crossed = _CROSSED.fullmatch(self.text.strip())
+        if crossed is not None and (sides := vector_meant(re.sub(r"\s*[x×]\s*", ", ", self.text.strip()))):
+            help = f"write `{sides}`"
+        elif isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
+            help = formula
+        elif isinstance(expr, Number) and self.kind == "number" and self.before.endswith("%"):
+            help = instead("sign", "%")
+        elif isinstance(expr, Number) and self.kind == "number":
             help = "a vector is numbers alone and one unit, `0 1.2 0 m`, or expressions in brackets, `[a, b, c]`"
             if (vector := vector_meant(self.text)) is not None:
                 if vector == self.text.strip():  # right as a vector, but a formula stands here
                     *numbers, last = vector.split(" ")
                     unit = "" if last[-1:].isdigit() else f" {last}"
+                    parse_unit(last, self.span) if unit else None  # raises where it is none, as km/hr
                     vector = f"[{', '.join(f'{one}{unit}' for one in (numbers if unit else (*numbers, last)))}]"
                 help = f"write `{vector}`"
         elif self.kind == "number" and self.before[-1:].isdigit():

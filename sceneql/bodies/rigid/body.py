@@ -82,7 +82,8 @@ class Body(Record):
         if self.inertia is not None and self.mass is None:
             yield Problem("a body of given `inertia` needs its `mass`, too", ("inertia",), at_key=True)
         elif self.of is None and self.inertia is None and self._alone():
-            yield Problem("a body without an object (`of`) needs `mass` and `inertia`")
+            remedy = "write `of: NAME`, the object that it moves, whose shape tells the inertia"
+            yield Problem("a body without an object (`of`) needs `mass` and `inertia`", help=remedy)
         if self.inertia is not None and (text := impossible(self.inertia)):
             yield Problem(text, ("inertia",))
         if self.fixed and (any(self.velocity) or any(self.spin)):

@@ -3,7 +3,7 @@
 
 from numba import types
 
-from sceneql.compiled.kernels import lean
+from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, N
 
 COUNT, ROTATION_AT, MOMENTUM_AT, INVERSE_AT, PRINCIPAL_AT = range(5)
@@ -14,28 +14,29 @@ LENGTHENED = 1e-5
 THREE = types.UniTuple(F, 3)
 
 
+@lean_inlined
+def turned_back(a, b, c, d, x, y, z):
+    """A vector of the world in the axes of the body with the quaternion a, b, c, d, of any length but 0."""
+    s = 2.0 / (a * a + b * b + c * c + d * d)
+    # v + s (q x (q x v) - w q x v): the rotation by the conjugate.
+    px, py, pz = c * z - d * y, d * x - b * z, b * y - c * x
+    ux, uy, uz = c * pz - d * py, d * px - b * pz, b * py - c * px
+    return x + s * (ux - a * px), y + s * (uy - a * py), z + s * (uz - a * pz)
+
+
 @lean(THREE(A, N, F, F, F))
 def to_body(y, at, x, y_, z):
     """A vector of the world in the axes of the body whose quaternion stands at y[at:], of any length but 0."""
-    a, b, c, d = y[at], y[at + 1], y[at + 2], y[at + 3]
-    s = 2.0 / (a * a + b * b + c * c + d * d)
-    # v + s (q x (q x v) - w q x v): the rotation by the conjugate.
-    px, py, pz = c * z - d * y_, d * x - b * z, b * y_ - c * x
-    ux, uy, uz = c * pz - d * py, d * px - b * pz, b * py - c * px
-    return x + s * (ux - a * px), y_ + s * (uy - a * py), z + s * (uz - a * pz)
+    return turned_back(y[at], y[at + 1], y[at + 2], y[at + 3], x, y_, z)
 
 
 @lean(THREE(A, N, F, F, F))
 def to_world(y, at, x, y_, z):
     """A vector of the axes of the body whose quaternion stands at y[at:], of any length but 0, in the world's."""
-    a, b, c, d = y[at], y[at + 1], y[at + 2], y[at + 3]
-    s = 2.0 / (a * a + b * b + c * c + d * d)
-    px, py, pz = c * z - d * y_, d * x - b * z, b * y_ - c * x
-    ux, uy, uz = c * pz - d * py, d * px - b * pz, b * py - c * px
-    return x + s * (ux + a * px), y_ + s * (uy + a * py), z + s * (uz + a * pz)
+    return turned_back(y[at], -y[at + 1], -y[at + 2], -y[at + 3], x, y_, z)
 
 
-@lean(THREE(A, N, F, F, F))
+@lean_inlined
 def times_symmetric(floats, at, x, y, z):
     """A symmetric matrix, its xx, yy, zz, yz, xz, xy at floats[at:], times a vector."""
     xx, yy, zz = floats[at], floats[at + 1], floats[at + 2]
@@ -55,8 +56,9 @@ def close(t, y, rate, floats, ints):
     """dq/dt = q (0, w) / 2, w being the angular velocity in the body's axes; a fixed body keeps its momentum."""
     for k in range(ints[COUNT]):
         q, momentum, inverse = ints[ROTATION_AT] + 4 * k, ints[MOMENTUM_AT] + 3 * k, ints[INVERSE_AT] + 6 * k
-        x, y_, z = body_spin(y, floats, q, momentum, inverse)
-        a, b, c, d = 0.5 * y[q], 0.5 * y[q + 1], 0.5 * y[q + 2], 0.5 * y[q + 3]
+        a, b, c, d = y[q], y[q + 1], y[q + 2], y[q + 3]
+        x, y_, z = turned_back(a, b, c, d, y[momentum], y[momentum + 1], y[momentum + 2])
+        x, y_, z = times_symmetric(floats, inverse, 0.5 * x, 0.5 * y_, 0.5 * z)
         rate[q] -= b * x + c * y_ + d * z
         rate[q + 1] += a * x + c * z - d * y_
         rate[q + 2] += a * y_ + d * x - b * z

@@ -20,6 +20,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_J,
     AT_MASS,
     AT_OPEN,
+    AT_PUSHED,
     AT_SIZE,
     AT_SPEED,
     AT_TWIST,
@@ -45,32 +46,35 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
 )
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.numba.lazy_kernels import lazy
+from sceneql.linear.multifrontal import layout
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
 # Compiled at the first system of many rows, or of few.
 factor_sparse = lazy("sceneql.linear.multifrontal.symmetric_kernels:factor_symmetric", types.boolean(I, A, A, A))
 solve_sparse = lazy("sceneql.linear.multifrontal.solve_kernels:solve_symmetric", types.void(I, A, A, A))
-factor_dense = lazy("sceneql.linear.dense_kernels:factor", types.boolean(A, N, I))
-solve_dense = lazy("sceneql.linear.dense_kernels:solve", types.void(A, N, I, A))
+factor_dense = lazy("sceneql.linear.dense_symmetric_kernels:factor", types.boolean(A, N, F))
+solve_dense = lazy("sceneql.linear.dense_symmetric_kernels:solve", types.void(A, N, A))
 
 MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, STARTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(10)
 MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, EASE_AT, HEAD = range(10, 21)
 """Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where each
 begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes of
 what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels). Few rows have a
-matrix that is whole, its factors in place, and their pivots in place of the plan. A mover that ties
+matrix that is whole, its factors in place, and no plan. A mover that ties
 share: their number n and its own; of each tie its first row, how many it has, their floats at its side; then n x n
-places in a row of the first where the rows of the second begin, counted from that row's first value."""
+places in a row of the first where the rows of the second begin, counted from that row's first value (-1: what stands
+there is not read)."""
 
 KEPT = 12
 """Floats of a row that drifts keep of where they began: J."""
-EASE, LITTLE = 1e-9, 1e-13
-"""Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: the less where no row follows from others at the
-start, so that light bodies may hold heavy ones."""
+EASE, LITTLE, DEPENDENT = 1e-9, 1e-13, 1e-12
+"""Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: none where no row follows from others at the
+start, so that light bodies may hold heavy ones, but LITTLE where a pivot is not above that part of its diagonal."""
 COARSE = 1e-10
 """Part of an acceleration that sums of large forces may round off."""
-LEFT = 1e-13
-"""What may be left of an equation, against the numbers that it is a sum of."""
+LEFT, LONG = 1e-13, 1000
+"""What may be left of an equation, against the numbers that it is a sum of; rows beyond which it is in proportion to
+their number, as the rounding of the factors is."""
 SHARE = 1e-2
 """Part of LEFT that may be left of the numbers that a gap is the difference of."""
 FEW, MOST_CORRECTIONS = 6, 50
@@ -94,9 +98,9 @@ def survey(t, y, floats, ints):
         write_row(floats, ints, row, a, b)
 
 
-@lean(types.boolean(A, I))
-def factor(floats, ints):
-    """Factor J T with EASE of its diagonal added; False where that cannot be."""
+@lean(types.void(A, I))
+def fill(floats, ints):
+    """Write J T, at least the half of it that is read."""
     values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     for k in range(values.size):
         values[k] = 0.0
@@ -113,34 +117,66 @@ def factor(floats, ints):
                     first, rows, to = ints[at + 2 + 3 * one], ints[at + 3 + 3 * one], ints[at + 4 + 3 * one] + AT_J
                     across, along = ints[table + count * one + other], ints[table + count * other + one]
                     for i in range(j + 1 if one == other else rows):
-                        k = to + ROW * i
-                        total = floats[k] * x + floats[k + 1] * y + floats[k + 2] * z + floats[k + 3] * u
-                        total += floats[k + 4] * v
-                        total += floats[k + 5] * w
-                        values[ints[starts + first + i] + across + j] += total
-                        if one != other or j > i:
+                        six = floats[to + ROW * i : to + ROW * i + 6]
+                        total = six[0] * x + six[1] * y + six[2] * z + six[3] * u
+                        total += six[4] * v
+                        total += six[5] * w
+                        if across >= 0:
+                            values[ints[starts + first + i] + across + j] += total
+                        if along >= 0 and (one != other or j > i):
                             values[ints[starts + last + j] + along + i] += total
         at = table + count * count
+
+
+@lean_inlined
+def depends(values, factors, ints, plan):
+    """Whether a pivot of sparse factors is not above the part DEPENDENT of its diagonal."""
+    for s in range(plan[1]):
+        t = layout.HEAD + layout.FIELDS * s
+        first, width, height, panel = plan[t], plan[t + 1], plan[t + 2], plan[t + 5]
+        for k in range(width):
+            diagonal = values[ints[ints[DIAGONAL_AT] + plan[plan[2] + first + k]]]
+            inverse = factors[panel + k * (height + 1)]
+            if not 0.0 < inverse < 1.0 / (DEPENDENT * diagonal):
+                return True
+    return False
+
+
+@lean(types.boolean(A, I, F))
+def factor_with(floats, ints, part):
+    """Factor J T with a part of its diagonal added; False where that cannot be, or without it where rows depend."""
+    fill(floats, ints)
+    values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
     for k in range(ints[ROWS]):
         place = ints[ints[DIAGONAL_AT] + k]
         # A row that no mass can meet, as of two parts that are led, has no force.
-        values[place] = values[place] * (1.0 + floats[ints[EASE_AT]]) if values[place] > 0.0 else 1.0
-    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
+        values[place] = values[place] * (1.0 + part) if values[place] > 0.0 else 1.0
     if ints[FACTORS] == 0:
-        return factor_dense(values, ints[ROWS], plan)
+        return factor_dense(values, ints[ROWS], DEPENDENT if part == 0.0 else 0.0)
+    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
-    return factor_sparse(plan, values, factors, work)
+    return factor_sparse(plan, values, factors, work) and (part > 0.0 or not depends(values, factors, ints, plan))
+
+
+@lean(types.boolean(A, I))
+def factor(floats, ints):
+    """Factor J T; False where that cannot be.
+
+    Where rows depend on others EASE of the diagonal is added, and LITTLE where they have only come to do so.
+    """
+    part = floats[ints[EASE_AT]]
+    return factor_with(floats, ints, part) or (part == 0.0 and factor_with(floats, ints, LITTLE))
 
 
 @lean(types.void(A, I))
 def solve(floats, ints):
     """Solve with the factors, in place."""
-    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     if ints[FACTORS] == 0:
-        solve_dense(floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]], ints[ROWS], plan, right)
+        solve_dense(floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]], ints[ROWS], right)
         return
+    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
     factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
     work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
     solve_sparse(plan, factors, right, work)
@@ -154,6 +190,10 @@ def balance(floats, ints, target, size_at):
     """
     right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
     last, found = math.inf, False
+    little = LEFT * max(1.0, ints[ROWS] / LONG)
+    for m in range(ints[MOVERS]):
+        put(floats, ints[MOVED_AT] + MOVED * m + AT_PUSHED, 0.0, 0.0, 0.0)
+        put(floats, ints[MOVED_AT] + MOVED * m + AT_PUSHED + 3, 0.0, 0.0, 0.0)
     for corrections in range(MOST_CORRECTIONS if factor(floats, ints) else 0):
         worst = 0.0
         for k in range(ints[ROWS]):
@@ -162,14 +202,15 @@ def balance(floats, ints, target, size_at):
             left, size = floats[to + target], max(abs(floats[to + target]), SHARE * floats[to + size_at])
             for side in range(2):
                 mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_A
+                six, moved = floats[to + AT_J + 6 * side : to + AT_J + 6 * side + 6], floats[mover : mover + 6]
                 for c in range(6):
-                    part = floats[to + AT_J + 6 * side + c] * floats[mover + c]
+                    part = six[c] * moved[c]
                     left += part
                     size += abs(part)
             right[k] = -left
             if abs(left) > worst * size:
                 worst = abs(left) / size
-        if worst <= LEFT or (corrections >= FEW and worst > GAIN * last):
+        if worst <= little or (corrections >= FEW and worst > GAIN * last):
             break
         last = worst
         solve(floats, ints)
@@ -181,14 +222,16 @@ def balance(floats, ints, target, size_at):
             to = ints[row + SCRATCH]
             floats[to + AT_FORCE] = floats[to + AT_FORCE] + right[k] if found else right[k]
             for side in range(2):
-                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side]
+                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_IMPULSE
+                six, pushed = floats[to + AT_J + 6 * side : to + AT_J + 6 * side + 6], floats[mover : mover + 6]
                 for c in range(6):
-                    floats[mover + AT_IMPULSE + c] += floats[to + AT_J + 6 * side + c] * right[k]
+                    pushed[c] += six[c] * right[k]
         for m in range(ints[MOVERS]):
             mover = ints[MOVED_AT] + MOVED * m
             push = weighed(floats, mover, mover + AT_IMPULSE)
             for c in range(6):
                 floats[mover + AT_A + c] += push[c]
+                floats[mover + AT_PUSHED + c] += floats[mover + AT_IMPULSE + c]
         found = True
     if not found:
         for k in range(ints[ROWS]):
@@ -198,18 +241,14 @@ def balance(floats, ints, target, size_at):
 @lean(types.void(A, A, I))
 def add(rate, floats, ints):
     """Adds the rows' forces and torques to the entries of velocities and angular momenta."""
-    for k in range(ints[ROWS]):
-        row = ints[ROWS_AT] + ROW_INTS * k
-        to = ints[row + SCRATCH]
-        force = floats[to + AT_FORCE]
-        for side in range(2):
-            at = ints[MOVERS_AT] + MOVER * ints[row + FIRST + side]
-            if ints[at + POSITION] >= 0:
+    for m in range(ints[MOVERS]):
+        at, pushed = ints[MOVERS_AT] + MOVER * m, ints[MOVED_AT] + MOVED * m + AT_PUSHED
+        if ints[at + POSITION] >= 0:
+            for c in range(3):
+                rate[ints[at + VELOCITY] + c] += floats[pushed + c]
+            if ints[at + ROTATION] >= 0:
                 for c in range(3):
-                    rate[ints[at + VELOCITY] + c] += force * floats[to + AT_J + 6 * side + c]
-                if ints[at + ROTATION] >= 0:
-                    for c in range(3):
-                        rate[ints[at + MOMENTUM] + c] += force * floats[to + AT_J + 6 * side + 3 + c]
+                    rate[ints[at + MOMENTUM] + c] += floats[pushed + 3 + c]
 
 
 @lean_inlined
@@ -327,17 +366,12 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         balance(floats, ints, AT_SPEED, AT_SIZE)
         for m in range(ints[MOVERS]):
             at = ints[MOVERS_AT] + MOVER * m
+            mover = ints[MOVED_AT] + MOVED * m
             if ints[at + POSITION] >= 0:
                 for c in range(3):
-                    y1[ints[at + VELOCITY] + c] += floats[ints[MOVED_AT] + MOVED * m + AT_A + c]
-        for k in range(ints[ROWS]):
-            row = ints[ROWS_AT] + ROW_INTS * k
-            to = ints[row + SCRATCH]
-            for side in range(2):
-                at = ints[MOVERS_AT] + MOVER * ints[row + FIRST + side]
-                if ints[at + POSITION] >= 0 and ints[at + ROTATION] >= 0:
+                    y1[ints[at + VELOCITY] + c] += floats[mover + AT_A + c]
+                if ints[at + ROTATION] >= 0:
                     for c in range(3):
-                        impulse = floats[to + AT_FORCE] * floats[to + AT_J + 6 * side + 3 + c]
-                        y1[ints[at + MOMENTUM] + c] += impulse
+                        y1[ints[at + MOMENTUM] + c] += floats[mover + AT_PUSHED + 3 + c]
         changed = True
     return changed

@@ -14,7 +14,7 @@ import math
 
 from numba import types
 
-from sceneql.bodies.rigid.rigid_kernels import times_symmetric, to_body, to_world
+from sceneql.bodies.rigid.rigid_kernels import times_symmetric
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import A, I, N
 
@@ -28,10 +28,11 @@ PLACE, TURN, SPEED, SPIN, PUSH, TWIST, MOVER = range(6, 13)
 and angular momentum in y, of the inverse inertia (-1: a mass). One that is led: offsets in the floats of its position,
 quaternion, velocity, angular velocity, acceleration and angular acceleration. The world: -1 throughout."""
 
-AT_X, AT_V, AT_R, AT_W, AT_INVERSE, AT_MASS, AT_A, AT_TWIST, AT_IMPULSE, MOVED = 0, 3, 6, 15, 18, 27, 28, 31, 34, 40
+AT_X, AT_V, AT_R, AT_W, AT_INVERSE, AT_MASS, AT_A, AT_TWIST = 0, 3, 6, 15, 18, 27, 28, 31
+AT_IMPULSE, AT_PUSHED, MOVED = 34, 40, 46
 """Floats of a mover: position, velocity, rotation (3, 3), angular velocity, inverse inertia in the world's axes (3, 3),
 inverse mass; acceleration and angular acceleration, by all forces but the ties' and then with these; of ties, what the
-last correction adds to force and torque."""
+last correction adds to force and torque, and these in all."""
 
 AT_J, AT_BIAS, AT_C, AT_SPEED, AT_FORCE, AT_SIZE, AT_PUSH, AT_OPEN, ROW = 0, 12, 13, 14, 15, 16, 17, 18, 19
 """Floats of a row: J, by velocity and angular velocity of a, then of b; the bias, C, dC/dt, the force of the row; the
@@ -72,12 +73,36 @@ def put(floats, at, x, y, z):
     floats[at], floats[at + 1], floats[at + 2] = x, y, z
 
 
+@lean_inlined
+def write_turn(source, q, floats, to):
+    """Write the rotation matrix of the quaternion at source[q:], of any length but 0, to floats[to:]."""
+    a, b, c, d = source[q], source[q + 1], source[q + 2], source[q + 3]
+    s = 2.0 / (a * a + b * b + c * c + d * d)
+    put(floats, to, 1.0 - s * (c * c + d * d), s * (b * c - a * d), s * (b * d + a * c))
+    put(floats, to + 3, s * (b * c + a * d), 1.0 - s * (b * b + d * d), s * (c * d - a * b))
+    put(floats, to + 6, s * (b * d - a * c), s * (c * d + a * b), 1.0 - s * (b * b + c * c))
+
+
+@lean_inlined
+def write_inverse(floats, to, inertia):
+    """Write the inverse inertia at floats[inertia:], in a mover's axes, in the world's: R G R^T."""
+    r, own = to + AT_R, to + AT_INVERSE
+    ax, ay, az = times_symmetric(floats, inertia, floats[r], floats[r + 1], floats[r + 2])
+    bx, by, bz = times_symmetric(floats, inertia, floats[r + 3], floats[r + 4], floats[r + 5])
+    cx, cy, cz = times_symmetric(floats, inertia, floats[r + 6], floats[r + 7], floats[r + 8])
+    xx, yx, zx = turned(floats, r, ax, ay, az)
+    _, yy, zy = turned(floats, r, bx, by, bz)
+    _, _, zz = turned(floats, r, cx, cy, cz)
+    put(floats, own, xx, yx, zx)
+    put(floats, own + 3, yx, yy, zy)
+    put(floats, own + 6, zx, zy, zz)
+
+
 @lean(types.void(A, A, N, I, N))
 def see(y, floats, to, ints, at):
     """Write the place and the motion of the mover of ints[at:] to floats[to:]."""
     for k in range(MOVED):
         floats[to + k] = 0.0
-    floats[to + AT_R] = floats[to + AT_R + 4] = floats[to + AT_R + 8] = 1.0
     x, led = ints[at + POSITION], ints[at + PLACE]
     if x >= 0:
         v = ints[at + VELOCITY]
@@ -90,22 +115,15 @@ def see(y, floats, to, ints, at):
         put(floats, to + AT_V, floats[v], floats[v + 1], floats[v + 2])
         put(floats, to + AT_W, floats[w], floats[w + 1], floats[w + 2])
     q, turn = ints[at + ROTATION], ints[at + TURN]
-    for c in range(3):
-        e = (1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2))
-        if x >= 0 and q >= 0:
-            columns = to_world(y, q, *e)
-        elif led >= 0:
-            columns = to_world(floats, turn, *e)
-        else:
-            columns = e
-        floats[to + AT_R + c], floats[to + AT_R + 3 + c], floats[to + AT_R + 6 + c] = columns
     if x >= 0 and q >= 0:
-        momentum, inertia = ints[at + MOMENTUM], ints[at + INERTIA]
-        for c in range(3):
-            e = to_body(y, q, 1.0 * (c == 0), 1.0 * (c == 1), 1.0 * (c == 2))
-            column = to_world(y, q, *times_symmetric(floats, inertia, *e))
-            own = to + AT_INVERSE + c
-            floats[own], floats[own + 3], floats[own + 6] = column
+        write_turn(y, q, floats, to + AT_R)
+    elif led >= 0:
+        write_turn(floats, turn, floats, to + AT_R)
+    else:
+        floats[to + AT_R] = floats[to + AT_R + 4] = floats[to + AT_R + 8] = 1.0
+    if x >= 0 and q >= 0:
+        momentum = ints[at + MOMENTUM]
+        write_inverse(floats, to, ints[at + INERTIA])
         w = turned(floats, to + AT_INVERSE, y[momentum], y[momentum + 1], y[momentum + 2])
         put(floats, to + AT_W, *w)
 

@@ -11,6 +11,9 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.system import Led, Place
 
 if TYPE_CHECKING:
+    from numpy import int64
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats
     from sceneql.system import Assembly, Mover, Slopes, Tied
 
@@ -81,21 +84,25 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         first, end = pattern.indptr[row // unit : row // unit + 2]
         return unit * unit * int(np.searchsorted(columns[first:end], column // unit)) + column % unit
 
+    planned = None if few else plan(pattern, unit=unit)
+    unread = set() if planned is None or unit == 1 else _unread(planned.numbers)
+
+    def place(one: int, other: int) -> int:
+        """Offset of the values of two ties from the first value of a row of the first; -1: they are not read."""
+        found = along(one, other)
+        return -1 if (few and one > other) or starts[one] + found in unread else found
+
     shared = [
-        [
-            *(len(some), mover, *chain(*some)),
-            *(along(one[0], other[0]) for one in some for other in some),
-        ]
+        [*(len(some), mover, *chain(*some)), *(place(one[0], other[0]) for one in some for other in some)]
         for mover, some in of_mover.items()
     ]
-    planned = None if few else plan(pattern, unit=unit)
     lists: list[Sequence[int]] = [
         [number for which in movers for number in which],
         [number for row in rows for number in row],
         [number for some in shared for number in some],
         starts,
         [starts[k] + along(k, k) for k in range(len(rows))],
-        len(rows) * [0] if planned is None else planned.numbers.tolist(),
+        [] if planned is None else planned.numbers.tolist(),
     ]
     begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
     spent = (0, 0) if planned is None else (planned.factors, planned.work + len(rows))
@@ -111,7 +118,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     numbers = assembly.numbers()
     kernels.survey(0.0, assembly.start(), numbers, np.array(ints))
     if redundant(ties, numbers)[1] == 0:
-        assembly.write(ease, [kernels.LITTLE])
+        assembly.write(ease, [0.0])
     _must_agree(ties, numbers)
     spare = assembly.floats(np.zeros(MOVED))
 
@@ -125,6 +132,19 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
     if free:  # a prescribed motion is known at the end of a step only
         assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
+
+
+def _unread(planned: NDArray[int64]) -> set[int]:
+    """The first values of the blocks of a symmetric matrix that a plan for it does not read."""
+    from sceneql.linear.multifrontal import layout
+
+    found: set[int] = set()
+    entries = int(planned[5])
+    for front in range(int(planned[1])):
+        at = layout.HEAD + layout.FIELDS * front
+        below, end = int(planned[at + 10]), int(planned[at + layout.FIELDS + 6])
+        found.update(planned[entries + 2 * below : entries + 2 * end : 2].tolist())
+    return found
 
 
 def _must_agree(ties: Sequence[Tied], floats: Floats) -> None:

@@ -39,7 +39,7 @@ TIRED = 200.0
 """Level from which impacts have no restitution."""
 ENDLESS = 3000.0
 """Level from which they have no end."""
-OFTEN, LIES = 20.0, 3e-5
+OFTEN, LIES = 40.0, 8e-6
 """Level from which a circle that rocks on a face, or runs round on it, comes to lie there; the most that it is tilted
 and rises then, in parts of its size: what rocks so often is tilted by about 0.01 over the level's square."""
 

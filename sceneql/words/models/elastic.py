@@ -63,6 +63,8 @@ class Made:
     """Function that returns the surface to draw, made at the first call."""
     modes: Resting
     """State of rest whose modes are computed."""
+    glued: Any
+    """(n,) bool: nodes that holds without a motion keep in place."""
 
 
 class Elastic(Model):
@@ -109,7 +111,7 @@ class Elastic(Model):
         f"p2_mean above a Poisson ratio of {LOCKS}, else p2.",
         None,
     )
-    law: Laws = field("How it resists strain.")
+    law: Laws = field("How it resists strain: `{neo_hookean: {modulus: 10 kPa}}`.")
     density: Annotated[Formula, Symbols(AXES, dim.DENSITY, at_start=True)] | None = field(
         f"Its density, {MATERIAL}; by default {WATER:g} kg/m^3.", None
     )
@@ -272,12 +274,13 @@ class Elastic(Model):
         if self.rotation is None and self.position is None:
             places = mesh.points
         held: Any = np.zeros((count, 3), dtype=bool)
-        nodes, whole = {}, np.zeros(count, dtype=bool)
+        nodes, whole, glued = {}, np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         for called, hold in self.hold.items():
             some = holding.chosen(called, hold, mesh.points, assembly, line)
             some = nodes[called] = some[~held[some][:, hold.axes()].any(axis=1)]
             held[np.ix_(some, hold.axes())] = True
             whole[some] |= len(hold.axes()) == len(AXES)
+            glued[some] |= len(hold.axes()) == len(AXES) and hold.still(assembly)
             led = holding.start_velocity(hold, places[some], assembly)
             velocities[np.ix_(some, hold.axes())] = led[..., hold.axes()]
         matrix = inertia.freed(held) if inertia.consistent else None
@@ -308,7 +311,7 @@ class Elastic(Model):
         if self.bent is not None:
             away = resting.modes(assembly.numbers(), max(self.bent.mode, self.modes)).start(self.bent, line)
             assembly.displaced(bodies.position_at, (places + away).ravel())
-        self._made = Made(strain, probes, forces, angles, drawn, resting)
+        self._made = Made(strain, probes, forces, angles, drawn, resting, glued)
         period = 2.0 * np.pi / strain.squared**0.5
         first, shear = (np.asarray(one) for one in self.law.law.moduli(mesh.points))
         stiffness = float(np.min(shear * (3.0 * first + 2.0 * shear) / (first + shear)))
@@ -364,7 +367,12 @@ class Elastic(Model):
         return masses.places(output, state.bodies)
 
     def lower(self, name: str, state: ModelState, moment: Moment) -> Iterable[Shape]:
-        """Its outer faces, or the polygons of its object."""
+        """Its outer faces, or the polygons of its object; and dark plates on the faces that are held still."""
+        from sceneql.bodies.elements import skin
+        from sceneql.bodies.spring_look import plates
+
         assert state.bodies is not None
-        surface = moment.surface(name, self.material, self.color)
-        yield self.skin.drawn(name, surface, masses.positions(state.bodies, state))
+        assert self._made is not None
+        surface, places = moment.surface(name, self.material, self.color), masses.positions(state.bodies, state)
+        yield self.skin.drawn(name, surface, places)
+        yield from plates(name, places, self._made.glued, skin.triangles(self.solid.mesh))

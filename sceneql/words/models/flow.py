@@ -69,6 +69,13 @@ class Flow(Model):
     swinging: ClassVar[tuple[str, ...]] = ("vorticity",)
     """Fields among its outputs that are of both signs."""
 
+    said_by: ClassVar = {
+        "reynolds": "write the viscosity that it makes, density times speed times length over it"
+    } | dict.fromkeys(
+        ("inlet", "outlet", "inflow", "outflow", "walls", "wall", "sides", "boundaries"),
+        'sides are told by `boundary: {left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}`; others are walls',
+    )
+
     size: SIZES | None = field("Sides of the box: two for a flat one, three for a deep one.", None, above=0)
     domain: kinds.ObjectRef | None = field(
         "In place of `size` the object whose inside it fills, cut out of the box around it: its skin is a wall, but "

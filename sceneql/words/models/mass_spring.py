@@ -26,6 +26,7 @@ from sceneql.bodies.solid_lattice import Filling
 from sceneql.bodies.springs import SpringModel, pin_problems
 from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
+from sceneql.language.repeat import copy_meant
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
@@ -92,7 +93,8 @@ class MassSpring(SpringModel):
         for k, spring in enumerate(self.springs):
             for end, name in enumerate(spring.between):
                 if name not in known:
-                    yield Problem(f"no mass is called '{name}'; {named}", ("springs", k, "between", end))
+                    help = copy_meant(name, known)
+                    yield Problem(f"no mass is called '{name}'; {named}", ("springs", k, "between", end), help=help)
         given = [name for name in ("masses", *PLACES) if getattr(self, name) is not None]
         if len(given) != 1:
             said = f", not {' and '.join(given)}" if given else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from math import isfinite
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from sceneql.grids.domain.sides import Corners, crossing
 from sceneql.kinds import File, FixedLength, FixedScalar, Length, Moment, Object, Problem, Quantity, Record, field
@@ -31,6 +31,11 @@ class Outline(Object):
     which it goes round what is brighter than `threshold`. As the domain of a diffusion its boundary has the pieces that
     are named here, the islands, and `shore` for all the rest. It is drawn as a line.
     """
+
+    said_by: ClassVar = dict.fromkeys(
+        ("corners", "corner_points", "vertices", "outer", "path", "polygon", "coordinates"),
+        "its corners are `points`, `[0 0 m, 1 0 m, 1 1 m]`",
+    )
 
     points: tuple[Corner, ...] | None = field("Its corners, x and y.", None)
     file: File | None = field("In their place an SVG file (.svg) or a picture.", None)

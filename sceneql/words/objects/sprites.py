@@ -19,9 +19,10 @@ DARKEST = 0.3
 class Sprites(Object):
     """A soft disc at each of some points, which always faces the camera: sparks, glowing gas, spray, smoke, dust.
 
-    Brightest in its middle, by (1 - q^2)^2 of the distance q in parts of its radius. Discs shine by themselves: with
-    the light of a `glow`, or the color of any other material as it is. They take no light, throw no shadow and are not
-    seen in mirrors; where they cut through a surface they fade.
+    Brightest in its middle, by (1 - q^2)^2 of the distance q in parts of its radius. Discs that add, and those of a
+    `glow`, shine by themselves, in their color as it is. Others that cover are lit as smoke: by lamps and sky, less
+    what the object's own discs hide of these, so that it is darker inside and away from the lamp. Discs throw no shadow
+    on other things, and none falls on them; no mirror shows them; where they cut through a surface they fade.
     """
 
     at: Points = field("Where they are: `dust.positions`.")

@@ -1,0 +1,111 @@
+"""Light on soft discs that cover what is behind them, as smoke: what the discs leave of lamps and sky."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from renderers.tracing.mist import directions
+from sceneql.frame import PointLight, Sky, Sun
+from sceneql.pictures.framing import axes_towards
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from sceneql.frame import Floats, LightSource, Points
+
+AROUND = 14
+"""Number of directions, evenly over the sphere, from which the sky's light comes."""
+FINE, WIDEST = 3.0, 512
+"""Cells of a map in the median disc's radius; largest number of cells along a side, for which they are larger."""
+SMALLEST = 0.75
+"""Radius [cells] below which a disc is mapped larger and correspondingly fainter."""
+ORDERS = (4.0 / 7.0, 2.0 / 7.0, 1.0 / 7.0)
+"""Weights of the transmittance, its root, and the root of that: light that is scattered again and again fades more
+slowly on its way (Wrenninge, Kulla and Lundqvist 2013, Oz: the great and volumetric)."""
+OUT, FRONT = 0.6, 0.4
+"""Distances from a disc's middle, across and towards the camera, at which its light is found [radii]."""
+PLACES = np.array([(0.0, 0.0, FRONT), (OUT, 0.0, FRONT), (-OUT, 0.0, FRONT), (0.0, OUT, FRONT), (0.0, -OUT, FRONT)])
+"""Those places, to the right, up and back."""
+
+MANY = 20_000
+"""Number of discs from which on each has the same light all over: so many are small."""
+STEEPEST = 0.8
+"""Largest change of the light by a radius, relative to that in the middle: no edge of a disc is black."""
+
+
+def lit(shape: Points, lights: Sequence[LightSource], axes: Floats) -> tuple[Floats, Floats, Floats]:
+    """Radiance (n, 3), over the discs' colors, in the middle of discs, and its change by a radius to the right and up.
+
+    A place of a disc is as bright as a matte wall that faces the lamp, or all of the sky; less by what the shape's
+    discs hide of these, as they hide from a camera what is behind them. Solids throw no shadow on discs. ``axes``: of
+    the view.
+    """
+    offsets = PLACES[: 1 if len(shape.centers) >= MANY else None] @ axes
+    places = (shape.centers[:, None] + shape.radii[:, None, None] * offsets).reshape(-1, 3)
+    given = np.zeros((len(places), 3))
+    skies = [light for light in lights if isinstance(light, Sky)]
+    for towards, irradiance in _lamps(places, lights):
+        given += irradiance / np.pi * left_at(places, shape, towards)[:, None]
+    for way in directions(AROUND) if skies else ():
+        radiance = np.sum([_radiance(sky, float(way[1])) for sky in skies], axis=0) / AROUND
+        given += radiance * left_at(places, shape, way)[:, None]
+    at = given.reshape(-1, len(offsets), 3)
+    if len(offsets) == 1:
+        return at[:, 0], np.zeros_like(at[:, 0]), np.zeros_like(at[:, 0])
+    middle, right, up = at.mean(axis=1), (at[:, 1] - at[:, 2]) / (2 * OUT), (at[:, 3] - at[:, 4]) / (2 * OUT)
+    steep = np.sqrt(right * right + up * up)
+    part = np.minimum(STEEPEST * middle / np.maximum(steep, 1e-300), 1.0)
+    return middle, part * right, part * up
+
+
+def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Floats, Any]]:
+    """Direction (3,) towards each lamp from the middle of places (n, 3), and irradiance (3,), or (n, 3) at each."""
+    middle = places.mean(axis=0) if len(places) else np.zeros(3)
+    for light in lights:
+        if isinstance(light, Sun):
+            yield np.array(light.direction), np.array(light.irradiance)
+        elif isinstance(light, PointLight):
+            away = np.array(light.position) - places
+            square = np.maximum((away * away).sum(axis=1), max(light.radius, 1e-6) ** 2)
+            towards = np.array(light.position) - middle
+            far = float(np.linalg.norm(towards))
+            yield towards / far if far > 0 else np.array([0.0, 1.0, 0.0]), np.array(light.intensity) / square[:, None]
+
+
+def _radiance(sky: Sky, height: float) -> Floats:
+    """Radiance (3,) of a sky in a direction of a sine of elevation."""
+    end = sky.zenith if height >= 0.0 else sky.ground
+    radiance: Floats = np.array(sky.horizon) + abs(height) * (np.array(end) - np.array(sky.horizon))
+    return radiance
+
+
+def left_at(places: Floats, shape: Points, towards: Floats) -> Floats:
+    """Part (m,) of the light from a direction (3,) that the shape's discs leave at places (m, 3)."""
+    from renderers.tracing.light.discs_kernels import thin_out
+
+    axes = axes_towards(towards)
+    discs, asked, radii = seen_along(shape.centers, axes), seen_along(places, axes), shape.radii
+    reach = float(radii.max(initial=0.0))
+    if not reach > 0 or not np.isfinite(discs).all():
+        return np.ones(len(places))
+    low, high = discs[:, :2].min(axis=0) - reach, discs[:, :2].max(axis=0) + reach
+    cell = max(float(np.median(radii)) / FINE, float((high - low).max()) / WIDEST)
+    wide, tall = (int(side) + 2 for side in (high - low) / cell)
+    both = np.concatenate([discs, asked])
+    order = np.argsort(-both[:, 2], kind="stable")
+    opacity = shape.opacity * np.minimum(radii / cell / SMALLEST, 1.0) ** 2
+    left = np.ones(len(places))
+    mapped = np.maximum(radii / cell, SMALLEST)
+    thin_out(order, (both[:, :2] - low) / cell, mapped, opacity, np.ones((tall, wide)), left)
+    root = np.sqrt(left)
+    given: Floats = ORDERS[0] * left + ORDERS[1] * root + ORDERS[2] * np.sqrt(root)
+    return given
+
+
+def seen_along(points: Floats, axes: Floats) -> Floats:
+    """Coordinates (n, 3) of points along axes (3, 3): products and sums alone, so that all processors find the same."""
+    x, y, z = points.T
+    along: Floats = np.stack([x * a + y * b + z * c for a, b, c in axes], axis=1)
+    return along

@@ -1,0 +1,127 @@
+"""Sentences on formulas: what to write instead of functions, signs, names and units of other programs.
+
+For messages alone.
+"""
+
+from __future__ import annotations
+
+_COLOR = 'write three numbers from 0 to 1, `[1, 0.5, 0]`, a CSS name, `tomato`, or `"#ff8000"`'
+_AND = "for 'and' multiply: `(a > b)*(c > d)`"
+_OR = "for 'or' write `max(a > b, c > d)`"
+IF = "write `where(condition, a, b)`"
+REPEAT = "write `repeat: {count: 5, as: i}` beside the word, `{repeat: {...}, sphere: {...}}`: `sceneql words repeat`"
+
+OF_FORMULAS = (
+    ("behind", "px pixel pixels pt", "letters are as high as a part of the picture: `size: 0.05`"),
+    ("function", "if switch select", IF),
+    (
+        "function",
+        "vec vec2 vec3 vec4 vector vector3 pvector createvector point float3 array tuple xyz",
+        "write `[x, y, z]`, or numbers with one unit behind them, `0 1.2 0 m`",
+    ),
+    ("function", "rgb rgba color colour", _COLOR),
+    ("function", "hsv hsl hsva hsv2rgb", f"write `hue(h)`, h from 0 to 1, for a full color; else {_COLOR}"),
+    (
+        "function",
+        "deg degrees rad radians deg2rad rad2deg",
+        "an angle has its unit: write `30 deg`, or `x*(1 deg)`",
+    ),
+    ("function", "gaussian gauss gaussian2d", "write `exp(-((x - 0.5)^2 + (y - 0.5)^2)/0.1^2)`"),
+    ("function", "pow power", "write `a^b`"),
+    (
+        "function",
+        "map remap map_range maprange linmap rescale",
+        "from `a` to `b` while x goes from low to high: write `mix(a, b, clamp((x - low)/(high - low), 0, 1))`",
+    ),
+    (
+        "function",
+        "millis second seconds clock gettime get_time performance.now frame frames",
+        "the time is `time`, in s: `time/(1 s)` is a plain number",
+    ),
+    ("function", "range linspace arange", REPEAT),
+    ("function", "sqr square", "write `x^2`"),
+    ("function", "frac fract", "write `mod(x, 1)`"),
+    ("function", "cbrt", "write `x^(1/3)`"),
+    ("function", "log2", "write `log(x)/log(2)`"),
+    ("function", "log", "write `log(x)/log(b)` for another base"),
+    ("function", "atan", "write `atan2(y, x)`"),
+    ("function", "noise", "write `noise([x, y])`, `noise([x, y, z])`"),
+    (
+        "function",
+        "random",
+        "write `random(1)`, `random(2)`, ...: each is a number from 0 to 1, the same in every run",
+    ),
+    (
+        "before",
+        "lambda def function fn return new let var const",
+        "write the formula alone: `[1 m/s*time, 0 m, 0 m]`; the time is `time`",
+    ),
+    ("function name behind", "and", _AND),
+    ("function name behind", "or", _OR),
+    ("function name", "not", "write `1 - (a > b)`"),
+    ("sign", "&", _AND),
+    ("sign", "|", _OR),
+    ("sign", "?", IF),
+    (
+        "sign",
+        "$",
+        "a name stands by itself: write `n`, or `n*(1 cm)` where it is a plain number; the time is `time`",
+    ),
+    ("sign", "=", "write `==` to compare; the surface where f = c is that of the formula `f - c`"),
+    ("sign", "!", "write `where(a == b, 0, 1)` for a difference, `1 - (a > b)` for 'not'"),
+    ("sign", "%", "write `mod(a, b)`"),
+    ("sign", "//", "a comment begins with `#`, behind a space; a whole quotient is `floor(a/b)`"),
+    ("sign", "× ·", "write `*`"),
+    ("sign", "−", "write `-`"),
+    ("sign", "²", "write `^2`"),
+    ("sign", "³", "write `^3`"),
+    ("sign", "°", "write `deg`"),
+    ("sign", "“ ” „ « »", 'write straight quotes, `"`'),
+    ("sign", "‘ ’ ‚", "write straight quotes, `'`"),
+    ("sign", ";", "leave it out: the end of the line, or in braces a comma, ends a value"),
+    (
+        "sign",
+        "{ }",
+        "a name stands by itself, `radius: r`; only the number of a copy by `repeat` stands in braces, in a name,"
+        ' `"ball.{i}.position"`: `sceneql words repeat`',
+    ),
+    ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
+    (
+        "unit",
+        "fps frames frame",
+        "a number of frames has no unit: `clock: {fps: 30}`; in a formula write `time`, which is 1 s at frame 30",
+    ),
+    (
+        "unit name",
+        "framecount frame_count frame_current frame_number framenumber iframe",
+        "write `time`: 0.4 s at frame 12 of 30 a second",
+    ),
+    (
+        "unit name",
+        "deltatime delta_time dt",
+        "a formula says what is at the `time`, and no step: `1 m/s*time`, in place of what is added in each frame",
+    ),
+    ("name", "frame frames", "write `time`, which is 0.4 s at frame 12 of 30 a second"),
+    ("name", "t", "the time is written 'time'"),
+    ("name behind", "if then else elif when", f"{IF}: `sceneql words functions`"),
+    (
+        "name",
+        "x y z",
+        "an axis is `1 0 0`, `0 1 0` or `0 0 1`; the coordinates of a place stand in formulas of fields alone",
+    ),
+    ("name behind", "to until", "from when to when is two conditions: `(time > 1 s)*(time < 2 s)`"),
+    ("name", "clock", "the time is `time`"),
+    ("name", "end start", "write the time itself, as `4 s`"),
+    ("name unit", "per", "write `10 /s`, or `5 m/s`"),
+    ("name", "null none nil undefined nan", "leave the field out"),
+    ("name", "inf infinity", "what never moves is `fixed: yes`; what has no limit is left out"),
+    ("name", "true yes", "in a formula write `1`"),
+    ("name", "false no", "in a formula write `0`"),
+    (
+        "name",
+        "i index id",
+        "copies have numbers, where `repeat: {count: 5, as: i}` makes them: `sceneql words repeat`",
+    ),
+    ("zero", "mass", "what never moves is an object without a model, or a body or mass with `fixed: yes`"),
+)
+"""(what the words were taken for, the words, the sentence)."""

@@ -1,0 +1,78 @@
+"""Vectors written with spaces whose components are formulas: for messages alone, since `0 1.2 0 m` takes numbers."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+from sceneql.quantities.diagnostic import ScriptError
+from sceneql.quantities.operations import CONSTANTS, FUNCTIONS
+from sceneql.quantities.span import Span
+from sceneql.quantities.unit_table import UNITS
+from sceneql.quantities.units import scan_unit
+
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_NAME = re.compile(r"(?<![\w.])[^\W\d][\w.]*")
+_FORMULA = re.compile(r"[-+]?[\w.(]")
+_JOINS = tuple("+*/^<>=,")
+SIZE = 3
+"""Components of the vectors that are recognised."""
+
+
+def bracketed(text: str, span: Span) -> str | None:
+    """Three components apart by spaces, and their unit, as a list: ``[0 m, r, 0 m]`` for ``0 r 0 m``; else None."""
+    pieces = _pieces(text)
+    unit = ""
+    if len(pieces) == SIZE + 1 and pieces[-1][:1].isalpha():
+        unit = pieces.pop()
+        try:
+            if scan_unit(unit, 0, span)[1] != len(unit):
+                return None
+        except ScriptError:
+            return None
+    plain = [_NUMBER.fullmatch(piece) is not None for piece in pieces]
+    if (not unit and sum(plain) < SIZE - 1) or any(_FORMULA.match(piece) is None for piece in pieces):
+        return None
+    if len(pieces) != SIZE or all(plain) or not any(plain) or not text.isascii():
+        return None
+    for number, piece in pairwise(pieces):  # 1 m*sin 3
+        if _NUMBER.fullmatch(number) and (word := _NAME.match(piece)) is not None and word.group() in UNITS:
+            return None
+    if any(piece.startswith(_JOINS) or piece.endswith((*_JOINS, "-")) for piece in pieces):
+        return None
+    return f"[{', '.join(_with(piece, unit, one) for piece, one in zip(pieces, plain, strict=True))}]"
+
+
+def _with(piece: str, unit: str, plain: bool) -> str:
+    """A component with the unit, unless names in it have theirs."""
+    if plain or not unit:
+        return f"{piece} {unit}".rstrip()
+    names = [name for name in _NAME.findall(piece) if name not in FUNCTIONS and name not in CONSTANTS]
+    if names and not any(name in FUNCTIONS for name in _NAME.findall(piece)):
+        return piece
+    return f"{piece}*(1 {unit})"
+
+
+def _pieces(text: str) -> list[str]:
+    """The pieces of a text between spaces outside of brackets; a unit that is a piece by itself, too."""
+    pieces, depth = [""], 0
+    for character in text.strip():
+        depth += (character in "([{") - (character in ")]}")
+        if character.isspace() and depth == 0:
+            pieces.append("")
+        else:
+            pieces[-1] += character
+    return [piece for piece in pieces if piece]
+
+
+def apart(text: str) -> str | None:
+    """The unit with its letters apart that a unit with a prefix was meant as: ``m*s^-2`` for ``ms^-2``; else None.
+
+    Of ``ms`` the first letter is a unit, too, and another one.
+    """
+    found = re.search(r"(?<![\w.])([^\W\d_])([^\W\d_]{1,3})(?![\w.])", text)
+    while found is not None:
+        if found[1] in UNITS and found[2] in UNITS and found[0] in UNITS:
+            return f"{text[: found.start()]}{found[1]}*{text[found.start(2) :]}"
+        found = re.compile(r"(?<![\w.])([^\W\d_])([^\W\d_]{1,3})(?![\w.])").search(text, found.end())
+    return None
