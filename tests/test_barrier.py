@@ -243,8 +243,8 @@ def test_a_ball_that_lands_takes_few_factorizations_a_stage(tmp_path):
     island = run_of(
         tmp_path,
         "objects: {floor: plane, shape: {sphere: {radius: 0.2 m, position: 0 0.203 0 m, hidden: yes}}}\nmodels:\n"
-        "  body: {elastic: {of: shape, spacing: 12 cm, element: p2, law: {neo_hookean: {modulus: 50 kPa, poisson: 0.4}}, "
-        "velocity: 0 -2.5 0 m/s}}\nforces: [gravity]\n"
+        "  body: {elastic: {of: shape, spacing: 12 cm, element: p2, velocity: 0 -2.5 0 m/s, "
+        "law: {neo_hookean: {modulus: 50 kPa, poisson: 0.4}}}}\nforces: [gravity]\n"
         "contacts: {touch: {collision: {between: [body, floor], friction: 0.4}}}\n",
     )
     island.advance(0.1)

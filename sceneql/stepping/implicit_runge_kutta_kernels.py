@@ -53,7 +53,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     if first == 1 or numbers[STIFFLY_ACCURATE] == 1 or settings[FACTORED] == 0.0:
         for k in range(n):
             slope[k] = rate0[k]
-    # Where skins touch the guess is the state before: what sticks is at rest in it, as an acceleration would not leave it.
+    # Where skins touch the guess is the state before, in which what sticks is at rest: accelerations would move it.
     touches = functions[AT_LIMIT] != 0 and settings[CAREFUL] > 0.0
     if touches:
         for k in range(n):
