@@ -39,6 +39,8 @@ FIRST, LONGER = 0.12, 2.0
 """Of the pieces of such a ray: the share of its length that is the first, and how far the others end by the last."""
 MANY = 96
 """Parts that reach into a bundle from which on rays that go apart are each searched among the few in its own reach."""
+CROWD = 256
+"""Rows of parts from which on it pays to sort a bundle's rays."""
 
 
 @inlined
@@ -148,7 +150,8 @@ def density_roots(
             short[row, j] = code[row, j]
     ids = order[4 * LANES :]
     listed = ids[rays.shape[1] :]
-    n = gather(rays, count, groups, anywhere, room, ids, order)
+    many = code[k, 2] - code[k, 1] > CROWD
+    n = gather(rays, count, groups, anywhere and many, room, ids, order)
     if n == 0:
         return 0, 0, 0
     beam = room[BEAM_ROW, :BEAM]
