@@ -46,6 +46,7 @@ class Room:
         self.cubes = np.empty((BATCH * BLOCK**3, 2), dtype=np.int32)
         self.local = np.empty(EDGES, dtype=np.int32)
         self.stack = np.empty((8 * DEEPEST + 8, 4))
+        self.second = np.empty((rows, 6))
         self.low, self.fit = np.empty(3), np.empty((15, 3))
 
 

@@ -6,10 +6,11 @@ import numpy as np
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.batch_kernels import evaluate
+from sceneql.field.tape.curvature_kernels import bulge, curvature
 from sceneql.field.tape.simplify_kernels import simplify
 from sceneql.field.tape.steepness_kernels import steepness, turning
 from sceneql.field.tape.tape_kernels import value
-from sceneql.field.tape.tape_ops import NOWHERE, TAPE, WHOLE
+from sceneql.field.tape.tape_ops import MAX, MIN, NOWHERE, TAPE, WHOLE
 from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, verdict
 from sceneql.mesh.cubes.extract_kernels import NODES, sample
 from sceneql.mesh.cubes.grid import BLOCK
@@ -48,6 +49,42 @@ def proved(code, constants, parts, scratch, x, y, z, half, negative, least):
         return True
     f = value(code, constants, parts, scratch, x, y, z)
     return abs(f) > half * (gx + gy + gz) * (1.0 + 1.0e-9) and (f < 0.0) == negative
+
+
+@inlined
+def deciding(code, scratch):
+    """The row whose sign is that of the last in the box for which ``box`` left WHOLE in scratch, and no nearer to zero.
+
+    As where the faces that cut a solid are far away: max(f, g) has the sign of f where g < 0.
+    """
+    row = code.shape[0] - 1
+    while code[row, 0] == MAX or code[row, 0] == MIN:
+        left, right = code[row, 1], code[row, 2]
+        if scratch[right, 1] < 0.0 if code[row, 0] == MAX else scratch[right, 0] > 0.0:
+            row = left
+        elif scratch[left, 1] < 0.0 if code[row, 0] == MAX else scratch[left, 0] > 0.0:
+            row = right
+        else:
+            break
+    return row
+
+
+@inlined
+def enough(code, constants, parts, scratch, second, h):
+    """The least f, and the least -f, at the corners of a cube of side ``h`` that prove its inside to have their sign.
+
+    For all such cubes in the box for which ``box`` left WHOLE: by the axes along which f is monotone, or by its second
+    derivatives, which bound how far it lies from what is linear along each axis between the corners.
+    """
+    gx, gy, gz = steepness(code, constants, parts, scratch)
+    if not gx + gy + gz < 1.0e300:
+        return 1.0e300, 1.0e300
+    last = code.shape[0] - 1
+    turn = 0.5 * h * turning(scratch, last) * (1.0 + 1.0e-9)
+    if turn == 0.0 or not curvature(code, scratch, second):
+        return turn, turn
+    below, above = bulge(second, last)
+    return min(turn, h * h * below * (1.0 + 1.0e-9)), min(turn, h * h * above * (1.0 + 1.0e-9))
 
 
 @inlined
@@ -112,12 +149,12 @@ def crossed(code, constants, parts, registers, points, x, y, z, step, nodes, neg
 
 @lean(
     f"int64({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int64, int32[:, ::1], float64[::1],"
-    " boolean[::1])"
+    " float64[::1], float64[:, ::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int64, int32[:, ::1],"
+    " float64[::1], boolean[::1])"
 )
 def hidden(
-    code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks, deepest, finer,
-    cells, rest, seen,
+    code, constants, parts, scratch, short, near, registers, points, values, stack, second, grid, blocks,
+    deepest, finer, cells, rest, seen,
 ):  # fmt: skip
     """Find the cubes of some blocks with corners of one sign, but no proof for their inside; returns their number.
 
@@ -136,32 +173,32 @@ def hidden(
         rows, used = simplify(code, parts, scratch, at == CUT, short[1], near[1])
         code2 = short[1][:rows]
         parts2 = near[1][:used]
-        far = 1.0e300
+        outer = inner = 1.0e300
         if verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK) == CUT:
-            gx, gy, gz = steepness(code2, constants, parts2, scratch)
-            if gx + gy + gz < 1.0e300:
-                far = 0.5 * h * turning(scratch, rows - 1) * (1.0 + 1.0e-9)
+            code2 = code2[: deciding(code2, scratch) + 1]
+            outer, inner = enough(code2, constants, parts2, scratch, second, h)
         sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
         for part in range(SIDE**3):
             x0, y0, z0 = 2 * (part % SIDE), 2 * (part // SIDE % SIDE), 2 * (part // SIDE**2)
             some = False
             for n in range(8):
                 negative, least = of_corners(values, x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2))
-                some = some or least <= far
+                some = some or least <= (inner if negative else outer)
             if not some:
                 continue
             # Of eight cubes at once: most are proved by what is known of all.
             x, y, z = grid[0] + (i + x0) * h, grid[1] + (j + y0) * h, grid[2] + (k + z0) * h
             low, high, status = box(code2, constants, parts2, scratch, x, x + 2.0 * h, y, y + 2.0 * h, z, z + 2.0 * h)
-            bound = far
+            outside, inside = outer, inner
             if status == WHOLE:
-                gx, gy, gz = steepness(code2, constants, parts2, scratch)
-                if gx + gy + gz < 1.0e300:
-                    bound = min(far, 0.5 * h * turning(scratch, rows - 1) * (1.0 + 1.0e-9))
+                outside, inside = enough(code2, constants, parts2, scratch, second, h)
+                outside, inside = min(outside, outer), min(inside, inner)
             for n in range(8):
                 x, y, z = x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2)
                 negative, least = of_corners(values, x, y, z)
-                if least > bound or (status == WHOLE and high < SHALLOW if negative else low >= -SHALLOW):
+                if least > (inside if negative else outside) or (
+                    status == WHOLE and high < SHALLOW if negative else low >= -SHALLOW
+                ):
                     continue
                 rest[count] = doubtful(
                     code2, constants, parts2, scratch,
