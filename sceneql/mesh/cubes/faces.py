@@ -138,8 +138,8 @@ def border(triangles: Ints, at: NDArray[np.bool_]) -> tuple[Keys, Keys]:
     """
     import numpy as np
 
-    starts, stops = triangles.ravel(), triangles[:, [1, 2, 0]].ravel()
-    some = at[starts] & at[stops]
-    starts, stops = starts[some].astype(np.int64), stops[some].astype(np.int64)
+    some = (at[triangles] & at[triangles[:, [1, 2, 0]]]).ravel()
+    starts = triangles.ravel()[some].astype(np.int64)
+    stops = triangles[:, [1, 2, 0]].ravel()[some].astype(np.int64)
     single = ~np.isin(stops * len(at) + starts, starts * len(at) + stops, assume_unique=True)
     return stops[single], starts[single]
