@@ -14,6 +14,9 @@ from sceneql.system.signatures_kernels import A, F, I
 
 EMPTY = 0.02
 """Least part of a cell's mass that may be left where others have come in: the step is too long."""
+ROUNDED = 1e-10
+"""Of a face's mass, what it has too much or too little because velocities are not free of divergence to the last digit:
+that stays where it is."""
 SMALL = 1e-12
 """Residual of the viscous system, in parts of its right side."""
 MOST = 2000
@@ -63,9 +66,10 @@ def hand_over(u, had, more, floats, ints):
             for j in range(my):
                 for i in range(mx):
                     f = start + i + mx * (j + my * k)
-                    excess = (had[f] - masses[f]) * (u[f] - whole)
-                    if abs(excess) <= 1e-15 * abs(masses[f] * u[f]) or floats[one[flow.INVERSES] + f] == 0.0:
+                    excess = had[f] - masses[f]
+                    if abs(excess) <= ROUNDED * masses[f] or floats[one[flow.INVERSES] + f] == 0.0:
                         continue
+                    excess *= u[f] - whole
                     around = 0.0
                     for turn in range(2):
                         for c in range(-1, 2):
