@@ -61,11 +61,16 @@ def known(x):
     types.void(types.float32[:, :, ::1], types.float64, types.uint8[:, :, ::1], types.int64, types.int64), _nrt=False
 )
 def develop_rows(linear, gain, pixels, start, stop):
-    """Fill rows start..stop of pixels (h, w, 3)."""
+    """Fill rows start..stop of pixels (h, w, 3). Most pixels have the color of the one before, which is kept."""
+    x0 = x1 = x2 = np.float32(np.nan)
+    r = g = b = 0.0
     for y in range(start, stop):
         for x in range(linear.shape[1]):
-            r, g, b = toned(gain * known(linear[y, x, 0]), gain * known(linear[y, x, 1]), gain * known(linear[y, x, 2]))
+            if linear[y, x, 0] != x0 or linear[y, x, 1] != x1 or linear[y, x, 2] != x2:
+                x0, x1, x2 = linear[y, x, 0], linear[y, x, 1], linear[y, x, 2]
+                r, g, b = toned(gain * known(x0), gain * known(x1), gain * known(x2))
+                r, g, b = 255.0 * encoded(r), 255.0 * encoded(g), 255.0 * encoded(b)
             dither = threshold(x, y)
-            pixels[y, x, 0] = int(min(255.0 * encoded(r) + dither, 255.0))
-            pixels[y, x, 1] = int(min(255.0 * encoded(g) + dither, 255.0))
-            pixels[y, x, 2] = int(min(255.0 * encoded(b) + dither, 255.0))
+            pixels[y, x, 0] = int(min(r + dither, 255.0))
+            pixels[y, x, 1] = int(min(g + dither, 255.0))
+            pixels[y, x, 2] = int(min(b + dither, 255.0))

@@ -76,6 +76,9 @@ class FakeMoment:
     def outline(self) -> Any:
         return np.array(list(product(*zip(*self.box, strict=True))), dtype=float)
 
+    def moving(self) -> Any:
+        return np.zeros((0, 4))
+
 
 def fields_of(thing: Any, moment: FakeMoment, points: Any) -> Any:
     """An object's implicit field (n,) at points (n, 3) of its parent's coordinates."""

@@ -67,7 +67,7 @@ def rows(path):
 @pytest.mark.long
 def test_rays_and_meshes_are_measured(tmp_path, monkeypatch):
     monkeypatch.setattr(surface_measures, "SIZES", (576, 2_304, 60_000))
-    monkeypatch.setattr(surface_measures, "CELLS", (16, 32, 64))
+    monkeypatch.setattr(surface_measures, "CELLS", (32, 64, 128))
     monkeypatch.setattr(surface_measures, "SAMPLES", (16, 64, 256))
     monkeypatch.setattr(surface_measures, "REPEATS", 1)
     (tmp_path / "scene.yaml").write_text(SCENE)

@@ -11,7 +11,7 @@ objects:
   crate: {box: {size: 1 1 1 m}}
   both: {group: {children: [tip, crate]}}
   OTHER
-models: {p: {particles: {list: {a: {position: 0 3 0 m}}}}}
+models: {p: {particles: {list: {a: {position: 0 3 0 m, radius: 0.2 m}}}}}
 forces: [gravity]
 outputs: {still: {image: {size: 8 8}}}
 """

@@ -39,6 +39,13 @@ def test_a_side_that_is_held_has_a_rail_along_its_masses(tmp_path):
     assert ((rail.radii > 0.005) & (rail.radii < 0.02)).all()
 
 
+def test_a_cloth_that_is_held_all_round_has_rails_alone(tmp_path):
+    """The triangles in its corners have three held corners, and are cloth."""
+    (rails,) = holders(tmp_path, CLOTH.format("[left, right, top, bottom]"))
+    assert isinstance(rails, Segments)
+    assert len(rails.ends) == 16
+
+
 def test_corners_have_a_bead_each(tmp_path):
     (beads,) = holders(tmp_path, CLOTH.format("[top_left, top_right]"))
     assert isinstance(beads, Points)

@@ -63,7 +63,7 @@ def test_the_default_camera_lets_go_what_falls_off_the_table(tmp_path):
 )
 def test_what_the_film_is_about_is_not_let_go(tmp_path, balls, camera):
     graph = graph_of(tmp_path, balls, camera)
-    assert [one.code for one in render(graph, folder=tmp_path).warnings] == []
+    assert "leaves" not in [one.code for one in render(graph, folder=tmp_path).warnings]
     if not camera:
         (moment,) = simulate(graph, [4.0])
         places = moment.read("balls", "positions")

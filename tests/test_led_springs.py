@@ -94,6 +94,7 @@ def test_keys_of_an_object_that_a_model_moves_are_told_to_be_lost(tmp_path):
     script = """
 objects: {ball: {sphere: {position: {keys: {0 s: 0 2 0 m, 1 s: 1 2 0 m}}}}}
 models: {fall: {particles: {of: ball}}}
+forces: [gravity]
 """
     (warning,) = loaded_from(tmp_path, script).warnings
     assert warning.code == "moved-twice"

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from meshes import assert_closed_manifold, cut_finer, tape_of
-from sceneql.field.tape.tape_solid import field_values
+from sceneql.field.tape.tape_solid import field_values, many_gradients
 from sceneql.frame import Implicit, Surface
 from sceneql.mesh.bounded import bounded
 from sceneql.mesh.cubes import refine
+from sceneql.mesh.cubes.polygonise import polygonise
+from sceneql.mesh.cubes.unresolved import unresolved
 from sceneql.mesh.dual.kept_sharp import kept_sharp
 from sceneql.mesh.measures import euler_by_piece, euler_characteristic, volume
 from sceneql.mesh.repair.folds import folds, overturned
@@ -21,6 +23,7 @@ TOUCHING = {  # formulas of solids that touch themselves or nearly do, half side
     "cayley": ("max(4*(x^2 + y^2 + z^2) + 16*x*y*z - 1, sqrt(x^2 + y^2 + z^2) - 1.15)", 1.15, 32),
     "two balls": ("min(sqrt((x-0.5)^2 + y^2 + z^2), sqrt((x+0.5)^2 + y^2 + z^2)) - 0.5", 1.1, 32),
 }
+SEXTIC = "6.7*(x^2+y^2+z^2-1)^2 - 4*(2.618*x^2-y^2)*(2.618*y^2-z^2)*(2.618*z^2-x^2)"
 SHEET = (
     "sqrt(max(abs(sin(9*x)*cos(9*y) + sin(9*y)*cos(9*z) + sin(9*z)*cos(9*x))/14 - 0.01, 0)^2"
     " + max(sqrt(x^2 + y^2 + z^2) - 0.93, 0)^2) - "
@@ -44,16 +47,45 @@ def test_cubes_that_touch_are_two_with_their_edges_and_corners():
     assert np.abs(field_values(tape_of(TWO_CUBES), sharp.vertices)).max() < 1e-12
 
 
-@pytest.mark.parametrize(("rim", "cells"), [(0.006, 16), (0.03, 24)])
-def test_smooth_solids_whose_rims_are_as_small_as_cells_have_no_folds(monkeypatch, rim, cells):
-    whole = bounded(tape_of(f"{SHEET}{rim}"), (-0.5,) * 3, (0.5,) * 3)
+@pytest.mark.parametrize(("rim", "cells"), [(0.006, 16), (0.03, 24), (0.003, 32)])
+def test_smooth_solids_whose_rims_are_as_small_as_cells_have_no_folds(rim, cells):
     found, _ = cut_finer(f"{SHEET}{rim}", 0.5, cells)
+    assert_closed_manifold(found)
+    assert not len(overturned(bounded(tape_of(f"{SHEET}{rim}"), (-0.5,) * 3, (0.5,) * 3), found))
+    assert euler_characteristic(found.triangles) == -38
+    assert len(found.triangles) < 2**18
+
+
+@pytest.mark.parametrize(("radius", "cells"), [(1.3, 48), (1.6, 60)])
+def test_folds_at_the_rims_of_cones_are_mended_without_a_change_of_topology(monkeypatch, radius, cells):
+    text, half = f"max({SEXTIC}, sqrt(x^2 + y^2 + z^2) - {radius})", 1.02 * radius
+    whole = bounded(tape_of(text), (-half,) * 3, (half,) * 3)
+    found, _ = cut_finer(text, half, cells)
     assert_closed_manifold(found)
     assert not len(overturned(whole, found))
     monkeypatch.setattr(refine, "unfolded", lambda tape, polygons: polygons)
-    folded, _ = cut_finer(f"{SHEET}{rim}", 0.5, cells)
+    folded, _ = cut_finer(text, half, cells)
     assert len(overturned(whole, folded)) > 0
     assert euler_characteristic(folded.triangles) == euler_characteristic(found.triangles)
+
+
+def test_rims_of_cones_are_cut_by_fine_cells_and_kept_by_flips():
+    text, half = f"max({SEXTIC}, sqrt(x^2 + y^2 + z^2) - 1.6)", 1.632
+    found, _ = cut_finer(text, half, 60)
+    whole = bounded(tape_of(text), (-half,) * 3, (half,) * 3)
+    middles = found.vertices[found.triangles].mean(axis=1)
+    off = np.abs(field_values(whole, middles)) / np.linalg.norm(many_gradients(whole, middles), axis=1)
+    assert off.max() < 0.1 * 2 * half / 60
+
+
+def test_cells_that_hide_nothing_are_not_cut():
+    text = "0.3 - exp(-3*((x-0.5)^2 + y^2 + z^2)) - exp(-3*((x+0.5)^2 + y^2 + z^2))"
+    box = tape_of(text), (-1.6,) * 3, (1.6,) * 3, 3.2 / 64
+    doubt = unresolved(*box)
+    assert doubt.cells > 0
+    found, left = cut_finer(text, 1.6, 64)
+    assert len(found.triangles) == len(polygonise(*box).triangles)
+    assert left.volume <= doubt.volume
 
 
 def test_bench_measures_the_meshes_that_the_command_makes(monkeypatch):

@@ -118,7 +118,6 @@ def test_the_same_script_gives_the_same_bytes(tmp_path):
         (bar(", loads: {pull: {where: x > 0.49, pressure: 1 kPa}}"), "", "the forces of 'body' have no potential"),
         (bar(", loads: {pull: {where: x > 0.49, pressure: {keys: {0 s: 0 Pa, 1 s: 1 Pa}}}}"), "", "changes in time"),
         (bar().replace("-0.49}", "-0.49, shift: {x: 1 cm * time/(1 s), y: 0 m, z: 0 m}}"), "", "modes are those of"),
-        (bar(", position: 0 3 0 m"), "contacts: {floor: {collision: {}}}", "contacts are not linear"),
         (bar(), "forces: {air: {drag: {linear: 1 N*s/m}}}", "its damping couples modes"),
     ],
 )

@@ -22,7 +22,7 @@ MISTAKES = {one["mistake"]: one for one in yaml.safe_load(Path(__file__).with_na
 
 
 READ = [
-    "objects: {ball: {sphere: {radius: 2m, position: {x: 1, y: 2}, color: grey, hidden: true}}}",
+    "objects: {ball: {sphere: {radius: 2m, position: {x: 1, y: 2}, color: grey, hidden: true}}, cube: box}",
     "objects: {ball: {sphere: {radius: 1 m*2**2/4, color: LightGrey, hidden: No}}}",
     "clock: {end: 500ms}\nobjects: {ball: {sphere: {position: {keys: {0: 0 0 0, 1: 0 1 0}}}}}",
     'objects: {ball: {sphere: {radius: "where(time == 1 s, 1 m, 2 m)"}}}',

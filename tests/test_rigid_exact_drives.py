@@ -208,6 +208,31 @@ def test_a_ball_slides_then_rolls_against_a_moment(tmp_path):
     assert rows[0][1][2] == pytest.approx(-0.2 * gains, abs=1e-10)
 
 
+@pytest.mark.parametrize("named", ["arm", "load", "arm, load"])
+def test_a_stop_takes_energy_from_bodies_that_no_contact_names_too(tmp_path, named):
+    """Of an arm that is stopped and of what hangs from it; 43 of 191 J were of no account."""
+    script = f"""
+clock: {{end: 2 s}}
+objects:
+  floor: plane
+  beam: {{box: {{size: 2 0.15 0.15 m, position: 1 1.5 0 m}}}}
+  block: {{box: {{size: 0.3 0.3 0.3 m, position: 2 1.2 0 m}}}}
+models:
+  arm: {{rigid: {{of: beam, mass: 5 kg}}}}
+  load: {{rigid: {{of: block, mass: 10 kg}}}}
+ties:
+  axle: {{hinge: {{between: [arm, world], at: 0 1.5 0 m, axis: 0 0 1, limits: -30 30 deg}}}}
+  hanger: {{hinge: {{between: [load, arm], at: 2 1.5 0 m, axis: 0 0 1}}}}
+forces: [gravity]
+contacts: {{touch: {{collision: {{between: [{named}, floor], mode: exact}}}}}}
+solvers: {{main: {{dop853: {{tolerance: 1e-10}}}}}}
+"""
+    rows = runs.watch(tmp_path, script, [0, 1, 2], "arm.energy", "load.energy", "load.dissipated", pruned=False)
+    energy = np.array([a + b for a, b, _ in rows])
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-8)
+    assert rows[-1][2] > 40
+
+
 @pytest.mark.parametrize(("part", "stays"), [(0.999, True), (1.001, False)])
 def test_a_ball_stays_on_a_slope_up_to_rolling_over_its_radius(tmp_path, part, stays):
     angle = float(np.arctan(part * 0.05))

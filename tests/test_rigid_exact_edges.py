@@ -84,15 +84,21 @@ def test_a_ball_that_rolls_over_an_edge_turns_about_it_with_the_moment_of_rollin
     np.testing.assert_allclose(np.array([x for (x,) in rows])[:, :2] - (0.5, 0), expected, atol=1e-10)
 
 
-@pytest.mark.parametrize("solver", ["auto", "dopri5: {tolerance: 1e-9}", "rk4: {step: 2 ms}"])
-def test_a_ball_that_slides_and_rolls_off_a_box_is_never_in_it(tmp_path, solver):
+@pytest.mark.parametrize("speed", [0.27, 0.3, 0.33])
+@pytest.mark.parametrize(
+    ("solver", "deep", "made"),
+    [("auto", 1e-7, 3e-6), ("dopri5: {tolerance: 1e-9}", 1e-9, 1e-8), ("rk4: {step: 2 ms}", 1e-9, 3e-5)],
+)
+def test_a_ball_that_slides_and_rolls_off_a_box_is_never_in_it(tmp_path, solver, deep, made, speed):
+    """Frames in the step in which it lifts off have that step's error, by `auto` 1e-6 of the ball's size. By rk4 the
+    end of a slip that no step saw made 1 % of the energy at two of these speeds."""
     times = np.linspace(0, 0.55, 56)
     law = "restitution: 0, friction: 0.5"
     outputs = "body.it.position", "body.energy"
-    rows = watch(tmp_path, ball(0.46), "velocity: 0.3 0 0 m/s", times, *outputs, law=law, solver=solver)
-    assert gap(np.array([x for x, _ in rows])).min() > -1e-9
+    rows = watch(tmp_path, ball(0.46), f"velocity: {speed} 0 0 m/s", times, *outputs, law=law, solver=solver)
+    assert gap(np.array([x for x, _ in rows])).min() > -deep
     energies = np.array([energy for _, energy in rows])
-    assert np.ptp(energies) < 3e-5 * np.abs(energies).max()
+    assert np.ptp(energies) < made * np.abs(energies).max()
 
 
 @pytest.mark.parametrize("spin", ["0 0 0", "3 0 -5"])

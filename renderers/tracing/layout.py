@@ -95,6 +95,11 @@ KNOWN, PROBING, REACHED, BEYOND = 1.0, 2.0, 3.0, 4.0
 WIDE_RADIUS, WIDE_SPREAD, WIDE_FROM = 2, 3, 4
 """In the same row: the cone of a camera's ray, and the distance up to which it is through with thin capsules; all
 are 0 for other rays, the first two also for one that has met its MOST_LINES capsules as wide as its cone."""
+LOST = 5
+"""In the same row: how many rays have ended after many undecided places since the band of rows was begun."""
+MOST_LOST = 4
+"""Of these in a band: from then on what only the certified search could decide is undecided at once, since each takes
+some 0.1 s. So the time of a frame is bounded, whatever its formulas; bands do not depend on the number of threads."""
 FAR, WANT, REST_AT, REST_ITEM, REST_LIGHT, ANSWERS = range(6, 12)
 FIRST, ANYWHERE, NOTHING = range(3)
 """Want of a ray: the first hit, any hit, or none, for a ray that misses all boxes."""

@@ -74,7 +74,7 @@ def light_up(scene: Scene, rows: int, orders: int = ORDERS) -> None:
     """
     from renderers.tracing.light.bounce_kernels import WAY
     from renderers.tracing.light.mist_light_kernels import REACH, gather_around, light_nodes, scatter_again, spread
-    from renderers.tracing.scratch import scratch
+    from renderers.tracing.scratch import begun, scratch
     from renderers.tracing.solids.packet_choice import lender
 
     reals = scene.reals
@@ -83,7 +83,7 @@ def light_up(scene: Scene, rows: int, orders: int = ORDERS) -> None:
     with_scratch = lender(lambda: (scratch(rows), np.zeros((1, layout.ANSWERS)), np.zeros(WAY)))
     ways = directions()
     layers = [(at, k) for at in lit for k in range(int(reals[at + layout.NODES + 2]))]
-    over_tiles(len(layers), lambda i: with_scratch(lambda own: light_nodes(scene, own[0], *layers[i])))
+    over_tiles(len(layers), lambda i: with_scratch(lambda own: light_nodes(scene, begun(own[0]), *layers[i])))
     if not lit or orders == 0:
         return
     lamps = [_source(scene, at).copy() for at in lit]
@@ -92,7 +92,7 @@ def light_up(scene: Scene, rows: int, orders: int = ORDERS) -> None:
 
     def gather(i: int) -> None:
         m, k = rods[i]
-        with_scratch(lambda own: gather_around(scene, *own, lit[m], ways, around[m], k))
+        with_scratch(lambda own: gather_around(scene, begun(own[0]), *own[1:], lit[m], ways, around[m], k))
 
     def scatter(i: int) -> None:
         m, k = rods[i]

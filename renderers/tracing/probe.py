@@ -13,7 +13,7 @@ from renderers.tracing.certified import TOLERANCE
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import over_rows
 from renderers.tracing.probe_kernels import probe_rows
-from renderers.tracing.scratch import scratch_beside
+from renderers.tracing.scratch import begun, scratch_beside
 from renderers.tracing.solids.packet_choice import lender, packets_for
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ class Lines:
 
     def look(self, start: int, stop: int, *out: Any) -> None:
         """Run probe_kernels.probe_rows: once, or with packets twice, first to collect rays, then to use the answers."""
+        begun(self.scratch)
         if self.packets is not None:
             self.asked[0, [layout.MODE, layout.NEXT]] = layout.ASKING, 1
             probe_rows(self.scene, self.scratch, self.asked, start, stop, *out)

@@ -19,6 +19,12 @@ def scratch(rows: int) -> Floats:
     return np.zeros((rows, SCRATCH_COLUMNS))
 
 
+def begun(memory: Floats) -> Floats:
+    """Working memory as a thread begins a piece of work that does not depend on the number of threads: nothing LOST."""
+    memory[-1, layout.LOST] = 0.0
+    return memory
+
+
 def scratch_beside(asked: Floats, scene: Scene, rows: int) -> Floats:
     """Working memory of one thread with a list of rays for packets.
 

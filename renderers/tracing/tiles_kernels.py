@@ -164,19 +164,19 @@ def fill_background(scene, start, stop, reached, busy, records, radiance):
 
 
 @part
-def mark_busy(records, visibility, k, x, y, hard, busy):
-    """Mark the tile of pixel k, at (x, y): SHOWN where it has a record or a thin capsule before it, and LOSSY where its
-    ``visibility`` tells besides that light of the sky is missing, or of a lamp where all light is ``hard``."""
-    mark = SHOWN if records[0, k, OWNER] != 0.0 or records[0, k, UNSURE] != 0.0 else 0
+def mark_of(records, visibility, k, lights):
+    """What pixel k makes its tile: SHOWN where it has a record or a thin capsule before it, and LOSSY where its
+    ``visibility`` tells besides that light of the sky is missing, or of one of so many ``lights``; else 0."""
+    shown = records[0, k, OWNER] != 0.0 or records[0, k, UNSURE] != 0.0
     for layer in range(len(records)):
         if records[layer, k, OWNER] != 0.0:
-            for c in range(SKY, SKY + 3):
-                if not visibility[layer, k, c] == 0.0:
-                    mark = LOSSY
-            for c in range(FIRST_LIGHT, visibility.shape[2] if hard else 0, 2):
-                if not visibility[layer, k, c] == 1.0:
-                    mark = LOSSY
-    busy[y // TILE, x // TILE] = max(busy[y // TILE, x // TILE], mark)
+            row = visibility[layer, k]
+            if row[SKY] != 0.0 or row[SKY + 1] != 0.0 or row[SKY + 2] != 0.0:
+                return LOSSY
+            for l in range(lights):
+                if row[FIRST_LIGHT + 2 * l] != 1.0:
+                    return LOSSY
+    return SHOWN if shown else 0
 
 
 @part

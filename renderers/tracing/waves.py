@@ -22,7 +22,7 @@ from renderers.tracing.light import look_lanes_kernels as looks
 from renderers.tracing.light.bounce_kernels import WAY, dress_hits, follow_all, look_about, step_all
 from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_paths
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.scratch import scratch_beside
+from renderers.tracing.scratch import begun, scratch_beside
 from renderers.tracing.solids.plain_lanes import lanes_for
 from renderers.tracing.tiles_kernels import fill_background
 from renderers.tracing.waves_kernels import (
@@ -111,6 +111,7 @@ class Waves:
         no visibility, or all of it if visibility is ``final``. Rays are traced only in ``reached`` tiles; tiles with a
         hit become ``busy``.
         """
+        begun(self.scratch)
         fill_background(self.scene, start, stop, reached, busy, records, radiance)
         tiles = np.flatnonzero(reached[start // TILE])
         undecided = seconds = 0
@@ -143,11 +144,13 @@ class Waves:
 
     def refine(self, start: int, stop: int, *more: Array) -> None:
         """Run refine_kernels.refine on the pixels start..stop of a layer."""
+        begun(self.scratch)
         own = self.scene, self.scratch, self.asked, self.ways
         self._ask(start, stop, lambda i, end: refine(*own, i, end, self.waiting, *more))
 
     def soften(self, cuts: Array, records: Array, visibility: Array, radiance: Array) -> None:
         """Sample the edges ``cuts`` of hard shadows, from hard_kernels.list_cuts."""
+        begun(self.scratch)
         own = self.scene, self.scratch, self.asked
         self._ask(0, len(cuts), lambda i, end: soften(*own, i, end, cuts, records, visibility, radiance))
 
@@ -156,6 +159,7 @@ class Waves:
         radiance: Array, visibility: Array, picture: Array,
     ) -> None:  # fmt: skip
         """Fill rows start..stop of ``picture`` (n, 3): ``radiance``, and at edges rays through ``points`` (s, 2)."""
+        begun(self.scratch)
         scene = self.scene
         width, size = int(scene.reals[layout.WIDTH]), planes.shape[1] * LANES // self.marks.shape[1]
         light, own = (records, radiance), (self.marks, self.same, self.edges)

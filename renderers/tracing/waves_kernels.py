@@ -24,14 +24,14 @@ from renderers.tracing.gather_kernels import (
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.light_kernels import backdrop, sharpness
 from renderers.tracing.light.sampling_kernels import sample_of
-from renderers.tracing.light.shade_kernels import add_light
+from renderers.tracing.light.shade_kernels import is_dark, reflects, shade, shade_matte
 from renderers.tracing.light.visibility_kernels import AWAITED, look_around
-from renderers.tracing.path_kernels import describe_by, faded
-from renderers.tracing.record_kernels import OWNER, UNSURE, WEIGHT, erase
+from renderers.tracing.path_kernels import describe_by, describe_plain, faded, is_plain
+from renderers.tracing.record_kernels import OWNER, SURFACE, UNSURE, WEIGHT, erase
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, mists_at, part
 from renderers.tracing.solids.intersect_kernels import join, put_ray, tell, walk
 from renderers.tracing.solids.surface_kernels import skin_of
-from renderers.tracing.tiles_kernels import MARKS, mark_busy
+from renderers.tracing.tiles_kernels import LOSSY, MARKS, mark_of
 from sceneql.compiled.kernels import kernel
 
 _i = types.int64
@@ -76,10 +76,23 @@ def see_mist(scene, ray, t, gathered):
 
 @part
 def see_matte(scene, item, skin, t, ray, cone, record, gathered):
-    """Write the record of a matte item that a camera's ray meets at t; endless ones fade into the backdrop."""
+    """Write the record of a matte item that a camera's ray meets at t."""
     x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
-    radius = abs(cone[0] + cone[1] * t)
-    describe_by(scene, item, skin, x, y, z, ray[3], ray[4], ray[5], radius, record)
+    describe_by(scene, item, skin, x, y, z, ray[3], ray[4], ray[5], abs(cone[0] + cone[1] * t), record)
+    weigh(scene, item, t, ray, cone, record, gathered)
+
+
+@part
+def see_plain(scene, item, t, ray, cone, record, gathered):
+    """Write the record of a matte item that ``is_plain``."""
+    x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
+    describe_plain(scene, item, x, y, z, ray[3], ray[4], ray[5], abs(cone[0] + cone[1] * t), record)
+    weigh(scene, item, t, ray, cone, record, gathered)
+
+
+@part
+def weigh(scene, item, t, ray, cone, record, gathered):
+    """Write the weight of the record of a camera's ray that ends at t; endless items fade into the backdrop."""
     weight = 1.0
     if scene.mist != 0:
         weight = see_mist(scene, ray, t, gathered)
@@ -126,14 +139,15 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
     together = asked.shape[1] > layout.ANSWERS
     alone, last = asked[0, layout.ALONE] != 0.0, len(records) - 1
     paths_now = hits_now = 0
+    thin = scene.ints[layout.HAS_THIN] != 0
+    seen, ends, even = -1, False, False  # the item met last, whether rays end at it, and whether it ``is_plain``
     for i in range(count):
         k, ray = at[i], asked[1 + i]
         first = records[0, k]
-        for layer in range(last + 1):
+        for layer in range(1, last + 1):
             erase(records[layer, k])
-        item = -1
-        plain = scene.ints[layout.HAS_THIN] == 0
-        if plain:
+        item, plain = -1, False
+        if not thin:
             scratch[counter, 0] = 0.0
             told, t, item = False, np.inf, -1
             if alone:
@@ -141,12 +155,16 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
             if not told:
                 tell(scratch, asked, 1 + i)
                 t, item, _ = walk(scene, scratch, ray[0], ray[1], ray[2], ray[3], ray[4], ray[5], 0.0, np.inf, False)
-            plain = item < 0 or matte(scene, item)
+            if item >= 0 and item != seen:
+                seen, ends, even = item, matte(scene, item), is_plain(scene, item)
+            plain = item < 0 or ends
+        if item < 0 or not plain:
+            erase(first)
         if not plain:
             path = paths[paths_now]
             begin(path, ray, cones[i])
             path[ROW] = 1 + i
-            if scene.ints[layout.HAS_THIN] == 0:
+            if not thin:
                 path[KNOWN], path[HIT_AT], path[HIT_ITEM] = MET, t, item
                 path[DOUBTED] = 1.0 if scratch[counter, 0] > 0.0 else 0.0
                 scratch[counter, layout.TOLD] = 0.0
@@ -165,9 +183,11 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
             for axis in range(3):
                 met[i, 2 + axis] = ray[axis] + t * ray[3 + axis]
             hits_now += 1
+        elif even:
+            see_plain(scene, item, t, ray, cones[i], first, own)
         else:
-            x, y, z = ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5]
-            see_matte(scene, item, skin_of(scene, scratch, item, x, y, z), t, ray, cones[i], first, own)
+            skin = skin_of(scene, scratch, item, ray[0] + t * ray[3], ray[1] + t * ray[4], ray[2] + t * ray[5])
+            see_matte(scene, item, skin, t, ray, cones[i], first, own)
         own[3] = 1.0 if scratch[counter, 0] > 0.0 else 0.0
     return paths_now, hits_now
 
@@ -249,9 +269,12 @@ def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy):
     Their light is added where their visibility is ``final``. Their tiles become ``busy``. Returns the number of pixels
     that are unsure, and of those with a second record.
     """
-    width = int(scene.reals[layout.WIDTH])
+    u, width = scene.reals, int(scene.reals[layout.WIDTH])
     doubted = seconds = 0
     before, x, y = -2, 0, 0
+    dark, lights = is_dark(u), int(scene.ints[layout.LIGHT_COUNT]) if final else 0
+    tile_x = tile_y = -1
+    mark = 0  # of the tile at hand
     for i in range(gathered.shape[0]):
         k = at[i]
         x, y = next_place(k, before, x, y, width)
@@ -262,9 +285,26 @@ def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy):
         for c in range(3):
             radiance[k, c] = gathered[i, c]
         for layer in range(len(records) if final else 0):
-            if records[layer, k, OWNER] != 0.0:
-                add_light(scene, records[layer, k], visibility[layer, k], radiance[k], 1.0)
-        mark_busy(records, visibility, k, x, y, final, busy)
+            record = records[layer, k]
+            if record[OWNER] != 0.0:
+                s = int(record[SURFACE])
+                if reflects(u, s):
+                    r, g, b = shade(scene, record, visibility[layer, k])
+                else:
+                    r, g, b = shade_matte(scene, record, visibility[layer, k], s, dark)
+                radiance[k, 0], radiance[k, 1], radiance[k, 2] = (
+                    radiance[k, 0] + r,
+                    radiance[k, 1] + g,
+                    radiance[k, 2] + b,
+                )
+        if y // TILE != tile_y or x // TILE != tile_x:
+            if mark > 0:
+                busy[tile_y, tile_x] = max(busy[tile_y, tile_x], mark)
+            tile_x, tile_y, mark = x // TILE, y // TILE, 0
+        if mark != LOSSY:
+            mark = max(mark, mark_of(records, visibility, k, lights))
+    if mark > 0:
+        busy[tile_y, tile_x] = max(busy[tile_y, tile_x], mark)
     return doubted, seconds
 
 

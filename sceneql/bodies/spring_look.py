@@ -53,11 +53,13 @@ def plates(name: str, places: Floats, held: NDArray[Any], triangles: Ints) -> It
 def holders(name: str, places: Floats, held: NDArray[Any], triangles: Ints | None, radius: float) -> Iterator[Shape]:
     """What holds masses of places (n, 3) [m], by a mask (n,).
 
-    Rails along the rim of a sheet with ``triangles``, plates on the triangles whose corners are all held, beads of a
-    ``radius`` [m] on other masses, but at least THIN on those of a sheet.
+    Rails along the rim of an open sheet of ``triangles``, plates on flat parts of a closed one; beads of a ``radius``
+    [m], at least THIN on those of sheets, on other masses.
     """
     import numpy as np
 
+    if not held.any():
+        return
     alone = held.copy()
     if triangles is not None and len(triangles):
         thin = THIN * float(np.linalg.norm(np.ptp(places, axis=0)))
@@ -65,12 +67,13 @@ def holders(name: str, places: Floats, held: NDArray[Any], triangles: Ints | Non
         rim = rim_edges(triangles)
         rails = rim[held[rim].all(axis=1)]
         alone[rails] = False
-        alone[triangles[held[triangles].all(axis=1)]] = False
         ends = places[rails]
         lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         if len(rails):
             yield Segments(f"{name}.pins", HOLDER, ends, np.minimum(RAIL * lengths, thin))
-        yield from plates(name, places, held, triangles)
+        if not len(rim):
+            alone[triangles[held[triangles].all(axis=1)]] = False
+            yield from plates(name, places, held, triangles)
     if alone.any():
         yield spheres(f"{name}.pins", HOLDER, places[alone], radius)
 

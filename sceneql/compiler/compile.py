@@ -9,6 +9,7 @@ from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import KEYS, check
 from sceneql.compiler.names import Parsed
 from sceneql.compiler.over_time import check_latest
+from sceneql.compiler.passes.as_balls import warn_of_balls, warn_of_two_models
 from sceneql.compiler.passes.boundary_names import report_boundary_names
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
@@ -22,6 +23,7 @@ from sceneql.compiler.passes.insides import report_hollow
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.keys_beyond import warn_of_keys
 from sceneql.compiler.passes.layouts import check_layouts
+from sceneql.compiler.passes.left_behind import warn_of_left_behind
 from sceneql.compiler.passes.open_meshes import warn_of_open_meshes
 from sceneql.compiler.passes.outside_flows import report_outside_flows
 from sceneql.compiler.passes.overlaps import report_overlaps
@@ -31,8 +33,11 @@ from sceneql.compiler.passes.readable import report_unreadable
 from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
+from sceneql.compiler.passes.unforced import warn_of_unforced
 from sceneql.compiler.passes.unmoved import report_moving
+from sceneql.compiler.passes.unseen import warn_of_unseen
 from sceneql.compiler.passes.unshown import warn_of_unshown
+from sceneql.compiler.passes.upward import warn_of_z_up
 from sceneql.compiler.studies import check_studies
 from sceneql.compiler.values_below import values_of
 from sceneql.doing import duration
@@ -91,6 +96,12 @@ def compile_script(
     warn_of_keys(tasks, checked.settings.clock, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
+    warn_of_unforced(tasks, groups, found)
+    warn_of_balls(tasks, groups, found)
+    warn_of_two_models(checked.tasks, found)
+    warn_of_left_behind(tasks, found)
+    warn_of_z_up(tasks, found)
+    warn_of_unseen(tasks, drawn, cameras, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
-from sceneql.compiler.values import origin, parsed_text
+from sceneql.compiler.values import origin, parsed_text, remedy
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.bind import SECONDS, Lookup, bind
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, suggestion
@@ -64,7 +64,12 @@ def read_formula(
     if unsure(node):
         return None
     if not isinstance(node, Scalar):
-        found.error("wrong-shape", f"{what} is a formula", node.span)
+        help = (
+            f"write one by place and time: `{what}: 10*exp(-((x - 0.5)^2 + (y - 0.5)^2)/0.01)`"
+            if "x" in symbols
+            else None
+        )
+        found.error("wrong-shape", f"{what} is a formula", node.span, help=help)
         return None
     free = set(symbols)
 
@@ -99,6 +104,7 @@ def read_formula(
         message = f"{what} is {describe(wanted.dimension)}, but this is {in_words(expr.type.dimension)}"
         warm = wanted.by_of and expr.type.dimension == TEMPERATURE
         help = "what the model solves is a temperature where it says `of: temperature`" if warm else None
+        help = help or remedy(expr, wanted.dimension)
         found.error("dimension-mismatch", message, node.span, help=help, notes=origin(expr, node.span))
         return None
     return expr

@@ -5,22 +5,26 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler import paint, values
-from sceneql.compiler.annotations import example_of, first_field, is_fixed, marks_of, quantities
+from sceneql.compiler.annotations import example_of, first_field, is_fixed, marks_of, quantities, unwrap
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.instead import instead
 
 TRUE = ("true", "yes", "on")
+_NAME = r"[^\W\d][\w.]*"
+_NAMES = re.compile(rf"{_NAME}(?:\s*[-+&|*/,]\s*{_NAME})+")
 NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
 
@@ -35,6 +39,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         return f"write `{{{found[0]}: {node.span.text}}}`" if len(found) == 1 else None
     if node.text.lower() in TRUE and not required:
         return "write `{}`: all of its fields have defaults"
+    if "value" in cls.model_fields and (held := instead("bare", node.text)) is not None:
+        return held
     name, _, rest = node.text.partition(" ")
     if name in map(kinds.written_name, cls.model_fields):
         rest = rest.strip().removeprefix("=").strip()
@@ -49,8 +55,18 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if alone and len(fitting) == 1 and fitting != alone:  # the value is another field's
         example = f"{alone[0]}: {example_of(cls, alone[0])}"
         return f"write `{{{example}, {kinds.written_name(fitting[0])}: {node.span.text}}}`"
+    names = _NAMES.fullmatch(node.text.strip())
+    if alone and names is not None and _listing(cls, alone[0]):
+        return f"write `{{{alone[0]}: [{', '.join(re.findall(_NAME, node.text))}]}}`"
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
     return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
+
+
+def _listing(cls: type[BaseModel], name: str) -> bool:
+    """Whether a field is a list of parts."""
+    (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
+    lists = [arm for arm in (info.annotation, *get_args(info.annotation)) if get_origin(arm) in (list, tuple)]
+    return any(isinstance(mark, kinds.Refers) for arm in lists for mark in unwrap(get_args(arm)[0])[1])
 
 
 def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:

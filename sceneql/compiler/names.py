@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from sceneql.compiler.css_colors import NAMED
 from sceneql.kinds import Gives
-from sceneql.language.scope import Broken, Given, Scope
+from sceneql.language.scope import Broken, Entry, Given, Scope
 from sceneql.language.tree import Node, Scalar, Sequence
 from sceneql.quantities.bind import Lookup, bind, component
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, nearest, suggestion
@@ -54,7 +54,7 @@ class Names:
     """The names of a script. ``outputs_of`` returns a part's outputs; ``read`` turns a define's node into a tree."""
 
     defines: Mapping[str, Node]
-    parts: Iterable[str]
+    parts: Mapping[str, Entry]
     outputs_of: Callable[[str], Mapping[str, Gives] | None]
     read: Callable[[Node, Names], Expr | None]
     found: Diagnostics
@@ -181,6 +181,11 @@ class Names:
         part, output = self.part_of(name)
         known = self.outputs_of(part) or {}
         return bool(output) and (output in known or output.rpartition(".")[0] in known)
+
+    def readers(self, name: str, parts: Iterable[str]) -> list[str]:
+        """Those of the parts whose fields name a value."""
+        written = {part: self.parts[part].fields for part in parts if part in self.parts}
+        return [part for part, fields in written.items() if fields is not None and name in fields.span.text]
 
     def model_of(self, body: str) -> str | None:
         """The model with a body or mass of this name, written with or without the model's name.

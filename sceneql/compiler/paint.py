@@ -27,6 +27,7 @@ _DIGITS = re.compile(r"\d+\.?\d*|\.\d+")
 DARK = 16
 """A color whose numbers are all at most this is not taken as bytes: as such it would be nearly black."""
 BRIGHTER = "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
+_ABOUT = re.compile(r"([-+]?[\d.]+)\s*(?:deg)?\s*\*?\s*([xyz])")
 EULER = ("euler", "angles", "degrees", "euler_angles")
 """Fields of other programs for angles about x, y and z."""
 ORDERS = ("xyz", "xzy", "yxz", "yzx", "zxy", "zyx")
@@ -118,6 +119,10 @@ def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
                 return None
             return Value(Call(f"euler_{order}", (angles.expr,), QUATERNION, node.span), node.span)
     expr = None
+    if isinstance(node, Scalar) and (about := _ABOUT.fullmatch(node.text.strip())) is not None:
+        help = f"write `{{about: {about[2]}, angle: {about[1]} deg}}`"
+        found.error("rotation-shape", "a rotation names its axis or its order", node.span, help=help)
+        return None
     if not isinstance(node, MappingNode):
         expr = read_expr(node, QUATERNION.shape, PLAIN, "rotation", names, found)
         if expr is None:

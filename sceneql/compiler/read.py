@@ -6,6 +6,7 @@ these. An error is reported where it stands, and reading goes on, so that all er
 
 from __future__ import annotations
 
+import re
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -37,6 +38,8 @@ from sceneql.quantities.span import Span
 
 PLANAR = "is a vector of 3, not a vector of 2"
 """What is told of a vector without one of its components."""
+SINGLE = " is a single value, not a vector"
+"""What is told of several numbers where one stands."""
 FALSE = ("false", "no", "off")
 
 
@@ -108,6 +111,9 @@ class Reader:
                     better = likely.elsewhere(self, written[name], info, rest)
                     if better is None and self.found.found[before].message.endswith(PLANAR):
                         better = "a number is missing: it has one for each of x, y and z"
+                    if better is None and SINGLE in self.found.found[before].message:
+                        first = written[name].span.text.strip("[]").replace(",", " ").split()[0]
+                        better = f"it is one number: write `{name}: {first}`"
                     self.found.found[before] = replace(self.found.found[before], help=better)
         if not ok:
             raise Unreadable
@@ -245,6 +251,7 @@ class Reader:
             hint = f"write `{' '.join(several)}`" if len(several) > 1 and "".join(several).isdecimal() else None
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
         hint = suggestion(text, [str(c) for c in choices]) or f"one of {every}"
+        hint = f"it is always `{what}: {every}`" if len(choices) == 1 else hint
         raise self._fail("unknown-choice", f"{what} cannot be '{text}'", node.span, hint)
 
     def _list(self, node: Node, origin: Any, arms: tuple[Any, ...], what: str) -> Any:
@@ -275,6 +282,9 @@ class Reader:
         marks = [mark for arm in arms for mark in unwrap(arm)[1] if isinstance(mark, kinds.Quantity)]
         vectors = [mark.shape[0] for mark in marks if mark.shape and mark.shape[0]]
         help = by_corners(node, what, vectors[0]) if len(vectors) == 2 == len(arms) else None
+        names = re.split(r"\s*[-/&+>]+\s*", node.text) if isinstance(node, Scalar) else []
+        if len(names) == len(arms) and all(name.isidentifier() for name in names):
+            help = f"write `{what}: [{', '.join(names)}]`"
         return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
 
     def _copies(self, node: Node, annotation: Any) -> list[Node]:

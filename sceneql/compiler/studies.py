@@ -19,6 +19,7 @@ from sceneql.quantities.span import Source, Span
 NUMBER = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
 RANGE = re.compile(rf"\s*({NUMBER})\s*\.\.\s*({NUMBER})\s*([^,]*?)\s*(?:,\s*(\d+) points)?\s*(?:,\s*(log|linear))?\s*")
 _ENDS = re.compile(rf"(?:from )?({NUMBER})[^\d+-]*?(?:to|-|:|,|\.\.\.)\s*({NUMBER})([^,:]*)")
+_EVEN = re.compile(rf"(?:linspace|arange|range)\(\s*({NUMBER}[^,]*),\s*({NUMBER}[^,)]*)(?:,\s*(\d+))?")
 POINTS = 13
 MOST_POINTS = 200
 HELP = "write `1e0 .. 1e12 N/m, 13 points`, or a list of values"
@@ -46,7 +47,10 @@ def tried(path: str, node: Node) -> list[Tried]:
     found = RANGE.fullmatch(" ".join(node.text.split())) if isinstance(node, Scalar) else None
     if found is None:
         ends = _ENDS.fullmatch(node.text.strip()) if isinstance(node, Scalar) else None
+        even = _EVEN.search(node.text) if isinstance(node, Scalar) else None
         help = HELP if ends is None else f'write `"{ends[1]} .. {ends[2]}{ends[3].rstrip()}, {POINTS} points"`'
+        if even is not None:
+            help = f'write `"{even[1]} .. {even[2]}, {even[3] or POINTS} points, linear"`'
         raise ScriptError([Diagnostic("sweep-shape", "this is neither a range nor a list", node.span, help)])
     low, high, unit, count, way = float(found[1]), float(found[2]), found[3], float(found[4] or POINTS), found[5]
     if not (math.isfinite(low) and math.isfinite(high)):

@@ -63,6 +63,11 @@ def _together(name: str, unknown: Sequence[str], node: Mapping, known: Collectio
     same = [other for other in unknown if same_as(other, known) == ours]
     if ours == "between" and len(same) == 2 and ours not in node.entries:
         return f"write `{ours}: [{', '.join(node.entries[other].span.text for other in same)}]`"
+    whole, _, part = name.rpartition(".")
+    parts = [other for other in unknown if other.rpartition(".")[0] == whole and other[-1:] in "xyz"]
+    if (whole or "position") in known and part in ("x", "y", "z"):
+        values = (f"{each[-1]}: {node.entries[each].span.text}" for each in parts)
+        return f"write `{whole or 'position'}: {{{', '.join(values)}}}`"
     names = list(node.entries)
     first = names.index(name)
     while first and names[first] not in known and _empty(node.entries[names[first]]):
@@ -84,6 +89,8 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
     inner = next(iter(fields.entries)) if isinstance(fields, Mapping) and len(fields.entries) == 1 else ""
     if fields is not None and entry.name == entry.word and catalogue.load(family, inner) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.span.text}}}`"
+    if isinstance(fields, Scalar) and entry.name == entry.word and catalogue.load(family, fields.text) is not None:
+        return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.text}}}`"
     if (same := same_as(entry.word, words)) is not None:
         return f"did you mean '{same}'?"
     if others := catalogue.families_of(entry.word):
@@ -119,6 +126,11 @@ def mover_of(name: str, entries: Naming[str, Entry], family_of: Naming[str, str]
 
 def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
     """The help for fields that stand without a word around them."""
+    for key in ("type", "kind", "word"):
+        told = node.entries.get(key)
+        if isinstance(told, Scalar) and (word := same_as(told.text, catalogue.choices(family))) is not None:
+            inner = ", ".join(f"{name}: {value.span.text}" for name, value in node.entries.items() if name != key)
+            return f"the word stands around its fields: write `{{{word}: {{{inner}}}}}`"
     having, text = _having(list(node.entries), family, catalogue), node.span.text
     for name, value in () if having else node.entries.items():
         having = _having([name], family, catalogue)
@@ -161,7 +173,12 @@ def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, ca
         word = same_as(name, having) or having[0]
         return f"write `{{{word}: {{color: {name}}}}}`, or `color: {name}` in its place"
     words = catalogue.words(mark.family)
-    hint = instead("part", name) or suggestion(name, [*choices, *words])
+    if names.gives(name) and (readers := names.readers(name, choices)):
+        return f"a part stands here, and none of its outputs: write `{readers[0]}`, which shows it"
+    hint = instead("part", name) or suggestion(name, choices) or suggestion(name, words)
+    if hint is None and mark.panel:
+        hint = f"rows hold names of cameras and graphs, `[[{', '.join(choices[:2]) or 'front, top'}]]`"
+        hint += "; variants stand side by side by `[{each: variant}]`: `sceneql words layout`"
     if hint is None and words:
         hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
     return hint

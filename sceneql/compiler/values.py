@@ -10,11 +10,26 @@ from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
+from sceneql.compiler.vector_fields import vector_meant_by
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.diagnostic import Diagnostics, Note, ScriptError, suggestion
-from sceneql.quantities.dimension import ANGLE, FREQUENCY, LENGTH, PERCENTAGE, PLAIN, TIME, Dimension, common, suits
+from sceneql.quantities.dimension import (
+    ANGLE,
+    DENSITY,
+    ENERGY,
+    FREQUENCY,
+    LENGTH,
+    MASS,
+    PERCENTAGE,
+    PLAIN,
+    TEMPERATURE,
+    TIME,
+    Dimension,
+    common,
+    suits,
+)
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Keys, Link, Number, Shape, Symbol, Type, Vector, walk
 from sceneql.quantities.instead import time_meant
@@ -26,6 +41,13 @@ from sceneql.quantities.units import describe, in_words, unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
+_MISSING = (
+    (DENSITY, "(1000 kg/m^3)", "a density"),
+    (DENSITY * ENERGY / MASS / TEMPERATURE, "(4.2e6 J/(K*m^3))", "what a volume takes to be a kelvin warmer"),
+)
+"""(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
+viscosity to dynamic, conductivity to diffusivity."""
+_CHANCE = re.compile(r"\brandom\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)")
 _EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
@@ -98,6 +120,10 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
         help = None if written is None else f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
         found.error("missing-value", "a value is missing here", node.span, help=help)
         return None
+    if (between := _CHANCE.search(text)) is not None:
+        told = f"`{between[0]}` is a number from 0 to 1, of the whole numbers {between[1]} and {between[2]}"
+        help = f"a number from {between[1]} to {between[2]} is `mix({between[1]}, {between[2]}, random(1))`"
+        found.warning("chance-range", told, node.span, help=help)
     try:
         return names.parsed.tree(node, text, names.lookup, found)
     except ScriptError as error:
@@ -137,7 +163,7 @@ def _by_component(
 ) -> Expr | None:
     for key in node.entries:
         if key not in COMPONENTS:
-            help = _timed(node) or suggestion(key, (*COMPONENTS, "keys"))
+            help = vector_meant_by(node) or suggestion(key, (*COMPONENTS, "keys"))
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"
@@ -154,14 +180,6 @@ def _by_component(
             return None
         items.append(value.expr)
     return Vector(tuple(items), Type((3,), quantity.dimension), node.span)
-
-
-def _timed(node: MappingNode) -> str | None:
-    """The help where times and values stand without `keys` around them."""
-    if not all(key[:1].isdigit() for key in node.entries):
-        return None
-    first = next(iter(node.entries))
-    return f"write `{{keys: {{{first}: {node.entries[first].span.text}, ...}}}}`: `sceneql words keys`"
 
 
 def _keys(
@@ -210,7 +228,7 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
             "dimension-mismatch",
             f"{what} is {in_words(quantity.dimension)}, but this is {in_words(has)}",
             span,
-            help=time_meant(span.text) or _counted(expr, quantity.dimension) or _remedy(expr, quantity.dimension),
+            help=time_meant(span.text) or _counted(expr, quantity.dimension) or remedy(expr, quantity.dimension),
             notes=origin(expr, span),
         )
         return False
@@ -234,6 +252,8 @@ def _items(expr: Expr) -> list[Expr]:
 def _repeated(expr: Expr, wanted: Quantity) -> str | None:
     """The help where one value is given for a vector."""
     size = (wanted.shape or (None,))[0]
+    if not suits(expr.type.dimension, wanted.dimension):
+        return None
     if expr.type.shape or expr.span is None or len(wanted.shape or ()) != 1 or size is None:
         return None
     text = expr.span.text
@@ -282,7 +302,7 @@ def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
     return None if wanted.plain else f"write what it is a part of, such as `{share}*(1 {unit_of(wanted)})`"
 
 
-def _remedy(expr: Expr, wanted: Dimension | None) -> str | None:
+def remedy(expr: Expr, wanted: Dimension | None) -> str | None:
     """The help where a quantity lacks a factor, or has a unit with a prefix where two units were meant."""
     text = None if expr.span is None or isinstance(expr, Link) else apart(expr.span.text)
     if text is not None and expr.span is not None:
@@ -299,6 +319,12 @@ def _remedy(expr: Expr, wanted: Dimension | None) -> str | None:
 def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
     """The help where a formula of names lacks a factor of time or length: for the length `1 m*time`, 1/(1 s)."""
     has = expr.type.dimension
+    if has is not None and wanted is not None and expr.span is not None:
+        for kind, factor, word in _MISSING:
+            if has * kind == wanted:
+                return f"multiply it by {word}: write `{expr.span.text}*{factor}`"
+            if has / kind == wanted:
+                return f"divide it by {word}: write `{expr.span.text}/{factor}`"
     if has is None or wanted is None or expr.span is None or not any(isinstance(n, Symbol | Link) for n in walk(expr)):
         return None
     text = f"({expr.span.text})" if re.search(r"[-+<>=]", expr.span.text) else expr.span.text
@@ -306,6 +332,11 @@ def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
         if dimension in (TIME, LENGTH):
             word = "divide it by" if sign == "/" else "multiply it by"
             return f"{word} {describe(dimension)}: write `{text}{sign}(1 {unit_of(dimension)})`"
+    unit = unit_of(wanted / has)
+    one = next((item for item in expr.items if not _zero(item)), expr) if isinstance(expr, Vector) else expr
+    text = text if one.span is None else one.span.text
+    if unit != "1" and any(isinstance(node, Number) and node.bare and node.value != 0 for node in walk(expr)):
+        return f"a number in it has no unit: write `{text}*(1 {unit})`, or `{unit}` behind that number"
     return None
 
 

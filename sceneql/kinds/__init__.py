@@ -7,11 +7,12 @@ text; ``gives``, its outputs; its docstring. When adding a word read ``types.py`
 
 from __future__ import annotations
 
+from sceneql.kinds.doubt import Doubt
 from sceneql.kinds.field_builder import FieldBuilder
 from sceneql.kinds.moment import Moment, Shaped
 from sceneql.kinds.objects import Collider, Object
 from sceneql.kinds.outputs import EachVariant, Output, Picture, Sink, Tools
-from sceneql.kinds.physics import Contact, Doubt, Force, Interaction, Model, Tie
+from sceneql.kinds.physics import Contact, Force, Interaction, Model, Tie
 from sceneql.kinds.pictures import Camera, Light, Material, Overlay, Renderer
 from sceneql.kinds.settings import (
     MOST_MOMENTS,

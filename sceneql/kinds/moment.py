@@ -147,3 +147,9 @@ class Moment(Protocol):
 
     def outline(self) -> Floats:
         """Points (n, 3) [m] whose hull encloses all that is drawn over the whole film, except what leaves for good."""
+
+    def moving(self) -> Floats:
+        """Instants [s] over the film and points [m], rows (n, 1 + 3).
+
+        Their hull at each instant encloses all that moves and stays. Without rows nothing moves.
+        """

@@ -13,9 +13,9 @@ from sceneql.kinds.word import Kind, field
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
     from sceneql.frame import Shape as Drawn
+    from sceneql.kinds.doubt import Doubt
     from sceneql.kinds.field_builder import FieldBuilder
     from sceneql.kinds.moment import Moment, Shaped
-    from sceneql.kinds.physics import Doubt
     from sceneql.kinds.settings import Clock
     from sceneql.kinds.volume_moments import VolumeMoments
     from sceneql.system import Assembly

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
+from sceneql.kinds.doubt import Doubt
 from sceneql.kinds.probed import HeldPart, Probed
 from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.kinds.types import BodyRef, ModelRef
@@ -14,7 +14,6 @@ from sceneql.kinds.word import Kind, Problem, field
 from sceneql.quantities.diagnostic import Diagnostic
 from sceneql.quantities.dimension import FORCE
 from sceneql.quantities.expression import Expr
-from sceneql.quantities.span import Span
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -24,16 +23,6 @@ if TYPE_CHECKING:
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.moment import Moment
     from sceneql.system import Assembly, Bodies, ModelState
-
-
-@dataclasses.dataclass(frozen=True, slots=True)
-class Doubt:
-    """A likely mistake: something that a run will do and that may not be meant."""
-
-    code: str
-    text: str
-    place: Span | None
-    help: str
 
 
 class Model(Kind):
@@ -47,6 +36,8 @@ class Model(Kind):
     """Whether it is an incompressible flow (system.Flow)."""
     turns: ClassVar[bool] = False
     """Whether its bodies are rigid: all models of a contact with it are then solved together."""
+    inert: ClassVar[bool] = False
+    """Whether only forces, contacts and velocities at the start move it."""
     has_bodies: ClassVar[bool] = True
     """Whether forces that name no model act on it."""
     has_skin: ClassVar[bool] = False

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sceneql.frame import RGB, LightSource, Surface, View
+    from sceneql.kinds.doubt import Doubt
     from sceneql.kinds.moment import Moment, Remembered
     from sceneql.kinds.values import Value
 
@@ -43,6 +44,10 @@ class Light(Kind):
     family: ClassVar[str] = "lights"
     stages: ClassVar[bool] = False
     """Whether it is a stage light: a scene with such lights alone, and no ground of its own, may get a ground."""
+
+    def doubts(self) -> Iterable[Doubt]:
+        """Doubtful settings of its own fields where there is a ground; warnings of `check`."""
+        return ()
 
     def lower(self, moment: Moment) -> Iterable[LightSource]:
         """Its light sources (the closed set of sceneql.frame) at the moment."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import Annotated, Any
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Any, ClassVar
 
 from sceneql.kinds.types import Color, Expected, FixedScalar, FixedTime
 from sceneql.kinds.values import Quantity, Value
@@ -54,6 +54,10 @@ class Gallery(Record):
 class Expect(Record):
     """A number that the scene must give, and the source of that number."""
 
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("at", "time", "when"), "the instant stands in what is measured: `of: at(ball.position.y, 1 s)`"
+    )
+
     of: Expected = field("What is measured: an expression of outputs, with final(), max(), at(x, 2 s), ...")
     value: Expected | None = field("What it must be.", None)
     tolerance: Annotated[Value, Quantity(None)] = field(
@@ -79,7 +83,8 @@ def _unlike(of: Value, others: dict[str, Value | None]) -> Iterator[Problem]:
         given = None if value is None else value.expr.type.dimension
         if not comparable(given, measured):
             text = f"{name} is {describe(measured)} as what is measured, but this is {in_words(given)}"
-            yield Problem(text, (name,), code="dimension-mismatch")
+            share = "a tolerance is no part of the value, but in its unit: `0.01 J`" if name == "tolerance" else None
+            yield Problem(text, (name,), code="dimension-mismatch", help=share)
 
 
 class Study(Record):

@@ -46,6 +46,8 @@ class Solver(Kind):
     """Kind of island that it solves: any, one field on a grid, one with a flow, or one with several fluids."""
     static: ClassVar[bool] = False
     """Whether it finds static equilibria, without motion in time."""
+    refuses_contacts: ClassVar[str] = ""
+    """Why it marches no models that collide; empty: it does."""
     refuses_ties: ClassVar[str] = ""
     """Why it refuses bodies held by ties; empty where it does not."""
 

@@ -58,7 +58,7 @@ RendererRef = Annotated[Ref, Refers("renderers")]
 DrawnRef = Annotated[Ref, Refers("objects", also="models")]
 """An object, or a model that draws itself."""
 
-PanelRef = Annotated[Ref, Refers("overlays", also="cameras")]
+PanelRef = Annotated[Ref, Refers("overlays", also="cameras", panel=True)]
 """An overlay or a camera in a panel of a layout."""
 
 File = Annotated[str, SceneFile()]

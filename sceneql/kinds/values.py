@@ -132,6 +132,8 @@ class Refers:
     """A second family whose parts it may name."""
     bodies: bool = False
     """Whether it may name one of several bodies, `stones.first`, or the `world`."""
+    panel: bool = False
+    """Whether it fills a panel of a layout."""
 
     def __str__(self) -> str:
         return f"{self.family} or {self.also}" if self.also else self.family

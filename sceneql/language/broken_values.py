@@ -32,6 +32,7 @@ NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _ITEM = r"(?:[^(),]|\([^(),]*\))+"
 _PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
 _ROTATION = re.compile(r"\brotation:\s*\Z")
+_NAMED = re.compile(r"\$?\{\{?\s*([^\W\d][\w.]*)\s*\}\}?")
 _COMMENT = re.compile(r"//|--|%(?=\s)")
 _UNIT_IN_BRACKETS = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?(?:\s+[-+]?[\d.]+)*)\s*\[\s*([^\W\d][^\[\],]*?)\s*\]")
 _UNPARTED = re.compile(r"([^\W\d]\w*)(?:[ ]+|(:))(?=\[)")
@@ -111,6 +112,12 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
             called = _CALLED.match(written)
             if called is not None and called[1] not in FUNCTIONS and instead("function", called[1]) is not None:
                 continue  # it is reported where the value is read
+            if (named := _NAMED.fullmatch(written)) is not None:
+                help = f"a name stands by itself: write `{named[1]}`"
+                found.error(
+                    "syntax", "'$' cannot stand in an expression", Span(source, fault.caret, fault.end), help=help
+                )
+                continue
             line = _corrected(source, fault, together)
             match fault.code:
                 case "comment-color":

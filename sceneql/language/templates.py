@@ -22,6 +22,7 @@ __all__ = ["Entry", "Expanded", "Given", "Scope", "expand", "filled"]
 
 MOST_NESTED: Final = 64
 MOST_PARTS: Final = 100_000
+_CALLED = re.compile(r"(\w+)\(([^()]*)\)")
 _ENDING = re.compile(r"(?<=\w)\.(mp4|mov|avi|gif|webm|png|jpe?g|csv|npz)$")
 """How files are called, whose ending the word of an output tells."""
 _EQUALS = re.compile(r"(\w+)\s*:?=\s*(\S+(?:[ \t]\S+)*)")
@@ -194,6 +195,10 @@ class _Expander:
             letters = "a name is made of letters, digits and underscores, and begins with a letter"
             better = re.sub(r"\W+", "_", _ENDING.sub("", name)).strip("_")
             letters = f"write `{better}`: {letters}" if better.isidentifier() else letters
+            called = _CALLED.fullmatch(name)
+            letters = (
+                letters if called is None else f"fields stand in braces: write `{{{called[1]}: {{...: {called[2]}}}}}`"
+            )
             help = numbered(name) or letters
             self.found.error("part-name", message, key.span, help=help)
             for part in (name, *re.split(r"\W+", name)):  # as it may be written in an expression

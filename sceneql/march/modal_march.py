@@ -69,8 +69,6 @@ class ModalMarch(March):
         system, structure = self.system, self.system.structure
         if not system.masses:
             raise self._refusal(f"modes are those of masses, and '{system.ranges[0][2]}' has none")
-        if structure.exact or structure.local or structure.limits:
-            raise self._refusal("contacts are not linear: modes do not go through them")
         if structure.after or structure.settling or structure.free or structure.tied:
             raise self._refusal("modes are those of masses that forces alone move: here something else moves or turns")
         missing = sorted(set(range(len(system.y))) - {*self._known().tolist(), *self._others()})

@@ -1,4 +1,4 @@
-"""Volume, area, edges and topology of triangle meshes. Imports numpy."""
+"""Volume, area, edges and topology of triangle meshes. Imports numpy, and numba where edges are counted."""
 
 from __future__ import annotations
 
@@ -13,11 +13,22 @@ BEND = 0.5
 
 def volume(vertices: Floats, triangles: Ints) -> float:
     """Volume [m^3] of a closed mesh, triangles counterclockwise seen from outside: the sum of signed tetrahedra."""
+    return volume_and_area(vertices, triangles)[0]
+
+
+def volume_and_area(vertices: Floats, triangles: Ints) -> tuple[float, float]:
+    """Volume [m^3] of a closed mesh as ``volume``, and the sum of its triangles' areas [m^2]."""
     import numpy as np
 
-    middle = vertices.mean(axis=0) if len(vertices) else np.zeros(3)
-    a, b, c = (vertices[triangles[:, k]] - middle for k in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+    if not len(triangles):
+        return 0.0, 0.0
+    # Columns of coordinates, one beside the other in memory: four times as fast as rows of three.
+    columns = (vertices - vertices.mean(axis=0)).T.copy()
+    corners = triangles.T.astype(np.int64)
+    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (of.take(corners) for of in columns)
+    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
+    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return float((ax * nx + ay * ny + az * nz).sum() / 6.0), float(0.5 * np.sqrt(nx**2 + ny**2 + nz**2).sum())
 
 
 def curved_volume(vertices: Floats, triangles: Ints, normals: Floats) -> float:
@@ -49,30 +60,33 @@ def curved_volume(vertices: Floats, triangles: Ints, normals: Floats) -> float:
 
 def area(vertices: Floats, triangles: Ints) -> float:
     """Sum of the triangles' areas [m^2]."""
-    import numpy as np
-
-    a, b, c = (vertices[triangles[:, k]] for k in range(3))
-    return float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return volume_and_area(vertices, triangles)[1]
 
 
 def edge_counts(triangles: Ints) -> tuple[int, int, int]:
     """Numbers of edges: (all, those of only one triangle, those of more than two)."""
     import numpy as np
 
-    if not len(triangles):
-        return 0, 0, 0
-    ends = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).astype(np.int64), axis=1)
-    keys = np.sort(ends[:, 0] * (int(triangles.max()) + 1) + ends[:, 1])
-    starts = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
-    uses = np.diff(np.append(starts, len(keys)))
-    return len(starts), int((uses == 1).sum()), int((uses > 2).sum())
+    from sceneql.mesh.cubes.triangle_kernels import count_edges
+
+    found = np.zeros(3, dtype=np.int64)
+    count_edges(
+        np.ascontiguousarray(triangles, dtype=np.int32), np.zeros(int(triangles.max(initial=-1)) + 2, dtype=np.int64),
+        np.empty(3 * len(triangles), dtype=np.int32), found,
+    )  # fmt: skip
+    return int(found[0]), int(found[1]), int(found[2])
 
 
-def euler_characteristic(triangles: Ints) -> int:
-    """Vertices - edges + triangles; 2 for a sphere, 0 for a torus, 2 less for each further handle."""
+def euler_characteristic(triangles: Ints, edges: int | None = None) -> int:
+    """Vertices - edges + triangles; 2 for a sphere, 0 for a torus, 2 less for each further handle.
+
+    ``edges`` are counted where their number is not given.
+    """
     import numpy as np
 
-    return len(np.unique(triangles)) - edge_counts(triangles)[0] + len(triangles)
+    used = np.zeros(int(triangles.max(initial=-1)) + 1, dtype=bool)
+    used[triangles] = True
+    return int(used.sum()) - (edge_counts(triangles)[0] if edges is None else edges) + len(triangles)
 
 
 def euler_by_piece(triangles: Ints) -> list[int]:

@@ -134,6 +134,12 @@ class Panel:
 
         return self._whole.outline() if self.boxes() else np.zeros((0, 3))
 
+    def moving(self) -> Floats:
+        """Instants [s] and points [m], rows (n, 1 + 3), of what moves and stays (run.Run)."""
+        import numpy as np
+
+        return self._whole.moving() if self.boxes() else np.zeros((0, 4))
+
     def at(self, time: float) -> Instant:
         """Moment at ``time`` [s], or the last before a failure. Raises RunFailure unless the script allows failures."""
         if self.failure is None and (self._last is None or self._last.now < time):

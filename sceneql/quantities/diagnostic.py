@@ -199,6 +199,8 @@ def nearest(name: str, choices: Iterable[str]) -> str | None:
     choices = list(choices)
     if (same := same_as(name, choices)) is not None:
         return same
+    if "(" in name:  # new THREE.SphereGeometry(1, 32, 32)
+        name = re.split(r"[\s.]", name.partition("(")[0])[-1]
     name = of_library(name)
     close = get_close_matches(name, choices, n=1, cutoff=0.8)
     pieces = [] if "." in name else _PIECE.findall(name)

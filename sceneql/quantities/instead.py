@@ -15,8 +15,8 @@ INSTEAD = {
 }
 """The sentence of what to write in place of a called `function`, a `sign` or `name` of a formula, `behind` a number
 of it or `before` its rest, the `field` of a part, or `field.FAMILY`, a `section` of the script, the key of an `entry`
-or one `beside` its word, a field of `keys`, a `unit`, a `body` of a tie, a `zero`, or a word of a family, by the
-family's name."""
+or one `beside` its word, a field of `keys`, a `unit`, a `body` of a tie, a `zero`, a `bare` text in place of fields, or
+a word of a family, by the family's name."""
 
 _TON = re.compile(r"\d\s*[^\s()\[\],]*[*/]t(?!\w)")
 

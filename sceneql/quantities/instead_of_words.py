@@ -67,6 +67,12 @@ OF_PARTS = (
     ("field.ties", "length distance", "a rod is as long as its ends are apart at the start: `from` and `to`"),
     ("field.objects", "axis", "it stands along y, and is turned: `rotation: {about: x, angle: 90 deg}`"),
     ("field.objects", "static fixed kinematic dynamic", "an object that no model moves stands still"),
+    ("bare", "fixed clamped dirichlet held closed zero", "what is held there has a value: write `{value: 0}`"),
+    (
+        "bare",
+        "free neumann insulated adiabatic reflecting noflux no_flux",
+        "so it is where nothing is said: leave it out",
+    ),
     ("section", "seed", "write `clock: {seed: 5}`"),
     (
         "section",
@@ -138,6 +144,7 @@ OF_PARTS = (
         "parts in coordinates of their own are a group, `NAME: {group: {children: [{sphere: {radius: 1 m}}],"
         " position: 0 1 0 m}}`",
     ),
+    ("beside", "text content string", "text stands in a caption: `NAME: {caption: {text: hello}}`"),
     ("beside", "DEF", "the part's name is that before the colon: leave `DEF` out"),
     ("beside", "name id", "the name stands before the word, in a section of names: `objects: {ball: {sphere: {...}}}`"),
     (
@@ -203,6 +210,43 @@ OF_PARTS = (
         " objects",
     ),
     ("field", "start", "it begins at 0 s"),
+    (
+        "field.objects",
+        "radius_top radius_bottom top_radius bottom_radius radiustop radiusbottom r1 r2",
+        "a cone is a cylinder that is tapered, `{taper: {of: {cylinder: {height: 2 m}}, factor: 0.1}}`",
+    ),
+    (
+        "field",
+        "constraints constraint copy_location follow_path child_of",
+        "what follows another takes its value, `position: ball.position`: `sceneql words links`",
+    ),
+    (
+        "field",
+        "positioninterpolator orientationinterpolator timesensor keyvalue fcurve f_curve action",
+        "a value that changes is given by keys, `position: {keys: {0 s: 0 0 0 m, 1 s: 0 1 0 m}}`: `sceneql words keys`",
+    ),
+    (
+        "field",
+        "castshadow receiveshadow cast_shadow receive_shadow shadows shadow",
+        "light and shadow are computed: leave it out",
+    ),
+    (
+        "field.objects",
+        "stroke nostroke stroke_weight strokeweight outline line_width linewidth wireframe edges",
+        "surfaces have no lines: leave it out",
+    ),
+    (
+        "field.objects",
+        "interior ior refraction refractive_index",
+        "write `material: {glass: {}}`: `sceneql words glass`",
+    ),
+    ("field", "geom geoms collider hitbox", "write `of: NAME`, an object that is its shape"),
+    (
+        "field.objects",
+        "box sphere cylinder torus plane mesh",
+        "members stand in a list, `of: [{box: {}}, {sphere: {}}]`, of a group `children: [...]`",
+    ),
+    ("field", "frames frame_count num_frames nframes", "the clock has the length in s: `clock: {end: 4 s, fps: 30}`"),
     ("field", "diameter", "write half of it as `radius`"),
     (
         "field.objects",
@@ -238,7 +282,25 @@ OF_PARTS = (
     ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),
     ("section", "fps framerate frame_rate", "write `clock: {fps: 30}`: `sceneql words clock`"),
     ("section", "resolution size width height", "write `outputs: {film: {video: {size: 720p}}}`"),
-    ("section", "scene world root project", "the sections stand by themselves, with no key around them"),
+    (
+        "section",
+        "render rendering renderer camera_settings scene_settings",
+        "write `outputs: {film: {video: {size: 1080p}}}`",
+    ),
+    ("section", "world environment", "write `background: black`, or `lights: {sky: sky}`; parts stand in sections"),
+    ("section", "sky_sphere skybox sky", "write `lights: {sky: sky}`, or `background: skyblue`"),
+    ("section", "fog", "there is no fog over a scene; `mist` draws a field that fills a space: `sceneql words mist`"),
+    (
+        "section",
+        "controls orbitcontrols mouse",
+        "a film has no mouse: a camera goes round by `cameras: {c: turntable}`",
+    ),
+    (
+        "section",
+        "route routes connect connections",
+        "a field takes a value of another part by its name, `position: swing.bob.position`: `sceneql words links`",
+    ),
+    ("section", "scene root project", "the sections stand by themselves, with no key around them"),
     ("section", "floor", "write `objects: {floor: plane}`"),
     ("absent", "floor", "write `objects: {floor: none}`"),
     ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
@@ -254,6 +316,9 @@ OF_PARTS = (
         "ellipsoid egg spheroid",
         "write its formula: `{implicit: {field: (x/2)^2 + y^2 + z^2 - 1, bounds: {box: [-2 -1 -1, 2 1 1]}}}`",
     ),
+    ("objects", "boolean bool csg", "write `{difference: {of: [a, b]}}`, or `union`, `intersection`"),
+    ("field.forces", "mass", "write its `strength`, G times the mass: `6.67e-11*1e10 m^3/s^2`"),
+    ("objects", "indexedfaceset faces triangles polygons vertices", "a file has them: `{mesh: {file: cow.obj}}`"),
     ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: ...}}}`"),
     (
         "models",

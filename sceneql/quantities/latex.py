@@ -10,7 +10,8 @@ _DROPPED = re.compile(r"\\(?:left|right|big|Big|,|;|!|:|quad|displaystyle)(?![a-
 _GROUP = r"\{([^{}\\]*)\}"
 _FRACTION = re.compile(rf"(\w?)(\s*)\\[dt]?frac\s*{_GROUP}\s*{_GROUP}")
 _ROOT = re.compile(rf"\\sqrt\s*(?:\[([^\]]*)\])?\s*{_GROUP}")
-_PLAIN = re.compile(rf"\\(?:mathrm|mathbf|mathit|text|operatorname|vec|hat|mbox)\s*{_GROUP}")
+_QUANTITY = re.compile(rf"\\(?:SI|qty)\s*{_GROUP}\s*{_GROUP}")
+_PLAIN = re.compile(rf"\\(?:mathrm|mathbf|mathit|text|num|si|unit|operatorname|vec|hat|mbox)\s*{_GROUP}")
 _POWER = re.compile(rf"([\^_])\s*{_GROUP}")
 _PRODUCT = re.compile(r"\s*\\(?:cdot|times|ast)(?![a-zA-Z])\s*")
 _CALLED = re.compile(r"\\(sin|cos|tan|exp|log|ln|sqrt)(?![a-zA-Z])\s*(?:\(|([\w.]+))")
@@ -23,6 +24,7 @@ def from_latex(text: str) -> str | None:
     before, result = "", _DROPPED.sub("", text)
     while before != result:
         before = result
+        result = _QUANTITY.sub(r"\1 \2", result)
         result = _PLAIN.sub(r"\1", result)
         result = _POWER.sub(lambda one: one[1] + (one[2] if one[1] == "_" else _whole(one[2])), result)
         result = _ROOT.sub(lambda one: f"sqrt({one[2]})" if one[1] is None else f"({one[2]})^(1/{one[1]})", result)

@@ -51,6 +51,11 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
             raise
         if sign_of(word.group()) is not None:
             raise
+        if word.group()[:1] == "_" and at > 0 and text[at - 1].isdigit():  # 1_000
+            digits = re.match(r"[\d_]*", text[at:]) or word
+            first = re.search(r"[\d_]*$", text[:at]) or word
+            help = f"digits stand together: write `{(first.group() + digits.group()).replace('_', '')}`"
+            raise ScriptError([replace(found, help=help)]) from None
         if (other := instead("behind", word.group())) is not None:
             raise ScriptError([replace(found, help=other)]) from None
         if instead("unit", word.group()) is not None:

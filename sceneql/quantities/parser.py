@@ -39,6 +39,7 @@ TOKEN = re.compile(
 )
 
 _UNIT_IN_BRACKETS = re.compile(r"\[\s*([^\W\d][^\[\],]*?)\s*\]")
+_CROSSED = re.compile(rf"{NUMBER}\s*[a-zµ]*(?:\s*[x×]\s*{NUMBER}\s*[a-zµ]*)+")
 _INDEX = re.compile(r"\[\s*(\d)\s*\]")
 
 
@@ -207,7 +208,9 @@ class _Parser:
         if self.kind == "bad":
             message = f"'{self.token}' cannot stand in an expression"
             help = instead("sign", self.token)
-            if (self.token == "\\" or (self.token == "{" and self.before == "^")) and (plain := from_latex(self.text)):
+            if (self.token == "\\" or (self.token == "{" and self.before[-1:] in ("^", "_"))) and (
+                plain := from_latex(self.text)
+            ):
                 help = f"write `{plain}`"
             name = re.match(WORD, self.text[self.end :])
             if self.token == "$" and name is not None:
@@ -255,8 +258,13 @@ class _Parser:
             at = self.text.index(odd)
             help = instead("sign", odd)
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
-        if isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
+        crossed = _CROSSED.fullmatch(self.text.strip())
+        if crossed is not None and (sides := vector_meant(re.sub(r"\s*[x×]\s*", ", ", self.text.strip()))):
+            help = f"write `{sides}`"
+        elif isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
             help = formula
+        elif isinstance(expr, Number) and self.kind == "number" and self.before.endswith("%"):
+            help = instead("sign", "%")
         elif isinstance(expr, Number) and self.kind == "number":
             help = "a vector is numbers alone and one unit, `0 1.2 0 m`, or expressions in brackets, `[a, b, c]`"
             if (vector := vector_meant(self.text)) is not None:

@@ -13,6 +13,7 @@ from sceneql.quantities.units import scan_unit
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _NAME = re.compile(r"(?<![\w.])[^\W\d][\w.]*")
+_FORMULA = re.compile(r"[-+]?[\w.(]")
 _JOINS = tuple("+*/^<>=,")
 SIZE = 3
 """Components of the vectors that are recognised."""
@@ -30,6 +31,8 @@ def bracketed(text: str, span: Span) -> str | None:
         except ScriptError:
             return None
     plain = [_NUMBER.fullmatch(piece) is not None for piece in pieces]
+    if (not unit and sum(plain) < SIZE - 1) or any(_FORMULA.match(piece) is None for piece in pieces):
+        return None
     if len(pieces) != SIZE or all(plain) or not any(plain) or not text.isascii():
         return None
     for number, piece in pairwise(pieces):  # 1 m*sin 3

@@ -205,6 +205,8 @@ def _unknown(name: str, span: Span | None, at: int) -> ScriptError:
         hint: str | None = f"write `{written}`"
     else:
         hint = instead("unit", name)
+        if "." in name and all(piece in UNITS for piece in name.split(".")):
+            hint = f"units are multiplied by `*`: write `{name.replace('.', '*')}`, and powers as `s^-1`"
         same = [known for known in KNOWN_UNITS if known.lower() == name.lower()]
         same += [name[:-1]] if name.endswith("s") and name[:-1] in KNOWN_UNITS else []  # 20 cms
         meant = sign_of(name) or (same[0] if same else None)

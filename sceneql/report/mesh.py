@@ -160,18 +160,20 @@ def _account(
     output: Path, polygons: Polygons, cell: float, hidden: Unresolved | None, missed: float, folded: int
 ) -> Account:
     """The account of a written mesh."""
-    from sceneql.mesh.measures import area, edge_counts, euler_characteristic, volume
+    from sceneql.mesh.measures import edge_counts, euler_characteristic, volume_and_area
 
     vertices, triangles = polygons.vertices, polygons.triangles
+    edges, boundary, _ = edge_counts(triangles)
+    volume, area = volume_and_area(vertices, triangles)
     return Account(
         file=output,
         vertices=len(vertices),
         triangles=len(triangles),
         cell=cell,
-        euler=euler_characteristic(triangles),
-        volume=volume(vertices, triangles),
-        area=area(vertices, triangles),
-        boundary_edges=edge_counts(triangles)[1],
+        euler=euler_characteristic(triangles, edges),
+        volume=volume,
+        area=area,
+        boundary_edges=boundary,
         folded=folded,
         unresolved=0 if hidden is None else hidden.cells,
         unresolved_volume=0.0 if hidden is None else hidden.volume,

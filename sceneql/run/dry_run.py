@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import TYPE_CHECKING, Any
@@ -47,6 +47,10 @@ class DryRun:
     """Low and high corner (3,) of everything else; None where nothing leaves."""
     outlines: Mapping[str, Floats] = field(default_factory=dict)
     """Points (n, 3) [m] by part, whose hull encloses the part over the run (outlines.outline)."""
+    moving: Sequence[tuple[float, Floats]] = ()
+    """Instants [s], and points (n, 3) [m] whose hull encloses all parts that may change at each."""
+    changing: Sequence[str] = ()
+    """Those parts."""
 
     def course(self, expr: Expr, until: float) -> tuple[Floats, Floats]:
         """Times (n,) [s] up to ``until``, and values (n, ...) of an expression that was requested (`asked`)."""
@@ -114,6 +118,7 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     first: dict[str, Floats] = {}
     paths = Paths()
     outlines: dict[str, Floats] = {}
+    moving: list[tuple[float, Floats]] = []
     every = 1
 
     def instants() -> Iterator[float]:
@@ -141,11 +146,15 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
                         shapes[name] = drawn
                 now, first = start, dict(outlines)
                 paths.see(moment.now, shapes)
+                moving.append((moment.now, _around_all(outlines[name] for name in changing)))
             elif bounded and k % every == 0:
                 shapes = {name: moment.lower([name]) for name in changing}
                 now = _widened(now, shapes, ahead.holders)
-                _outline(outlines, shapes)
+                own: dict[str, Floats] = {}
+                _outline(own, shapes)
+                _join(outlines, own)
                 paths.see(moment.now, shapes)
+                moving.append((moment.now, _around_all(own.values())))
             for key, piece in asked_for.items():
                 rows[key].append(moment.measure(piece))
             times.append(moment.now)
@@ -154,13 +163,13 @@ def dry_run(ahead: Running, *, bounded: bool = True) -> DryRun:
     except RunFailure:
         if not times:
             raise
-        now, paths, outlines = start, Paths(), first
+        now, paths, outlines, moving = start, Paths(), first, moving[:1]
     count = len(times)
     values = {key: np.array(row[:count]) for key, row in rows.items()}
     if not bounded:
         return DryRun(None, times, values)
     still = [now[name] for name in ahead.orders if name in now and name not in changing]
-    return DryRun(now, times, values, *let_go(paths, still), outlines)
+    return DryRun(now, times, values, *let_go(paths, still), outlines, moving, changing)
 
 
 def _often(clock: Clock) -> int:
@@ -182,10 +191,20 @@ def _widened(bounds: Bounds, shapes: Mapping[str, Sequence[Shape]], holders: Map
 
 
 def _outline(outlines: dict[str, Floats], shapes: Mapping[str, Sequence[Shape]]) -> None:
-    """Add the shapes of some parts at a moment to their outlines."""
+    """Write the outlines of some parts at a moment, from their shapes."""
     for name, drawn in shapes.items():
-        known = [outlines[name]] if name in outlines else []
-        outlines[name] = outermost(np.concatenate([np.zeros((0, 3)), *known, *map(outline, drawn)]))
+        outlines[name] = _around_all(map(outline, drawn))
+
+
+def _join(outlines: dict[str, Floats], more: Mapping[str, Floats]) -> None:
+    """Widen outlines of parts by those at another moment."""
+    for name, points in more.items():
+        outlines[name] = _around_all([outlines[name], points] if name in outlines else [points])
+
+
+def _around_all(points: Iterable[Floats]) -> Floats:
+    """The outermost of several arrays of points (n, 3)."""
+    return outermost(np.concatenate([np.zeros((0, 3)), *points]))
 
 
 def _around(name: str, holders: Mapping[str, str]) -> Iterator[str]:

@@ -44,6 +44,9 @@ class Framed(Protocol):
     def outline(self) -> Floats:
         """Points (n, 3) [m] whose hull encloses all that is drawn and stays, over the whole run."""
 
+    def moving(self) -> Floats:
+        """Instants [s] and points [m], rows (n, 1 + 3), whose hull at each encloses all that moves and stays."""
+
 
 class Running(Framed, Protocol):
     """The run of an instant, as it uses it (run.Run), or a run ahead of that."""
@@ -205,14 +208,21 @@ class Instant:
         points = self._of_panels(lambda run: run.outline())
         return points if len(points) else np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
 
+    def moving(self) -> Floats:
+        """Instants [s] and points [m], rows (n, 1 + 3), whose hull at each instant encloses all that moves and stays.
+
+        In all panels; none where nothing moves.
+        """
+        return self._of_panels(lambda run: run.moving())
+
     def _of_panels(self, points_of: Callable[[Framed], Floats | None]) -> Floats:
-        """Points (n, 3) of this run and of those beside it, except variants that burst."""
+        """Rows of this run and of those beside it, except variants that burst; a row ends in a place."""
         runs = () if self.run.ahead else (self.run, *self.beside)
         found = [points for run in runs if (points := points_of(run)) is not None and len(points)]
-        sizes = [float(np.linalg.norm(points.max(axis=0) - points.min(axis=0))) for points in found]
+        sizes = [float(np.linalg.norm(np.ptp(points[:, -3:], axis=0))) for points in found]
         most = BURST * min(sizes, default=0.0) or np.inf
         kept = [points for points, size in zip(found, sizes, strict=True) if size <= most]
-        return np.concatenate([np.zeros((0, 3)), *kept])
+        return np.concatenate(kept) if kept else np.zeros((0, 3))
 
     def place(self, name: str) -> Floats:
         """(3, 4) map to the world from the coordinates of an object's position."""

@@ -16,6 +16,7 @@ from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 from sceneql.quantities.expression import Link
 from sceneql.run.dry_run import DryRun, asked, dry_run
 from sceneql.run.grounded import grounded
+from sceneql.run.hardly_seen import hardly_seen
 from sceneql.run.history import History
 from sceneql.run.instant import Instant
 from sceneql.run.leaving import Leaving, warning
@@ -51,6 +52,7 @@ class Run:
         self.history = History(graph.tasks.values() if marching else ())
         self._ranged = ranged(graph, islands)
         self._let_go: Sequence[Leaving] = ()
+        self._holds_still, self._goes_along = False, False
         self._dry_runs: dict[str | None, DryRun] = {}
         self.kept: dict[str, tuple[Hashable, Any]] = {}
         """By part the key and the result of the latest `Instant.kept`."""
@@ -101,16 +103,27 @@ class Run:
     def outline(self) -> Floats:
         """Points (n, 3) [m] whose hull encloses all that is drawn and stays, over the whole run."""
         seen = self._bounded()
-        self._let_go = seen.leaving
+        self._let_go, self._holds_still = seen.leaving, True
         if seen.staying is not None:
             return np.array(list(product(*zip(*seen.staying, strict=True))))
         return np.concatenate(
             [np.zeros((0, 3)), *(seen.outlines[name] for name in self.orders if name in seen.outlines)]
         )
 
+    def moving(self) -> Floats:
+        """Instants [s] of the run, and points (n, 1 + 3) whose hull at each encloses all that may change and stays."""
+        seen, self._goes_along = self._bounded(), True
+        rows = [np.column_stack([np.full(len(points), time), points]) for time, points in seen.moving]
+        found = np.concatenate([np.zeros((0, 4)), *rows])
+        if seen.staying is not None:
+            low, high = seen.staying
+            found = found[((found[:, 1:] >= low) & (found[:, 1:] <= high)).all(axis=1)]
+        return found
+
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Warnings of things that leave for good, where a camera let them go."""
-        return tuple(warning(one, self.graph.tasks) for one in self._let_go)
+        """Warnings of things that leave for good, where a camera let them go, and of what is small where it stood."""
+        small = hardly_seen(self._bounded(), self.graph) if self._holds_still and not self._goes_along else ()
+        return (*(warning(one, self.graph.tasks) for one in self._let_go), *small)
 
     def _bounded(self) -> DryRun:
         """The dry run ahead of this run, with bounds; made once."""

@@ -1,15 +1,17 @@
 """Films of the common implicit scenes, of an empty picture and of a ball on a plane, beside POV-Ray.
 
-Run it as ``python tests/bench/bench_implicit.py [--tape] [SCENE...]``. Films have 48 frames of 640 x 360 pixels, a ray
-each, with one hard sun, in which the thing turns: processor time of a frame on one thread from the script to the PNG
-file, start and compilation apart, by its stages. Where POV-Ray is installed, the processor time of a whole run of it
-that writes a PNG file stands beside: of the same picture, without light that surfaces reflect onto one another
-(`diffuse_bounces: 0`). With that light, as films are by default, is the last figure.
+Run it as ``python tests/bench/bench_implicit.py [--tape | --threads] [SCENE...]``. Films have 48 frames of 640 x 360
+pixels, a ray each, with one hard sun, in which the thing turns: processor time of a frame on one thread from the script
+to the PNG file, start and compilation apart, by its stages. Where POV-Ray is installed, the processor time of a whole
+run of it that writes a PNG file stands beside: of the same picture, without light that surfaces reflect onto one
+another (`diffuse_bounces: 0`). With that light, as films are by default, is the last figure.
 
 The second column is that of a kernel of the bench alone: one ray a pixel, and a shadow ray where the light is faced.
 A pixel is wrong where its center disagrees with the certified routine.
 Nothing is compiled for a scene: tapes are interpreted in lanes, and where one is a polynomial or a density of points
 its exact form along each ray is used besides; with ``--tape`` the interpreter works alone, beside half of each bar.
+With ``--threads`` nothing but the wall time of films is measured: the gain by two threads beside that by two processes
+of one thread side by side, which wants two processors with nothing else to do: see the load that is printed.
 POV-Ray is run where it is installed; its figures from another machine are given else, and fidget's always. Times are
 medians of rounds in which each is run once, ours for some frames in a row.
 """
@@ -34,7 +36,9 @@ from typing import Any
 
 import numpy as np
 from bench_polygonise import ELSEWHERE, SCENES, quoted, register, scene_tape
+from implicit_films import FRAMES as FILM
 from implicit_films import film, like_for_like, scripts
+from implicit_threads import gains
 
 from sceneql.compiled.kernels import over_tiles
 from sceneql.field.packets import packets
@@ -254,6 +258,19 @@ def films(names: list[str]) -> None:
             )
 
 
+def threads(names: list[str]) -> None:
+    """The table of gains: with light that surfaces reflect onto others, and without."""
+    for name, text in scripts({name: SCENES[name] for name in SCENES if name in names}):
+        for way, script in (("", like_for_like(text)), (" with light of surfaces", text)):
+            seconds, by_threads, by_processes = gains(script, TURNS)
+            print(
+                f"{name}{way}: {1e3 * seconds / FILM:.1f} ms a frame by one thread; gain by two threads"
+                f" {by_threads:.2f}, by two processes {by_processes:.2f}, ratio {by_threads / by_processes:.2f};"
+                f" load {os.getloadavg()[0]:.1f}",
+                flush=True,
+            )
+
+
 def main(names: list[str]) -> None:
     """The tables."""
     films(names)
@@ -282,8 +299,9 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    names = [name for name in sys.argv[1:] if name != "--tape"]
-    if len(names) < len(sys.argv) - 1:
+    names = [name for name in sys.argv[1:] if name not in ("--tape", "--threads")]
+    if "--tape" in sys.argv:
         packets.plan_of = lambda tape: np.array([-1, 0, -1, -1])
         BARS = {name: bar / 2 for name, bar in BARS.items()}
-    main(names or ["blob40", "blob4000", "gyroid", "barth_sextic", "kummer", "steiner", "shell"])
+    table = threads if "--threads" in sys.argv else main
+    table(names or ["blob40", "blob4000", "gyroid", "barth_sextic", "kummer", "steiner", "shell"])

@@ -1,6 +1,7 @@
 """Polygonising the common scenes, beside a numpy grid with scikit-image, PyMCubes and VTK; errors of the meshes.
 
-Run it as ``python tests/bench/bench_polygonise.py [CELLS] [ROUNDS]``; peers that are not installed are left out. Ours
+Run it as ``python tests/bench/bench_polygonise.py [CELLS] [ROUNDS]``; peers that are not installed are left out. First
+meshes by the command ``mesh`` at equal distance from the true surface (``mesh_errors``), then extraction alone: ours
 evaluates, extracts, brings the vertices onto the surface and computes normals. The peers get a numpy grid evaluated
 slab by slab, so that intermediate arrays stay in the cache; for the blobs also with each blob in its own box alone.
 fidget's figures are quoted from another machine.
@@ -12,12 +13,13 @@ import json
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import mesh_errors
 import numpy as np
 
 from sceneql.field.skeleton.skeleton import Skeleton
@@ -295,7 +297,34 @@ def closed_shapes() -> dict[str, tuple[Any, float, int]]:
     return found
 
 
+def subjects() -> Iterator[mesh_errors.Subject]:
+    """Closed smooth solids, the common scenes that are solids, cut by their balls, and the blobs."""
+    for name in ("ball", "torus", "capsule", "tanglecube"):
+        yield mesh_errors.of_formula(name, *CLOSED[name], {})
+    for name in ("steiner", "barth_sextic", "kummer", "gyroid"):
+        scene = SCENES[name]
+        text = f"max({scene['f']}, sqrt(x^2 + y^2 + z^2) - {scene['clip']})"
+        # Steiner's solid is four pieces that touch; the nodes of the others are joined or not as cells fall.
+        euler = 8 if name == "steiner" else None
+        yield mesh_errors.of_formula(name, text, 1.02 * scene["clip"], euler, scene.get("where", {}))
+    scene, half = SCENES["blob40"], 1.02 * SCENES["blob40"]["clip"]
+    centers = ", ".join("[{:.9g} m, {:.9g} m, {:.9g} m]".format(*part[:3]) for part in scene["parts"])
+    radii = ", ".join(f"{part[3]:.9g} m" for part in scene["parts"])
+    thing = f"{{blobby: {{points: [{centers}], radius: [{radii}], threshold: {scene['threshold']}}}}}"
+    rows = np.array(scene["parts"])
+
+    def blobs(x: Any, y: Any, z: Any) -> Any:
+        return scene["threshold"] - sum(
+            np.maximum(1 - ((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / r**2, 0) ** 3 for a, b, c, r in rows
+        )
+
+    yield mesh_errors.Subject("blob40", thing, blobs, partial(grid_values, "blob40", half, boxed=True), half, -12)
+
+
 if __name__ == "__main__":
+    if find_spec("skimage") is not None:
+        for subject in subjects():
+            mesh_errors.table(subject, int(sys.argv[2]) if len(sys.argv) > 2 else 3)
     compare(int(sys.argv[1]) if len(sys.argv) > 1 else 256, int(sys.argv[2]) if len(sys.argv) > 2 else 7)
     converge()
     hang_together(128)

@@ -23,12 +23,13 @@ _i = types.int64
 _many = types.int64[::1]
 _stack = types.float32[:, :, ::1]
 LANES = 128
-NX, NY, NZ, PX, PY, PZ, OFF, OX, OY, OZ, DX, DY, DZ, FAR, U, V, SHOWN, ROW, NUMBER, PIXEL, ROOM = (
-    LANES * row for row in range(21)
+NX, NY, NZ, PX, PY, PZ, OFF, RADII, OX, OY, OZ, DX, DY, DZ, FAR, U, V, SHOWN, ROW, NUMBER, PIXEL, ROOM = (
+    LANES * row for row in range(22)
 )
-"""Offsets in the memory of a batch, LANES numbers each: normal and place of a record, how far off it rays start, and
-where; direction of a ray, its end, its point of the net; whether the record faces the light at hand; row of its next
-ray in the list; number of the pixel's sample, and its place in the list of pixels; its size."""
+"""Offsets in the memory of a batch, LANES numbers each: normal and place of a record, how far off it rays start, the
+radius of its pixel's cone, and where rays start; direction of a ray, its end, its point of the net; whether the record
+faces the light at hand; row of its next ray in the list; number of the pixel's sample, and its place in the list of
+pixels; its size. Loops over lanes end by ``min(n, LANES)``, by which no index is looked at for being negative."""
 MOST_LIGHTS = 8
 
 
@@ -38,8 +39,7 @@ def load(record, number, i, lanes):
     for axis in range(3):
         lanes[NX + axis * LANES + i] = record[NORMAL + axis]
         lanes[PX + axis * LANES + i] = record[PLACE + axis]
-    size = abs(record[PLACE]) + abs(record[PLACE + 1]) + abs(record[PLACE + 2])
-    lanes[OFF + i] = max(0.05 * record[RADIUS], 1e-6 * size) + record[LIFT]
+    lanes[OFF + i], lanes[RADII + i] = record[LIFT], record[RADIUS]
     lanes[NUMBER + i] = number
 
 
@@ -47,20 +47,25 @@ def load(record, number, i, lanes):
 def gather(width, start, last, at, records, lanes):
     """Copy the records of the pixels ``at[start:last]`` into lanes, until these are full; (their number, the next)."""
     n, i, layers = 0, start, len(records)
-    before, x, y = -2, 0, 0
     while i < last and n + layers <= LANES:
         k = at[i]
-        x, y = next_place(k, before, x, y, width)
-        before = k
         for layer in range(layers):
             if records[layer, k, OWNER] > 0.0:
-                load(records[layer, k], sample_of(x, y), n, lanes)
-                lanes[PIXEL + n] = i
+                lanes[PIXEL + n], lanes[ROW + n] = i, layer
                 n += 1
         i += 1
     until = i
-    for i in range(n):
-        off = lanes[OFF + i]
+    before, x, y = -2, 0, 0
+    for i in range(min(n, LANES)):
+        k = at[int(lanes[PIXEL + i])]
+        if k != before:
+            x, y = next_place(k, before, x, y, width)
+            before = k
+        load(records[int(lanes[ROW + i]), k], sample_of(x, y), i, lanes)
+    for i in range(min(n, LANES)):
+        # In single precision, as records have them.
+        px, py, pz = np.float32(lanes[PX + i]), np.float32(lanes[PY + i]), np.float32(lanes[PZ + i])
+        off = max(0.05 * lanes[RADII + i], 1e-6 * (abs(px) + abs(py) + abs(pz))) + lanes[OFF + i]
         lanes[OX + i] = lanes[PX + i] + off * lanes[NX + i]
         lanes[OY + i] = lanes[PY + i] + off * lanes[NY + i]
         lanes[OZ + i] = lanes[PZ + i] + off * lanes[NZ + i]
@@ -70,18 +75,24 @@ def gather(width, start, last, at, records, lanes):
 @part
 def face(scene, l, n, lanes):
     """Tell which of n records face light l: as ``visibility_kernels.facing``."""
-    for i in range(n):
-        dx, dy, dz, _, _, _, _ = light_at(scene.reals, l, lanes[PX + i], lanes[PY + i], lanes[PZ + i])
+    u = scene.reals
+    if u[layout.LIGHTS + layout.LIGHT * l] == layout.SUN:
+        dx, dy, dz, _, _, _, _ = light_at(u, l, 0.0, 0.0, 0.0)
+        for i in range(min(n, LANES)):
+            lanes[SHOWN + i] = 1.0 if lanes[NX + i] * dx + lanes[NY + i] * dy + lanes[NZ + i] * dz > 0.0 else 0.0
+        return
+    for i in range(min(n, LANES)):
+        dx, dy, dz, _, _, _, _ = light_at(u, l, lanes[PX + i], lanes[PY + i], lanes[PZ + i])
         lanes[SHOWN + i] = 1.0 if lanes[NX + i] * dx + lanes[NY + i] * dy + lanes[NZ + i] * dz > 0.0 else 0.0
 
 
 @part
 def to_sky(n, lanes):
     """Directions of rays to the sky, cosine-distributed: as ``visibility_kernels.sky_loss``."""
-    for i in range(n):
+    for i in range(min(n, LANES)):
         sample = int(lanes[NUMBER + i])
         lanes[U + i], lanes[V + i] = SKY_DISK[sample, 0], SKY_DISK[sample, 1]
-    for i in range(n):
+    for i in range(min(n, LANES)):
         # In single precision, as records have them: products of two of these are rounded so.
         nx, ny, nz = np.float32(lanes[NX + i]), np.float32(lanes[NY + i]), np.float32(lanes[NZ + i])
         u, v = lanes[U + i], lanes[V + i]
@@ -96,10 +107,21 @@ def to_sky(n, lanes):
 @part
 def to_light(scene, l, n, lanes):
     """Rays to light l: as ``visibility_kernels.shadow_sample``."""
-    for i in range(n):
+    u = scene.reals
+    for i in range(min(n, LANES)):
         sample = int(lanes[NUMBER + i]) % COUNT
         lanes[U + i], lanes[V + i] = DISK[sample, 0], DISK[sample, 1]
-    for i in range(n):
+    if u[layout.LIGHTS + layout.LIGHT * l] == layout.SUN:
+        sx, sy, sz, far, _, _, _ = light_at(u, l, 0.0, 0.0, 0.0)
+        ax, ay, az, bx, by, bz = across(sx, sy, sz)
+        size = u[layout.LIGHTS + layout.LIGHT * l + 8]
+        for i in range(min(n, LANES)):
+            x, y = size * lanes[U + i], size * lanes[V + i]
+            dx, dy, dz = sx + x * ax + y * bx, sy + x * ay + y * by, sz + x * az + y * bz
+            length = np.sqrt(dx * dx + dy * dy + dz * dz)
+            lanes[DX + i], lanes[DY + i], lanes[DZ + i], lanes[FAR + i] = dx / length, dy / length, dz / length, far
+        return
+    for i in range(min(n, LANES)):
         lanes[DX + i], lanes[DY + i], lanes[DZ + i], lanes[FAR + i] = toward(
             scene, l, lanes[OX + i], lanes[OY + i], lanes[OZ + i], lanes[U + i], lanes[V + i]
         )
@@ -108,7 +130,7 @@ def to_light(scene, l, n, lanes):
 @part
 def put(asked, n, want, every, lanes):
     """List the rays of n lanes, of all or of those SHOWN, in their rows."""
-    for i in range(n):
+    for i in range(min(n, LANES)):
         if every or lanes[SHOWN + i] != 0.0:
             row = int(lanes[ROW + i])
             put_ray(
@@ -130,13 +152,13 @@ def list_looks(scene, asked, first, last, at, records, lanes):
     row, start = int(asked[0, layout.NEXT]), first
     while start < last:
         n, start = gather(width, start, last, at, records, lanes)
-        for i in range(n):
+        for i in range(min(n, LANES)):
             lanes[ROW + i] = 1.0 if sky else 0.0
         for l in range(lights):
             face(scene, l, n, lanes)
-            for i in range(n):
+            for i in range(min(n, LANES)):
                 lanes[ROW + i] += lanes[SHOWN + i]
-        for i in range(n):
+        for i in range(min(n, LANES)):
             if row > room and (i == 0 or lanes[PIXEL + i] != lanes[PIXEL + i - 1]):
                 n, last = i, int(lanes[PIXEL + i])
                 break
@@ -147,7 +169,8 @@ def list_looks(scene, asked, first, last, at, records, lanes):
             to_sky(n, lanes)
             put(asked, n, layout.FIRST, True, lanes)
         for l in range(lights):
-            face(scene, l, n, lanes)
+            if lights > 1:
+                face(scene, l, n, lanes)
             to_light(scene, l, n, lanes)
             put(asked, n, layout.ANYWHERE, False, lanes)
     asked[0, layout.NEXT] = row

@@ -91,11 +91,22 @@ def share_seen(scene, visibility, l):
 
 
 @part
-def shade_matte(scene, record, visibility, s, nx, ny, nz, x, y, z):
-    """``shade`` of a surface that reflects nothing specularly: bit for bit the same, since those terms are 0."""
+def reflects(u, s):
+    """Whether the surface whose reals begin at s reflects anything specularly."""
+    return u[s + layout.SPECULAR] != 0.0 or u[s + layout.METALLIC] != 0.0
+
+
+@part
+def shade_matte(scene, record, visibility, s, dark):
+    """``shade`` of a surface that does not reflect: bit for bit the same, since those terms are 0.
+
+    ``dark``: what ``is_dark`` says.
+    """
     u = scene.reals
+    nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
+    x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
     body = (1.0 - u[s + layout.METALLIC]) * (1.0 - u[s + layout.TRANSMISSION])
-    open_sky = (0.0, 0.0, 0.0) if is_dark(u) else sky_ambient(u, ny)
+    open_sky = (0.0, 0.0, 0.0) if dark else sky_ambient(u, ny)
     r, g, b = 0.0, 0.0, 0.0
     for l in range(int(scene.ints[layout.LIGHT_COUNT])):
         lx, ly, lz, _, ir, ig, ib = light_at(u, l, x, y, z)
@@ -121,8 +132,8 @@ def shade_here(scene, record, visibility):
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     vx, vy, vz = float(record[VIEW]), float(record[VIEW + 1]), float(record[VIEW + 2])
     x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
-    if u[s + layout.SPECULAR] == 0.0 and u[s + layout.METALLIC] == 0.0:
-        return shade_matte(scene, record, visibility, s, nx, ny, nz, x, y, z)
+    if not reflects(u, s):
+        return shade_matte(scene, record, visibility, s, is_dark(u))
     roughness = u[s + layout.ROUGHNESS]
     nv = facing_ratio(record)
     f0 = reflectance_at_normal(u, record)

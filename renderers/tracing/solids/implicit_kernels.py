@@ -92,7 +92,7 @@ def occupied(scene, scratch, k, ox, oy, oz, dx, dy, dz, start, stop):
 @kernel(CROSSING.signature, _nrt=False, inner=True)
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``; with ``anywhere`` of any place inside, not the first."""
-    b = scene.reals
+    b, last_row = scene.reals, scratch.shape[0] - 1
     side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / layout.CELLS
     enter, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     if not enter < stop:
@@ -118,6 +118,9 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
                 code, constants, parts, scratch, plan, ox, oy, oz, dx, dy, dz, begin, stop, 1.0, anywhere
             )
         if status == UNDECIDED:
+            if scratch[last_row, layout.LOST] >= layout.MOST_LOST:
+                scratch[last_row, 0] += 1.0
+                return NONE
             status, root = isolate(
                 code, constants, parts, scratch, ox, oy, oz, dx, dy, dz, begin, end, tolerance, 1.0, anywhere
             )
@@ -138,9 +141,11 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
                 )
             return root if status == HIT else (stop if stop < far else NONE)
         if status == UNDECIDED:
-            scratch[scratch.shape[0] - 1, 0] += 1.0
+            scratch[last_row, 0] += 1.0
             t = root + 4.0 * tolerance * (end - begin) * FARTHER**tries
             tries += 1
+            if tries == RETRIES:
+                scratch[last_row, layout.LOST] += 1.0
         else:
             t = end + past
     return NONE

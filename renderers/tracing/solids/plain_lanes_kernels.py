@@ -59,7 +59,10 @@ def span_lane(low, high, origin, direction):
 
 @part
 def cross_quadric(u, k, n, lanes):
-    """Crossings of n rays with the quadric whose reals ``u`` begin at k: as ``solids_kernels.quadric``, no branches."""
+    """Crossings of n rays with the quadric whose reals ``u`` begin at k: as ``solids_kernels.quadric``, no branches.
+
+    Where AT is inf already it stays so.
+    """
     for i in range(n):
         lanes[PX + i], lanes[PY + i], lanes[PZ + i] = local_point(
             u, k, lanes[OX + i], lanes[OY + i], lanes[OZ + i], 1.0
@@ -85,26 +88,34 @@ def cross_quadric(u, k, n, lanes):
         enter, leave = max(enter, e), min(leave, f)
         out = leave if (enter <= 0.0) & (0.0 < leave) & (leave < far) else np.inf
         t = enter if (0.0 < enter) & (enter < far) else out
-        lanes[AT + i] = np.inf if enter >= leave else t
+        lanes[AT + i] = np.inf if (enter >= leave) | (lanes[AT + i] == np.inf) else t
 
 
 @part
 def cross(scene, node, kind, k, n, lanes):
-    """Crossings of n rays with an item of a node, into lanes; as ``intersect_kernels.meet``."""
+    """Write crossings of n rays with an item of a node into lanes, as ``intersect_kernels.meet``; False: there is none.
+
+    Most batches miss the boxes of small things, and then nothing more is computed.
+    """
     u = scene.reals
     if kind == layout.HALF_SPACE:  # of the first node, which is everywhere
         for i in range(n):
             slope = u[k] * lanes[DX + i] + u[k + 1] * lanes[DY + i] + u[k + 2] * lanes[DZ + i]
             t = (u[k + 3] - u[k] * lanes[OX + i] - u[k + 1] * lanes[OY + i] - u[k + 2] * lanes[OZ + i]) / slope
             lanes[AT + i] = t if (slope != 0.0) & (0.0 < t) & (t < lanes[BEST + i]) else np.inf
-        return
-    cross_quadric(u, k, n, lanes)
+        return True
+    near = 0
     for i in range(n):
         missed = misses(
             u, node, lanes[OX + i], lanes[OY + i], lanes[OZ + i], lanes[IX + i], lanes[IY + i], lanes[IZ + i], 0.0,
             lanes[BEST + i],
         )  # fmt: skip
-        lanes[AT + i] = np.inf if missed else lanes[AT + i]
+        lanes[AT + i] = np.inf if missed else 0.0
+        near += 0 if missed else 1
+    if near == 0:
+        return False
+    cross_quadric(u, k, n, lanes)
+    return True
 
 
 @part
@@ -141,8 +152,8 @@ def meet_plain(scene, asked, lanes):
             node = scene.ints[layout.NODES_AT] + 6 * number
             for item in range(scene.ints[link + 1], scene.ints[link + 1] + scene.ints[link + 2]):
                 kind = scene.ints[layout.ITEMS + 4 * item + layout.KIND]
-                if kind != layout.IMPLICIT:
-                    cross(scene, node, kind, scene.ints[layout.ITEMS + 4 * item + layout.REALS_AT], n, lanes)
+                at = scene.ints[layout.ITEMS + 4 * item + layout.REALS_AT]
+                if kind != layout.IMPLICIT and cross(scene, node, kind, at, n, lanes):
                     take(scene, item, n, lanes)
         for i in range(n):
             row = asked[first + i]

@@ -17,7 +17,8 @@ _SUITS = {
     "several fluids": ("flows", "an island with a flow"),
 }
 """By what a solver marches: what one of its models must be, and its name."""
-_OTHER = "name the models that it is for, `on: [NAME]`, or let `auto` march"
+_COLLIDES = "choose auto, rk4, dop853 or verlet for it, or leave the contact out"
+_OTHER = "name the models that it is for, `on: [NAME]`, or let `auto` march; masses take rk4, verlet or dop853, too"
 
 
 def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]:
@@ -113,6 +114,13 @@ def islands(tasks: Mapping[str, Task], found: Diagnostics) -> tuple[Island, ...]
             message = f"{word} does not march bodies that ties hold, as '{tied[0]}' does: {marching.refuses_ties}"
             help = "choose auto, rk4, dop853 or verlet for them"
             found.error("refuses-ties", message, tasks[solver].span, help=help)
+        if (
+            isinstance(marching, Solver)
+            and marching.refuses_contacts
+            and any(set(targets) & set(group) for targets, _ in contacts.values())
+        ):
+            message = f"{tasks[solver].word} does not march what collides: {marching.refuses_contacts}"
+            found.error("refuses-contacts", message, tasks[solver].span, help=_COLLIDES)
         suits = _SUITS.get(marching.marches) if isinstance(marching, Solver) else None
         if suits is not None and not any(getattr(task.kind, suits[0], False) for task in models):
             message = f"{tasks[solver].word} marches {suits[1]}, and '{group[0]}' is none"

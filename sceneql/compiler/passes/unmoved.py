@@ -8,7 +8,9 @@ from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task
 from sceneql.kinds import Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
-from sceneql.quantities.expression import TIME_SYMBOL, Expr, Keys, Symbol, each_once
+from sceneql.quantities.dimension import TIME
+from sceneql.quantities.evaluate import evaluate
+from sceneql.quantities.expression import TIME_SYMBOL, Expr, Keys, Symbol, Type, each_once
 
 HELP = "let it move or turn as a whole: by its own `position` and `rotation`"
 PLACES = ("position", "rotation")
@@ -48,9 +50,21 @@ def _warn_of_two_movers(model: Task, driven: Task, fields: Iterable[str], found:
     for field in fields:
         value = getattr(driven.original, field, None)
         if isinstance(value, Value) and any(map(_timed, each_once(value.expr))):
-            text = f"'{model.name}' moves '{driven.name}' from where it is at the start, and its {field} varies in time"
-            help = "leave the model out, and keys and formulas move it; or give it one place"
+            text = f"'{driven.name}' has a {field} that varies in time, but '{model.name}' moves it"
+            text += ": only its start counts"
+            help = f"to move it by keys or formulas leave '{model.name}' out; for forces to move it write one {field}"
+            if (start := _start(value)) is not None:
+                help += f", `{field}: {start}`"
             found.warning("moved-twice", text, value.span, help=help)
+
+
+def _start(value: Value) -> str | None:
+    """A place at the start as a script writes it; None where other parts tell it, or for a rotation."""
+    try:
+        numbers = evaluate(value.expr, {Symbol(TIME_SYMBOL, Type((), TIME)): 0.0}.__getitem__)
+    except (KeyError, TypeError, ValueError):
+        return None
+    return " ".join(f"{0.0 + number:.6g}" for number in numbers) + " m" if len(numbers) == 3 else None
 
 
 def _timed(node: Expr) -> bool:

@@ -10,10 +10,16 @@ from sceneql.bodies.rigid.tied_step import drive_integers, moves
 from sceneql.bodies.time_shift import exact_rate, rate_of_change
 from sceneql.kinds import Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.system import Place
 
 if TYPE_CHECKING:
     from sceneql.quantities.expression import Expr
-    from sceneql.system import Assembly, Drive, Tied
+    from sceneql.system import Assembly, Drive, Mover, Tied
+
+
+def work_of(mover: Mover) -> int:
+    """Offset in y of the energy that is taken from the bodies of a mover; -1: none has mass."""
+    return mover.bodies.work_at if isinstance(mover, Place) else -1
 
 
 def drives_of(
@@ -41,7 +47,7 @@ def drives_of(
             one = integers(mover)
             if one not in movers:
                 movers.append(one)
-                works.append(-1)
+                works.append(work_of(mover))
             own[FIRST_MOVER + side] = movers.index(one)
         low, high = numbers[drive.limits_at : drive.limits_at + 2] if drive.limits_at >= 0 else (0.0, 0.0)
         own[SIZE] = float(high - low) if 0.0 < high - low < math.inf else 1.0

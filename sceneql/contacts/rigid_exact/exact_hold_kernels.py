@@ -25,6 +25,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.rigid_exact.contact_kernels import (
     AIMED,
+    ALONG,
     FORCE,
     GAP,
     KIND,
@@ -36,9 +37,11 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     SHAPE_B,
     SLIDE,
     SLIDES,
+    SLIP,
     SLOW,
     SPEED,
     TURN_AIMED,
+    dot,
     pace,
     three,
 )
@@ -100,7 +103,7 @@ from sceneql.contacts.rigid_exact.extra_rows_kernels import (
 )
 from sceneql.contacts.rigid_exact.rim_kernels import any_rim, exchange_all, save
 from sceneql.contacts.rigid_exact.rim_pressure_kernels import enclose_pressure
-from sceneql.contacts.rigid_exact.stop_kernels import STOP
+from sceneql.contacts.rigid_exact.stop_kernels import STOP, SURE
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, I, N
 
 STILL = 1e-10
@@ -121,25 +124,26 @@ MOST_TURNS = 50
 @lean_inlined
 def still(floats, ints, rec):
     """Slip up to which a contact sticks."""
-    a, b = int(floats[rec + SHAPE_A]), int(floats[rec + SHAPE_B])
-    return STILL * (1.0 + pace(floats, rec, mover_at(ints, a), mover_at(ints, b)))
+    a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
+    return STILL * (1.0 + pace(floats, rec, a, b))
 
 
 @lean(types.void(A, I))
 def aim(floats, ints):
     """Write the directions in which contacts slide; zero where they stick, or are so slow that the pull decides.
 
-    The direction of friction changes at a rate of friction / speed, infinitely fast as the speed goes to 0.
+    In a step that goes beyond the end of a slip, where it is to be cut, friction goes on as before (watch_kernels.gap).
     """
     for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
         rec = ints[RECORDS_AT] + RECORD * k
         sx, sy, sz = three(floats, rec + SLIDE)
-        speed = math.sqrt(sx * sx + sy * sy + sz * sz)
-        slow = floats[rec + SLIDES] == 0.0 or speed <= (CREEP if floats[rec + SLIDES] == SLOW else 1e-3 * CREEP)
-        if slow:
-            put(floats, rec + AIMED, 0.0, 0.0, 0.0)
+        speed, slides, watched = math.sqrt(sx * sx + sy * sy + sz * sz), floats[rec + SLIDES], floats[rec + SLIP] > SURE
+        if slides == 0.0 or speed <= (CREEP if slides == SLOW else 1e-3 * CREEP):
+            by = 1.0 if slides > SLOW and watched else 0.0
+            sx, sy, sz = three(floats, rec + ALONG)
         else:
-            put(floats, rec + AIMED, sx / speed, sy / speed, sz / speed)
+            by = (-1.0 if watched and dot(sx, sy, sz, *three(floats, rec + ALONG)) < 0.0 else 1.0) / speed
+        put(floats, rec + AIMED, by * sx, by * sy, by * sz)
         aim_turning(floats, rec, CREEP)
 
 
@@ -292,10 +296,8 @@ def hold(t, y, rate, floats, ints):
             break
         save(floats, ints, True)
         n, solved, jammed = forces(floats, ints, friction)
-    if jammed:
-        floats[memory + JAMMED] += floats[memory + UNDECIDED]
-    if not solved:
-        floats[memory + LOOSE] += floats[memory + UNDECIDED]
+    floats[memory + JAMMED] += floats[memory + UNDECIDED] if jammed else 0.0
+    floats[memory + LOOSE] += 0.0 if solved else floats[memory + UNDECIDED]
     found = solution_at(ints)
     for i in range(n):
         unit, force = ints[UNITS_AT] + UNIT * i, floats[found + i]
@@ -381,8 +383,7 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         if floats[rec + PUSHES] > 0.0 and floats[rec + SLIDES] == 0.0 and friction > 0.0:
             for c in range(3):
                 worst = max(worst, abs(floats[rec + SLIDE + c]))
-        if worst > CLOSED * pace(floats, rec, a, b):
-            open = True
+        open = open or worst > CLOSED * pace(floats, rec, a, b)
     if open or more_open(floats, ints, CLOSED):
         n = write_more(floats, ints, write_rows(floats, ints, SPEEDS, friction), SPEEDS)
         # Tangents stand as ties here: what sticks has no speed.

@@ -26,6 +26,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     TURN_ALONG,
     TURN_SLIP,
     TURNS,
+    dot,
     three,
 )
 from sceneql.contacts.rigid_exact.exact_law_kernels import BILATERAL, BOUNDED, MOMENT
@@ -73,6 +74,7 @@ from sceneql.contacts.rigid_exact.stop_kernels import (
     SECOND_MOVER,
     SIGNS,
     STOP,
+    SURE,
     TARGET_RATES,
     slip,
 )
@@ -128,13 +130,18 @@ def begin_turning(floats, ints, rec, least, creep):
 
 @lean(types.void(A, N, F))
 def aim_turning(floats, rec, creep):
-    """Write the direction in which a contact turns; zero where it does not, or so slowly that the pull decides."""
+    """Write the direction in which a contact turns; zero where it does not, or so slowly that the pull decides.
+
+    In a step that goes beyond the end of a turn the moment goes on as before, as friction does (exact_hold_kernels).
+    """
     x, y, z = three(floats, rec + TURN)
-    speed = math.sqrt(x * x + y * y + z * z)
-    if floats[rec + TURNS] == 0.0 or speed <= (creep if floats[rec + TURNS] == SLOW else 1e-3 * creep):
-        put(floats, rec + TURN_AIMED, 0.0, 0.0, 0.0)
+    speed, turns, watched = math.sqrt(x * x + y * y + z * z), floats[rec + TURNS], floats[rec + TURN_SLIP] > SURE
+    if turns == 0.0 or speed <= (creep if turns == SLOW else 1e-3 * creep):
+        by = 1.0 if turns > SLOW and watched else 0.0
+        x, y, z = three(floats, rec + TURN_ALONG)
     else:
-        put(floats, rec + TURN_AIMED, x / speed, y / speed, z / speed)
+        by = (-1.0 if watched and dot(x, y, z, *three(floats, rec + TURN_ALONG)) < 0.0 else 1.0) / speed
+    put(floats, rec + TURN_AIMED, by * x, by * y, by * z)
 
 
 @lean(N(A, I, N, N, N))

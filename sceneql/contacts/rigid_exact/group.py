@@ -225,6 +225,8 @@ def _tied(
 
     Adds the tied bodies to ``movers`` and ``works``.
     """
+    from sceneql.contacts.rigid_exact.drives import work_of
+
     rows = []
     for tie in assembly.ties:
         sides = []
@@ -232,7 +234,7 @@ def _tied(
             one = integers(mover)
             if one not in movers:
                 movers.append(one)
-                works.append(-1)
+                works.append(work_of(mover))
             sides.append(movers.index(one))
         rows += [(sides[0], sides[1], tie.scratch_at + row * k) for k in range(len(tie.rows))]
     return rows, assembly.tie_ints if rows else ()

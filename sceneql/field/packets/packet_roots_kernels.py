@@ -28,6 +28,8 @@ box = lazy("sceneql.field.enclose.interval_kernels:box", BOX_OF)
 GROUP = 16
 TOLERANCE = 1e-9
 """Tolerance of the certified routine, relative to the searched piece of the ray."""
+MOST_LOST = 2
+"""Rays of a bundle that the certified routine may leave undecided."""
 MANY = 64
 """Number of hits in a bundle from which on a test of their bounding box pays."""
 
@@ -48,13 +50,17 @@ def certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found):
 
 @inlined
 def certify_queued(code, constants, parts, scratch, rays, queue, count, end, anywhere, found):
-    """``certify_ray`` for the queued rays that are undecided; returns their number."""
-    certified = 0
+    """``certify_ray`` for the queued rays that are undecided; returns their number.
+
+    After MOST_LOST that stay so, each of which takes long, the rest is left to whoever asks.
+    """
+    certified = lost = 0
     for k in range(count):
         j = np.uint64(queue[k])
-        if found[FOUND_STATUS, j] == ops.UNDECIDED:
+        if found[FOUND_STATUS, j] == ops.UNDECIDED and lost < MOST_LOST:
             certified += 1
             certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found)
+            lost += found[FOUND_STATUS, j] == ops.UNDECIDED
     return certified
 
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from sceneql.compiled.kernels import lean
+from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.slope_kernels import differentiate
 from sceneql.field.tape.tape_ops import TAPE
 
@@ -19,3 +19,17 @@ def steepness(code, constants, parts, scratch):
         max(-scratch[last, 4], scratch[last, 5]),
         max(-scratch[last, 6], scratch[last, 7]),
     )
+
+
+@inlined
+def turning(scratch, last):
+    """Sum of the bounds of ``steepness`` along the axes in which f may rise and fall; ``last`` is the tape's last row.
+
+    Along the others f is monotone in the box, least and greatest on the box's faces.
+    """
+    total = 0.0
+    for axis in range(3):
+        low, high = scratch[last, 2 + 2 * axis], scratch[last, 3 + 2 * axis]
+        if not (low >= 0.0 or high <= 0.0):
+            total += max(-low, high)
+    return total

@@ -7,8 +7,8 @@ from sceneql.field.tape.tape_ops import TAPE
 from sceneql.mesh.cubes.grid import BLOCK
 
 CENTERS = 12
-BEND = 0.5
-"""Cosine of 60 degrees: where normals in a cube turn by more, it is too coarse for its surface."""
+BENDS = 0.866, 0.5
+"""Cosines of 30 and 60 degrees: where normals in a cube turn by more, it is coarse, or too coarse, for its surface."""
 
 
 @inlined
@@ -42,12 +42,13 @@ def vertex(edge, x, y, z, block, beyond, begin, keys, local):
 
 
 @inlined
-def turns(normal, a, b, c):
-    """Whether the normals of a triangle's vertices, zero ones apart, turn by more than BEND."""
+def bends(normal, a, b, c):
+    """How many of BENDS the normals of a triangle's vertices, zero ones apart, turn by more than."""
     ab = normal[a, 0] * normal[b, 0] + normal[a, 1] * normal[b, 1] + normal[a, 2] * normal[b, 2]
     bc = normal[b, 0] * normal[c, 0] + normal[b, 1] * normal[c, 1] + normal[b, 2] * normal[c, 2]
     ca = normal[c, 0] * normal[a, 0] + normal[c, 1] * normal[a, 1] + normal[c, 2] * normal[a, 2]
-    return ab < BEND or bc < BEND or ca < BEND
+    least = min(min(ab, bc), ca)
+    return 2 if least < BENDS[1] else 1 if least < BENDS[0] else 0
 
 
 @inlined
@@ -81,7 +82,7 @@ def connect(
 
     Vertices of block b begin at begin[b], its cubes at cube_at[b], its triangles at triangle_at[b] and its inner
     vertices at own_at[b]. ``beyond`` has the numbers of the neighboring blocks, as in grid_extraction.Found. ``bent``
-    (cubes,) is 1 where the normals in a cube turn by more than BEND.
+    (cubes,) is the greatest ``bends`` of a cube's triangles.
     """
     h = grid[3]
     for b in range(first, last):
@@ -126,5 +127,4 @@ def connect(
                 fresh += 1
             bent[n] = 0
             for triangle in range(at, t):
-                if turns(normal, out[triangle, 0], out[triangle, 1], out[triangle, 2]):
-                    bent[n] = 1
+                bent[n] = max(bent[n], bends(normal, out[triangle, 0], out[triangle, 1], out[triangle, 2]))

@@ -31,8 +31,8 @@ class Level:
     """(v, 3) midpoints of the grid edges on which vertices lie, in half cells."""
     cells: Keys
     """(t, 3) place of each triangle's cell."""
-    bent: NDArray[np.bool_]
-    """(t,) whether the normals in the triangle's cell vary too much for a cell of this size."""
+    bent: NDArray[np.int8]
+    """(t,) how much the normals in the triangle's cell vary: 2 where by too much for a cell of this size, 1 by much."""
 
 
 def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
@@ -49,7 +49,7 @@ def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
     cells = BLOCK * inside + _within(cube[:, 0].astype(np.int64))
     counts = np.diff(cases().start)[cube[:, 1]]
     return Level(
-        found.place, found.normal, triangles, doubled, np.repeat(cells, counts, axis=0), np.repeat(bent == 1, counts)
+        found.place, found.normal, triangles, doubled, np.repeat(cells, counts, axis=0), np.repeat(bent, counts)
     )
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def connected(shop: GridExtraction, found: Found, blocks: int) -> tuple[Ints, NDArray[np.int8]]:
-    """Triangles (t, 3) of the first ``blocks`` blocks, and (c,) 1 for each cube whose normals vary too much, else 0.
+    """Triangles (t, 3) of the first ``blocks`` blocks, and (c,) how much each cube's normals vary (``bends``).
 
     Writes positions and normals of the inner vertices into ``found``.
     """

@@ -7,6 +7,7 @@ there are then replaced by the fine curves.
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING
 
 from sceneql.mesh.bounded import Corner, bounded
@@ -30,10 +31,15 @@ if TYPE_CHECKING:
 
     Keys = NDArray[np.int64]
 
-MANY_GROUPS = 2**12
-"""Above this number of groups, cells are not subdivided by FINEST, nor fine cells bisected to prove them empty."""
-FINE, FINEST = 4, 8
-"""Factors of subdivision along a cell's side: the usual one, and one for a tolerance that FINE would miss."""
+FEW_GROUPS, MANY_GROUPS = 2**9, 2**12
+"""Above these numbers of groups, fine cells are bisected once, and not at all, to prove them empty; above the second
+cells are not subdivided by FINEST."""
+MOST_BENT, MOST_TOO_BENT = 2**17, 2**18
+"""Most triangles of the fine cells in which normals vary by much, or only by too much: beyond them, and beyond 2 and 4
+times the coarse triangles, the surface is left to shorter cells that are asked for."""
+COARSER, FINE, FINEST = 2, 4, 8
+"""Factors of subdivision along a cell's side: where FINE would make too many triangles, the usual one, and one for a
+tolerance that FINE would miss."""
 SAFE = 0.5
 """Share of the tolerance to be reached along creases, where the error falls with the factor of subdivision."""
 FEW = 0.25
@@ -41,6 +47,9 @@ FEW = 0.25
 AT_CREASE = 5 / 16
 """Bound of a side's distance from a crease of 60 degrees, in units of the side times the difference of its normals:
 tan(30 deg) / 2. For a circular arc the bound is more than twice too large."""
+STRAIGHT = 0.1
+"""Distance of the fine curve on a face from the coarse side there, in coarse cells, above which the cell beyond
+the face is subdivided too."""
 MOST_GROUPS = 2**15
 """Most groups that are refined; more arise from noise, or from a grid far too coarse."""
 
@@ -51,23 +60,27 @@ def refined(
     """Triangles of the solid {tape < 0} clipped at the box low..high, from cells with side ``cell`` [m], and the
     unresolved cells.
 
-    Subdivided are cells in which the normals vary too much, and cells with corners of one sign for which no proof was
-    found that f has it throughout; with a ``tolerance`` [m] also cells with triangles farther from the surface, unless
-    these are more than FEW. No cell is subdivided if their groups are more than MOST_GROUPS. The mesh is a closed
-    2-manifold; its bytes do not depend on the number of threads. Raises ValueError as ``grid_around``.
+    Subdivided are cells in which the normals vary by more than 30 degrees, within MOST_BENT triangles, else 60, and
+    cells with corners of one sign in which f has the other; with a ``tolerance`` [m] also cells with triangles farther
+    from the surface, unless these are more than FEW. No cell is subdivided if their groups are more than MOST_GROUPS.
+    The mesh is a closed 2-manifold; its bytes do not depend on the number of threads. Raises ValueError as
+    ``grid_around``.
     """
     import numpy as np
 
     whole, grid = bounded(tape, low, high), grid_around(low, high, cell)
     shop, numbers = GridExtraction(whole, grid), Numbering(grid)
     blocks = shop.met()
-    coarse, doubt = level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks)
-    for cells, parts in _to_cut(whole, coarse, tolerance):
+    coarse, doubt = level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks, finer=FINE)
+    for cells, parts, most in _to_cut(whole, coarse, tolerance):
         group = BLOCK // parts  # coarse cells along a group, which is one block of the fine grid
-        groups = np.unique(np.concatenate([cells, doubt.where]).astype(np.int64) // group, axis=0)
-        if len(groups) <= (MANY_GROUPS if parts == FINEST else MOST_GROUPS):
+        groups = np.unique(np.concatenate([cells, doubt.where[doubt.seen]]).astype(np.int64) // group, axis=0)
+        if len(groups) > (MANY_GROUPS if parts == FINEST else MOST_GROUPS) or not len(groups):
+            continue
+        if parts**2 * among(numbers.of(coarse.cells // group), np.sort(numbers.of(groups))).sum() <= most:
             break
     fine_shop = GridExtraction(whole, Grid(grid.low, grid.cell / parts, grid.blocks * parts))
+    found = Polygons(coarse.places, coarse.triangles, coarse.normals)
     while 0 < len(groups) <= MOST_GROUPS:
         chosen = np.sort(numbers.of(groups))
         owned = _with_owners(groups)
@@ -75,26 +88,40 @@ def refined(
         kept = ~among(numbers.of(coarse.cells // group), chosen)
         sides = face_sides(coarse, kept, numbers, chosen, group)
         curves = border_curves(fine, parts, numbers, chosen, group)
-        more = _unmatched(sides, curves)
+        more = np.concatenate([_unmatched(sides, curves), _winding(fine, curves, grid.cell)])
         if not len(more):
-            # Every doubtful cell is in a group, so the fine cells account for all.
-            left = hidden_in(fine_shop, owned[: len(groups)], DEEPEST if len(groups) < MANY_GROUPS else 0)
-            return unfolded(whole, stitched(whole, coarse, kept, fine, sides, curves)), left
+            found = stitched(whole, coarse, kept, fine, sides, curves)
+            break
         groups = np.unique(np.concatenate([groups, more // group]), axis=0)
-    return unfolded(whole, Polygons(coarse.places, coarse.triangles, coarse.normals)), doubt
+    return unfolded(whole, found), _left(fine_shop, np.concatenate([groups, doubt.where // group]), doubt)
 
 
-def _to_cut(tape: Tape, coarse: Level, tolerance: float | None) -> list[tuple[Keys, int]]:
-    """Choices (cells (n, 3) to subdivide, factor of subdivision), from the most accurate to the cheapest."""
-    bent = coarse.cells[coarse.bent]
+def _left(fine_shop: GridExtraction, groups: Keys, doubt: Unresolved) -> Unresolved:
+    """The unresolved ones of the fine cells in ``groups`` (n, 3), or the coarse ones where these are too many."""
+    import numpy as np
+
+    groups = np.unique(groups, axis=0)
+    if len(groups) > MOST_GROUPS:
+        return doubt
+    deepest = DEEPEST if len(groups) < FEW_GROUPS else 1 if len(groups) < MANY_GROUPS else 0
+    return hidden_in(fine_shop, groups.astype(np.int32), deepest)
+
+
+def _to_cut(tape: Tape, coarse: Level, tolerance: float | None) -> list[tuple[Keys, int, float]]:
+    """Choices (cells (n, 3) to subdivide, factor of subdivision, most triangles), from the best to the cheapest."""
+    count = len(coarse.triangles)
+    too_bent, none = coarse.cells[coarse.bent == 2], coarse.cells[:0]
     if tolerance is None:
-        return [(bent, FINE)]
+        bent = coarse.cells[coarse.bent > 0]
+        by_bends = (bent, FINE, max(2 * count, MOST_BENT)), (too_bent, FINE, max(4 * count, MOST_TOO_BENT))
+        return [*by_bends, (too_bent, COARSER, inf), (none, COARSER, inf)]
     off = _off(tape, coarse, tolerance)
     if (off > tolerance).sum() > FEW * len(off):
-        return [(bent, FINE)]
-    cells = coarse.cells[coarse.bent | (off > tolerance)]
+        return [(too_bent, FINE, inf), (none, FINE, inf)]
+    cells = coarse.cells[(coarse.bent == 2) | (off > tolerance)]
     finest = off.max(initial=0.0) > SAFE * FINE * tolerance
-    return [*([(cells, FINEST)] if finest else []), (cells, FINE), (bent, FINE)]
+    first = [(cells, FINEST, inf)] if finest else []
+    return [*first, (cells, FINE, inf), (too_bent, FINE, inf), (none, FINE, inf)]
 
 
 def _off(tape: Tape, found: Level, tolerance: float) -> Floats:
@@ -118,6 +145,22 @@ def _with_owners(groups: Keys) -> Ints:
     size = beside.max(axis=0) + 1
     strides = np.array([1, size[0], size[0] * size[1]])
     return np.concatenate([groups, beside[~np.isin(beside @ strides, groups @ strides)]]).astype(np.int32)
+
+
+def _winding(fine: Level, curves: Curves, cell: float) -> Keys:
+    """(n, 3) coarse cells at whose faces fine curves leave the straight line by more than STRAIGHT cells.
+
+    As where a rim or a tip of the solid passes through a face between two vertices whose normals agree.
+    """
+    import numpy as np
+
+    places = fine.places[curves.paths]
+    first, along = places[:, :1], places[:, -1:] - places[:, :1]
+    square = np.maximum((along**2).sum(axis=2, keepdims=True), 1e-300 * cell**2)
+    share = np.clip(((places - first) * along).sum(axis=2, keepdims=True) / square, 0.0, 1.0)
+    off = np.linalg.norm(places - first - share * along, axis=2).max(axis=1)
+    found: Keys = curves.cells[off > STRAIGHT * cell]
+    return found
 
 
 def _unmatched(sides: Sides, curves: Curves) -> Keys:

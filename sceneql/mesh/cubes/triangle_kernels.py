@@ -26,6 +26,43 @@ def unlike_corners(places, triangles, normals, rows):
     return count
 
 
+@lean("void(int32[:, ::1], int64[::1], int32[::1], int64[::1])")
+def count_edges(triangles, begin, ends, found):
+    """Numbers of edges into ``found`` (3,): all, those of only one triangle, those of more than two.
+
+    ``begin`` (vertices + 1,), zeros, and ``ends`` (3 t,) are working memory: an edge is kept at its lower vertex.
+    """
+    for t in range(triangles.shape[0]):
+        for k in range(3):
+            begin[min(triangles[t, k], triangles[t, (k + 1) % 3]) + 1] += 1
+    for v in range(1, begin.shape[0]):
+        begin[v] += begin[v - 1]
+    # Filled from the front, so that each beginning moves on to the next one.
+    for t in range(triangles.shape[0]):
+        for k in range(3):
+            a, b = triangles[t, k], triangles[t, (k + 1) % 3]
+            ends[begin[min(a, b)]] = max(a, b)
+            begin[min(a, b)] += 1
+    first = 0
+    for v in range(begin.shape[0] - 1):
+        last = begin[v]
+        for n in range(first + 1, last):
+            end = ends[n]
+            m = n
+            while m > first and ends[m - 1] > end:
+                ends[m] = ends[m - 1]
+                m -= 1
+            ends[m] = end
+        while first < last:
+            n = first
+            while n < last and ends[n] == ends[first]:
+                n += 1
+            found[0] += 1
+            found[1] += 1 if n - first == 1 else 0
+            found[2] += 1 if n - first > 2 else 0
+            first = n
+
+
 @inlined
 def turn(places, normals, a, b):
     """Difference of two vertices' normals along the side between them [m]."""

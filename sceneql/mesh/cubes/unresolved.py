@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sceneql.compiled.kernels import over_tiles
 from sceneql.mesh.bounded import Corner, bounded
@@ -12,6 +12,9 @@ from sceneql.mesh.cubes.grid_extraction import BATCH, GridExtraction
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST, hidden
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from sceneql.frame import Floats, Ints, Tape
     from sceneql.mesh.cubes.grid import Grid
 
@@ -26,6 +29,8 @@ class Unresolved:
     """(n,) [m^3] volume of the parts of each cell that have no proof."""
     grid: Grid
     """The grid of these cells."""
+    seen: NDArray[np.bool_]
+    """(n,) whether f was found to have the other sign in a cell."""
 
     @property
     def cells(self) -> int:
@@ -53,26 +58,27 @@ def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved
     return hidden_in(shop, shop.met())
 
 
-def hidden_in(shop: GridExtraction, blocks: Ints, deepest: int = DEEPEST) -> Unresolved:
+def hidden_in(shop: GridExtraction, blocks: Ints, deepest: int = DEEPEST, finer: int = 0) -> Unresolved:
     """Cells of some blocks that may hide surface.
 
     A cell is bisected up to ``deepest`` times. Each part is proved empty or full by an interval enclosure of f or by
-    the mean value form (Moore 1966).
+    the mean value form (Moore 1966). Cells without a proof are looked into at the nodes of cells ``finer`` times finer.
     """
     import numpy as np
 
     count = -(-len(blocks) // BATCH)
-    found: list[tuple[Ints, Floats]] = [(np.zeros((0, 3), np.int32), np.zeros(0))] * (count + 1)
+    found: list[Any] = [(np.zeros((0, 3), np.int32), np.zeros(0), np.zeros(0, bool))] * (count + 1)
 
     def work(batch: int) -> None:
         r, mine = shop.room(), blocks[batch * BATCH : (batch + 1) * BATCH]
-        cells, rest = np.empty((len(mine) * BLOCK**3, 3), dtype=np.int32), np.empty(len(mine) * BLOCK**3)
+        most = len(mine) * BLOCK**3
+        cells, rest, seen = np.empty((most, 3), dtype=np.int32), np.empty(most), np.empty(most, dtype=bool)
         n = hidden(
             *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, r.stack,
-            shop.grid.numbers, mine, deepest, cells, rest,
+            shop.grid.numbers, mine, deepest, finer, cells, rest, seen,
         )  # fmt: skip
-        found[batch] = cells[:n].copy(), rest[:n].copy()
+        found[batch] = cells[:n].copy(), rest[:n].copy(), seen[:n].copy()
 
     over_tiles(count, work)
-    where, volumes = (np.concatenate(column) for column in zip(*found, strict=True))
-    return Unresolved(where, volumes, shop.grid)
+    where, volumes, seen = (np.concatenate(column) for column in zip(*found, strict=True))
+    return Unresolved(where, volumes, shop.grid, seen)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from sceneql.field.tape.tape_solid import field_values, many_gradients
 from sceneql.mesh.dual.planes import onto_planes
-from sceneql.mesh.polygons import Polygons
+from sceneql.mesh.polygons import Polygons, touched
 from sceneql.mesh.repair.flips import facing
 from sceneql.mesh.repair.folds import folds
 
@@ -68,8 +68,8 @@ def sharpened(tape: Tape, polygons: Polygons) -> Polygons:
         near = np.zeros(len(polygons.vertices), dtype=bool)
         near[polygons.triangles[worse]] = True
         for _ in range(turn // WIDENED):
-            near[polygons.triangles[near[polygons.triangles].any(axis=1)]] = True
-        cuts.cut[cuts.side_of[near[polygons.triangles].any(axis=1)]] = False
+            near[polygons.triangles[touched(near, polygons.triangles)]] = True
+        cuts.cut[cuts.side_of[touched(near, polygons.triangles)]] = False
         cuts.corner[~cuts.cut[cuts.side_of].all(axis=1)] = False
     return polygons
 

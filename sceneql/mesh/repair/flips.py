@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sceneql.field.tape.tape_solid import many_gradients
+from sceneql.mesh.polygons import touched
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from sceneql.frame import Floats, Ints, Tape
+    from sceneql.mesh.polygons import Polygons
 
     Rows = NDArray[np.int64]
 
@@ -19,21 +21,21 @@ SLIVER = 1.0e-6
 """Twice a triangle's area over its squared longest side, below which its normal is rounding noise."""
 
 
-def faced_outward(tape: Tape, places: Floats, triangles: Ints, doubtful: Rows) -> Ints:
-    """The triangles (t, 3) with edges flipped where one of the rows ``doubtful`` (n,) faces against the gradient.
+def faced_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Ints:
+    """The triangles (t, 3) with edges flipped where one of the rows ``doubtful`` (n,) faces inward by ``agreement``.
 
     The edge of two triangles is replaced by the other diagonal of their four vertices if that raises the smaller
-    cosine between a normal and the gradient, and is no edge of the mesh yet: a closed 2-manifold stays one.
+    agreement of the two, and is no edge of the mesh yet: a closed 2-manifold stays one.
     """
     import numpy as np
 
-    found = triangles.astype(np.int64)
+    found = polygons.triangles.astype(np.int64)
     for _ in range(ROUNDS):
-        turned = doubtful[facing(tape, places[found[doubtful]]) < 0.0]
-        near = np.zeros(len(places), dtype=bool)
+        turned = doubtful[agreement(tape, polygons, found[doubtful]) < 0.0]
+        near = np.zeros(len(polygons.vertices), dtype=bool)
         near[found[turned]] = True
-        around = np.flatnonzero(near[found].any(axis=1))
-        changed = _flipped(tape, places, found[around], np.searchsorted(around, turned))
+        around = np.flatnonzero(touched(near, found))
+        changed = _flipped(tape, polygons, found[around], np.searchsorted(around, turned))
         if not changed:
             break
         for at, row in changed.items():
@@ -59,7 +61,25 @@ def facing(tape: Tape, corners: Floats) -> Floats:
     return cosines
 
 
-def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[int, tuple[int, int, int]]:
+def agreement(tape: Tape, polygons: Polygons, triangles: NDArray[np.integer]) -> Floats:
+    """(t,) how well triangles (t, 3) of the mesh's vertices face outward: the greater of two cosines.
+
+    Of ``facing``, and of the least between the triangle's normal and those of its vertices, if all have one: along an
+    edge of the solid, and on thin walls, the gradient at the center of a correct triangle belongs to another face.
+    """
+    import numpy as np
+
+    corners, slopes = polygons.vertices[triangles], polygons.normals[triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(across, axis=1)[:, None]
+    dots = np.einsum("tj,tkj->tk", across, slopes)
+    cosines = np.divide(dots, sizes, out=np.zeros_like(dots), where=sizes > 0.0)
+    cosines[(slopes == 0.0).all(axis=2)] = -1.0
+    found: Floats = np.maximum(facing(tape, corners), cosines.min(axis=1, initial=1.0))
+    return found
+
+
+def _flipped(tape: Tape, polygons: Polygons, triangles: Rows, turned: Rows) -> dict[int, tuple[int, int, int]]:
     """New vertices of flipped triangles, by row of ``triangles`` (t, 3): the best flips of the triangles ``turned``.
 
     ``triangles`` must contain all triangles at the vertices of the turned ones. No triangle is flipped twice.
@@ -69,7 +89,7 @@ def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[
     # Vertices c and d lie opposite the side a b, in a turned triangle and in its neighbor.
     a, b, c = (np.roll(triangles[turned], -k, axis=1).ravel() for k in range(3))
     at = np.repeat(turned, 3)
-    sides = Sides(triangles, len(places))
+    sides = Sides(triangles, len(polygons.vertices))
     other = sides.owners(b, a)
     paired = other >= 0
     a, b, c, at, other = a[paired], b[paired], c[paired], at[paired], other[paired]
@@ -80,7 +100,7 @@ def _flipped(tape: Tape, places: Floats, triangles: Rows, turned: Rows) -> dict[
         return {}
     old = triangles[np.stack([at, other], axis=1).ravel()]
     new = np.stack([np.stack([c, a, d], axis=1), np.stack([d, b, c], axis=1)], axis=1).reshape(-1, 3)
-    least = [facing(tape, places[corners]).reshape(-1, 2).min(axis=1) for corners in (old, new)]
+    least = [agreement(tape, polygons, corners).reshape(-1, 2).min(axis=1) for corners in (old, new)]
     gains = least[1] - least[0]
     changed: dict[int, tuple[int, int, int]] = {}
     edges: set[frozenset[int]] = set()

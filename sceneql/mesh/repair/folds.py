@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sceneql.mesh.polygons import touched
 from sceneql.mesh.repair.flips import facing
 
 if TYPE_CHECKING:
@@ -92,7 +93,8 @@ def turned_over(polygons: Polygons, rows: Rows) -> Rows:
 
     near = np.zeros(len(polygons.vertices), dtype=bool)
     near[polygons.triangles[rows]] = True
-    around = np.flatnonzero(near[polygons.triangles].sum(axis=1) > 1)
+    around = np.flatnonzero(touched(near, polygons.triangles))
+    around = around[near[polygons.triangles[around]].sum(axis=1) > 1]
     triangles = polygons.triangles[around].astype(np.int64)
     if not len(triangles):
         return rows

@@ -6,8 +6,8 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from sceneql.field.tape.tape_solid import field_values, many_gradients
-from sceneql.mesh.polygons import Polygons
-from sceneql.mesh.repair.flips import faced_outward, facing
+from sceneql.mesh.polygons import Polygons, touched
+from sceneql.mesh.repair.flips import agreement, faced_outward, facing
 
 if TYPE_CHECKING:
     import numpy as np
@@ -55,13 +55,14 @@ def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
     import numpy as np
 
     places, normals = polygons.vertices.copy(), polygons.normals.copy()
-    triangles = faced_outward(tape, places, polygons.triangles, doubtful)
+    triangles = faced_outward(tape, polygons, doubtful)
+    found = Polygons(places, triangles, normals)
     near = np.zeros(len(places), dtype=bool)
     near[triangles[doubtful]] = True
-    doubtful = np.flatnonzero(near[triangles].any(axis=1))
+    doubtful = np.flatnonzero(touched(near, triangles))
     near[triangles[doubtful]] = True
-    stars = Stars(triangles[near[triangles].any(axis=1)])
-    cosines, still = facing(tape, places[triangles[doubtful]]), set[int]()
+    stars = Stars(triangles[touched(near, triangles)])
+    cosines, still = agreement(tape, found, triangles[doubtful]), set[int]()
     for _ in range(ROUNDS):
         turned = doubtful[cosines < 0.0]
         if len(turned) > MOST:
@@ -80,9 +81,9 @@ def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
             break
         near[:] = False
         near[moved] = True
-        stale = near[triangles[doubtful]].any(axis=1)
-        cosines[stale] = facing(tape, places[triangles[doubtful[stale]]])
-    return Polygons(places, triangles, normals)
+        stale = touched(near, triangles[doubtful])
+        cosines[stale] = agreement(tape, found, triangles[doubtful[stale]])
+    return found
 
 
 class Stars:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from sceneql.field.tape.tape_solid import many_gradients
 from sceneql.mesh.dual.halves import halved
 from sceneql.mesh.dual.planes import onto_planes
-from sceneql.mesh.polygons import Polygons
+from sceneql.mesh.polygons import Polygons, touched
 from sceneql.mesh.repair.folds import against, doubtful, inverted
 from sceneql.mesh.repair.move_vertices import turned_outward
 from sceneql.mesh.repair.self_intersections import self_intersections
@@ -85,7 +85,7 @@ def repair_folds(dual: Dual, polygons: Polygons) -> Polygons:
             normals[moved] = 0.0
         near = np.zeros(len(places), dtype=bool)
         near[moved] = True
-        stale = np.flatnonzero(near[dual.quads].any(axis=1))
+        stale = np.flatnonzero(touched(near, dual.quads))
         halves = halved(dual.tape, places, dual.quads[stale], dual.ways[stale])
         triangles[(2 * stale[:, None] + [0, 1]).ravel()] = halves
     return Polygons(places, triangles, normals)
@@ -103,7 +103,7 @@ def _slid(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
     corners = corners[corners < len(dual.rings)]
     near = np.zeros(len(places), dtype=bool)
     near[corners] = True
-    star = triangles[near[triangles].any(axis=1)]
+    star = triangles[touched(near, triangles)]
     # A closed mesh has each side in both directions, so the sides that begin at a vertex reach all its neighbors.
     ends = star[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
     ends = np.unique(ends, axis=0)
@@ -146,7 +146,7 @@ def _drawn(dual: Dual, polygons: Polygons, rows: Rows) -> Rows:
     if not most[rows].any():
         near = np.zeros(len(places), dtype=bool)
         near[triangles[other]] = True
-        first = other = np.flatnonzero(near[triangles].any(axis=1))
+        first = other = np.flatnonzero(touched(near, triangles))
         most[first] = off[triangles[first]].max(axis=1)
     far = np.maximum(FARTHEST * most[first], 1e-9 * dual.cell)
     corners = np.unique(np.extract(off[triangles[other]] >= far[:, None], triangles[other])).astype(np.int64)
@@ -179,6 +179,6 @@ def repair_turned(tape: Tape, polygons: Polygons) -> Polygons:
         near[turned.triangles[folded]] = True
         near[turned.triangles[self_intersections(turned.vertices, turned.triangles, folded)[1]]] = True
         for _ in range(BESIDE):
-            near[polygons.triangles[near[polygons.triangles].any(axis=1)]] = True
-        rows = rows[~near[polygons.triangles[rows]].any(axis=1)]
+            near[polygons.triangles[touched(near, polygons.triangles)]] = True
+        rows = rows[~touched(near, polygons.triangles[rows])]
     return polygons

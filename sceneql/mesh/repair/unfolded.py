@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sceneql.mesh.polygons import Polygons
+from sceneql.mesh.polygons import Polygons, touched
 from sceneql.mesh.repair.flips import faced_outward
 from sceneql.mesh.repair.folds import overturned
 from sceneql.mesh.repair.move_vertices import settled
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sceneql.frame import Ints, Tape
+    from sceneql.frame import Tape
 
     Rows = NDArray[np.int64]
 
@@ -39,7 +39,7 @@ def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
         near = np.zeros(len(polygons.vertices), dtype=bool)
         near[found.triangles[rows]] = True
         for _ in range(turn // WIDENED):
-            near[found.triangles[near[found.triangles].any(axis=1)]] = True
+            near[found.triangles[touched(near, found.triangles)]] = True
         found = _relaxed(tape, found, near)
         rows = overturned(tape, found)
         if len(rows) < len(best_rows):
@@ -52,7 +52,7 @@ def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_]) -> Polyg
     import numpy as np
 
     triangles = polygons.triangles.astype(np.int64)
-    star = triangles[chosen[triangles].any(axis=1)]
+    star = triangles[touched(chosen, triangles)]
     corners = np.flatnonzero(chosen & polygons.normals.any(axis=1))
     ends = np.unique(star[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=0)
     ends = ends[np.isin(ends[:, 0], corners)]
@@ -65,6 +65,6 @@ def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_]) -> Polyg
     new, slopes = settled(tape, middles, reach)
     kept = slopes.any(axis=1)
     places[corners[kept]], normals[corners[kept]] = new[kept], slopes[kept]
-    rows = np.flatnonzero(chosen[triangles].any(axis=1))
-    flipped: Ints = faced_outward(tape, places, polygons.triangles, rows)
+    rows = np.flatnonzero(touched(chosen, triangles))
+    flipped = faced_outward(tape, Polygons(places, polygons.triangles, normals), rows)
     return Polygons(places, flipped, normals)

@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, ClassVar
 
-from sceneql.kinds import Angle, Camera, FixedScalar, Moment, field
+from sceneql.kinds import Angle, Camera, FixedScalar, FixedTime, Moment, field
 from sceneql.pictures import framing
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from sceneql.frame import Floats, View
 
+Toward = tuple[float, float, float]
+"""From the scene towards the camera, of any length."""
 THREE_QUARTER = (0.55, 0.38, 1.0)
 ALONG = ((1.0, 0.1, 0.0), (0.0, 1.0, 0.12), (0.0, 0.1, 1.0))
 """Directions towards the camera for scenes that are flat in x, y or z."""
@@ -20,6 +24,13 @@ viewed nearly along it, so that bodies stand out from their ground; an EVEN one 
 LONG, ACROSS = 0.12, {0: ALONG[2], 2: ALONG[0]}
 """Larger one of both other sides, relative to the length, below which a scene long in x or z is viewed across; and
 directions towards the camera by the long axis."""
+FULL, AROUND, UNUSUAL = 0.6, 36, 0.4
+"""Least cosine between the view and the normal of what is flat and tilted: a circle is then seen as an ellipse that
+fills a wide picture; number of views at this angle that are compared; by how much what is seen from a quarter turn away
+from the usual view counts as smaller."""
+LOWEST, HIGHEST, STEEP = 0.1, 0.95, 0.35
+"""Least and largest sine of the elevation of such a view, above the ground; largest height of the unit normal of what
+is seen along it, since it stands upright."""
 HEADROOM = 0.86
 """Largest fraction of the height between the margins that is filled: pictures are wider than most subjects."""
 
@@ -27,27 +38,72 @@ HEADROOM = 0.86
 class Auto(Camera):
     """A three-quarter view of all that is drawn, from the right front and above, that holds still over the whole film.
 
-    A scene that is flat along an axis is seen along it, one that is long and lies across. The few of many things that
-    leave for good are let go. Panels of variants share one view, and overlays are left room.
+    A scene that is flat along an axis is seen along it, one that is flat and tilted from nearer to its normal, one that
+    is long and lies across. The few of many things that leave for good are let go. Panels of variants share one view,
+    and overlays are left room.
+
+    It holds still, so that what moves in the picture moves in the scene, as fast and as far: beside a camera that goes
+    along, a ball that falls hangs before an empty ground. So what is small on a long way is small; where it is hardly
+    seen a warning says so. With a `window` the camera goes along; to one that holds still a `trail` shows the way.
     """
 
     yields: ClassVar[bool] = True
 
     field_of_view: Angle = field("Vertical field of view.", "30 deg", above=0, below=math.pi)
     margin: FixedScalar = field("Part of half the picture that is left free.", "0.12", at_least=0, below=1)
+    window: FixedTime | None = field(
+        "It moves softly and frames, at each instant, what moves within half of this time before and after; by default "
+        "it holds still.",
+        None,
+        above=0,
+    )
 
     def view(self, size: tuple[int, int], moment: Moment) -> View:
         """The view of the whole film."""
         half = math.tan(0.5 * float(moment.at(self.field_of_view)))
         points = moment.outline()
-        axes = framing.axes_towards(_towards(points))
         slopes, middle = framing.inner(half, size, self.margin, moment.room, HEADROOM)
-        origin, _ = framing.fitted(points, axes, slopes, middle=middle)
-        return framing.view(origin, axes, size, half)
+        axes = framing.axes_towards(_towards(points, slopes))
+        rows = moment.moving() if self.window is not None else points[:0]
+        if self.window is None or len(rows) == 0:
+            origin, _ = framing.fitted(points, axes, slopes, middle=middle)
+            return framing.view(origin, axes, size, half)
+
+        def stand(some: Floats) -> Floats:
+            return framing.fitted(some, axes, slopes, middle=middle)[0]
+
+        return framing.view(_softly(rows, moment.time, self.window, stand), axes, size, half)
 
 
-def _towards(points: Floats) -> tuple[float, float, float]:
-    """Direction from the scene to its camera, by the proportions of the box around points (n, 3)."""
+def _softly(rows: Floats, time: float, window: float, stand: Callable[[Floats], Floats]) -> Floats:
+    """Position (3,) [m] of a camera at a time [s] that follows what moves, softly.
+
+    ``rows``: instants and points (n, 1 + 3) of what moves; ``stand``: where a camera sees points. The position is a
+    mean over the instants of half a window before and after, with weights that fade to none, each of the camera that
+    sees what moves within half a window of its instant. So what moves now is in the picture: each of these sees it, and
+    the places from which cameras of one direction see a point are convex.
+    """
+    import numpy as np
+
+    times = np.unique(rows[:, 0])
+    spacing = float(np.diff(times).max()) if len(times) > 1 else window
+    reach = max(0.5 * window, spacing)
+    ages = (times - time) / reach
+    near = np.abs(ages) < 1.0
+    if not near.any():  # the run ahead failed before
+        near[np.abs(ages).argmin()], ages = True, np.zeros(len(ages))
+    weights = (1.0 - ages[near] ** 2) ** 2
+    seen = [rows[np.abs(rows[:, 0] - at) <= reach + spacing, 1:] for at in times[near]]
+    total = sum((w * stand(some) for w, some in zip(weights, seen, strict=True)), np.zeros(3))
+    position: Floats = total / weights.sum()
+    return position
+
+
+def _towards(points: Floats, slopes: tuple[float, float]) -> Toward:
+    """Direction from the scene to its camera, by the proportions of the box around points (n, 3).
+
+    ``slopes``: half width and height, at distance 1, of the part of the picture that they fill.
+    """
     sides = points.max(axis=0) - points.min(axis=0)
     thin = int(sides.argmin())
     others = [float(side) for k, side in enumerate(sides) if k != thin]
@@ -57,4 +113,36 @@ def _towards(points: Floats) -> tuple[float, float, float]:
     if sides[thin] < FLAT * min(others):
         return ALONG[thin]
     long = int(sides.argmax())
-    return ACROSS.get(long, THREE_QUARTER) if min(others) < LONG * sides[long] else THREE_QUARTER
+    return ACROSS.get(long, THREE_QUARTER) if min(others) < LONG * sides[long] else _onto_tilted(points, slopes)
+
+
+def _onto_tilted(points: Floats, slopes: tuple[float, float]) -> Toward:
+    """The three-quarter view; of points (n, 3) that are flat along no axis of the box one nearer to their normal.
+
+    Of AROUND views at an angle to the normal whose cosine is FULL, above the ground, it is that in which they are
+    largest, and near the usual one. ``slopes``: half width and height, at distance 1, of the part that they fill.
+    """
+    import numpy as np
+
+    away = points - points.mean(axis=0)
+    principal = np.linalg.eigh(away.T @ away)[1]
+    thin, high, wide = np.ptp(away @ principal, axis=0)
+    normal, usual = np.round(principal[:, 0], 9), np.array(THREE_QUARTER) / math.hypot(*THREE_QUARTER)
+    if not thin < FLAT * min(wide, high) or abs(float(normal @ usual)) >= FULL:
+        return THREE_QUARTER
+    if abs(normal[1]) < STEEP:
+        x, _, z = normal if normal @ usual > 0.0 else -normal
+        return float(x), LOWEST, float(z)
+    right, up, _ = framing.axes_towards(normal)
+    turns = 2.0 * np.pi * np.arange(AROUND) / AROUND
+    tilted = math.sqrt(1.0 - FULL * FULL) * (np.cos(turns)[:, None] * right + np.sin(turns)[:, None] * up)
+    ways = [way for side in (FULL, -FULL) for way in side * normal + tilted if LOWEST <= way[1] <= HIGHEST]
+
+    def size(way: Floats) -> float:
+        axes = framing.axes_towards(way)
+        distance = framing.fitted(points, axes, slopes)[1]
+        across, along = np.ptp(points @ axes[:2].T, axis=0) / distance / slopes
+        return round(float(across * along) * (1.0 - UNUSUAL * (1.0 - float(way @ usual))), 9)
+
+    x, y, z = max(ways, key=size, default=usual)
+    return float(x), float(y), float(z)

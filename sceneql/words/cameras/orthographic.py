@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from sceneql.kinds import Camera, Direction, DrawnRef, FixedScalar, Length, Moment, Position, Problem, field
 from sceneql.pictures import framing
@@ -20,6 +20,12 @@ class Orthographic(Camera):
 
     Without `height` it shows the parts of `fit` (without names: all that is drawn) over the whole film.
     """
+
+    said_by: ClassVar[Mapping[str, str]] = {
+        "position": "it has a direction alone, `look_along: 0 0 -1`, and sees as much as its `height`",
+        "field_of_view": "write its `height`, of what it sees: `height: 4 m`",
+        "fov": "write its `height`, of what it sees: `height: 4 m`",
+    }
 
     look_along: Literal["x", "-x", "y", "-y", "z", "-z"] | Direction = field("The direction that it looks in.", "-z")
     height: Length | None = field("Height of what it shows; by default as much as `fit` needs.", None, above=0)

@@ -20,6 +20,8 @@ class Perspective(Camera):
 
     With `fit`, or without `position` and `follow`, it stands as near as it can with the named parts (without names: all
     that is drawn) inside the picture over the whole film, in the given `direction`, or in that of `position` if given.
+
+    For example `eye: {perspective: {position: 0 2 5 m, look_at: 0 1 0 m}}`.
     """
 
     position: Position | None = field("Where it stands.", None)

@@ -21,6 +21,8 @@ class Turntable(Camera):
 
     Without `distance` it stands as near as it can with the parts of `fit` in the picture all the way round. With
     `follow` it moves with a part; then the size of what it fits counts, not the place.
+
+    For example `round: {turntable: {around: ball, seconds: 12 s}}`.
     """
 
     around: DrawnRef | None = field("The part it goes around; by default what it fits.", None)

@@ -18,6 +18,8 @@ class Gravity(Force):
 
     By default 9.81 m/s^2 downwards, along -y exactly. Of masses that a flow carries m is less what they displace.
     Source: Newton, Principia (1687), book I, law II.
+
+    For example `moon: {gravity: {strength: 1.62 m/s^2}}`.
     """
 
     weighs: ClassVar[bool] = True

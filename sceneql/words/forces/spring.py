@@ -26,6 +26,8 @@ class Spring(Force):
     `crate.hook`, of any models; one of them may be a place of its own, that of a `motion` too. Half of its energy
     belongs to each mass; all of it to the only one. The models are solved together. What the damping takes is counted
     as dissipated, less what moves the place gives. The velocity of a place is the central difference over 0.2 ms.
+
+    For example `band: {spring: {from: fall.position, to: swing.bob.position, stiffness: 50 N/m}}`.
     """
 
     mutual: ClassVar[bool] = True

@@ -18,6 +18,8 @@ class Point(Light):
 
     A power P shines P/(4 pi) in every direction, so a white matte surface that faces it at the distance r is as bright
     as P/(4 pi^2 r^2): 60 W at 1.2 m as bright as its color.
+
+    For example `lamp: {point: {position: 1 3 2 m, power: 200 W}}`.
     """
 
     position: Position = field("Where it is.", "0 2 0 m")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from sceneql.kinds import Angle, Color, Direction, Light, Moment, Scalar, field
+from sceneql.kinds import Angle, Color, Direction, Doubt, Light, Moment, Scalar, field
 from sceneql.shapes.color import linear
 
 if TYPE_CHECKING:
@@ -17,6 +17,8 @@ class Sun(Light):
     """Light from one direction, everywhere equally strong.
 
     At strength 1 a white matte surface that faces it is as bright as its color: it gets the irradiance pi.
+
+    For example `noon: {sun: {elevation: 60 deg, azimuth: 30 deg}}`.
     """
 
     direction: Direction | None = field("From the scene towards it; in place of elevation and azimuth.", None)
@@ -25,6 +27,16 @@ class Sun(Light):
     strength: Scalar = field("Factor of its light.", "1", at_least=0)
     color: Color = field("Color of its light.", "1 1 1")
     angle: Angle = field("How wide it looks; wider gives softer shadows.", "0.53 deg", at_least=0, at_most=math.pi)
+
+    def doubts(self) -> Iterator[Doubt]:
+        """A direction that points down, as from the sun to the scene."""
+        if self.direction is None or not self.direction.constant:
+            return
+        x, y, z = (float(c) for c in self.direction.number())
+        if y < 0:
+            text = "it shines from below: its `direction` is that from the scene towards it, and this points down"
+            back = " ".join(f"{0.0 - c:g}" for c in (x, y, z))
+            yield Doubt("light-from-below", text, self.direction.span, f"write `direction: {back}`")
 
     def lower(self, moment: Moment) -> Iterable[frame.LightSource]:
         """One distant light. Raises ValueError for a direction of zero."""

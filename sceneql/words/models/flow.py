@@ -69,7 +69,9 @@ class Flow(Model):
     swinging: ClassVar[tuple[str, ...]] = ("vorticity",)
     """Fields among its outputs that are of both signs."""
 
-    said_by: ClassVar = dict.fromkeys(
+    said_by: ClassVar = {
+        "reynolds": "write the viscosity that it makes, density times speed times length over it"
+    } | dict.fromkeys(
         ("inlet", "outlet", "inflow", "outflow", "walls", "wall", "sides", "boundaries"),
         'sides are told by `boundary: {left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}`; others are walls',
     )

@@ -30,6 +30,8 @@ class Motion(Model):
     `progress` counts laps. With `heading` its rotation turns the x axis along the path and keeps z level, before its
     own. Other parts link to the motion: an object's `position: lift.position`. The velocity is the central difference
     over 0.2 ms.
+
+    For example `lift: {motion: {position: {keys: {0 s: 0 0 0 m, 2 s: 0 1 0 m}}}}`.
     """
 
     said_by: ClassVar[Mapping[str, str]] = {

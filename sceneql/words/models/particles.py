@@ -56,8 +56,11 @@ class Particles(Model):
     its radius are read from it), from points (``positions``), from an object that they fill (``fill``), or are born and
     die (``emit``); but for the listed ones all have the same mass. What is not yet born or has died feels and does
     nothing, is not drawn, and is in no output; births bring energy and deaths take it.
+
+    For example `drop: {particles: {of: ball, mass: 1 kg}}`.
     """
 
+    inert: ClassVar[bool] = True
     gives: ClassVar[Mapping[str, Gives]] = {
         **masses.BODY_OUTPUTS,
         "ages": Gives(quantity_type(dim.TIME, (None,)), "Time since each was born, or since the start.", computed=True),

@@ -70,6 +70,7 @@ class Rigid(Body, Model):
     """
 
     turns: ClassVar[bool] = True
+    inert: ClassVar[bool] = True
     gives: ClassVar[Mapping[str, Gives]] = masses.BODY_OUTPUTS
 
     bodies: dict[str, Member] | None = field("Several bodies by name.", None)

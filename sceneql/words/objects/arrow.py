@@ -25,6 +25,8 @@ class Arrow(Object):
     """An arrow from a place along a vector of any quantity: a velocity, an acceleration, a force.
 
     It is ``scale`` times as long as the vector, in SI; a vector of zero is not drawn, and a short one has a small head.
+
+    For example `speed: {arrow: {at: swing.bob.position, vector: swing.bob.velocity}}`.
     """
 
     decorates: ClassVar[bool] = True

@@ -22,6 +22,8 @@ class Box(Solid):
 
     Its field is the signed distance in the maximum norm, max(|x| - size.x / 2, ...): exact inside and in front of the
     sides, less than the distance in front of edges and corners.
+
+    For example `crate: {box: {size: 1 0.5 0.5 m, position: 0 0.25 0 m}}`.
     """
 
     collides: ClassVar[bool] = True

@@ -22,6 +22,8 @@ class Coil(Object):
 
     However far its ends are pulled apart it keeps its turns and its radius. Its field is the distance to a chain of
     straight pieces.
+
+    For example `wire: {coil: {from: swing.hook.position, to: swing.bob.position, radius: 5 cm}}`.
     """
 
     from_: Position = field("Where it begins.", "0 1 0 m")

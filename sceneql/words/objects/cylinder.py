@@ -20,6 +20,8 @@ class Cylinder(Solid):
 
     Its field is max(sqrt(x^2 + z^2) - radius, |y| - height / 2): exact inside and in front of its side and ends, less
     than the distance in front of its rims.
+
+    For example `post: {cylinder: {radius: 5 cm, height: 1 m, position: 0 0.5 0 m}}`.
     """
 
     said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(

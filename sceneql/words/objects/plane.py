@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds import Collider, Direction, FieldBuilder, Length, Moment, Object, Position, Value, field
@@ -24,6 +24,11 @@ class Plane(Object):
 
     collides: ClassVar[bool] = True
     grounds: ClassVar[bool] = True
+
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("size", "width", "length", "depth", "sides"),
+        "it is endless; a plate is a flat box, `{box: {size: 4 0.1 4 m}}`",
+    )
 
     height: Length = field("How far along its normal it lies from `position`.", "0 m")
     position: Position = field("A point that `height` counts from.", "0 0 0 m")

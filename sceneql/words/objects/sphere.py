@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 class Sphere(Solid):
-    """The ball |p| <= radius about its position. Its field is the signed distance |p| - radius."""
+    """The ball |p| <= radius about its position. Its field is the signed distance |p| - radius.
+
+    For example `egg: {sphere: {radius: 0.2 m, position: 0 1 0 m, color: tomato}}`.
+    """
 
     collides: ClassVar[bool] = True
 

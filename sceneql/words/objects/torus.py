@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import pi
-from typing import Any
+from typing import Any, ClassVar
 
 from sceneql.kinds import FieldBuilder, Length, Moment, Shaped, VolumeMoments, field
 from sceneql.shapes.checked_values import positive
@@ -15,7 +15,11 @@ class Torus(Solid):
     """A tube around the circle x^2 + z^2 = radius^2 of its own plane y = 0.
 
     Its field is the signed distance sqrt((sqrt(x^2 + z^2) - radius)^2 + y^2) - tube.
+
+    For example `ring: {torus: {radius: 0.5 m, tube: 0.1 m, position: 0 1 0 m}}`.
     """
+
+    said_by: ClassVar[Mapping[str, str]] = {"R": "did you mean 'radius'?", "r": "the tube's radius is `tube`"}
 
     radius: Length = field("Radius of the circle in the middle of the tube.", "0.5 m", above=0)
     tube: Length = field("Radius of the tube.", "0.15 m", above=0)

@@ -24,6 +24,8 @@ class Trail(Object):
     """The way that a point, or each of some points, has come in the time before, as a chain of capsules.
 
     It is seen at even instants of the physics, so that it is the same at any frame rate, in a single picture too.
+
+    For example `way: {trail: {of: swing.bob.position, keep: 2 s}}`.
     """
 
     decorates: ClassVar[bool] = True

@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 class Tube(Object):
-    """All points within a radius of the line through its points. Its field is the signed distance."""
+    """All points within a radius of the line through its points. Its field is the signed distance.
+
+    For example `rail: {tube: {through: [0 0 0 m, 1 1 0 m, 2 0 0 m], radius: 2 cm}}`.
+    """
 
     through: Points = field("The points it runs through, at least two.")
     radius: Length = field("Its radius.", "20 mm", above=0)

@@ -18,6 +18,8 @@ class Record(Output):
     """A table of outputs over time, in SI: CSV (one column a component) or NPZ (one array an entry, (frames, ...)).
 
     A list that grows and shrinks has the places of its longest; those behind its end are NaN.
+
+    For example `table: {record: {of: [swing.bob.position.y, swing.energy], every: 10 ms}}`.
     """
 
     of: tuple[Measured, ...] = field("What is measured: outputs or expressions of them.")

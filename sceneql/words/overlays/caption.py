@@ -24,6 +24,8 @@ class Caption(Overlay):
 
     Values stand in braces with how they are written and their unit: `t = {time:.2f s}`, `{count(dust.positions):.0f}
     grains`. Operations over time are given the run so far: `{max(abs(relative_drift(sky.energy))):.0e}`.
+
+    For example `told: {caption: {text: "E = {swing.energy:.2f J}", place: top left}}`.
     """
 
     text: WordsOverTime = field("What it says.")

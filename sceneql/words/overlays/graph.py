@@ -38,6 +38,8 @@ class Graph(Overlay):
     for a camera that fits. Operations over time (`initial`, `relative_drift`, ...) are given the whole run. Several
     curves are `{name: expression}`, or a list; a vector has a curve a component. With `each: variant` every variant of
     the script has its curves, up to where its run fails.
+
+    For example `energy: {graph: {y: {kinetic: swing.kinetic, total: swing.energy}, title: energy}}`.
     """
 
     fills: ClassVar[bool] = True

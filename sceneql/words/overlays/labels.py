@@ -26,7 +26,10 @@ TEXT = 0.035
 
 
 class Labels(Overlay):
-    """Words over or under parts of the scene, which they follow."""
+    """Words over or under parts of the scene, which they follow.
+
+    For example `names: {labels: {of: {ball: a ball}}}`.
+    """
 
     of: dict[DrawnRef, WordsOverTime] = field("What each part is called: `{ball: a ball}`; values stand in braces.")
     place: Literal["above", "below"] = field("The side of the part.", "above")

@@ -20,6 +20,8 @@ class Ftcs(Solver):
     Source: O'Brien, Hyman & Kaplan (1950), J. Math. Phys. 29, 223-251 (von Neumann's analysis).
     """
 
+    marches = "a field"
+
     step: FixedTime = field("Length of a step.", "1 ms", above=0)
 
     def stepper(self) -> Stepper:

@@ -45,7 +45,8 @@ enters the velocity's change in the step, below its rounding error."""
 LONGEST_RATIO = 20.0
 """Largest ratio of a step to the one before for which the prediction helps."""
 NEGLIGIBLE = 1e-12
-"""Rate of a group against the largest of all, below which it may be rounding."""
+"""Rate of a group against the largest of all, below which it may be rounding; and how far a step moves it, against the
+largest of the numbers that are moved so."""
 SHRINKAGE = 0.25
 """A step is taken again when the next would be shorter than this times it (Rein & Spiegel 2015, section 2.3)."""
 
@@ -150,20 +151,26 @@ def correct(i, m, watched, rate0, vectors, settings, numbers, n):
 
 
 @lean_inlined
-def shortest_square(n, m, p, groups, rate0, vectors, numbers):
+def shortest_square(n, m, p, groups, h, y0, rate0, vectors, numbers):
     """The square of the shortest time, in steps, in which a group's rate changes by its own size; 1e300: it does not.
 
     The criterion of Pham, Rein & Spiegel (2024) at the step's end, in the mean of the squares for the rate and for its
     first derivative: so an oscillation has the same time in all its phases, where the rate alone would have none as it
-    passes through zero. A group that hardly moves against the others is left out.
+    passes through zero. A group that hardly moves, against the others or at all, is left out: what is at rest has rates
+    that are rounding.
     """
     b = vectors[B * n :]
-    largest = 0.0
+    largest = far = loose = 0.0
     for j in range(numbers[ENTRIES - 1 + m + p + groups]):
         largest = max(largest, abs(rate0[numbers[ENTRIES + j]]))
+        if j >= p > 0:  # of bodies
+            loose = max(loose, abs(y0[numbers[ENTRIES + j]]))
+    for j in range(p):
+        far = max(far, abs(y0[numbers[ENTRIES + m + j]]))
     best = 1e300
     j = 0
     for group in range(groups):
+        moved, least = (h * h, far) if j < p else (h, loose)
         zeroth = first = second = third = 0.0
         while j < numbers[ENTRIES + m + p + group]:
             f0 = rate0[numbers[ENTRIES + j]]
@@ -179,7 +186,7 @@ def shortest_square(n, m, p, groups, rate0, vectors, numbers):
             second += f2 * f2
             third += f3 * f3
             j += 1
-        if max(zeroth, first) > (NEGLIGIBLE * largest) ** 2:
+        if max(zeroth, first) > (NEGLIGIBLE * max(largest, least / moved)) ** 2:
             square = 2.0 * zeroth / (first + math.sqrt(zeroth * second)) if first + second > 0.0 else 1e300
             if second > 0.0:
                 square = 0.5 * square + first / (second + math.sqrt(first * third))
@@ -231,7 +238,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     if not settled and math.isfinite(previous):  # as a first step may, which has no prediction
         work[NEXT] = SHRINKAGE * h
         return 2.0
-    square = shortest_square(n, m, p, groups, rate0, vectors, numbers)
+    square = shortest_square(n, m, p, groups, h, y0, rate0, vectors, numbers)
     longest = h / SHRINKAGE
     work[NEXT] = min(longest, h * math.sqrt(square) * (5040.0 * settings[TOLERANCE]) ** (1.0 / 7.0))
     return SHRINKAGE * h / work[NEXT]

@@ -22,6 +22,8 @@ class Modal(Solver):
 
     refuses_ties: ClassVar[str] = "its modes are those of masses that forces alone move"
 
+    refuses_contacts: ClassVar[str] = "contacts are not linear, and modes do not go through them"
+
     modes: int = field("How many, the lowest first; six of a free body are its motions without strain.", 40, at_least=1)
     tolerance: FixedScalar = field(
         "By how much polynomials in time may differ from loads that vary, relative to the largest.",

@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 
 class Rod(Joint):
-    """Two points, one of each body, keep the distance that they have at the start."""
+    """Two points, one of each body, keep the distance that they have at the start.
+
+    For example `stay: {rod: {between: [swing.bob, world], to: 0 2 0 m}}`.
+    """
 
     gives: ClassVar[Mapping[str, Gives]] = FORCES
 

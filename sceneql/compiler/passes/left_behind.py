@@ -1,0 +1,43 @@
+"""Warnings of objects that stand where a mass starts, and do not follow it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import dist
+
+from sceneql.graph import Task
+from sceneql.kinds import Contact, Model, Object, Value
+from sceneql.quantities.diagnostic import Diagnostics
+
+NEAR = 1e-9
+"""Distance [m] below which an object stands where a mass starts."""
+
+
+def warn_of_left_behind(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of each visible object whose written place is that of a mass that may move."""
+    inner = {ref.name for task in tasks.values() if isinstance(task.kind, Object) for ref in task.kind.members()}
+    inner |= {ref.name for task in tasks.values() if isinstance(task.kind, Contact) for ref in task.kind.ties()}
+    inner |= {need for task in tasks.values() if isinstance(task.kind, Model) for need in task.needs}
+    masses = [(f"{task.name}.{name}", place) for task in tasks.values() for name, place in _free(task)]
+    for task in tasks.values() if masses else ():
+        place = getattr(task.kind, "position", None)
+        if not isinstance(task.kind, Object) or task.kind.hidden or task.original or task.name in inner:
+            continue
+        if not isinstance(place, Value) or not place.constant or place.span is None or not any(place.number()):
+            continue
+        for mass, start in masses:
+            if dist(start, place.number()) < NEAR:
+                text = f"'{task.name}' stands where '{mass}' starts, and stays there when that moves"
+                found.warning("left-behind", text, place.span, help=f"to follow it write `position: {mass}.position`")
+                break
+
+
+def _free(task: Task) -> Iterator[tuple[str, tuple[float, ...]]]:
+    """Names and places of the masses of a model that are listed by name and not fixed."""
+    if not isinstance(task.kind, Model) or task.kind.kinematic:
+        return
+    pinned = set(getattr(task.kind, "pins", None) or ())
+    for name in ("list", "masses"):
+        for one, mass in (getattr(task.kind, name, None) or {}).items():
+            if not mass.fixed and one not in pinned:
+                yield one, mass.position

@@ -1,0 +1,84 @@
+"""Warnings of scenes in which nothing moves: forces without masses, and masses without a force or a velocity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from pydantic import BaseModel
+
+from sceneql.compiler.values_below import values_of
+from sceneql.graph import Island, Task
+from sceneql.kinds import Contact, Interaction, Kind, Model, Object, Tie, Value
+from sceneql.quantities.diagnostic import Diagnostics
+
+STARTS = ("velocity", "spin")
+"""Fields that let masses or bodies move at the start."""
+
+
+def warn_of_unforced(tasks: Mapping[str, Task], groups: Sequence[Island], found: Diagnostics) -> None:
+    """Warn of forces and contacts where no model has masses, and of models that nothing moves.
+
+    ``groups``: the islands of the models.
+    """
+    solved = [task for task in tasks.values() if isinstance(task.kind, Model) and not task.kind.kinematic]
+    moved = [task.name for task in tasks.values() if isinstance(task.kind, Object) and not task.kind.grounds]
+    acting = [t for t in tasks.values() if isinstance(t.kind, Interaction | Contact) and not isinstance(t.kind, Tie)]
+    some = [ref for task in acting if isinstance(task.kind, Interaction) for ref in task.kind.targets() or ()]
+    for task in acting[:1] if moved and not solved else ():
+        text = f"'{task.name}' acts on masses, and no model has any: nothing moves"
+        help = f"a model moves an object: `models: {{fall: {{particles: {{of: {moved[0]}, mass: 1 kg}}}}}}`"
+        found.warning("nothing-moves", text, task.span, help=help)
+    led = any(not value.constant for task in tasks.values() if _leads(task) for value in values_of(task.kind))
+    for island in groups:
+        models = [tasks[name] for name in island.models]
+        if len(solved) == len(models) and all(map(_held, models)):
+            text = f"all masses of '{models[0].name}' are fixed: nothing moves"
+            help = "leave out `fixed: yes` of those that should move"
+            found.warning("nothing-moves", text, models[0].span, help=help)
+        elif (
+            all(isinstance(task.kind, Model) and task.kind.inert for task in models)
+            and not (island.forces or (led and island.contacts))
+            and not any(_starts(task.kind) for task in models)
+        ):
+            text = f"no force acts on '{models[0].name}', and it starts at rest: it stays where it is"
+            help = "write `forces: [gravity]`, or give it a `velocity`"
+            if some:
+                help = f"name it, too, where a force is `on: [{some[0]}]`: `on: [{some[0]}, {models[0].name}]`"
+            found.warning("nothing-moves", text, models[0].span, help=help)
+
+
+def _leads(task: Task) -> bool:
+    """Whether a part may carry or push masses: an object that no model moves, or a kinematic model."""
+    if isinstance(task.kind, Model):
+        return task.kind.kinematic
+    return isinstance(task.kind, Object) and task.original is None
+
+
+def _held(task: Task) -> bool:
+    """Whether a model has masses by name, all of which are fixed."""
+    named = [one for name in ("list", "masses", "bodies") for one in (getattr(task.kind, name, None) or {}).values()]
+    return bool(named) and all(getattr(one, "fixed", False) for one in named)
+
+
+def _starts(part: Any) -> bool:
+    """Whether a velocity or spin at the start, in a kind or a record at any depth, is not zero."""
+    return any(_nonzero(value) for value in _velocities(part))
+
+
+def _velocities(part: Any) -> Iterator[Any]:
+    if isinstance(part, Kind | BaseModel):
+        for name, value in part:
+            if name in STARTS:
+                yield value
+            else:
+                yield from _velocities(value)
+    elif isinstance(part, dict):
+        for value in part.values():
+            yield from _velocities(value)
+
+
+def _nonzero(value: Any) -> bool:
+    if isinstance(value, Value):
+        return not value.constant or any(value.number())
+    return isinstance(value, tuple | list) and any(value)

@@ -1,0 +1,54 @@
+"""Warnings of pictures that show nothing: all is hidden, or behind the camera."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from math import dist, sqrt
+
+from sceneql.graph import Task
+from sceneql.kinds import Model, Object, Value
+from sceneql.quantities.diagnostic import Diagnostics
+
+
+def warn_of_unseen(
+    tasks: Mapping[str, Task], drawn: Mapping[str, Collection[str]], cameras: Mapping[str, str], found: Diagnostics
+) -> None:
+    """Warn of each picture of nothing but a ground, and of each whose camera has all that stands still behind it.
+
+    ``drawn``: by picture, the parts that it draws; ``cameras``: by picture, its camera.
+    """
+    for picture, names in drawn.items():
+        parts = [tasks[name] for name in names if not getattr(tasks[name].kind, "grounds", False)]
+        written = [task for task in tasks.values() if isinstance(task.kind, Object) and task.kind.hidden and task.span]
+        if not parts and names and written and tasks[picture].kind.shown() is None:  # type: ignore[attr-defined]
+            text = f"'{picture}' shows nothing but the ground: all objects are hidden"
+            help = f"leave out `hidden: yes`, as of '{written[0].name}'"
+            found.warning("nothing-drawn", text, tasks[picture].span or written[0].span, help=help)
+        camera = tasks.get(cameras.get(picture, ""))
+        if camera is not None and parts and all(_behind(task, camera) for task in parts):
+            text = f"'{camera.name}' sees nothing: all that is drawn is behind it"
+            found.warning("not-seen", text, camera.span, help="turn it round: `look_at` is the place in the middle")
+
+
+def _behind(task: Task, camera: Task) -> bool:
+    """Whether an object that stands still certainly lies behind a camera that stands still."""
+    eye, aim = (_place(getattr(camera.kind, field, None)) for field in ("position", "look_at"))
+    at = None if isinstance(task.kind, Model) or task.original else _place(getattr(task.kind, "position", None))
+    if eye is None or aim is None or at is None or (away := dist(eye, aim)) == 0:
+        return False
+    reach = _reach(task)
+    ahead = sum((a - e) * (p - e) for e, a, p in zip(eye, aim, at, strict=True)) / away
+    return reach is not None and ahead < -reach
+
+
+def _place(value: object) -> tuple[float, ...] | None:
+    return tuple(map(float, value.number())) if isinstance(value, Value) and value.constant else None
+
+
+def _reach(task: Task) -> float | None:
+    """A bound of how far an object reaches from its position [m]; None where its fields do not tell."""
+    sizes = [value for field in ("radius", "size", "tube", "height") if (value := getattr(task.kind, field, None))]
+    if not sizes or not all(isinstance(one, Value) and one.constant for one in sizes):
+        return None
+    numbers = [one.number() for one in sizes]
+    return sum(sqrt(sum(c * c for c in one)) if isinstance(one, tuple) else float(one) for one in numbers)

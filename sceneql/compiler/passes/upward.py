@@ -1,0 +1,35 @@
+"""Warnings of scripts in which z is up: here y is, for the ground, cameras and lights."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sceneql.graph import Task
+from sceneql.kinds import Camera, Interaction, Value
+from sceneql.quantities.diagnostic import Diagnostics
+
+MOSTLY = 0.9
+"""Part of a vector's length along z from which on it is taken for up or down."""
+
+
+def warn_of_z_up(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of a weight along z, unless a camera of the script has z upwards, too."""
+    ups = [getattr(task.kind, "up", None) for task in tasks.values() if isinstance(task.kind, Camera)]
+    if any(_along_z(up) for up in ups):
+        return
+    for task in tasks.values():
+        if not (isinstance(task.kind, Interaction) and task.kind.weighs):
+            continue
+        given = [getattr(task.kind, field, None) for field in ("acceleration", "direction")]
+        for value in filter(_along_z, given):
+            text = f"'{task.name}' pulls along z, but y is up here: the ground lies in x and z, cameras stand upright"
+            help = "write places as `x y z` with y for the height, and leave the direction out: gravity is along -y"
+            found.warning("z-up", text, getattr(value, "span", None) or task.span, help=help)
+
+
+def _along_z(value: object) -> bool:
+    if not isinstance(value, Value) or not value.constant:
+        return False
+    x, y, z = (float(one) for one in value.number())
+    length = (x * x + y * y + z * z) ** 0.5
+    return bool(abs(z) > MOSTLY * length > 0)
