@@ -3,9 +3,9 @@
 VERTICES, FACES, CORNERS, SKINS, NUMBERS, FRICTION, WEIGHTS, REST, ROOM, BEST, HOLDS, CLEAR, HEAD = range(13)
 """Numbers of vertices and faces of all skins; corners of a face; number of skins; offsets in the floats of NUMBERS, of
 the coefficient of friction, for each vertex of its share of area and its skin's stiffness, of the places at the start
-(3), of room for a grid of CELLS cells for each vertex, of the BEST of each skin, of the HOLDS, and of what is CLEAR. From HEAD on for
-each vertex its VERTEX integers; the corners of each face; where in the list that follows the faces whose first
-corner is each vertex begin, and, after the last, its end; that list."""
+(3), of room for a grid of CELLS cells for each vertex, of the BEST of each skin, of the HOLDS, and of what is CLEAR.
+From HEAD on for each vertex its VERTEX integers; the corners of each face; where in the list that follows the faces
+whose first corner is each vertex begin, and, after the last, its end; that list."""
 
 POSITION, FORCE, SKIN, VERTEX = range(4)
 """Offsets in y of the place and in the floats of the force of a vertex; number of its skin."""

@@ -17,6 +17,7 @@ LARGEST = 1e4
 TOUCHING = 0.8
 """Part of what is asked for up to which something is so near that it will be for some time."""
 
+
 @lean_inlined
 def vertex(ints, p):
     """Where the integers of a vertex begin."""
@@ -266,7 +267,7 @@ def known(floats, ints, p):
 
 @lean_inlined
 def lay_where_near(y, floats, ints, reach):
-    """`lay` for `is_near`, unless it is known that nothing is nearer to any vertex than ``reach``; whether it is laid."""
+    """`lay` for `is_near`, unless nothing is known to be nearer to any vertex than ``reach``; whether it is laid."""
     go(y, floats, ints)
     for p in range(ints[layout.VERTICES]):
         if not known(floats, ints, p) >= reach:

@@ -49,9 +49,10 @@ def mean_row(values, y0, yn, z0, zn, line, one):
 
 @lean(types.void(A, N, N, N, N, A, I), inner=True)
 def row_of(values, j, k, a, b, line, one):
-    """Into ``line`` (halves along x) the mean, over halves along y and z, of a row of cells: those around the centers in
-    row (j, k) (a, b: -1), around faces of component a, or around edges of a and b."""
-    _, ny, nz = halves(one)
+    """Into ``line`` (halves along x) the mean, over halves along y and z, of a row of cells.
+
+    Those around the centers in row (j, k) (a, b: -1), around faces of component a, or around edges of a and b.
+    """
     y0, yn = reach(j, one[flow.CELLS + 1], a == 1 or b == 1, one[flow.PERIODIC + 1] == 1)
     z0, zn = 0, 1
     if one[flow.AXES] == 3:
@@ -62,7 +63,6 @@ def row_of(values, j, k, a, b, line, one):
 @lean(types.void(A, N, N, N, N, N, A, I), inner=True)
 def layer_of(values, j, k, a, b, side, line, one):
     """As `row_of`, of half ``side`` alone of those along the axis b = 1 or 2, across which the cells lie at faces."""
-    _, ny, nz = halves(one)
     y0, yn = (side, 1) if b == 1 else reach(j, one[flow.CELLS + 1], a == 1, one[flow.PERIODIC + 1] == 1)
     z0, zn = 0, 1
     if b == 2:
