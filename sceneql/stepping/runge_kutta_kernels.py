@@ -12,14 +12,12 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.lanes_kernels import BYTES, load, store
 from sceneql.compiled.numba.lazy_kernels import lazy
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.system.signatures_kernels import STEP, A, F, I
 
 STAGES, EMBEDDED, SCALED, HEAD = range(4)
 RELATIVE, ABSOLUTE = range(2)
-LANES = BYTES // 8
 
 WEIGH = types.void(I, F, F, A, A, F, A, I, A, A, I)
 weigh_explicitly = lazy("sceneql.stepping.error_scales_kernels:weigh_explicitly", WEIGH)
@@ -29,22 +27,15 @@ weigh_explicitly = lazy("sceneql.stepping.error_scales_kernels:weigh_explicitly"
 def add_stages(settings, row, count, h, y0, rate0, work, out):
     """out = y0 + h * the sum of the first stages, weighted by settings[row:]."""
     n = y0.size
-    if n < LANES:
-        for k in range(n):
-            out[k] = y0[k] + h * settings[row] * rate0[k]
-            for j in range(1, count):
-                out[k] += h * settings[row + j] * work[j * n + k]
-        return
-    k = 0
-    while k < n:
-        k = min(k, n - LANES)  # the last lanes may begin within those before them: their sums are the same
-        total = load(y0, k) + h * settings[row] * load(rate0, k)
-        for j in range(1, count):
-            weight = h * settings[row + j]
-            if weight != 0.0:
-                total = total + weight * load(work, j * n + k)
-        store(out, k, total)
-        k += LANES
+    weight = h * settings[row]
+    for k in range(n):
+        out[k] = y0[k] + weight * rate0[k]
+    for j in range(1, count):
+        weight = h * settings[row + j]
+        if weight != 0.0:
+            at = j * n
+            for k in range(n):
+                out[k] += weight * work[at + k]
 
 
 @lean(STEP, inner=True)
