@@ -34,6 +34,7 @@ MESSAGES = {
     kernels.STUCK: "contacts push against each other at one instant without end",
     kernels.UNSEEN: "bodies are in each other, or held apart, by a contact that mode `exact` has not seen",
     kernels.COSTLY: "contacts take more work than they may",
+    kernels.MADE: "contacts make energy, in however short a step",
 }
 AHEAD = 1e-9
 """Interval ahead, relative to the time reached, in which a rate without a value is searched for."""
@@ -66,7 +67,7 @@ class Stopped:
 def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure:
     """The failure of a march that stopped with a status; ``ahead``: the next step to be tried [s]."""
     control = march.control
-    if status in (kernels.STUCK, kernels.UNSEEN, kernels.COSTLY):
+    if status in (kernels.STUCK, kernels.UNSEEN, kernels.COSTLY, kernels.MADE):
         return _at_contact(march, status, entry)
     if status == kernels.CROSSING:
         return blamed(march, entry, MESSAGES[status])

@@ -48,6 +48,8 @@ one another in a whole step (Assembly.limit)."""
 
 SHORTEST = 1e-3
 """Part of a fixed step below which it is not halved any more."""
+LEAST_PART = 1e-9
+"""The same of a step that is halved for what exact contacts do in it."""
 
 CRAWL = 1e-12
 """Part of the time reached below which a step hardly moves it."""
@@ -55,7 +57,7 @@ MOST_CRAWLED = 2000
 """Such steps in a row, or shorter than any, after which the march is stuck: an impact or a breakpoint takes far fewer
 to leave."""
 
-REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK, CROSSING, GROWS, UNSEEN, COSTLY = range(10)
+REACHED, PAUSED, NOT_FINITE, GROWTH, STEP_TOO_SMALL, STUCK, CROSSING, GROWS, UNSEEN, COSTLY, MADE = range(11)
 
 MOST_REPEATS = 100
 """Impacts for each pair at one instant before the contacts count as contradictory."""
@@ -254,7 +256,7 @@ def march(
     back_off = pointers.back_off_at(functions[pointers.AT_BACK_OFF])
     after_step = pointers.after_step_at(functions[pointers.AT_AFTER_STEP])
     settle = pointers.settle_at(functions[pointers.AT_SETTLE])
-    n = y0.size
+    n, part = y0.size, 1.0
     while clock[T1] < target:
         if counts[LEFT] <= 0:
             return PAUSED
@@ -279,11 +281,27 @@ def march(
             if grid > end - 1e-9 * clock[STEP]:
                 grid = end
         t1, status = try_steps(
-            step, functions, t0, grid, y0, rate0, y1, work, settings, numbers, floats, ints, clock, counts
+            step,
+            functions,
+            t0,
+            t0 + part * (grid - t0) if part < 1.0 else grid,
+            y0,
+            rate0,
+            y1,
+            work,
+            settings,
+            numbers,
+            floats,
+            ints,
+            clock,
+            counts,
         )
         if status != REACHED:
             copy(y0, y1)
             copy(rate0, rate1)
+            if leaving.size > 0 and counts[ADAPTIVE] == 0 and status in (GROWTH, NOT_FINITE) and part > LEAST_PART:
+                part *= 0.5
+                continue
             return status
         if counts[LAST_STAGE] >= 0:
             copy(work[counts[LAST_STAGE] * n :], rate1)
@@ -346,7 +364,15 @@ def march(
             if floats[channels.CHANGED] <= channels.UNSEEN:
                 copy(y0, y1)
                 copy(rate0, rate1)
-                return UNSEEN if floats[channels.CHANGED] == channels.UNSEEN else COSTLY
+                made = floats[channels.CHANGED] == channels.MADE
+                unseen = floats[channels.CHANGED] == channels.UNSEEN
+                if (made or (unseen and counts[ADAPTIVE] == 0)) and part > LEAST_PART:
+                    floats[channels.CHANGED] = 0.0
+                    counts[PENDING] = -1
+                    counts[REJECTED] += 1
+                    part *= 0.5
+                    continue
+                return MADE if made else (UNSEEN if unseen else COSTLY)
             if floats[channels.CHANGED] == 1.0:
                 rate(t1, y1, rate1, floats, ints)
         if counts[SETTLES] > 0:
@@ -355,6 +381,7 @@ def march(
                 rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1
+        part = 1.0
         counts[STEPS] += 1
         if counts[ADAPTIVE] == 0:
             counts[GRID] += t1 >= grid

@@ -15,9 +15,9 @@ HOLDS: not 0 where a body rests on a local contact. In the next step the contact
 floats for the state at the step's end, so the rate must be evaluated there.
 
 CHANGED: not 0 where an exact contact, updating its resting pairs at the end of a step, changed the state or a flag.
-Three values stop the march: NO_WAY_ON at an impact, where impacts accumulate without end; UNSEEN at the end of a step,
+Four values stop the march: NO_WAY_ON at an impact, where impacts accumulate without end; UNSEEN at the end of a step,
 where bodies overlap, or are held apart, in a way that their contacts have not seen; COSTLY where contacts have taken
-more work than they may.
+more work than they may; MADE, after which nothing else is changed and a shorter step is tried, where they made energy.
 
 SETTLED: not 0 where nothing but the removal of errors (``samples`` of Assembly.after_step) has changed the state since
 the end of the last step: a multistep method may then use what it remembers of earlier steps.
@@ -53,7 +53,7 @@ slopes."""
 RESTING, PLACING = 1.0, 2.0
 """Values of STATIC."""
 
-NO_WAY_ON, UNSEEN, COSTLY = -1.0, -2.0, -3.0
+NO_WAY_ON, UNSEEN, COSTLY, MADE = -1.0, -2.0, -3.0, -4.0
 """Values of CHANGED with which an impact stops the march."""
 DUE = 2.0
 """Value of CHANGED with which the impact kernel is called at the end of a step where an impact is due. What the kernel

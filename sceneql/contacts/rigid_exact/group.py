@@ -53,7 +53,12 @@ def assemble(
     from sceneql.bodies.rigid.tie_rows_kernels import ROW as TIE_ROW
     from sceneql.bodies.rigid.tie_system import integers
     from sceneql.contacts.distance import convex
-    from sceneql.contacts.rigid_exact import contact_kernels, curved_find_kernels, exact_law_kernels
+    from sceneql.contacts.rigid_exact import (
+        contact_kernels,
+        curved_find_kernels,
+        energy_made_kernels,
+        exact_law_kernels,
+    )
     from sceneql.contacts.rigid_exact import exact_rows_kernels as rows
     from sceneql.contacts.rigid_exact.curved import axis_of
     from sceneql.contacts.rigid_exact.drives import drives_of
@@ -104,7 +109,7 @@ def assemble(
     dense = assembly.floats(np.zeros(2 * room * room + (10 + exact_law_kernels.VECTORS) * room + 2))
     kept = assembly.floats(np.zeros(4 * spots))
     driven = assembly.floats(np.reshape(drives, len(drives) * DRIVEN))
-    memory = assembly.floats([0.0] * rows.BOUNDED + [float(gives_way)])
+    memory = assembly.floats([0.0] * rows.BOUNDED + [float(gives_way)] + [0.0] * energy_made_kernels.ROOM)
     assembly.gives_way = assembly.gives_way or gives_way
     outputs = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
     nan = float("nan")

@@ -33,6 +33,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     three,
 )
 from sceneql.contacts.rigid_exact.crowd_kernels import ENDLESS, TIRED, count_event, level, lowest
+from sceneql.contacts.rigid_exact.energy_made_kernels import begin_account, made_energy
 from sceneql.contacts.rigid_exact.exact_law_kernels import BILATERAL, UNILATERAL
 from sceneql.contacts.rigid_exact.exact_law_kernels import NORMAL as CONE
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
@@ -273,8 +274,14 @@ def keep(t, floats, ints, old):
 def impact(t, y, pair, floats, ints):
     """Strike the contacts of this instant; for pair -1, at the end of a step, find anew those that are kept."""
     memory = ints[MEMORY_AT]
+    if pair < 0 and floats[memory + STARTED] > 0.0:
+        if made_energy(t, y, floats, ints):
+            floats[channels.CHANGED] = channels.MADE
+            return
+        if unseen(t, y, floats, ints, False):
+            floats[channels.CHANGED] = channels.UNSEEN
+            return
     points, names = np.zeros(MOST_CORNERS * CORNER), np.zeros(MOST_CORNERS * NAME, dtype=np.int64)
-    wrong = pair < 0 and floats[memory + STARTED] > 0.0 and unseen(t, y, floats, ints, False)
     if pair >= 0:
         again = floats[memory + AGAIN] + 1.0 if t == floats[memory + LATEST] else 0.0
         floats[memory + LATEST], floats[memory + AGAIN], floats[memory + PASSED] = t, again, 0.0
@@ -308,8 +315,7 @@ def impact(t, y, pair, floats, ints):
         keep(t, floats, ints, True)
         begin(t, y, floats, ints, same and floats[memory + KEPT] == before)
         floats[channels.CHANGED] = 1.0
-    if wrong:
-        floats[channels.CHANGED] = channels.UNSEEN
-    elif floats[memory + BOUNDED] > 0.0 and floats[memory + WORK] > BEFOREHAND + A_SECOND * t:
+    if floats[memory + BOUNDED] > 0.0 and floats[memory + WORK] > BEFOREHAND + A_SECOND * t:
         floats[channels.CHANGED] = channels.COSTLY
     start_step(t, y, floats, ints)
+    begin_account(y, floats, ints)
