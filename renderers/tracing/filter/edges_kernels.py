@@ -10,7 +10,7 @@ from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.shade_kernels import shade
 from renderers.tracing.light.visibility_kernels import look_around
-from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike
+from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike, enough
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
 from renderers.tracing.tiles_kernels import ACROSS, MARKS, busiest
 from renderers.tracing.waves_kernels import list_ray
@@ -190,7 +190,8 @@ def look_from_samples(scene, scratch, asked, ways, first, last, each, edges, rec
             if own[layer, i, OWNER] == 0.0:
                 continue
             if not borrow(records[layer], visibility[layer], own[layer, i], x, y, width, height, found[layer, i]):
-                look_around(scene, scratch, asked, ways, own[layer, i], sample_of(x, y), ANEW, ANEW, found[layer, i])
+                some = enough(own[layer, i], ANEW)
+                look_around(scene, scratch, asked, ways, own[layer, i], sample_of(x, y), some, some, found[layer, i])
     return last
 
 
