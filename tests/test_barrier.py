@@ -15,6 +15,7 @@ from sceneql.linear import newton_kernels
 from sceneql.march.driver import energy, limit
 from sceneql.pipeline import load
 from sceneql.run.run import Run
+from sceneql.system import channels
 
 LAW = "law: {neo_hookean: {modulus: 50 kPa, poisson: 0.3}}"
 CUBE = "block: {size: 0.2 0.2 0.2 m, cells: [2, 2, 2]}, element: p1"
@@ -236,6 +237,20 @@ def test_friction_that_sticks_and_slips_at_an_impact_takes_few_updates(tmp_path,
     island.advance(0.04)
     assert island.march._settings[newton_kernels.ITERATIONS] <= 30 * island.march.statistics.steps
     assert island.march.statistics.steps == 10
+
+
+def test_a_ball_that_lands_takes_few_factorizations_a_stage(tmp_path):
+    island = run_of(
+        tmp_path,
+        "objects: {floor: plane, shape: {sphere: {radius: 0.2 m, position: 0 0.203 0 m, hidden: yes}}}\nmodels:\n"
+        "  body: {elastic: {of: shape, spacing: 12 cm, element: p2, velocity: 0 -2.5 0 m/s, "
+        "law: {neo_hookean: {modulus: 50 kPa, poisson: 0.4}}}}\nforces: [gravity]\n"
+        "contacts: {touch: {collision: {between: [body, floor], friction: 0.4}}}\n",
+    )
+    island.advance(0.1)
+    stages = island.march.floats[channels.STAGES]
+    assert island.march._settings[newton_kernels.FACTORIZATIONS] <= 9 * stages
+    assert island.march.statistics.rejected <= 2
 
 
 def matrix(normal, u, p, slip):

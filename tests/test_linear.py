@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import combinations, pairwise, product
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_array, kron
 from scipy.sparse.linalg import spsolve
+from scipy.spatial import cKDTree
 
 from sceneql.compiled.numbered_kernels import number_of
 from sceneql.linear import dense_complex_kernels as dense_complex
@@ -17,6 +18,7 @@ from sceneql.linear import dense_kernels as dense
 from sceneql.linear import krylov_kernels as krylov
 from sceneql.linear.multifrontal import planning, systems_kernels
 from sceneql.linear.multifrontal.planning import layout
+from sceneql.linear.multifrontal.separators import covered
 from sceneql.linear.solver_kernels import PRECONDITION
 from sceneql.stepping.eigenmodes_kernels import BLOCK, solve_block
 
@@ -240,3 +242,25 @@ def test_iterations_converge(symmetric):
     krylov.factor_system(plan, matrix.data, factors, np.zeros(0), symmetric)
     assert krylov.solve_system(plan, matrix.data, factors, x, np.zeros(8 * n), symmetric)
     assert np.abs(matrix @ x - right).max() <= 1e-9
+
+
+def test_separators_are_the_least_that_cover_what_a_plane_cuts():
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        left, right = rng.integers(0, 7, 12), rng.integers(10, 17, 12)
+        found = set(covered(left, right).tolist())
+        assert all(a in found or b in found for a, b in zip(left.tolist(), right.tolist(), strict=True))
+        vertices = sorted({*left.tolist(), *right.tolist()})
+        fewer = [set(some) for some in combinations(vertices, len(found) - 1)]
+        assert not any(all(a in s or b in s for a, b in zip(left, right, strict=True)) for s in fewer)
+
+
+def test_a_dense_lattice_in_a_ball_takes_few_multiplications():
+    axis = np.arange(-5, 6)
+    points = np.array([p for p in product(axis, repeat=3) if sum(x * x for x in p) <= 27], dtype=float)
+    pairs = cKDTree(points).query_pairs(2.3, output_type="ndarray")
+    ends = np.concatenate([pairs, pairs[:, ::-1], np.repeat(np.arange(len(points)), 2).reshape(-1, 2)])
+    pattern = csr_array((np.ones(len(ends)), ends.T), shape=(len(points),) * 2)
+    pattern.sort_indices()
+    by_planes = planning.plan(pattern, points=points).operations
+    assert by_planes < 1.1 * planning.plan(pattern).operations

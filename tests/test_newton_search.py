@@ -84,15 +84,17 @@ def test_a_step_from_afar_converges_in_few_updates(tmp_path, case):
 
 def test_cloth_of_a_hundred_times_its_size_comes_together(tmp_path):
     script = "models: {m: {cloth: {size: 1 1 m, cells: 8 8, stretch: 1e4 N/m, damping: 0}}}\n"
-    run, march = march_of(tmp_path, script, "implicit_euler: {step: 10 ms}")
-    bodies = run.bodies["m"]
-    start = march._y1[bodies.position_at : bodies.position_at + 3 * bodies.count].reshape(-1, 3)
-    start *= 100
-    y, _ = march.advance(1.0)
-    found = y[bodies.position_at : bodies.position_at + 3 * bodies.count].reshape(-1, 3)
-    assert march.statistics.rejected <= 1
-    assert march._settings[newton_kernels.FACTORIZATIONS] <= 400  # 742 before updates were searched
-    assert np.ptp(found, axis=0).max() < 10
+    for times in (99, 99.5, 100, 100.5, 101):  # rounding decides whether it stays crumpled, in which steps are harder
+        run, march = march_of(tmp_path, script, "implicit_euler: {step: 10 ms}")
+        bodies = run.bodies["m"]
+        start = march._y1[bodies.position_at : bodies.position_at + 3 * bodies.count].reshape(-1, 3)
+        start *= times
+        march.advance(0.06)
+        assert march._settings[newton_kernels.FACTORIZATIONS] <= 300
+        y, _ = march.advance(1.0)
+        found = y[bodies.position_at : bodies.position_at + 3 * bodies.count].reshape(-1, 3)
+        assert march.statistics.rejected <= 1
+        assert np.ptp(found, axis=0).max() < 10
 
 
 @pytest.mark.parametrize(

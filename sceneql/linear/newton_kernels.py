@@ -57,8 +57,7 @@ UNSEEN = 0.05
 TINY = 0.01
 """Update, in units of the tolerance, below which a single one may end the iteration."""
 LOADED = 1e-3
-"""Part by which loads of friction may differ from those that the stage was solved with; above it, solutions of the
-stage may be loose (newton_search_kernels.LOOSE), for one with other loads follows."""
+"""Part by which loads of friction may differ from those that the stage was solved with."""
 MOST_TURNS = 8
 """Largest number of solutions of a stage, each with the loads of the one before (Li et al. 2020, 5.5)."""
 NOISE = 1e-4

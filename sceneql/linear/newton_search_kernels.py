@@ -70,7 +70,7 @@ TRUE_AFTER, TRUE_AFTER_APART = 3, 1
 RARELY = 8
 ENOUGH = 1e-4
 """Part of the fall that the slope predicts which a step must bring (Armijo)."""
-EASY = 2
+EASY = 4
 """Updates up to which a search where surfaces are kept apart was none: the next stage begins plainly, and may keep its
 factors through free flight."""
 SHORTEST = 1e-10
@@ -85,7 +85,7 @@ ULPS, UNTOLD = 1.0 + 4e-16, 100.0
 LESS = 0.25
 """Square of the part to which an update must bring down the residual where the potential tells nothing of it."""
 LOOSE = 3e-2
-"""Last update, over the largest, with which a solution ends whose loads of friction are taken anew behind it."""
+"""Last update, over the largest with the same loads of friction, from which on these are taken anew."""
 UNMOVED = 1e-12
 """Part of an update that a limit allows, below which nothing can move."""
 
@@ -184,7 +184,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
     slow = failing = since = 0
     patience, slowed = (TRUE_AFTER_APART, SLOWED_APART) if has_limit else (TRUE_AFTER, SLOWED)
     before = before_mean = first = 0.0
-    loads_change = floats[channels.STALE] > LOADED
+    rubs = floats[channels.STALE] > LOADED
     for update in range(MOST_APART if has_limit else MOST):
         while stale:
             floats[channels.NEWTON] = a * a
@@ -265,7 +265,6 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             change[k] *= part
         # The tests of convergence are those of newton_kernels.newton.
         size = largest(change, y0, y, memory)
-        first = max(first, size) if size < math.inf else first
         mean = norm(change, y0, y, memory) if size < math.inf else math.inf
         contraction = max(UNSEEN, memory[CONTRACTION])
         if part < 1.0 or not size < math.inf:
@@ -274,19 +273,26 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         elif since > 0:
             contraction = size / before if before > 0.0 else 0.0
             memory[CONTRACTION] = max(contraction, 1e-3)
+        first = max(first, size) if size < math.inf else first
         if part == 1.0 and size < math.inf:
             done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
             done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
             done = done or (since > 0 and max(size, before) <= noise)
-            if since > 0 and loads_change:
-                done = done or (contraction < 1.0 and size * contraction <= LOOSE * first * (1.0 - contraction))
             if since > 0 and size <= memory[SHARE]:
                 done = done or mean * mean <= memory[SHARE] * (before_mean - mean)
+            loose = contraction < 1.0 and size * contraction <= LOOSE * first * (1.0 - contraction)
+            if rubs and since > 0 and (done or loose) and value <= lowest + rounding:
+                # Loads of friction follow the state, before the solution with those of before is exact.
+                floats[channels.LAGS] += 1.0
+                floats[channels.STALE] = first = 0.0
+                remain(functions, t, a, base, y, residual, plan, floats, ints)
+                rubs = floats[channels.STALE] > LOADED
+                done = False
             if done:
                 memory[FACTORED] = a
                 memory[POSITIVE] = memory[CAREFUL] = 1.0 if positive else 0.0
-                if has_limit and update < EASY:
-                    memory[CAREFUL] = 0.0
+                if has_limit:
+                    memory[CAREFUL] = 0.0 if update < EASY else 1.0
                 return True
             since += 1
         before, before_mean = size, mean

@@ -11,7 +11,8 @@ arrays of scratch; the Jacobian; the store of the stage plan.
 import math
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.linear.newton_kernels import FACTORED, MEMORY, newton, norm
+from sceneql.compiled.pointers_kernels import AT_LIMIT
+from sceneql.linear.newton_kernels import CAREFUL, FACTORED, MEMORY, newton, norm
 from sceneql.linear.stage_kernels import solve_stage
 from sceneql.system.signatures_kernels import DENSE, STEP
 
@@ -52,11 +53,17 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     if first == 1 or numbers[STIFFLY_ACCURATE] == 1 or settings[FACTORED] == 0.0:
         for k in range(n):
             slope[k] = rate0[k]
+    # Where skins touch the guess is the state before, in which what sticks is at rest: accelerations would move it.
+    touches = functions[AT_LIMIT] != 0 and settings[CAREFUL] > 0.0
+    if touches:
+        for k in range(n):
+            y1[k] = y0[k]
     for i in range(first, stages):
         add_slopes(settings, row, i, h, y0, work, base)
         row += i
-        for k in range(n):
-            y1[k] = base[k] + a * slope[k]
+        if not touches:
+            for k in range(n):
+                y1[k] = base[k] + a * slope[k]
         if not newton(
             functions, t + settings[c + i] * h, a, base, y0, y1, scratch, jacobian, store, scales,
             settings, plan, floats, ints,

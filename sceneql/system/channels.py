@@ -37,7 +37,7 @@ GROWS: not 0 where slopes have no place in the Jacobian yet (Assembly.grows): Ne
 repeats the step after the island has been laid out anew.
 
 LAGS: a counter. Numbers that are constant while the equations of a stage are solved, as the normal loads in a friction
-potential, are evaluated anew from the state in BEFORE when it changes. STALE: the largest relative change of such
+potential, are evaluated anew from the state in AFTER when it changes. STALE: the largest relative change of such
 numbers at that evaluation; 1 where a stage has begun.
 
 STATIC: RESTING in a march of static equilibria: prescribed motions then have neither velocity nor acceleration.

@@ -110,7 +110,8 @@ def lag(n, floats, ints):
     if floats[first] == floats[channels.LAGS]:
         return
     floats[first] = floats[channels.LAGS]
-    start = floats[floats.size - channels.BEFORE * n : floats.size - channels.BEFORE * n + n]
+    start = floats[floats.size - channels.AFTER * n : floats.size - channels.AFTER * n + n]
+    anew = floats[first + 1] != floats[channels.STAGES]
     total = changed = 0.0
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
         x, y, z = place(start, floats, ints, p)
@@ -119,9 +120,10 @@ def lag(n, floats, ints):
             d, a, b, c = distance(floats, ints, p, j, x, y, z, gap)
             pressed = load(floats, ints, p, d) if 0.0 < d < gap else 0.0
             total, changed = total + pressed, changed + abs(pressed - floats[at])
+            begins = anew or floats[at] == 0.0
             floats[at] = pressed
             floats[at + 1], floats[at + 2], floats[at + 3] = a, b, c
-            if pressed > 0.0:
+            if pressed > 0.0 and begins:
                 u, v, w = sliding(start, floats, ints, p, j, a, b, c)
                 k = at + layout.HELD
                 floats[k], floats[k + 1], floats[k + 2] = direction(u, v, w, slip)

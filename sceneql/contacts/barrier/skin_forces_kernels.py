@@ -133,8 +133,8 @@ def force(t, y, rate, floats, ints):
             keep_all(y, floats, ints)
         elif floats[memory + layout.LAGS] != floats[channels.LAGS]:
             floats[memory + layout.LAGS] = floats[channels.LAGS]
-            before = floats.size - channels.BEFORE * y.size
-            keep_all(floats[before : before + y.size], floats, ints)
+            after = floats.size - channels.AFTER * y.size
+            keep_all(floats[after : after + y.size], floats, ints)
     if not known(y, floats, ints):
         rate[ints[vertex(ints, 0) + layout.VELOCITY]] = math.nan
         return

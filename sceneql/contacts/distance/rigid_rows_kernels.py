@@ -104,9 +104,7 @@ def add_points(
         elif restitution > 0.0 and gap + h * will < 0.0:
             was = speed_along(before, a, b, rx, ry, rz, sx, sy, sz, nx, ny, nz)
             if was < 0.0 and -was > BOUNCES * abs(will - was):
-                # As it goes on by this velocity for the whole step, its forces take from it what they give the body
-                # in height: so no bounce makes energy.
-                given = min(given, restitution * was - (will - was))
+                given = restitution * was
         where[to + AT_GIVEN] = given
         for c in range(3):
             where[to + AT_LED + c] = 0.0

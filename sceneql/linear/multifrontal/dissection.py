@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from sceneql.island.rising import rising
 from sceneql.linear.multifrontal.ordering import postorder
+from sceneql.linear.multifrontal.separators import divide
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -33,7 +34,11 @@ def dissected(graph: Any, points: Floats) -> tuple[list[NDArray[int64]], list[in
     parent = [-1]
     start = np.repeat(np.arange(n, dtype=np.int64), np.diff(graph.indptr))
     ends = graph.indices.astype(np.int64)
-    open_blocks = np.array([n > LEAF])
+    divide(block, parent, start, ends, points)
+    whole = block[start] == block[ends]
+    start, ends = start[whole], ends[whole]
+    open_blocks = np.bincount(block, minlength=len(parent)) > LEAF
+    open_blocks[parent[1:]] = False
     while open_blocks.any():
         right = _halves(block, open_blocks, points)
         crossing = np.flatnonzero((right[start] == 0) & (right[ends] == 1) & (block[start] == block[ends]))

@@ -29,7 +29,7 @@ HOPEFUL = 1e-7
 ORBITS = 1e-10
 """Tolerance up to which order 15 takes less time on orbits, with its own tolerance IN_ORBITS and errors < 1e-12."""
 IN_ORBITS = 1e-6
-APART, LEFT = 1.0 / 480.0, 1e-6
+APART, LEFT = 1.0 / 480.0, 1e-5
 """Step [s] of tr_bdf2 with barriers, and relative residual of Newton's method in it. A bouncing soft ball then loses
 5 % of its energy; with bdf2 in steps of twice that, which take as long, it loses 40 %."""
 MANY = 6000
