@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, SeenFrame
+    from sceneql.frame import SeenFrame
 
 
 DOUBTED = 0.01
@@ -65,7 +65,15 @@ def draw(
     with_waves = lender(lambda: Waves(scene, together and together(), rows, columns, layers))
 
     def gather(start: int, stop: int) -> None:
-        out = buffers.reached, buffers.busy, buffers.mirrored, buffers.records, buffers.visibility, hard, buffers.radiance
+        out = (
+            buffers.reached,
+            buffers.busy,
+            buffers.mirrored,
+            buffers.records,
+            buffers.visibility,
+            hard,
+            buffers.radiance,
+        )
         counts.append(with_waves(lambda w: w.gather(start, stop, *out)))
 
     def refine(start: int, stop: int, *of_layer: Any) -> None:

@@ -73,7 +73,7 @@ def roughness(records, means, columns, x, y, column):
 
 @part
 def share_of_light(scene, scratch, asked, record, l, number):
-    """Visible share of light l by OWN / 2 samples, or what is enough, of the net of the sky, those of pixel ``number``."""
+    """Visible share of light l by at most OWN / 2 samples of the net of the sky, those of pixel ``number``."""
     total, samples = 0.0, enough(record, OWN // 2)
     for k in range(samples):
         total += light_sample(scene, scratch, asked, record, l, (number * samples + k) % SKY_COUNT)
