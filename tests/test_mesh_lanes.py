@@ -5,10 +5,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from campaigns import examples
+from meshes import tape_of
 from random_tapes import tapes
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.batch_gradient_kernels import differentiate
 from sceneql.field.tape.batch_kernels import LANES, evaluate
+from sceneql.field.tape.curvature_kernels import curvature
 from sceneql.field.tape.simplify_kernels import simplify
 from sceneql.field.tape.steepness_kernels import steepness
 from sceneql.field.tape.tape_ops import WHOLE
@@ -65,3 +67,42 @@ def test_steepness_bounds_how_fast_any_tape_changes(tape, place, seed):
     f = [field_values(tape, end) for end in ends]
     most = (np.abs(ends[1] - ends[0]) * bounds).sum(axis=1)
     assert (np.abs(f[1] - f[0]) <= most * (1 + 1e-9) + 1e-9 * (1 + np.abs(f[0]))).all()
+
+
+@settings(max_examples=examples(300))
+@given(tape=tapes(), place=boxes(), seed=st.integers(0, 9))
+def test_curvature_bounds_how_fast_the_slope_of_any_tape_changes(tape, place, seed):
+    low, high = place
+    room, second = scratch(tape), np.zeros((len(tape.code), 6))
+    sides = [float(c) for pair in zip(low, high, strict=True) for c in pair]
+    if box(*program(tape), room, *sides)[2] != WHOLE or not np.isfinite(steepness(*program(tape), room)).all():
+        return
+    if not curvature(tape.code, room, second):
+        return
+    rng = np.random.default_rng(seed)
+    for axis in range(3):
+        first, last = rng.uniform(low, high, (2, 40, 3))
+        last[:, [k for k in range(3) if k != axis]] = first[:, [k for k in range(3) if k != axis]]
+        turned = (field_gradients(tape, last) - field_gradients(tape, first))[:, axis]
+        along = last[:, axis] - first[:, axis]
+        bounds = np.sort(along[:, None] * second[-1, 2 * axis : 2 * axis + 2], axis=1)
+        slack = 1e-9 * (1 + np.abs(field_gradients(tape, first)[:, axis]) + np.abs(bounds).max(axis=1))
+        assert (bounds[:, 0] - slack <= turned).all()
+        assert (turned <= bounds[:, 1] + slack).all()
+
+
+def test_curvature_is_sharp_where_terms_are_of_one_variable():
+    tape = tape_of("x^4 - 5*x^2 + exp(y)/(2 + z) + sqrt(1 + z) + log(x)*cos(y) + x^2.5")
+    room, second = scratch(tape), np.zeros((len(tape.code), 6))
+    x, y, z, h = 1.3, 0.4, 0.7, 1e-6
+    assert box(*program(tape), room, x - h, x + h, y - h, y + h, z - h, z + h)[2] == WHOLE
+    assert np.isfinite(steepness(*program(tape), room)).all()
+    assert curvature(tape.code, room, second)
+    exact = (
+        12 * x**2 - 10 - np.cos(y) / x**2 + 3.75 * x**0.5,
+        np.exp(y) / (2 + z) - np.log(x) * np.cos(y),
+        2 * np.exp(y) / (2 + z) ** 3 - 0.25 * (1 + z) ** -1.5,
+    )
+    for axis, value in enumerate(exact):
+        least, most = second[-1, 2 * axis : 2 * axis + 2]
+        assert least <= value <= most < least + 1e-3

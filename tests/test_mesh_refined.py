@@ -30,6 +30,12 @@ def test_resolved_shapes_hide_next_to_nothing():
     assert unresolved(tape_of(BALL), (-1.1,) * 3, (1.1,) * 3, 0.05).cells == 0
 
 
+def test_of_a_smooth_solid_nothing_is_left_unresolved_but_what_is_there():
+    doubt = unresolved(tape_of(TANGLECUBE), (-3.0,) * 3, (3.0,) * 3, 6 / 64)
+    assert doubt.cells < 100
+    assert doubt.volume < 2e-3
+
+
 def test_what_passes_between_the_samples_is_told():
     drop = "min(sqrt(x^2 + y^2 + z^2) - 0.5, sqrt((x - 0.83)^2 + (y - 0.04)^2 + (z - 0.03)^2) - 0.01)"
     with_drop = unresolved(tape_of(drop), (-1.0,) * 3, (1.0,) * 3, 0.125)

@@ -79,11 +79,12 @@ def test_rims_of_cones_are_cut_by_fine_cells_and_kept_by_flips():
 
 
 def test_cells_that_hide_nothing_are_not_cut():
-    text = "0.3 - exp(-3*((x-0.5)^2 + y^2 + z^2)) - exp(-3*((x+0.5)^2 + y^2 + z^2))"
-    box = tape_of(text), (-1.6,) * 3, (1.6,) * 3, 3.2 / 64
+    # Second derivatives of angles are not known.
+    text = "0.3 - exp(-3*((x-0.5)^2 + y^2 + z^2)) - exp(-3*((x+0.5)^2 + y^2 + z^2)) + 0.05*atan2(z, x + 3)"
+    box = tape_of(text), (-1.6,) * 3, (1.6,) * 3, 3.2 / 48
     doubt = unresolved(*box)
     assert doubt.cells > 0
-    found, left = cut_finer(text, 1.6, 64)
+    found, left = cut_finer(text, 1.6, 48)
     assert len(found.triangles) == len(polygonise(*box).triangles)
     assert left.volume <= doubt.volume
 

@@ -120,9 +120,14 @@ def by_field(kind: Object, name: str, place: Floats, moment: Moment) -> Iterable
 
     if type(kind).implicit is Object.implicit:
         return kind.lower(name, place, moment)
-    build = TapeBuilder()
-    kind.implicit(build, build.x, build.y, build.z, moment)  # raises where a part has no inside
-    return traced(kind, name, place, moment)
+    found: list[frame.Shape] = []
+    try:
+        found += traced(kind, name, place, moment)
+    finally:
+        if not found:
+            build = TapeBuilder()
+            kind.implicit(build, build.x, build.y, build.z, moment)  # raises first where a part has no inside
+    return found
 
 
 def told_by_numbers(low: Floats, high: Floats) -> None:

@@ -4,7 +4,8 @@ Run it as ``python tests/bench/bench_implicit.py [--tape | --threads] [SCENE...]
 pixels, a ray each, with one hard sun, in which the thing turns: processor time of a frame on one thread from the script
 to the PNG file, start and compilation apart, by its stages. Where POV-Ray is installed, the processor time of a whole
 run of it that writes a PNG file stands beside: of the same picture, without light that surfaces reflect onto one
-another (`diffuse_bounces: 0`). With that light, as films are by default, is the last figure.
+another (`diffuse_bounces: 0`). The figure with that light, as films are by default, follows, and last that of the same
+scene with an area light, a sky and reflections: things are glossy over a matte floor, and edges have 8 rays.
 
 The second column is that of a kernel of the bench alone: one ray a pixel, and a shadow ray where the light is faced;
 beside it stands the drawing of the film's frames alone, least of rounds, and its bar: twice the kernel and 12 ms.
@@ -37,7 +38,7 @@ from typing import Any
 
 import numpy as np
 from bench_polygonise import ELSEWHERE, SCENES, quoted, register, scene_tape
-from implicit_films import DRAW, film, like_for_like, scripts
+from implicit_films import DRAW, film, like_for_like, scripts, softly
 from implicit_films import FRAMES as FILM
 from implicit_threads import gains
 
@@ -154,15 +155,15 @@ class Picture:
         return int((met != (self.depth.ravel() >= 0.0)).sum())
 
 
-def milliseconds(draw: Callable[[], object], threads: int) -> float:
+def milliseconds(draw: Callable[[], object], threads: int, clock: Callable[[], float] = time.perf_counter) -> float:
     """Time of a picture among FRAMES in a row, as in a film: the median. POV-Ray has run before, and left other data in
     the processor's caches, and threads that slept are woken on one core and spread later."""
     os.environ["SCENEQL_THREADS"] = str(threads)
     times = []
     for _ in range(FRAMES):
-        start = time.perf_counter()
+        start = clock()
         draw()
-        times.append(1e3 * (time.perf_counter() - start))
+        times.append(1e3 * (clock() - start))
     return statistics.median(times)
 
 
@@ -248,7 +249,7 @@ def films(names: list[str]) -> dict[str, float]:
     drawn: dict[str, float] = {}
     for name, text in scripts({name: SCENES[name] for name in SCENES if name in names}):
         scene = name.split(" moving")[0]
-        same = like_for_like(text)
+        same, soft = like_for_like(text), softly(text)
         film(same)  # compiles
 
         def alone(name: str = name, same: str = same) -> float:
@@ -256,14 +257,17 @@ def films(names: list[str]) -> dict[str, float]:
             drawn[name] = min(drawn.get(name, np.inf), found[DRAW])
             return found["all"]
 
+        film(soft)
         peer = (lambda scene=scene: povray(scene, 1)[1]) if scene in PEERS and shutil.which("povray") else None
         works = {"default": lambda text=text: film(text)["all"], "same": alone}
+        works["soft"] = lambda text=soft: film(text)["all"]
         took = medians(works | ({"peer": peer} if peer else {}), TURNS)
         line = f"{name:15} {took['same']:7.1f} ms of one processor a frame, {drawn[name]:.1f} of these {DRAW}"
         if peer:
             line += f", POV-Ray {took['peer']:.0f} ms, ratio {took['peer'] / took['same']:.1f}"
-        print(f"{line}; {took['default']:.1f} ms with light of surfaces", flush=True)
-        for way, script in (("", same), ("with light of surfaces: ", text)):
+        line += f"; {took['default']:.1f} ms with light of surfaces"
+        print(f"{line}, {took['soft']:.1f} ms softly lit, glossy over a floor", flush=True)
+        for way, script in (("", same), ("with light of surfaces: ", text), ("softly lit: ", soft)):
             stages = film(script, by_stages=True)
             print(
                 f"    {way}{', '.join(f'{stage} {ms:.1f}' for stage, ms in stages.items() if stage != 'all')}",
@@ -304,7 +308,8 @@ def main(names: list[str]) -> None:
         line = f"{name:13} {one:6.1f} / {two:5.1f} ms (1 / 2 threads), {spent / rays:.1f} enclosures a pixel,"
         line += f" {certified} rays certified, {undecided} undecided, {picture.wrong()} wrong"
         if name in drawn:
-            line += f"; {DRAW} {drawn[name]:.1f} ms of one processor (bar {2.0 * one + MORE:.1f})"
+            kernel = milliseconds(picture.draw, 1, time.process_time)
+            line += f"; {DRAW} {drawn[name]:.1f} ms of one processor (bar {2.0 * kernel + MORE:.1f})"
         if name in BARS:
             peer = (took["peer 1"], took["peer 2"]) if here else POV_ELSEWHERE[name]
             line += f"; POV-Ray {'here' if here else 'elsewhere'} {peer[0]:.0f} / {peer[1]:.0f} ms:"

@@ -60,7 +60,11 @@ def face_sides(coarse: Level, kept: NDArray[np.bool_], numbers: Numbering, chose
     """The sides of the ``kept`` coarse triangles on faces of the refined groups; ``chosen``: sorted keys of these."""
     import numpy as np
 
+    # Only groups beside a refined one have sides on such faces.
+    strides = np.concatenate([numbers.strides, -numbers.strides])
+    beside = np.unique((chosen[:, None] + strides).ravel())
     rows = np.flatnonzero(kept)
+    rows = rows[among(numbers.of(coarse.cells[rows] // group), beside)]
     parts: list[tuple[Keys, ...]] = []
     edges = len(coarse.doubled)
     for turn in range(3):
@@ -81,7 +85,9 @@ def border_curves(fine: Level, parts: int, numbers: Numbering, chosen: Keys, gro
     """The curves along the border of the fine triangles, of which ``parts`` cells fill a coarse cell's side."""
     import numpy as np
 
-    starts, stops = border(fine.triangles)
+    on_group = np.zeros(len(fine.places), dtype=bool)
+    on_group[: len(fine.doubled)] = (fine.doubled % (2 * parts * group) == 0).any(axis=1)
+    starts, stops = border(fine.triangles, on_group)
     first, last = fine.doubled[starts], fine.doubled[stops]
     across = np.argmax((first == last) & (first % (2 * parts) == 0), axis=1)
     middle = (first + last) // 2
@@ -125,12 +131,15 @@ def _coarse(doubled: Keys, parts: int) -> Keys:
     return np.where(along, 2 * (doubled // (2 * parts)) + 1, doubled // parts)
 
 
-def border(triangles: Ints) -> tuple[Keys, Keys]:
-    """(starts, stops) vertices of the sides with a triangle on one side only, reversed as the missing one has them."""
+def border(triangles: Ints, at: NDArray[np.bool_]) -> tuple[Keys, Keys]:
+    """(starts, stops) vertices of the sides with a triangle on one side only, reversed as the missing one has them.
+
+    Only sides with both ends in the mask ``at`` (v,) of vertices are looked at.
+    """
     import numpy as np
 
-    starts = triangles[:, [0, 1, 2]].ravel().astype(np.int64)
-    stops = triangles[:, [1, 2, 0]].ravel().astype(np.int64)
-    size = int(triangles.max(initial=0)) + 1
-    single = ~np.isin(stops * size + starts, starts * size + stops, assume_unique=True)
+    some = (at[triangles] & at[triangles[:, [1, 2, 0]]]).ravel()
+    starts = triangles.ravel()[some].astype(np.int64)
+    stops = triangles[:, [1, 2, 0]].ravel()[some].astype(np.int64)
+    single = ~np.isin(stops * len(at) + starts, starts * len(at) + stops, assume_unique=True)
     return stops[single], starts[single]

@@ -45,7 +45,8 @@ class Room:
         self.place, self.normal = np.empty((BATCH * EDGES, 3)), np.empty((BATCH * EDGES, 3))
         self.cubes = np.empty((BATCH * BLOCK**3, 2), dtype=np.int32)
         self.local = np.empty(EDGES, dtype=np.int32)
-        self.stack = np.empty((8 * DEEPEST + 8, 4))
+        self.stack = np.empty((8 * DEEPEST + 8, 4), dtype=np.int64)
+        self.second = np.empty((rows, 6))
         self.low, self.fit = np.empty(3), np.empty((15, 3))
 
 

@@ -6,10 +6,11 @@ import numpy as np
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.enclose.interval_kernels import box
 from sceneql.field.tape.batch_kernels import evaluate
+from sceneql.field.tape.curvature_kernels import bulge, curvature
 from sceneql.field.tape.simplify_kernels import simplify
 from sceneql.field.tape.steepness_kernels import steepness, turning
 from sceneql.field.tape.tape_kernels import value
-from sceneql.field.tape.tape_ops import NOWHERE, TAPE, WHOLE
+from sceneql.field.tape.tape_ops import MAX, MIN, NOWHERE, TAPE, WHOLE
 from sceneql.mesh.cubes.cull_kernels import CLEAR, CUT, verdict
 from sceneql.mesh.cubes.extract_kernels import NODES, sample
 from sceneql.mesh.cubes.grid import BLOCK
@@ -18,16 +19,53 @@ SIDE = BLOCK // 2
 """Pairs of cubes along a block."""
 DEEPEST = 2
 """How often a cube may be halved before it is left unresolved."""
+WIDER = 1.0 + 1.0e-12
+"""Factor of a cube's side for its rounding."""
 SHALLOW = 1.0e-12
 """Depth to which f may go to the other side of zero by rounding, where it touches zero."""
 
 
 @inlined
-def proved(code, constants, parts, scratch, x, y, z, half, negative, least):
+def deciding(code, scratch):
+    """The row whose sign is that of the last in the box for which ``box`` left WHOLE in scratch, and no nearer to zero.
+
+    As where the faces that cut a solid are far away: max(f, g) has the sign of f where g < 0.
+    """
+    row = code.shape[0] - 1
+    while code[row, 0] == MAX or code[row, 0] == MIN:
+        left, right = code[row, 1], code[row, 2]
+        if scratch[right, 1] < 0.0 if code[row, 0] == MAX else scratch[right, 0] > 0.0:
+            row = left
+        elif scratch[left, 1] < 0.0 if code[row, 0] == MAX else scratch[left, 0] > 0.0:
+            row = right
+        else:
+            break
+    return row
+
+
+@inlined
+def enough(code, constants, parts, scratch, second, h):
+    """The least f, and the least -f, at the corners of a cube of side ``h`` that prove its inside to have their sign.
+
+    For all such cubes in the box for which ``box`` left WHOLE: by the axes along which f is monotone, or by its second
+    derivatives, which bound how far it lies from what is linear along each axis between the corners.
+    """
+    gx, gy, gz = steepness(code, constants, parts, scratch)
+    if not gx + gy + gz < 1.0e300:
+        return 1.0e300, 1.0e300
+    last = code.shape[0] - 1
+    turn = 0.5 * h * turning(scratch, last) * (1.0 + 1.0e-9)
+    if turn == 0.0 or not curvature(code, scratch, second):
+        return turn, turn
+    below, above = bulge(second, last)
+    return min(turn, h * h * below * (1.0 + 1.0e-9)), min(turn, h * h * above * (1.0 + 1.0e-9))
+
+
+@inlined
+def proved(code, constants, parts, scratch, second, x, y, z, half, negative, least):
     """Whether f is proved to keep its sign in the box of half side ``half`` about a point.
 
-    By its range, by the mean value form, or by ``least``, the least |f| at the box's corners: of a function that is
-    monotone along an axis the least value lies on a face.
+    By its range, by the mean value form, or, as in ``enough``, by ``least``, the least |f| at the box's corners.
     """
     low, high, status = box(
         code, constants, parts, scratch, x - half, x + half, y - half, y + half, z - half, z + half
@@ -43,51 +81,84 @@ def proved(code, constants, parts, scratch, x, y, z, half, negative, least):
         return True
     if status != WHOLE:
         return False
-    gx, gy, gz = steepness(code, constants, parts, scratch)
-    if gx + gy + gz < 1.0e300 and least > half * turning(scratch, code.shape[0] - 1) * (1.0 + 1.0e-9):
+    outer, inner = enough(code, constants, parts, scratch, second, 2.0 * half)
+    if least > (inner if negative else outer):
         return True
+    last = code.shape[0] - 1
+    slope = max(-scratch[last, 2], scratch[last, 3]) + max(-scratch[last, 4], scratch[last, 5])
+    slope += max(-scratch[last, 6], scratch[last, 7])
     f = value(code, constants, parts, scratch, x, y, z)
-    return abs(f) > half * (gx + gy + gz) * (1.0 + 1.0e-9) and (f < 0.0) == negative
+    return outer < 1.0e300 and abs(f) > half * slope * (1.0 + 1.0e-9) and (f < 0.0) == negative
 
 
 @inlined
-def doubtful(code, constants, parts, scratch, x, y, z, half, negative, least, deepest, stack):
-    """Volume [m^3] of the parts of a cube that are not proved to have its corners' sign; |f| there >= ``least``."""
+def nodes_of(code, constants, parts, registers, points, x, y, z, step, nodes):
+    """Values of f at ``nodes`` nodes along each axis from (x, y, z) on, x fastest, into the last of ``registers``."""
+    n = nodes * nodes * nodes
+    for lane in range(n):
+        points[0, lane] = x + lane % nodes * step
+        points[1, lane] = y + lane // nodes % nodes * step
+        points[2, lane] = z + lane // (nodes * nodes) * step
+    evaluate(code, constants, parts, registers, points, n)
+
+
+@inlined
+def doubtful(
+    code, constants, parts, scratch, second, registers, points, x, y, z, h, negative, least, deepest, stack,
+):  # fmt: skip
+    """Volume [m^3] of the parts of the cube of side ``h`` from (x, y, z) on that are not proved to have its corners'
+    sign; |f| there >= ``least``.
+    """
+    if proved(
+        code, constants, parts, scratch, second, x + 0.5 * h, y + 0.5 * h, z + 0.5 * h, 0.5 * h * WIDER, negative, least
+    ):
+        return 0.0
+    if deepest == 0:
+        return h * h * h
     volume = 0.0
-    stack[0, 0] = x
-    stack[0, 1] = y
-    stack[0, 2] = z
-    stack[0, 3] = 0.0
+    nodes = (1 << deepest) + 1
+    step = h / (nodes - 1)
+    nodes_of(code, constants, parts, registers, points, x, y, z, step, nodes)
+    values = registers[code.shape[0] - 1]
+    stack[0] = 0
     top = 1
     while top > 0:
         top -= 1
-        x = stack[top, 0]
-        y = stack[top, 1]
-        z = stack[top, 2]
-        depth = stack[top, 3]
-        side = half * 0.5**depth
-        if proved(code, constants, parts, scratch, x, y, z, side, negative, least if depth == 0.0 else 0.0):
-            continue
-        if depth == deepest:
-            volume += 8.0 * side * side * side
-            continue
-        for k in range(8):
-            stack[top, 0] = x + (0.5 * side if k & 1 else -0.5 * side)
-            stack[top, 1] = y + (0.5 * side if k & 2 else -0.5 * side)
-            stack[top, 2] = z + (0.5 * side if k & 4 else -0.5 * side)
-            stack[top, 3] = depth + 1.0
+        i, j, k, depth = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
+        wide = 1 << (deepest - depth)
+        side = step * wide
+        if depth > 0:
+            some = of_corners(values, nodes, i, j, k, wide)
+            if proved(
+                code, constants, parts, scratch, second,
+                x + (i + 0.5 * wide) * step, y + (j + 0.5 * wide) * step, z + (k + 0.5 * wide) * step,
+                0.5 * side * WIDER, negative, some[1] if some[0] == negative and some[1] < np.inf else 0.0,
+            ):  # fmt: skip
+                continue
+            if depth == deepest:
+                volume += side * side * side
+                continue
+        wide //= 2
+        for n in range(8):
+            stack[top, 0] = i + (wide if n & 1 else 0)
+            stack[top, 1] = j + (wide if n & 2 else 0)
+            stack[top, 2] = k + (wide if n & 4 else 0)
+            stack[top, 3] = depth + 1
             top += 1
     return volume
 
 
 @inlined
-def of_corners(values, x, y, z):
-    """(whether f < 0 at a cube's first corner, least |f| at its corners); infinite where their signs differ."""
-    p = (z * NODES + y) * NODES + x
+def of_corners(values, nodes, x, y, z, wide):
+    """(whether f < 0 at a cube's first corner, least |f| at its corners); infinite where their signs differ.
+
+    Of the cube of ``wide`` steps from node (x, y, z) on, among ``nodes`` along each axis.
+    """
+    p = (z * nodes + y) * nodes + x
     negative = values[p] < 0.0
     least = np.inf
     for c in range(8):
-        v = values[p + (c & 1) + (c >> 1 & 1) * NODES + (c >> 2) * NODES * NODES]
+        v = values[p + ((c & 1) + (c >> 1 & 1) * nodes + (c >> 2) * nodes * nodes) * wide]
         if (v < 0.0) != negative:
             return negative, np.inf
         least = min(least, abs(v) if v == v else 0.0)
@@ -97,27 +168,22 @@ def of_corners(values, x, y, z):
 @inlined
 def crossed(code, constants, parts, registers, points, x, y, z, step, nodes, negative):
     """Whether f has the other sign at one of ``nodes`` nodes along each axis from (x, y, z) on."""
-    n = nodes * nodes * nodes
-    for lane in range(n):
-        points[0, lane] = x + lane % nodes * step
-        points[1, lane] = y + lane // nodes % nodes * step
-        points[2, lane] = z + lane // (nodes * nodes) * step
-    evaluate(code, constants, parts, registers, points, n)
-    last = code.shape[0] - 1
-    for lane in range(n):
-        if (registers[last, lane] < 0.0) != negative:
+    nodes_of(code, constants, parts, registers, points, x, y, z, step, nodes)
+    values = registers[code.shape[0] - 1]
+    for lane in range(nodes * nodes * nodes):
+        if (values[lane] < 0.0) != negative:
             return True
     return False
 
 
 @lean(
     f"int64({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int64, int32[:, ::1], float64[::1],"
-    " boolean[::1])"
+    " float64[::1], int64[:, ::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int64, int32[:, ::1],"
+    " float64[::1], boolean[::1])"
 )
 def hidden(
-    code, constants, parts, scratch, short, near, registers, points, values, stack, grid, blocks, deepest, finer,
-    cells, rest, seen,
+    code, constants, parts, scratch, short, near, registers, points, values, stack, second, grid, blocks,
+    deepest, finer, cells, rest, seen,
 ):  # fmt: skip
     """Find the cubes of some blocks with corners of one sign, but no proof for their inside; returns their number.
 
@@ -136,37 +202,37 @@ def hidden(
         rows, used = simplify(code, parts, scratch, at == CUT, short[1], near[1])
         code2 = short[1][:rows]
         parts2 = near[1][:used]
-        far = 1.0e300
+        outer = inner = 1.0e300
         if verdict(code2, constants, parts2, scratch, grid, i, j, k, BLOCK) == CUT:
-            gx, gy, gz = steepness(code2, constants, parts2, scratch)
-            if gx + gy + gz < 1.0e300:
-                far = 0.5 * h * turning(scratch, rows - 1) * (1.0 + 1.0e-9)
+            code2 = code2[: deciding(code2, scratch) + 1]
+            outer, inner = enough(code2, constants, parts2, scratch, second, h)
         sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
         for part in range(SIDE**3):
             x0, y0, z0 = 2 * (part % SIDE), 2 * (part // SIDE % SIDE), 2 * (part // SIDE**2)
             some = False
             for n in range(8):
-                negative, least = of_corners(values, x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2))
-                some = some or least <= far
+                negative, least = of_corners(values, NODES, x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2), 1)
+                some = some or least <= (inner if negative else outer)
             if not some:
                 continue
             # Of eight cubes at once: most are proved by what is known of all.
             x, y, z = grid[0] + (i + x0) * h, grid[1] + (j + y0) * h, grid[2] + (k + z0) * h
             low, high, status = box(code2, constants, parts2, scratch, x, x + 2.0 * h, y, y + 2.0 * h, z, z + 2.0 * h)
-            bound = far
+            outside, inside = outer, inner
             if status == WHOLE:
-                gx, gy, gz = steepness(code2, constants, parts2, scratch)
-                if gx + gy + gz < 1.0e300:
-                    bound = min(far, 0.5 * h * turning(scratch, rows - 1) * (1.0 + 1.0e-9))
+                outside, inside = enough(code2, constants, parts2, scratch, second, h)
+                outside, inside = min(outside, outer), min(inside, inner)
             for n in range(8):
                 x, y, z = x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2)
-                negative, least = of_corners(values, x, y, z)
-                if least > bound or (status == WHOLE and high < SHALLOW if negative else low >= -SHALLOW):
+                negative, least = of_corners(values, NODES, x, y, z, 1)
+                if least > (inside if negative else outside) or (
+                    status == WHOLE and high < SHALLOW if negative else low >= -SHALLOW
+                ):
                     continue
                 rest[count] = doubtful(
-                    code2, constants, parts2, scratch,
-                    grid[0] + (i + x + 0.5) * h, grid[1] + (j + y + 0.5) * h, grid[2] + (k + z + 0.5) * h,
-                    0.5 * h * (1.0 + 1.0e-12), negative, least, deepest, stack,
+                    code2, constants, parts2, scratch, second, registers, points,
+                    grid[0] + (i + x) * h, grid[1] + (j + y) * h, grid[2] + (k + z) * h, h,
+                    negative, least, deepest, stack,
                 )  # fmt: skip
                 if rest[count] > 0.0:
                     cells[count, 0] = i + x

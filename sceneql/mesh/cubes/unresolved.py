@@ -75,7 +75,7 @@ def hidden_in(shop: GridExtraction, blocks: Ints, deepest: int = DEEPEST, finer:
         cells, rest, seen = np.empty((most, 3), dtype=np.int32), np.empty(most), np.empty(most, dtype=bool)
         n = hidden(
             *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, r.stack,
-            shop.grid.numbers, mine, deepest, finer, cells, rest, seen,
+            r.second, shop.grid.numbers, mine, deepest, finer, cells, rest, seen,
         )  # fmt: skip
         found[batch] = cells[:n].copy(), rest[:n].copy(), seen[:n].copy()
 

@@ -31,7 +31,7 @@ def faced_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Ints:
 
     found = polygons.triangles.astype(np.int64)
     for _ in range(ROUNDS):
-        turned = doubtful[agreement(tape, polygons, found[doubtful]) < 0.0]
+        turned = doubtful[inward(tape, polygons, found[doubtful])]
         near = np.zeros(len(polygons.vertices), dtype=bool)
         near[found[turned]] = True
         around = np.flatnonzero(touched(near, found))
@@ -69,14 +69,33 @@ def agreement(tape: Tape, polygons: Polygons, triangles: NDArray[np.integer]) ->
     """
     import numpy as np
 
+    least = _by_vertices(polygons, triangles)
+    found: Floats = np.maximum(facing(tape, polygons.vertices[triangles]), least)
+    return found
+
+
+def inward(tape: Tape, polygons: Polygons, triangles: NDArray[np.integer]) -> NDArray[np.bool_]:
+    """(t,) whether the ``agreement`` of triangles (t, 3) is below 0; the tape is asked only where normals do not tell.
+
+    Their normals tell of most that they face outward.
+    """
+    found: NDArray[np.bool_] = _by_vertices(polygons, triangles) < 0.0
+    found[found] = facing(tape, polygons.vertices[triangles[found]]) < 0.0
+    return found
+
+
+def _by_vertices(polygons: Polygons, triangles: NDArray[np.integer]) -> Floats:
+    """(t,) the least cosine between normals of triangles (t, 3) and of their vertices; -1 where one has none."""
+    import numpy as np
+
     corners, slopes = polygons.vertices[triangles], polygons.normals[triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     sizes = np.linalg.norm(across, axis=1)[:, None]
     dots = np.einsum("tj,tkj->tk", across, slopes)
     cosines = np.divide(dots, sizes, out=np.zeros_like(dots), where=sizes > 0.0)
     cosines[(slopes == 0.0).all(axis=2)] = -1.0
-    found: Floats = np.maximum(facing(tape, corners), cosines.min(axis=1, initial=1.0))
-    return found
+    least: Floats = cosines.min(axis=1, initial=1.0)
+    return least
 
 
 def _flipped(tape: Tape, polygons: Polygons, triangles: Rows, turned: Rows) -> dict[int, tuple[int, int, int]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from sceneql.field.tape.tape_solid import field_values, many_gradients
 from sceneql.mesh.polygons import Polygons, touched
-from sceneql.mesh.repair.flips import agreement, faced_outward, facing
+from sceneql.mesh.repair.flips import faced_outward, facing, inward
 
 if TYPE_CHECKING:
     import numpy as np
@@ -62,9 +62,9 @@ def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
     doubtful = np.flatnonzero(touched(near, triangles))
     near[triangles[doubtful]] = True
     stars = Stars(triangles[touched(near, triangles)])
-    cosines, still = agreement(tape, found, triangles[doubtful]), set[int]()
+    facing_in, still = inward(tape, found, triangles[doubtful]), set[int]()
     for _ in range(ROUNDS):
-        turned = doubtful[cosines < 0.0]
+        turned = doubtful[facing_in]
         if len(turned) > MOST:
             break
         corners = np.unique(triangles[turned])
@@ -82,7 +82,7 @@ def turned_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Polygons:
         near[:] = False
         near[moved] = True
         stale = touched(near, triangles[doubtful])
-        cosines[stale] = agreement(tape, found, triangles[doubtful[stale]])
+        facing_in[stale] = inward(tape, found, triangles[doubtful[stale]])
     return found
 
 
