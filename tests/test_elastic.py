@@ -302,3 +302,12 @@ def test_what_bounds_steps_is_told_with_its_place(tmp_path):
         told = solid.kind.remark(solid.model_state(solid.places))
         assert ("explicit methods solve" in told) == matrix
         assert float(told.partition("an element at (")[2].partition(",")[0]) > 0.4
+
+
+@pytest.mark.parametrize("element", ["p1", "p2", "p2_mean"])
+def test_by_default_the_nodes_of_all_elements_are_as_dense(tmp_path, element):
+    script = "objects: {shape: {box: {size: 1 1 1 m, hidden: yes}}}\nmodels: {body: {elastic: {of: shape, "
+    script += f"element: {element}, law: {{neo_hookean: {{modulus: 20 kPa, poisson: 0.4}}}}}}}}}}\n"
+    path = tmp_path / "scene.yaml"
+    path.write_text(script)
+    assert 2000 < Run(load_graph(path, pruned=False)).islands[0].bodies["body"].count < 4000  # p2 had 20,000

@@ -58,6 +58,21 @@ def test_a_rectangle_that_cuts_cells_leaves_the_exact_part_of_each(tmp_path):
     assert mass == pytest.approx(np.broadcast_to(whole, mass.shape) + 2.0 * exact, abs=2.0 * 0.25e-6 * 2)
 
 
+def test_a_rate_asked_for_once_more_and_after_another_is_the_same(tmp_path):
+    air = filled(tmp_path, 10.0, forces=FALLING, boundary=WALLED).at(0.05)
+    march, skin = air.run.march, air.tasks["balloon"].kind.made.membrane
+    y, floats, rates = air.run.state("air").y.copy(), march.floats.copy(), []
+    for shift in (0.0, 0.0, 0.013, 0.0):
+        moved, rate = y.copy(), np.zeros(len(y))
+        moved[skin.position_at : skin.position_at + 3 * skin.count : 3] += shift
+        march.driver.rate(0.05, moved, rate, floats, march.system.ints)
+        rates.append(rate)
+    assert np.abs(rates[0]).max() > 1.0
+    assert (rates[1] == rates[0]).all()
+    assert np.abs(rates[2] - rates[0]).max() > 0.1
+    assert (rates[3] == rates[0]).all()
+
+
 @pytest.mark.parametrize("density", [1000.0, 1.0])
 def test_layers_rest_under_the_exact_pressure_of_what_they_weigh(tmp_path, density):
     air = filled(tmp_path, density, law=SLACK, forces=FALLING, objects=BOTTOM_HALF, boundary=WALLED, end=0.2).at(0.2)

@@ -162,6 +162,56 @@ def test_a_lattice_that_sinks_comes_to_rest_on_the_floor(tmp_path):
     assert np.abs(air.read("velocities", "net")).max() < 2e-3
 
 
+def landing(folder, other, objects="", models="", friction=0.0, end=1.5):
+    """A lattice that sinks in syrup and lands on something."""
+    forces = (
+        "forces: [{immersion: {on: [net], in: air}}, {gravity: {on: [net]}}]\n"
+        f"contacts: {{land: {{collision: {{between: [net, {other}], friction: {friction}}}}}}}\n"
+    )
+    net = block(0.02, 200.0, 0.04, "5, 5, 1")
+    more = {"boundary": "{}", "viscosity": "0.3 Pa*s", "end": end, "cell": "1/16 m"}
+    return netted(folder, net, models + forces, objects, **more)
+
+
+def test_a_lattice_that_lands_on_what_rises_goes_up_with_it(tmp_path):
+    pan = "objects: {pan: {box: {size: 2 0.2 1 m, position: '[0.5 m, 0.1 m/s*time, 0 m]'}}}\n"
+    air = landing(tmp_path, "pan", pan)
+    for time in (0.9, 1.2, 1.5):
+        air.at(time)
+        assert 0.1 * time + 0.1 < air.read("positions", "net")[:, 1].min() < 0.1 * time + 0.1 + 1 / 16
+    assert air.read("velocities", "net")[:, 1] == pytest.approx(0.1, abs=0.01)
+
+
+def test_friction_takes_a_lattice_along_with_what_slides_under_it(tmp_path):
+    pan = "objects: {pan: {box: {size: 4 0.2 1 m, position: '[0.5 m + 0.1 m/s*time, 0 m, 0 m]'}}}\n"
+    speeds = []
+    for friction in (0.0, 1.0):
+        (folder := tmp_path / str(friction)).mkdir()
+        air = landing(folder, "pan", pan, friction=friction).at(1.5)
+        assert 0.1 < air.read("positions", "net")[:, 1].min() < 0.1 + 1 / 16
+        speeds.append(air.read("velocities", "net")[:, 0].mean())
+    assert abs(speeds[0]) < 2e-3
+    assert speeds[1] > 0.05
+
+
+@pytest.mark.parametrize("rigid", [False, True], ids=["mass", "body"])
+def test_what_a_lattice_lands_on_takes_up_its_weight(tmp_path, rigid):
+    objects = "objects: {plate: {box: {size: 0.6 0.2 1 m, position: 0.5 0.2 0 m}}}\n" if rigid else ""
+    body = "{rigid: {of: plate, mass: 5000 kg}}"  # so that it stays about where it is
+    if not rigid:
+        body = "{mass_spring: {masses: {b: {position: 0.5 0.15 0 m, mass: 5000 kg}}, radius: 0.15 m}}"
+    air = landing(tmp_path, "load", objects, f"  load: {body}\n", end=1.2).at(0.8)
+    before = air.read("velocities", "load")[0, 1]
+    air.at(1.2)
+    gained = air.read("velocities", "load")[0, 1] - before
+    weight = 9.81 * (25 * 0.02 - 0.16**2)  # less that of the fluid that the lattice displaces
+    if rigid:  # at rest on it
+        assert gained == pytest.approx(-weight * 0.4 / 5000.0, rel=0.02)
+    else:  # on its way off the ball
+        assert -1.2 * weight * 0.4 / 5000.0 < gained < -0.2 * weight * 0.4 / 5000.0
+    assert air.read("positions", "net")[:, 1].min() > 0.1
+
+
 @pytest.mark.parametrize("cells", [16, 32])
 @pytest.mark.parametrize("count", [33, 65])
 @pytest.mark.parametrize("mass", [0.1, 1e-4])

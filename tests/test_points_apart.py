@@ -74,6 +74,25 @@ def test_rays_that_go_apart_find_what_the_certified_routine_finds(count, at, lea
         assert t[hit] == pytest.approx(roots[hit], abs=1e-8 / speed)
 
 
+@pytest.mark.parametrize(("at", "wide"), [(0.0, 0.1), (0.0, 0.7), (300.0, 0.1)])
+def test_a_beam_of_rays_in_any_order_finds_what_the_certified_routine_finds(at, wide):
+    """Their packets are made of neighbors across the beam, by all points that reach into it."""
+    tape = crowd(3000, at)
+    rng = np.random.default_rng(5)
+    way = np.array([0.48, 0.6, 0.64])
+    across = np.array([[0.8, -0.64, 0.0], [0.0, 0.64, -0.6]])
+    origins = np.array([at, 0.0, 0.0]) - 1.2 * way + rng.uniform(-wide, wide, (256, 2)) @ across
+    origins += rng.uniform(-0.2, 0.2, (256, 1)) * way
+    ways = np.repeat([way], len(origins), axis=0)
+    known, _ = cast(tape, origins, ways, np.zeros(len(origins)), np.full(len(origins), 2.6))
+    for turn in (np.arange(256), rng.permutation(256), np.argsort(origins[:, 0])):
+        status, _, certified = settled(tape, origins[turn], ways, 2.6, True)
+        assert (status == known[turn]).all()
+        assert certified <= 2
+    assert (known == HIT).any()
+    assert wide < 0.5 or (known == MISS).any()
+
+
 @pytest.mark.parametrize("anywhere", [False, True])
 def test_parallel_rays_from_scattered_places_find_what_the_certified_routine_finds(anywhere):
     """Shadow rays of light from around: their bundle reaches thousands of points, each of them a few."""
@@ -109,12 +128,14 @@ def test_a_bundle_of_any_size_is_searched_to_its_last_ray():
 
 @pytest.mark.parametrize("counts", [(129,), (4096, 130), (5000, 300, 150)])
 def test_normals_among_many_points_have_the_bits_of_single_ones(counts):
-    """Of several skeletons in a frame each by its own points."""
+    """Of several skeletons in a frame each by its own points; where these are few, places have them together."""
     solids = tuple(Implicit("", WHITE, crowd(count, least=-0.5), (-2.0,) * 3, (2.0,) * 3) for count in counts)
     packets = Packets(solids, list(range(len(solids))))
     scene, _ = pack(frame(*solids))
     items = scene.ints[layout.ITEMS : layout.ITEMS + 4 * len(solids)].reshape(-1, 4)
-    places = np.random.default_rng(2).uniform(-1.2, 1.2, (600, 3))
+    rng = np.random.default_rng(2)
+    places = rng.uniform(-1.2, 1.2, (600, 3))
+    places[300:] = np.repeat(0.7 * places[:10], 30, axis=0) + rng.uniform(-0.04, 0.04, (300, 3))  # close together
     met, skins = np.zeros((600, 5)), np.zeros((600, 6))
     met[:, 1], met[:, 2:] = np.arange(600) % len(solids), places
     packets.skin(scene, np.arange(600), met, skins)

@@ -206,6 +206,28 @@ def test_no_vertex_passes_a_skin_in_what_a_step_may_change(tmp_path, skins, flow
     assert made[0].encloses(other, one).any()
 
 
+@pytest.mark.parametrize(("skins", "flow"), [(BESIDE, {}), (DEEP, ROOM)], ids=["flat", "deep"])
+def test_what_is_known_of_distances_is_true_after_any_way(tmp_path, skins, flow):
+    scene = Scene(tmp_path, skins, "{between: [egg, other], friction: 0.3}", **flow)
+    known, scale, pushed = scene.run.march.floats.copy(), scene.run.march.system.fields.flow.spacing[0], 0
+    y, rate, shift = scene.run.state("water").y.copy(), np.zeros(len(scene.system.y)), np.zeros(3)
+    for step in range(40):
+        shift[1] = 0.05 * scale * (1 if step < 25 else -2)  # toward one another, then apart
+        for way, places in zip((-1.0, 1.0), scene.skins(y, known)[0], strict=True):
+            places += way * shift
+            places[:, : scene.axes] += shaken(0.01 * scale, step)(places[:, : scene.axes])
+        scene.run.march.driver.rate(0.0, y, rate, known, scene.system.ints)
+        far, unknown = y.copy(), known.copy()
+        for places in scene.skins(far, unknown)[0]:
+            places += shaken(1e7)(places)  # so far that nothing is known any more
+        scene.run.march.driver.rate(0.0, far, rate, unknown, scene.system.ints)
+        scene.run.march.driver.rate(0.0, y, rate, unknown, scene.system.ints)
+        for forces, exact in zip(scene.skins(y, known)[1], scene.skins(y, unknown)[1], strict=True):
+            assert (forces == exact).all()
+        pushed += abs(scene.skins(y, known)[1][0].sum(axis=0)[1]) > 1e-3
+    assert 5 < pushed < 40  # they touched, and not all the time
+
+
 def test_a_skin_touches_itself_but_not_what_was_near_from_the_start(tmp_path):
     bone = {"egg": 'position: 1 0.5 0 m, field: "y^2 + 0.1*(x/0.4)^4 - (0.06 + 1.2*x^2)^2"'}
     both = Scene(tmp_path, bone, "{}", cell="1/40 m"), Scene(tmp_path, bone, None, cell="1/40 m")

@@ -16,13 +16,13 @@ def immerse(flow: Flow, skin: Membrane, peskin: bool, assembly: Assembly) -> Non
 
     ``peskin``: whether Peskin's kernel interpolates and spreads, instead of splines.
     """
-    box, kernels = assembly.floats([*flow.low, *flow.spacing]), KERNELS
+    box, kernels, mode = assembly.floats([*flow.low, *flow.spacing]), KERNELS, -1
     if flow.varying:
-        from sceneql.flows.varying.fluid_layout import MASSES
+        from sceneql.flows.varying.fluid_layout import MASSES, MODE
 
-        kernels, dense = BY_MASS, flow.varying[MASSES]
+        kernels, dense, mode = BY_MASS, flow.varying[MASSES], flow.varying[MODE]
     else:
         dense = assembly.floats([flow.density])
-    ints = (skin.count, skin.position_at, skin.force_at, box, dense, int(peskin), *flow.ints)
+    ints = (skin.count, skin.position_at, skin.force_at, box, dense, int(peskin), mode, *flow.ints)
     assembly.term("velocity", f"{kernels}:carry", ints)
     assembly.term("close", f"{kernels}:push", ints)

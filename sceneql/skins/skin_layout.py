@@ -3,9 +3,10 @@
 COUNT, POSITION_AT, FORCE_AT = 0, 1, 2
 """Of all of them: vertices, the first one's place in y, the first one's force [N]."""
 
-BOX_AT, DENSITY_AT, PESKIN, FLOW = 3, 4, 5, 6
+BOX_AT, DENSITY_AT, PESKIN, MODE_AT, FLOW = 3, 4, 5, 6, 7
 """Of what ties a skin to a flow: low corner and sides of a cell (6 floats), density, or in a flow of several fluids by
-face the mass in its own cell; 1 for Peskin's kernel of four points, 0 for splines; from FLOW on the flow's integers
+face the mass in its own cell; 1 for Peskin's kernel of four points, 0 for splines; fluid_layout.MODE (-1 in
+a flow of one fluid); from FLOW on the flow's integers
 (flows/layout.py)."""
 
 PRETENSION_AT, STIFFNESS_AT, LENGTHS_AT, MODULUS_AT = 3, 4, 5, 6

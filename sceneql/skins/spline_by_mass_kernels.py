@@ -16,7 +16,8 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows import layout as flow
-from sceneql.skins.skin_layout import BOX_AT, COUNT, DENSITY_AT, FLOW, FORCE_AT, PESKIN, POSITION_AT
+from sceneql.flows.varying.fluid_layout import MOTION
+from sceneql.skins.skin_layout import BOX_AT, COUNT, DENSITY_AT, FLOW, FORCE_AT, MODE_AT, PESKIN, POSITION_AT
 from sceneql.skins.spline_kernels import beside, stencil, wrapped
 from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
@@ -36,13 +37,14 @@ def factor(masses, component, x, y, z, peskin, ints):
         for b in range(4):
             both = wz[c] * wy[b]
             row = nx * (wrapped(j, b, ny, py) + ny * wrapped(k, c, nz, pz))
+            m = md = mdd = 0.0
             for a in range(4):
-                m = both * wx[a] * masses[row + wrapped(i, a, nx, px)]
-                d, e, f = u + a, v + b, w + c
-                whole += m
-                sx, sy, sz = sx + m * d, sy + m * e, sz + m * f
-                xx, xy, xz = xx + m * d * d, xy + m * d * e, xz + m * d * f
-                yy, yz, zz = yy + m * e * e, yz + m * e * f, zz + m * f * f
+                one, d = both * wx[a] * masses[row + wrapped(i, a, nx, px)], u + a
+                m, md, mdd = m + one, md + one * d, mdd + one * d * d
+            e, f = v + b, w + c
+            whole, sx, sy, sz = whole + m, sx + md, sy + m * e, sz + m * f
+            xx, xy, xz = xx + mdd, xy + md * e, xz + md * f
+            yy, yz, zz = yy + m * e * e, yz + m * e * f, zz + m * f * f
     if not whole > 0.0:
         return math.nan, 0.0, 0.0, 0.0
     sx, sy, sz = sx / whole, sy / whole, sz / whole
@@ -125,6 +127,8 @@ def carry(t, y, rate, floats, ints):
 @lean(TERM, inner=True)
 def push(t, y, rate, floats, ints):
     """The acceleration of the faces around each vertex by its force."""
+    if floats[ints[MODE_AT]] == MOTION:
+        return
     one, box = ints[FLOW:], ints[BOX_AT]
     faces = one[flow.FACES]
     masses = ints[DENSITY_AT] + faces

@@ -13,7 +13,7 @@ from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.skins import touch_pairs_layout as layout
-from sceneql.skins.touch_pairs_search_kernels import corner, lay, look, vertex
+from sceneql.skins.touch_pairs_search_kernels import corner, go, is_near, known, lay, lay_where_near, look, vertex
 from sceneql.skins.touch_push_kernels import push
 from sceneql.system.signatures_kernels import AFTER_STEP, LIMIT, TERM, A, F, I, N
 
@@ -73,9 +73,11 @@ def force(t, y, rate, floats, ints):
         floats[ints[layout.NUMBERS] + layout.GAP],
         ints[layout.CORNERS],
     )
-    lay(y, floats, ints, gap)
+    if not lay_where_near(y, floats, ints, gap):
+        return
     for p in range(ints[layout.VERTICES]):
-        look(y, y[:0], floats, ints, p, gap)
+        if not is_near(y, floats, ints, p, gap):
+            continue
         own = vertex(ints, p)
         for s in range(ints[layout.SKINS]):
             found = ints[layout.BEST] + layout.FOUND * s
@@ -125,12 +127,12 @@ def hold_at(y, floats, ints, p, s, u, v, w):
 def hold(t0, t1, y0, rate0, y1, floats, ints):
     """Where friction holds from now on: what has slid keeps the pull that it had, and so the rate stays."""
     gap = floats[ints[layout.NUMBERS] + layout.GAP]
-    lay(y1, floats, ints, gap)
+    lay_where_near(y1, floats, ints, gap)
     for p in range(ints[layout.VERTICES]):
-        look(y1, y1[:0], floats, ints, p, gap)
+        near = is_near(y1, floats, ints, p, gap)
         for s in range(ints[layout.SKINS]):
             at = holds(ints, p, s)
-            if not floats[ints[layout.BEST] + layout.FOUND * s] < gap:
+            if not (near and floats[ints[layout.BEST] + layout.FOUND * s] < gap):
                 floats[at + layout.ON] = -1.0
                 continue
             load, grip = pressed(floats, ints, p, s)
@@ -152,8 +154,11 @@ def limit(t, y, changed, floats, ints):
             return 0.0
         farthest = max(farthest, way)
     reach = 2.0 * farthest / KEPT
+    go(y, floats, ints)
     lay(y, floats, ints, reach)
     for p in range(ints[layout.VERTICES]):
+        if known(floats, ints, p) >= reach:
+            continue
         look(y, changed, floats, ints, p, reach)
         for s in range(ints[layout.SKINS]):
             part = min(part, KEPT * floats[ints[layout.BEST] + layout.FOUND * s])

@@ -10,6 +10,13 @@ from sceneql.contacts.barrier.distance_kernels import point_triangle
 from sceneql.skins import touch_pairs_layout as layout
 from sceneql.system.signatures_kernels import A, F, I, N
 
+AHEAD = 1.5
+"""How much farther than asked for is looked at where nothing was near, so that it need not be looked at soon again."""
+LARGEST = 1e4
+"""Of GONE, in gaps."""
+TOUCHING = 0.8
+"""Part of what is asked for up to which something is so near that it will be for some time."""
+
 
 @lean_inlined
 def vertex(ints, p):
@@ -158,16 +165,14 @@ def search(y, changed, floats, ints, p, reach, own_place):
                 other = vertex(ints, q)
                 there, s = ints[other + layout.POSITION], ints[other + layout.SKIN]
                 mine = own_place and s == ints[own + layout.SKIN]
-                if mine and near_at_start(floats, ints, p, q):
-                    continue
                 u, v, w = y[there] - y[at], y[there + 1] - y[at + 1], y[there + 2] - y[at + 2]
-                if u * u + v * v + w * w > far * far:
+                if u * u + v * v + w * w > far * far or (mine and near_at_start(floats, ints, p, q)):
                     continue
                 found = best + layout.FOUND * s
                 for n in range(ints[at_faces + q], ints[at_faces + q + 1]):
                     f = ints[at_faces + count + 1 + n]
                     beside = False
-                    for m in range(corners if mine else 0):
+                    for m in range(1, corners if mine else 0):
                         beside |= near_at_start(floats, ints, p, corner(ints, f, m))
                     if beside:
                         continue
@@ -227,3 +232,61 @@ def look(y, changed, floats, ints, p, reach):
     y[at], y[at + 1], y[at + 2] = x, y_, z
     if goes:
         changed[at], changed[at + 1], changed[at + 2] = u, v, w
+
+
+@lean_inlined
+def go(y, floats, ints):
+    """Let GONE grow by how far vertices have gone since it grew last; where it gets too large for its digits it begins
+    anew, with nothing known."""
+    count, clear, numbers = ints[layout.VERTICES], ints[layout.CLEAR], ints[layout.NUMBERS]
+    u = v = w = 0.0
+    for p in range(count):
+        at, there = ints[vertex(ints, p) + layout.POSITION], clear + layout.BOUNDS * p + layout.PLACES
+        u, v, w = u + y[at] - floats[there], v + y[at + 1] - floats[there + 1], w + y[at + 2] - floats[there + 2]
+    u, v, w = u / count, v / count, w / count
+    square = 0.0
+    for p in range(count):
+        at, there = ints[vertex(ints, p) + layout.POSITION], clear + layout.BOUNDS * p + layout.PLACES
+        a, b, c = y[at] - floats[there] - u, y[at + 1] - floats[there + 1] - v, y[at + 2] - floats[there + 2] - w
+        way = a * a + b * b + c * c
+        square = max(square, way if way < math.inf else math.inf)
+        floats[there], floats[there + 1], floats[there + 2] = y[at], y[at + 1], y[at + 2]
+    floats[numbers + layout.GONE] += math.sqrt(square)
+    if floats[numbers + layout.GONE] > LARGEST * floats[numbers + layout.GAP]:
+        floats[numbers + layout.GONE] = 0.0
+        for p in range(count):
+            floats[clear + layout.BOUNDS * p + layout.BOUND] = math.nan
+
+
+@lean_inlined
+def known(floats, ints, p):
+    """Less than how far off a vertex nothing is, as far as known; NaN where nothing is [m]."""
+    bound = floats[ints[layout.CLEAR] + layout.BOUNDS * p + layout.BOUND]
+    return bound - 2.0 * floats[ints[layout.NUMBERS] + layout.GONE]
+
+
+@lean_inlined
+def lay_where_near(y, floats, ints, reach):
+    """`lay` for `is_near`, unless nothing is known to be nearer to any vertex than ``reach``; whether it is laid."""
+    go(y, floats, ints)
+    for p in range(ints[layout.VERTICES]):
+        if not known(floats, ints, p) >= reach:
+            lay(y, floats, ints, AHEAD * reach)
+            return True
+    return False
+
+
+@lean(types.boolean(A, A, I, N, F), inner=True)
+def is_near(y, floats, ints, p, reach):
+    """Whether something is nearer to a vertex than ``reach``, and then the BEST of each skin."""
+    before = known(floats, ints, p)
+    if before >= reach:
+        return False
+    wide = AHEAD * reach if not before < TOUCHING * reach else reach
+    look(y, y[:0], floats, ints, p, wide)
+    least = wide
+    for s in range(ints[layout.SKINS]):
+        least = min(least, floats[ints[layout.BEST] + layout.FOUND * s])
+    at = ints[layout.CLEAR] + layout.BOUNDS * p + layout.BOUND
+    floats[at] = least + 2.0 * floats[ints[layout.NUMBERS] + layout.GONE]
+    return least < reach

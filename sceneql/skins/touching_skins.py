@@ -41,12 +41,12 @@ def add_pairs(
     start = assembly.start()
     rest = [start[skin.position_at :][: 3 * skin.count] for skin in skins]
     weights = [np.column_stack([skin.areas, np.full(skin.count, skin.stiffness)]) for skin in skins]
-    order = np.argsort(faces.ravel(), kind="stable")
-    begins = np.searchsorted(faces.ravel()[order], np.arange(count + 1))
+    order = np.argsort(faces[:, 0], kind="stable")
+    begins = np.searchsorted(faces[order, 0], np.arange(count + 1))
     head = [0] * layout.HEAD
     head[layout.VERTICES], head[layout.FACES] = count, len(faces)
     head[layout.CORNERS], head[layout.SKINS] = corners, len(skins)
-    head[layout.NUMBERS] = assembly.floats([gap, 0.0, STEEPER, *_periods(made[0][1].flow)])
+    head[layout.NUMBERS] = assembly.floats([gap, 0.0, STEEPER, 0.0, *_periods(made[0][1].flow)])
     head[layout.FRICTION] = friction_at
     head[layout.WEIGHTS] = assembly.floats(np.concatenate(weights))
     head[layout.REST] = assembly.floats(np.concatenate(rest))
@@ -54,8 +54,9 @@ def add_pairs(
     head[layout.ROOM] = assembly.floats(np.zeros(room))
     head[layout.BEST] = assembly.floats(np.zeros(layout.FOUND * len(skins)))
     rows = np.tile([-1.0, 0.0, 0.0, 0.0], count * len(skins) if rubs else 0)
+    head[layout.CLEAR] = assembly.floats(np.tile([0.0, 0.0, 0.0, np.nan], count))
     head[layout.HOLDS] = assembly.floats(rows)
-    lists = (np.concatenate(table), faces, begins, order // corners)
+    lists = (np.concatenate(table), faces, begins, order)
     ints = (*head, *(int(one) for part in lists for one in np.ravel(part)))
     d = _must_be_apart(assembly, made, rest, np.array(ints, dtype=np.int64), gap)
     if not assembly.went_on:

@@ -3,6 +3,8 @@
     python tests/bench/bench_flow.py                    steps and peer
     python tests/bench/bench_flow.py steps              processor time of a step by sbdf2, boxes and cut cells
     python tests/bench/bench_flow.py peer               the same scheme by NumPy and SciPy: time, difference
+    python tests/bench/bench_flow.py smoke              a step of smoke in a closed box of 64^2 beside PhiFlow's
+    python tests/bench/bench_flow.py errors             error against time of a vortex, beside jax-cfd
     python tests/bench/bench_flow.py cylinder 20        2D-1, so many cells across: drag, lift, pressure
     python tests/bench/bench_flow.py vortices 20        2D-2: Strouhal number, largest drag and lift
     python tests/bench/bench_flow.py drawn 10 auto      a cylinder drawn through resting fluid, and in a stream: drag
@@ -170,6 +172,80 @@ def peer() -> None:
     found = np.array(air.run.y[: 2 * cells * cells]).reshape(2, cells, cells)
     print(f"sbdf2 256^2 a step: {1e3 * ours:.1f} ms, NumPy and SciPy {1e3 * plain:.1f} ms, {plain / ours:.1f} times")
     print(f"  velocities differ by {np.abs(found - one.u).max():.1e} of {np.abs(one.u).max():.2f} m/s")
+
+
+def smoke() -> None:
+    """Smoke that rises in a closed box of 64^2, beside PhiFlow's example, by its NumPy and residuals of 1e-4."""
+    from phi import flow as phi
+
+    air = Air(
+        "{sbdf2: {step: 0.2 s}}", 1e4,
+        models="""  smoke:
+    diffusion: {of: concentration, size: 100 100 m, cell: 100/64 m, coefficient: 1e-4 m^2/s,
+      source: "exp(-((x - 50)^2 + (y - 9.5)^2)/25)*0.2", drift: {by: air}}
+""",
+        size="100 100 m", cell="100/64 m", density="1 kg/m^3", viscosity="1e-4 Pa*s",
+        buoyancy='{by: smoke.concentration, expansion: 0.01 m^3/kg, reference: 0 kg/m^3}',
+    )  # fmt: skip
+    ours = [took(air.run.advance, 0.2 * 20 * k) / 20 for k in range(1, 6)]
+    box = phi.Box(x=100, y=100)
+    velocity = phi.StaggeredGrid((0, 0), 0, x=64, y=64, bounds=box)
+    amount = phi.CenteredGrid(0, phi.ZERO_GRADIENT, x=64, y=64, bounds=box)
+    source = 0.2 * phi.resample(phi.Sphere(x=50, y=9.5, radius=5), to=amount, soft=True)
+    pressure: Any = None
+
+    def step() -> None:
+        nonlocal velocity, amount, pressure
+        amount = phi.advect.mac_cormack(amount, velocity, 1.0) + source
+        pushed = phi.resample(amount * (0, 0.1), to=velocity)
+        velocity = phi.advect.semi_lagrangian(velocity, velocity, 1.0) + pushed
+        velocity, pressure = phi.fluid.make_incompressible(velocity, (), phi.Solve("CG", 1e-4, x0=pressure))
+
+    theirs = [took(step) for _ in range(6)]
+    mine, other = min(ours), min(theirs[1:])
+    print(f"smoke 64^2 a step: {1e3 * mine:.2f} ms, PhiFlow {1e3 * other:.0f} ms, {other / mine:.0f} times")
+
+
+def took(act: Any, *given: Any) -> float:
+    """Processor time [s]."""
+    started = time.process_time()
+    act(*given)
+    return time.process_time() - started
+
+
+def errors() -> None:
+    """Taylor and Green's vortex after 2 s, steps of half a cell, beside jax-cfd in float64."""
+    import jax
+    import jax_cfd.base as cfd
+
+    jax.config.update("jax_enable_x64", True)
+    print("largest error of u at 2 s and processor time: cells a side, ours by sbdf2 and central, jax-cfd")
+    for cells in (32, 64, 128, 256):
+        count = round(4 / (SIDE / cells))
+        h, x, middle = 2 / count, np.arange(cells) * SIDE / cells, (np.arange(cells) + 0.5) * SIDE / cells
+        fade = math.exp(-2 * 0.01 * 2)
+        air = vortex(cells, False, False, h, 4.0, "central")
+        air.run.advance(0.0)
+        mine = took(air.run.advance, 2.0)
+        exact = -np.cos(x)[None] * np.sin(middle)[:, None] * fade
+        error = np.abs(air.run.y[: cells * cells].reshape(cells, cells) - exact).max()
+        grid = cfd.grids.Grid((cells, cells), domain=((0, SIDE), (0, SIDE)))
+        periodic = cfd.boundaries.periodic_boundary_conditions(2)
+        places = [grid.mesh(offset) for offset in grid.cell_faces]
+        start = tuple(
+            cfd.grids.GridVariable(cfd.grids.GridArray(values, offset, grid), periodic)
+            for values, offset in zip(
+                (-np.cos(places[0][0]) * np.sin(places[0][1]), np.sin(places[1][0]) * np.cos(places[1][1])),
+                grid.cell_faces, strict=True,
+            )
+        )  # fmt: skip
+        one = cfd.equations.semi_implicit_navier_stokes(density=1.0, viscosity=0.01, dt=h, grid=grid)
+        march = jax.jit(cfd.funcutils.repeated(one, count))
+        found = march(start)  # compiled
+        other = took(lambda march=march, start=start: march(start)[0].data.block_until_ready())
+        end = np.asarray(found[0].data)
+        theirs = np.abs(end + np.cos(places[0][0]) * np.sin(places[0][1]) * fade).max()
+        print(f"  {cells:4d}  {error:.1e} {1e3 * mine:8.1f} ms   {theirs:.1e} {1e3 * other:8.1f} ms")
 
 
 def in_channel(across: int, speed: float, step: float, end: float) -> Air:
@@ -375,7 +451,13 @@ def spheres(cells: str, part: str) -> None:
         print(f"spheres {n}^3, part {fraction} at {now} s: K {found:.4f} ({known}), force by balance {held:.4f}")
 
 
-PARTS = {one.__name__: one for one in (steps, peer, cylinder, vortices, drawn, cavity, heated, rolls, annulus, spheres)}
+PARTS = {
+    one.__name__: one
+    for one in (
+        *(steps, peer, smoke, errors, cylinder, vortices, drawn, cavity, heated, rolls, annulus),
+        spheres,
+    )
+}
 
 if __name__ == "__main__":
     if len(sys.argv) > 1:

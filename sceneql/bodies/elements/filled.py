@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 BYTES = {4: 4000, 10: 25000}
 """Memory [bytes] of an element by its number of nodes: with its share of state, implicit solver's matrix, picture."""
 PARTS = 10
-"""Default number of spacings along the longest side of an object's box."""
+"""Default number of nodes along the longest side of an object's box; ten-node elements have one on each edge, too."""
 A_PLACE = 6
 """Tetrahedra per node of the lattice, which has one at each cube's corner and center."""
 TOO_FINE = "take larger spacings under `finer`"
@@ -186,7 +186,7 @@ def filled(
     ``turn``: largest angle [rad] by which the object's concave surfaces turn along an edge; None for any. Meshes of
     implicit objects without ``finer`` are cached, since variants, studies and twins fill the same object repeatedly.
     """
-    inside, spacing = Inside(ref, assembly), spacing_of(ref, spacing, assembly)
+    inside, spacing = Inside(ref, assembly), spacing_of(ref, spacing, element, assembly)
     key = None
     if inside.field is not None and not finer:
         parts = (inside.field.code, inside.field.constants, inside.field.parts, inside.low, inside.high)
@@ -202,12 +202,12 @@ def filled(
     return mesh
 
 
-def spacing_of(ref: Ref, spacing: float | None, assembly: Assembly) -> float:
-    """Side [m] of the lattice's cubes in an object: the given spacing, or 1/PARTS of the longest side of its box."""
+def spacing_of(ref: Ref, spacing: float | None, element: type[Element], assembly: Assembly) -> float:
+    """Side [m] of the lattice's cubes in an object: the given one, or such that PARTS nodes fit along its box."""
     if spacing is not None:
         return spacing
     box = Inside(ref, assembly)
-    return float((box.high - box.low).max()) / PARTS
+    return float((box.high - box.low).max()) * (2 if element.edges else 1) / PARTS
 
 
 def _filled(

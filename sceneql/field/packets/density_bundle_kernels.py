@@ -6,7 +6,7 @@ import numpy as np
 from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.packets.lone_ray_kernels import MOST_POINTS, place_points, search_piece
 from sceneql.field.packets.lone_ray_kernels import polish as polish_lone
-from sceneql.field.packets.point_blocks_kernels import list_on_ray
+from sceneql.field.packets.point_blocks_kernels import list_in_beam, list_on_ray
 from sceneql.field.packets.ray_rows import FOUND_HIGH, FOUND_LOW, FOUND_ROOT, FOUND_STATUS
 from sceneql.field.roots.beam_kernels import (
     BEAM,
@@ -14,16 +14,18 @@ from sceneql.field.roots.beam_kernels import (
     DY,
     DZ,
     FAR,
+    HIGH,
     INVERSE_SPEED,
+    LOW,
     PX,
     PY,
     PZ,
+    RADIUS_OF,
     beam_around,
     beam_of_ray,
     beam_within,
     gather,
     keep_reaching,
-    keep_reaching_skeleton,
 )
 from sceneql.field.roots.density_march_kernels import LANES
 from sceneql.field.roots.density_roots_kernels import DENSITY_ROOTS, ROW_OF, THRESHOLD, search_packet
@@ -37,6 +39,8 @@ FIRST, LONGER = 0.12, 2.0
 """Of the pieces of such a ray: the share of its length that is the first, and how far the others end by the last."""
 MANY = 96
 """Parts that reach into a bundle from which on rays that go apart are each searched among the few in its own reach."""
+CROWD = 256
+"""Rows of parts from which on it pays to sort a bundle's rays."""
 
 
 @inlined
@@ -64,7 +68,7 @@ def search_many(
     found[FOUND_HIGH, j] += off
     found[FOUND_ROOT, j] += off
     if met > hits and not anywhere:  # in the memory of the first ray, which is searched already
-        polish(near, kept, threshold, rays, queue[hits:], 1, room, found)
+        polish(near, kept, threshold, rays, queue[hits:], 1, room, listed, found)
     return spent, met, doubted
 
 
@@ -146,16 +150,23 @@ def density_roots(
             short[row, j] = code[row, j]
     ids = order[4 * LANES :]
     listed = ids[rays.shape[1] :]
-    n = gather(rays, count, groups, room, ids)
+    many = code[k, 2] - code[k, 1] > CROWD
+    n = gather(rays, count, groups, anywhere and many, room, ids, order)
     if n == 0:
         return 0, 0, 0
     beam = room[BEAM_ROW, :BEAM]
     lowest = beam_around(room, n, beam, room[SPARE:])
     most = MANY if lowest <= APART else max(MANY, 2 * n)
     if code[k, 0] == DENSITY:
-        kept = keep_reaching(parts, code[k, 1], code[k, 2], beam, near)
+        kept = keep_reaching(parts, listed[:0], code[k, 1], code[k, 2], beam, near)
     else:
-        kept = keep_reaching_skeleton(parts, code[k, 1], code[k, 2], beam, most, near)
+        # The beam's axis begins at LOW.
+        low = beam[LOW]
+        px, py, pz = beam[0] + low * beam[3], beam[1] + low * beam[4], beam[2] + low * beam[5]
+        some = list_in_beam(
+            blocks, 0, px, py, pz, beam[3], beam[4], beam[5], beam[HIGH] - low, beam[RADIUS_OF], listed
+        )  # fmt: skip
+        kept = keep_reaching(parts, listed, 0, some, beam, near)
     spent = met = doubted = 0
     apart = code[k, 0] != DENSITY and kept > most
     if apart:
@@ -178,5 +189,5 @@ def density_roots(
     for k in range(doubted):
         queue[met + k], queue[last - k] = queue[last - k], queue[met + k]
     if not (anywhere or apart):
-        polish(near, kept, constants[plan[THRESHOLD]], rays, queue, met, room, found)
+        polish(near, kept, constants[plan[THRESHOLD]], rays, queue, met, room, listed, found)
     return spent, met + doubted, kept

@@ -1,5 +1,5 @@
 # mypy: ignore-errors
-"""Points of a skeleton in blocks of VECTOR in float32: which of them reach a piece of a single ray.
+"""Points of a skeleton in blocks of VECTOR in float32: which of them reach a piece of a single ray, or a beam.
 
 ``blocks`` (6, columns) has a column for each point, in their order: place (3), square of the reach, row in the tape's
 parts; and for each block, and each block of blocks: low (3) and high (3). They are filled up to whole blocks. The
@@ -7,9 +7,9 @@ number of points stands in row COUNT of the first column. Several such may stand
 """
 
 from sceneql.compiled.kernels import inlined
-from sceneql.compiled.lanes_kernels import below, bits_below, first_bit, load
+from sceneql.compiled.lanes_kernels import below, bits_below, first_bit, load, root
 from sceneql.field.packets.packet_kernels import VECTOR
-from sceneql.field.roots.density_march_kernels import F
+from sceneql.field.roots.density_march_kernels import MORE, F
 
 REACH2, ROW, COUNT = 3, 4, 5
 BLOCKS = 6
@@ -52,19 +52,29 @@ def boxes_met(blocks, at, count, ray, far):
 
 
 @inlined
-def points_met(blocks, at, count, x, y, z, dx, dy, dz, far, hair):
-    """The same of points that reach the ray."""
+def points_met(blocks, at, count, x, y, z, dx, dy, dz, far, hair, wide):
+    """The same of points that reach a beam so ``wide`` about the ray."""
     ex, ey, ez = load(blocks[0], at) - x, load(blocks[1], at) - y, load(blocks[2], at) - z
     along = ex * dx + ey * dy + ez * dz
     along = below(along, ZERO, ZERO, below(along, far, along, far))
     ex, ey, ez = ex - along * dx, ey - along * dy, ez - along * dz
     off = ex * ex + ey * ey + ez * ez
-    return ~bits_below(load(blocks[REACH2], at) + hair * hair, off) & ((1 << min(count, VECTOR)) - 1)
+    reach2 = load(blocks[REACH2], at)
+    if wide > ZERO:
+        reach = root(reach2) + wide
+        reach2 = MORE * (reach * reach)
+    return ~bits_below(reach2 + hair * hair, off) & ((1 << min(count, VECTOR)) - 1)
 
 
 @inlined
 def list_on_ray(blocks, base, px, py, pz, ux, uy, uz, length, listed):
-    """List the rows of points that reach a piece of a ray, from a place in a unit direction; returns their number.
+    """``list_in_beam`` of a single ray."""
+    return list_in_beam(blocks, base, px, py, pz, ux, uy, uz, length, 0.0, listed)
+
+
+@inlined
+def list_in_beam(blocks, base, px, py, pz, ux, uy, uz, length, radius, listed):
+    """List the rows of points that reach a beam about a line from a place in a unit direction; returns their number.
 
     They stand in the order of the rows; some are among them that only nearly reach it. The blocks begin at column
     ``base``.
@@ -75,8 +85,9 @@ def list_on_ray(blocks, base, px, py, pz, ux, uy, uz, length, listed):
     first, second = base + whole(n), base + whole(n) + whole(many)
     x, y, z, dx, dy, dz, far = F(px), F(py), F(pz), F(ux), F(uy), F(uz), F(length)
     ix, iy, iz = inverse_of(ux), inverse_of(uy), inverse_of(uz)
-    hair = F(ROUNDED * (abs(px) + abs(py) + abs(pz) + length))
-    ray = planes(x, ix, hair), planes(y, iy, hair), planes(z, iz, hair), ix, iy, iz
+    hair, wide = F(ROUNDED * (abs(px) + abs(py) + abs(pz) + length)), F(radius * (1.0 + ROUNDED))
+    room = hair + wide
+    ray = planes(x, ix, room), planes(y, iy, room), planes(z, iz, room), ix, iy, iz
     far = far + hair
     kept = 0
     for group in range(0, most, VECTOR):
@@ -88,7 +99,7 @@ def list_on_ray(blocks, base, px, py, pz, ux, uy, uz, length, listed):
             while some != 0:
                 at = VECTOR * (block + first_bit(some))
                 some &= some - 1
-                points = points_met(blocks, base + at, n - at, x, y, z, dx, dy, dz, far, hair)
+                points = points_met(blocks, base + at, n - at, x, y, z, dx, dy, dz, far, hair, wide)
                 while points != 0:
                     listed[kept] = int(blocks[ROW, base + at + first_bit(points)])
                     points &= points - 1

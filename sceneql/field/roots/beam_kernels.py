@@ -9,6 +9,7 @@ import numpy as np
 
 from sceneql.compiled.kernels import inlined
 from sceneql.field.enclose.extent_kernels import extent
+from sceneql.field.roots.ray_order_kernels import put_together
 from sceneql.field.skeleton import skeleton_parts_kernels as part
 
 PX, PY, PZ, DX, DY, DZ, FAR, INVERSE_SPEED, BEHIND, STRETCH, OFF = range(11)
@@ -53,14 +54,16 @@ def gather_whole(rays, count, groups, wide, ids):
 
 
 @inlined
-def gather_some(rays, count, groups, wide, ids):
-    """Copy the rays that have a length into ``wide``, column by column."""
+def gather_some(rays, count, groups, together, wide, ids, counts):
+    """Copy the rays that have a length into ``wide``, column by column, or as ``put_together`` puts them."""
     begin, end = rays[6], rays[7]
     n = 0
     for g in range(groups):
         for j in range(g, count, groups):
             ids[n] = j
             n += 1 if begin[np.uint64(j)] < end[np.uint64(j)] else 0
+    if together:
+        put_together(rays, count, n, wide[:3], counts, ids, wide[3])
     for row in range(8):
         source, target = rays[row], wide[row]
         for i in range(n):
@@ -74,17 +77,17 @@ def padded(n):
 
 
 @inlined
-def gather(rays, count, groups, wide, ids):
-    """Copy the rays that have a length into ``wide``, so that neighbors in ``rays`` are neighbors there; returns their
-    number."""
+def gather(rays, count, groups, together, wide, ids, counts):
+    """Copy the rays that have a length into ``wide``, so that neighbors in ``rays`` are neighbors there, or those that
+    ``put_together`` finds, with working memory ``counts``; returns their number."""
     begin, end = rays[6], rays[7]
     n = np.int32(0)
     for j in range(count):
         n += np.int32(1) if begin[j] < end[j] else np.int32(0)
-    if n == count and groups % RUN == 0 and count % groups == 0:
+    if n == count and groups % RUN == 0 and count % groups == 0 and not together:
         gather_whole(rays, count, groups, wide, ids)
     else:
-        gather_some(rays, count, groups, wide, ids)
+        gather_some(rays, count, groups, together, wide, ids, counts)
     given = n
     n = padded(n)
     for row in range(8):
@@ -217,40 +220,17 @@ def reached(beam, x, y, z, radius):
 
 
 @inlined
-def keep_reaching(parts, start, stop, beam, near):
-    """Copy the points of density rows start..stop-1 that reach into a beam to ``near`` (p, 8); returns their number."""
+def keep_reaching(parts, rows, start, stop, beam, near):
+    """Copy the points of rows start..stop-1, or of the ``rows`` that are listed there, that reach into a beam to
+    ``near`` (p, 8); returns their number."""
     kept = 0
-    for i in range(start, stop):
+    for k in range(start, stop):
+        i = np.uint64(rows[np.uint64(k)] if len(rows) > 0 else k)
         enter, leave, _ = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, part.RADIUS])
         if enter <= leave:
             for j in range(8):
                 near[kept, j] = parts[i, j]
             kept += 1
-    return kept
-
-
-@inlined
-def keep_reaching_skeleton(parts, start, stop, beam, most, near):
-    """As ``keep_reaching`` for skeleton rows that are lone points with Wyvill's kernel, by their hierarchy.
-
-    It ends where there are more than ``most``.
-    """
-    kept = 0
-    i = start
-    while i < stop and kept <= most:
-        if parts[i + 1, part.SHAPE] == part.NODE:
-            hx, hy, hz = parts[i, 3] - parts[i, 0], parts[i, 4] - parts[i, 1], parts[i, 5] - parts[i, 2]
-            half = 0.5 * np.sqrt(hx * hx + hy * hy + hz * hz) * (1.0 + HAIR)
-            x, y, z = parts[i, 0] + 0.5 * hx, parts[i, 1] + 0.5 * hy, parts[i, 2] + 0.5 * hz
-            enter, leave, _ = reached(beam, x, y, z, half)
-            i += part.STRIDE + (int(parts[i, part.RADIUS]) if enter > leave else 0)
-            continue
-        enter, leave, _ = reached(beam, parts[i, 0], parts[i, 1], parts[i, 2], parts[i, part.RADIUS])
-        if enter <= leave:
-            for j in range(8):
-                near[kept, j] = parts[i, j]
-            kept += 1
-        i += part.STRIDE
     return kept
 
 

@@ -2,13 +2,20 @@
 """Gradients of a tape at a few points close together: densities are sums over the parts in their reach alone, and
 skeletons are not asked for values that no slope depends on."""
 
+import numpy as np
+
 from sceneql.compiled.kernels import inlined, lean
-from sceneql.field.packets.point_blocks_kernels import list_on_ray
+from sceneql.compiled.lanes_kernels import BYTES, below, load, spread, store
+from sceneql.field.packets.point_blocks_kernels import list_in_beam
 from sceneql.field.skeleton.skeleton_kernels import part_gradient
 from sceneql.field.tape import tape_ops as ops
 from sceneql.field.tape.batch_gradient_kernels import differentiate
 from sceneql.field.tape.batch_kernels import BATCH, evaluate
 
+ABREAST = BYTES // 8
+"""Points in lanes."""
+TOGETHER = 128
+"""Parts in reach of the points in lanes up to which each is summed for all of them."""
 MANY = 32
 """Parts of a density from which on those in reach are looked for."""
 GROW = 1.0 + 1e-9
@@ -89,23 +96,62 @@ def keep_near(parts, start, stop, x, y, z, n, near, kept):
 
 
 @inlined
+def points_slope(parts, start, listed, kept, x, y, z):
+    """Gradient of the listed lone points with Wyvill's kernel at places in lanes, as ``part_gradient`` has it."""
+    u = v = w = spread(0.0)
+    for j in range(kept):
+        i = np.uint64(start + listed[j])
+        square, weight = parts[i, 6] * parts[i, 6], parts[i, 7]
+        wx, wy, wz = x - parts[i, 0], y - parts[i, 1], z - parts[i, 2]
+        s = (wx * wx + wy * wy + wz * wz) / square
+        rest = 1.0 - s
+        slope = weight * below(s, 1.0, -3.0 * rest * rest, 0.0)
+        steep = 2.0 * slope * (1.0 / square)
+        u, v, w = u + steep * wx, v + steep * wy, w + steep * wz
+    return u, v, w
+
+
+@inlined
 def skeleton_slopes(code, constants, parts, registers, slope, rest, blocks, base, listed, n):
-    """``differentiate`` of a tape with one skeleton, of points in ``blocks``: at each point by those in reach alone."""
+    """``differentiate`` of a tape with one skeleton, of points in ``blocks``: by those in reach alone, which points in
+    lanes have together if these are not many."""
     rows = code.shape[0]
     row = 0
     for k in range(rows):
         row = k if code[k, 0] == ops.SKELETON else row
     differentiate(code[:row], constants, parts, registers, slope, n)
-    p = code[row, 3]
-    for i in range(n):
-        x, y, z = registers[p, i], registers[p + 1, i], registers[p + 2, i]
-        kept = list_on_ray(blocks, base, x, y, z, 1.0, 0.0, 0.0, 0.0, listed)
-        u = v = w = 0.0
-        for j in range(kept):
-            _, gx, gy, gz = part_gradient(parts, code[row, 1] + listed[j], x, y, z)
-            u, v, w = u + gx, v + gy, w + gz
-        for axis in range(3):
-            slope[row, axis, i] = u * slope[p, axis, i] + v * slope[p + 1, axis, i] + w * slope[p + 2, axis, i]
+    p, start = code[row, 3], code[row, 1]
+    for first in range(0, n, ABREAST):
+        some = min(ABREAST, n - first)
+        own = slice(first, first + some)
+        x0, x1 = extent(registers[p, own], some)
+        y0, y1 = extent(registers[p + 1, own], some)
+        z0, z1 = extent(registers[p + 2, own], some)
+        dx, dy, dz = 0.5 * (x1 - x0), 0.5 * (y1 - y0), 0.5 * (z1 - z0)
+        around = np.sqrt(dx * dx + dy * dy + dz * dz)
+        kept = list_in_beam(blocks, base, x0 + dx, y0 + dy, z0 + dz, 1.0, 0.0, 0.0, 0.0, around, listed)
+        if kept <= TOGETHER:
+            u, v, w = points_slope(
+                parts, start, listed, kept, load(registers[p], first), load(registers[p + 1], first),
+                load(registers[p + 2], first),
+            )  # fmt: skip
+            for axis in range(3):
+                du, dv, dw = (
+                    load(slope[p, axis], first),
+                    load(slope[p + 1, axis], first),
+                    load(slope[p + 2, axis], first),
+                )
+                store(slope[row, axis], first, u * du + v * dv + w * dw)
+            continue
+        for i in range(first, first + some):
+            x, y, z = registers[p, i], registers[p + 1, i], registers[p + 2, i]
+            kept = list_in_beam(blocks, base, x, y, z, 1.0, 0.0, 0.0, 0.0, 0.0, listed)
+            u = v = w = 0.0
+            for j in range(kept):
+                _, gx, gy, gz = part_gradient(parts, start + listed[j], x, y, z)
+                u, v, w = u + gx, v + gy, w + gz
+            for axis in range(3):
+                slope[row, axis, i] = u * slope[p, axis, i] + v * slope[p + 1, axis, i] + w * slope[p + 2, axis, i]
     for k in range(rows):
         for column in range(4):
             rest[k, column] = code[k, column]

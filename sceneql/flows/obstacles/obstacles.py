@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from sceneql.flows.fluid_box import around
+from sceneql.flows.obstacles.gaps import must_leave_cells
 from sceneql.flows.obstacles.no_slip_numbers import LEAST, SLIVER
 from sceneql.grids.domain.cut import below
 from sceneql.grids.domain.domain import inside
@@ -64,7 +65,7 @@ class Solids:
         """``domain``: the object that the fluid fills, whose complement is the last solid; ``named``: sides of the box
         that the script names.
 
-        Raises ScriptError for an object without an inside, and where the solids fill the box.
+        Raises ScriptError for an object without an inside, and where solids fill the box or the gap between two.
         """
         self.faces, self.staircase, self.spacing = faces, staircase, np.array(faces.cells.spacing)
         self.refs = refs if domain is None else (*refs, domain)
@@ -91,6 +92,8 @@ class Solids:
         if not (self.parts > 0.0).any():
             text = "the solids fill the whole box: no cell is left to flow through"
             raise ScriptError([Diagnostic("no-cell", text, self.refs[0].span, "take smaller ones, or a larger `size`")])
+        if len(self.refs) > 1:
+            must_leave_cells(self.refs, self.levels, faces.cells.shape[::-1], centers, self.spacing)
 
     def _centers(self) -> Floats:
         found = self.faces.cells.centers()

@@ -12,28 +12,33 @@ from sceneql.flows.varying import fluid_layout as own
 from sceneql.flows.varying.stress_kernels import DRAWS, HELD, WITH_WALLS, stress
 from sceneql.system.signatures_kernels import A, F, I
 
-EMPTY = 0.02
-"""Least part of a cell's mass that may be left where others have come in: the step is too long."""
+ROUNDED = 1e-10
+"""Of a face's mass, what it has too much or too little because velocities are not free of divergence to the last digit:
+that stays where it is."""
 SMALL = 1e-12
 """Residual of the viscous system, in parts of its right side."""
 MOST = 2000
 
 
-@lean(types.boolean(A, A, A, F, A, A, I))
+@lean(types.float64(A, A, A, F, A, A, I))
 def bring(u0, before, u, h, after, floats, ints):
     """Velocities u and masses ``after`` by face, when MOMENTUM and MASS have come in for h from masses ``before``.
 
-    Each velocity is then a mean of those around it. False where a cell would lose about all of its mass.
+    Each velocity is then a mean of those around it. The largest part of its mass that a cell loses, which may be more
+    than all; infinite where that is no number.
     """
     one = ints[ints[own.FLOW] :]
+    least = 1.0
     for f in range(u.size):
         u[f], after[f] = u0[f], before[f]
         if floats[one[flow.INVERSES] + f] > 0.0:
             after[f] = before[f] + h * floats[ints[own.MASS] + f]
-            if not after[f] > EMPTY * before[f]:
-                return False
+            left = after[f] / before[f]
+            if not left > -math.inf:
+                return math.inf
+            least = min(least, left)
             u[f] = (before[f] * u0[f] + h * floats[ints[own.MOMENTUM] + f]) / after[f]
-    return True
+    return 1.0 - least
 
 
 @lean(types.void(A, A, A, A, I))
@@ -63,9 +68,10 @@ def hand_over(u, had, more, floats, ints):
             for j in range(my):
                 for i in range(mx):
                     f = start + i + mx * (j + my * k)
-                    excess = (had[f] - masses[f]) * (u[f] - whole)
-                    if abs(excess) <= 1e-15 * abs(masses[f] * u[f]) or floats[one[flow.INVERSES] + f] == 0.0:
+                    excess = had[f] - masses[f]
+                    if abs(excess) <= ROUNDED * masses[f] or floats[one[flow.INVERSES] + f] == 0.0:
                         continue
+                    excess *= u[f] - whole
                     around = 0.0
                     for turn in range(2):
                         for c in range(-1, 2):

@@ -11,7 +11,7 @@ from sceneql.compiled.kernels import lean_inlined
 from sceneql.flows import layout as flow
 from sceneql.flows.advection_kernels import sides
 from sceneql.flows.varying import fluid_layout as own
-from sceneql.flows.varying.halves_kernels import halves, mean, total
+from sceneql.flows.varying.halves_kernels import at_wall, halves, pairs, row_of
 
 NEAR = 1e-11
 """What is filled up to so much is full, or empty: the rest is rounding."""
@@ -19,7 +19,7 @@ NEAR = 1e-11
 
 @lean_inlined
 def begin(n, floats, ints):
-    """The flow's own fluid everywhere, and no weight."""
+    """The flow's own fluid everywhere."""
     density, viscosity = floats[ints[own.OWN]], floats[ints[own.OWN] + 1]
     one = ints[ints[own.FLOW] :]
     nx, ny, _ = halves(one)
@@ -34,8 +34,6 @@ def begin(n, floats, ints):
         floats[ints[own.DENSITY] + c] = density
         floats[ints[own.MEAN] + c] = here
         floats[ints[own.FLUIDITY] + c] = 1.0 / here if here > 0.0 else math.inf
-    for axis in range(3):
-        floats[ints[own.WEIGHT] + axis] = 0.0
 
 
 @lean_inlined
@@ -107,44 +105,72 @@ def pressure(floats, ints):
 
 
 @lean_inlined
+def known(y, floats, ints):
+    """Whether the coefficients are those of the places of skins in y; else these places are written down. No weight
+    yet: it is added up for every rate."""
+    for axis in range(3):
+        floats[ints[own.WEIGHT] + axis] = 0.0
+    found = ints[own.ANEW] == 0
+    for number in range(int(floats[ints[own.TABLE]])):
+        row = int(floats[ints[own.TABLE] + 1]) + own.ROW * number
+        at, kept = int(floats[row + own.POSITION_AT]), int(floats[row + own.KNOWN_AT])
+        for k in range(3 * int(floats[row + own.COUNT])):
+            found &= y[at + k] == floats[kept + k]
+            floats[kept + k] = y[at + k]
+    return found
+
+
+@lean_inlined
 def finish(floats, ints):
     """Masses by face, viscosities at centers and edges, the equation of the pressure."""
     one = ints[ints[own.FLOW] :]
     nx, ny, nz = one[flow.CELLS], one[flow.CELLS + 1], one[flow.CELLS + 2]
     box = ints[own.OWN] + 2
     axes, faces = one[flow.AXES], one[flow.FACES]
-    volume = 0.25 * floats[box + 3] * floats[box + 4] * floats[box + 5] * (0.5 if axes == 3 else 1.0)
+    whole = floats[box + 3] * floats[box + 4] * floats[box + 5]
     density, thick, fluid = floats[ints[own.DENSITY] :], floats[ints[own.MEAN] :], floats[ints[own.FLUIDITY] :]
+    line, means = floats[ints[own.LINES] :], floats[ints[own.LINES] + 2 * nx :]
     for axis in range(axes):
         mx, my, mz = sides(axis, one)
-        f = ints[own.MASSES] + one[flow.STARTS + axis]
+        walled = one[flow.PERIODIC + axis] == 0
         for k in range(mz):
             for j in range(my):
+                place, last = (j, my - 1) if axis == 1 else (k, mz - 1)
+                volume = 0.5 * whole if walled and axis > 0 and (place == 0 or place == last) else whole
+                row = one[flow.STARTS + axis] + mx * (j + my * k)
+                masses = floats[ints[own.MASSES] + row : ints[own.MASSES] + row + mx]
+                full = floats[ints[own.MASSES] + faces + row : ints[own.MASSES] + faces + row + mx]
+                row_of(density, j, k, axis, -1, line, one)
+                pairs(line, axis == 0, one, means)
                 for i in range(mx):
-                    floats[f] = floats[f + faces] = volume * total(density, i, j, k, axis, -1, -1, one)
-                    if ints[own.LEFT] >= 0:
-                        n = f - ints[own.MASSES]
-                        floats[f] *= floats[ints[own.LEFT] + n]
-                        drag = max(floats[one[flow.FRICTION] + n], 0.0)
-                        floats[ints[own.DRAGS] + n] = drag / mean(fluid, i, j, k, axis, -1, -1, one)
-                    f += 1
-    c = ints[own.NORMAL]
+                    masses[i] = volume * means[i]
+                if axis == 0 and walled:
+                    masses[0], masses[mx - 1] = 0.5 * masses[0], 0.5 * masses[mx - 1]
+                for i in range(mx):
+                    full[i] = masses[i]
+                if ints[own.LEFT] >= 0:
+                    row_of(fluid, j, k, axis, -1, line, one)
+                    pairs(line, axis == 0, one, means)
+                    for i in range(mx):
+                        masses[i] *= floats[ints[own.LEFT] + row + i]
+                        drag = max(floats[one[flow.FRICTION] + row + i], 0.0)
+                        floats[ints[own.DRAGS] + row + i] = drag / means[i]
     for k in range(nz):
         for j in range(ny):
-            for i in range(nx):
-                floats[c] = mean(thick, i, j, k, -1, -1, -1, one)
-                c += 1
+            row_of(thick, j, k, -1, -1, line, one)
+            pairs(line, False, one, floats[ints[own.NORMAL] + nx * (j + ny * k) :])
     for pair in range(3 if axes == 3 else 1):
         a, b = (0 if pair < 2 else 1), (1 if pair == 0 else 2)
-        ex = nx + (1 if a == 0 and one[flow.PERIODIC] == 0 else 0)
         ey = ny + (1 if (a == 1 or b == 1) and one[flow.PERIODIC + 1] == 0 else 0)
         ez = nz + (1 if b == 2 and one[flow.PERIODIC + 2] == 0 else 0)
         e = ints[own.SHEAR] + ints[own.SHEARS + pair]
         for k in range(ez):
             for j in range(ey):
+                row_of(fluid, j, k, a, b, line, one)
+                ex = pairs(line, a == 0, one, means)
                 for i in range(ex):
-                    floats[e] = 1.0 / mean(fluid, i, j, k, a, b, -1, one)
-                    e += 1
+                    floats[e + i] = 1.0 / means[i]
+                e += ex
     for component in range(axes):
         mx, my, mz = sides(component, one)
         for axis in range(axes):
@@ -163,7 +189,7 @@ def finish(floats, ints):
                                 (place if axis == 1 else j),
                                 (place if axis == 2 else k),
                             )
-                            floats[e] = 1.0 / mean(fluid, x, y, z, component, axis, side, one)
+                            floats[e] = 1.0 / at_wall(fluid, x, y, z, component, axis, side, one)
                             e += 1
     if ints[own.UNEQUAL] == 1:
         pressure(floats, ints)

@@ -12,7 +12,7 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.flows import layout as flow
 from sceneql.flows.varying import fluid_layout as own
-from sceneql.flows.varying.coefficients_kernels import begin, blend, finish
+from sceneql.flows.varying.coefficients_kernels import begin, blend, finish, known
 from sceneql.flows.varying.halves_kernels import halves
 from sceneql.system.signatures_kernels import TERM, A, F, I, N
 
@@ -122,6 +122,8 @@ def add_triangle(room, part, cover, one):
 @lean(TERM, inner=True)
 def measure(t, y, rate, floats, ints):
     """The density and the viscosity of all halves, and what terms and the projection read of them."""
+    if known(y, floats, ints):
+        return
     one = ints[ints[own.FLOW] :]
     nx, ny, nz = halves(one)
     n = nx * ny * nz

@@ -10,7 +10,7 @@ import math
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows import layout as flow
 from sceneql.flows.varying import fluid_layout as own
-from sceneql.flows.varying.coefficients_kernels import begin, blend, finish
+from sceneql.flows.varying.coefficients_kernels import begin, blend, finish, known
 from sceneql.flows.varying.halves_kernels import halves
 from sceneql.system.signatures_kernels import TERM
 
@@ -59,6 +59,8 @@ def along(part, cover, x0, y0, x1, y1, nx, ny, periodic_x, periodic_y):
 @lean(TERM, inner=True)
 def measure(t, y, rate, floats, ints):
     """The density and the viscosity of all halves, and what terms and the projection read of them."""
+    if known(y, floats, ints):
+        return
     one = ints[ints[own.FLOW] :]
     nx, ny, _ = halves(one)
     n = nx * ny

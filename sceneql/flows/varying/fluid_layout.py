@@ -41,11 +41,16 @@ LEFT = 24
 """By face: what solids leave of its own cell's inertia, then of its viscous ties along x, y and z; -1: none stands."""
 DRAGS = 25
 """By face: newtons by velocity that walls of solids take [kg/s]."""
-HEAD = 26
+LINES = 26
+"""Room for four rows of halves (halves_kernels.py)."""
+ANEW = 27
+"""1 where coefficients follow from more than the places of skins, so that they are computed for every rate."""
+HEAD = 28
 
-COUNT, POSITION_AT, TRIANGLES, CORNERS_AT, ITS_DENSITY, ITS_VISCOSITY, ROW = range(7)
+COUNT, POSITION_AT, TRIANGLES, CORNERS_AT, ITS_DENSITY, ITS_VISCOSITY, KNOWN_AT, ROW = range(8)
 """Of a fluid's row: vertices of its skin, the first one's place in y, triangles (0: a closed line), offset of the three
-numbers of vertices of each, density [kg/m^3], viscosity [Pa s]."""
+numbers of vertices of each, density [kg/m^3], viscosity [Pa s], offset of the places (vertices, 3) that coefficients
+were computed for."""
 
 WHOLE, MOTION, FORCES = 0.0, 1.0, 2.0
 """Of MODE: all of the rate; what flows of mass and momentum bring, in MOMENTUM and MASS alone; all but that."""

@@ -103,6 +103,8 @@ class Fluids:
             from sceneql.flows.varying.deep_parts_kernels import ROOM
 
             ints[own.CLIPPED] = zeros(ROOM)
+        ints[own.LINES] = zeros(4 * (2 * cells.shape[0] + 1))
+        ints[own.ANEW] = self.laden or ints[own.BASE] >= 0
         found = (*ints.tolist(), *flow.tolist())
         if not of_field(self.model.viscosity):  # else `thicken` adds it, after the field is evaluated
             measure(found, flat, assembly)
@@ -122,7 +124,8 @@ def fill(
     density, viscosity = fluid
     count, rows = (int(one) for one in numbers[ints[own.TABLE] : ints[own.TABLE] + 2])
     corners = assembly.floats(np.ravel(triangles)) if len(triangles) else 0
-    row = [skin.count, skin.position_at, len(triangles), corners, density, viscosity]
+    known = assembly.floats(np.full(3 * skin.count, np.nan))
+    row = [skin.count, skin.position_at, len(triangles), corners, density, viscosity, known]
     assembly.write(rows + own.ROW * count, np.array(row, dtype=float))
     assembly.write(ints[own.TABLE], np.array([count + 1.0]))
     cell = min(flow.spacing[: len(flow.areas)])

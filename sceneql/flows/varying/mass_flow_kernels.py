@@ -7,26 +7,22 @@ crosses a side has the density of the half of its cell that it leaves: mass stay
 is crossed in a step.
 """
 
-from numba import types
-
-from sceneql.compiled.kernels import lean
+from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.flows import layout as flow
 from sceneql.flows.advection_kernels import across_row, along_row, sides
 from sceneql.flows.varying import fluid_layout as own
-from sceneql.flows.varying.halves_kernels import mean
+from sceneql.flows.varying.halves_kernels import layer_of, pairs, row_of
 from sceneql.flows.varying.stress_kernels import WITH_WALLS, stress
-from sceneql.system.signatures_kernels import TERM, A, F, I, N
+from sceneql.system.signatures_kernels import TERM
 
 
-@lean(types.float64(A, N, N, N, N, N, F, I), inner=True)
-def leaving(density, i, j, k, component, axis, flows, one):
-    """The density of what crosses the low side along an axis of a face's own cell (i, j, k)."""
-    place = i if axis == 0 else (j if axis == 1 else k)
-    count, around = 2 * one[flow.CELLS + axis], one[flow.PERIODIC + axis] == 1
-    middle = 2 * place - 1 if component == axis else 2 * place  # the half above that side
-    side = middle - 1 if flows > 0.0 else middle
-    side = side % count if around else min(max(side, 0), count - 1)
-    return mean(density, i, j, k, component, axis, side, one)
+@lean_inlined
+def beside(place, on_face, axis, one):
+    """The halves below and above the low side along an axis of a cell; beyond an end of the box the last one."""
+    middle, count = (2 * place - 1 if on_face else 2 * place), 2 * one[flow.CELLS + axis]
+    if one[flow.PERIODIC + axis] == 1:
+        return (middle - 1) % count, middle % count
+    return min(max(middle - 1, 0), count - 1), min(max(middle, 0), count - 1)
 
 
 @lean(TERM, inner=True)
@@ -39,6 +35,12 @@ def flow_in(t, y, rate, floats, ints):
     faces = one[flow.FACES]
     u = y[one[flow.AT] : one[flow.AT] + faces]
     density = floats[ints[own.DENSITY] :]
+    wide = 2 * one[flow.CELLS] + 1
+    line, below, above = (
+        floats[ints[own.LINES] :],
+        floats[ints[own.LINES] + wide :],
+        floats[ints[own.LINES] + 2 * wide :],
+    )
     room = floats[one[flow.WORK] :]
     through = room[:faces]
     momentum = floats[ints[own.MOMENTUM] : ints[own.MOMENTUM] + faces]
@@ -55,13 +57,15 @@ def flow_in(t, y, rate, floats, ints):
             for j in range(ny):
                 row = start + nx * (j + ny * k)
                 along_row(u, through, component, j, k, rows, floats, one)
+                row_of(density, j, k, component, -1, below, one)
                 for i in range(nx + 1):
                     crossing = rows[wide + i]
                     if component == 0 and not around and (i == 0 or i == nx):
                         crossing = min(through[row], 0.0) if i == 0 else max(through[row + nx - 1], 0.0)
                     if around and i == nx:
                         crossing = rows[wide]
-                    dense = leaving(density, i % nx if around else i, j, k, component, 0, crossing, one)
+                    low, high = beside(i, component == 0, 0, one)
+                    dense = below[low] if crossing > 0.0 else below[high]
                     if i < nx:
                         momentum[row + i] += dense * rows[i]
                         mass[row + i] += dense * crossing
@@ -79,13 +83,18 @@ def flow_in(t, y, rate, floats, ints):
                     here, before = base + place * stride, base + (place - 1) * stride
                     if periodic and place == 0:
                         before = base + (count - 1) * stride
+                    low, high = beside(place, component == axis, axis, one)
+                    layer_of(density, j, k, component, axis, low, line, one)
+                    pairs(line, component == 0, one, below)
+                    layer_of(density, j, k, component, axis, high, line, one)
+                    pairs(line, component == 0, one, above)
                     for i in range(nx):
                         crossing = rows[i]
                         if component == axis and not periodic and place == 0:
                             crossing = min(through[here + i], 0.0)
                         elif component == axis and place == count:
                             crossing = max(through[before + i], 0.0)
-                        dense = leaving(density, i, j, k, component, axis, crossing, one)
+                        dense = below[i] if crossing > 0.0 else above[i]
                         if place < count:
                             momentum[here + i] += dense * flux[i]
                             mass[here + i] += dense * crossing

@@ -27,6 +27,10 @@ ORDER, BLOCKS, VARYING_AT, HEAD = range(4)
 START, END, KNOWN, TOLERANCE, SIZES = range(5)
 STILL = 1e-6
 """A velocity that crosses such a part of a cell in a step is as good as none: rounding moves what is at rest."""
+MOST = 0.98
+"""Largest part of its mass that a cell may lose in a step."""
+LOST = 0.75
+"""The same where a tolerance chooses steps."""
 SWING = 1.0
 """Longest step, times the angular velocity of the fastest waves of skins, where a tolerance chooses steps."""
 
@@ -53,6 +57,17 @@ def failed(y1, one, mode, floats):
     floats[one[SKIP]], floats[mode] = 0.0, own.WHOLE
     y1[one[AT]] = math.nan
     return math.inf
+
+
+@lean_inlined
+def emptied(lost, y0, y1, settings, one, mode, floats):
+    """What a step says in which a cell would lose more than all of its mass: by how much it is too long."""
+    if settings[TOLERANCE] == 0.0 or not lost < math.inf:
+        return failed(y1, one, mode, floats)
+    floats[one[SKIP]], floats[mode] = 0.0, own.WHOLE
+    for k in range(y0.size):
+        y1[k] = y0[k]
+    return (lost / LOST) ** 3
 
 
 @lean(STEP, inner=True)
@@ -94,8 +109,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     floats[one[SKIP]], floats[mode] = 1.0, own.MOTION
     rate(t, y0, rate_a, floats, ints)
     part = h if order == 1 else 0.5 * h
-    if not bring(u0, before, u, part, had, floats, var):
-        return failed(y1, one, mode, floats)
+    lost = bring(u0, before, u, part, had, floats, var)
+    if not lost < MOST:
+        return emptied(lost, y0, y1, settings, one, mode, floats)
     if order == 2:
         stress(u0, first, WITH_WALLS, floats, var)
     along(y0, rate_a, part, y1, at, faces)
@@ -130,8 +146,9 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
         stress(u, second, WITH_WALLS, floats, var)
         floats[mode] = own.MOTION
         rate(t + part, half, rate_b, floats, ints)
-        if not bring(u0, before, u, h, had, floats, var):
-            return failed(y1, one, mode, floats)
+        lost = bring(u0, before, u, h, had, floats, var)
+        if not lost < MOST:
+            return emptied(lost, y0, y1, settings, one, mode, floats)
         along(y0, rate_b, h, y1, at, faces)
         settle(t, t + h, y0, rate0, y1, floats, ints)
         for f in range(faces):
@@ -161,7 +178,7 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     floats[one[SKIP]], floats[mode] = 0.0, own.WHOLE
     if settings[TOLERANCE] == 0.0:
         return 0.0
-    worst = (h * floats[var[own.FASTEST]] / SWING) ** 3
+    worst = max(h * floats[var[own.FASTEST]] / SWING, lost / LOST) ** 3
     for block in range(numbers[BLOCKS]):
         place, count = numbers[HEAD + 2 * block], numbers[HEAD + 2 * block + 1]
         total = 0.0

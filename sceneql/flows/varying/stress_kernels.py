@@ -43,12 +43,127 @@ def before(place, axis, step, one):
 
 
 @lean_inlined
-def left(axis, face, floats, ints):
-    """What solids leave of a face's viscous tie along an axis to the one before."""
-    if ints[own.LEFT] < 0:
-        return 1.0
-    faces = ints[ints[own.FLOW] + flow.FACES]
-    return floats[ints[own.LEFT] + (1 + axis) * faces + face]
+def between(u, out, ties, low, high, count, draws):
+    """What a row of ties [kg/s] does to two rows of faces: pulls them together; or how many newtons it draws."""
+    mine, other = out[low : low + count], out[high : high + count]
+    if draws:
+        for i in range(count):
+            mine[i] += ties[i]
+        for i in range(count):
+            other[i] += ties[i]
+    else:
+        a, b = u[low : low + count], u[high : high + count]
+        for i in range(count):
+            ties[i] *= b[i] - a[i]
+        for i in range(count):
+            mine[i] += ties[i]
+        for i in range(count):
+            other[i] -= ties[i]
+
+
+@lean_inlined
+def along(axis, u, out, draws, floats, ints):
+    """Adds what the stress along an axis does, at centers."""
+    one = ints[ints[own.FLOW] :]
+    nx, ny, nz = one[flow.CELLS], one[flow.CELLS + 1], one[flow.CELLS + 2]
+    mx, my, _ = sides(axis, one)
+    h = spacing(axis, floats, ints)
+    step, around, last = stride(axis, axis, one), one[flow.PERIODIC + axis] == 1, one[flow.CELLS + axis] - 1
+    factor = 2.0 * volume(floats, ints) / (h * h)
+    ties = floats[ints[own.LINES] : ints[own.LINES] + nx]
+    left = ints[own.LEFT] + (1 + axis) * one[flow.FACES]
+    for k in range(nz):
+        for j in range(ny):
+            thick = floats[ints[own.NORMAL] + nx * (j + ny * k) :]
+            low = one[flow.STARTS + axis] + mx * (j + my * k)
+            place = j if axis == 1 else k
+            high = low - last * step if around and axis > 0 and place == last else low + step
+            for i in range(nx):
+                ties[i] = factor * thick[i]
+            if ints[own.LEFT] >= 0:
+                for i in range(nx - 1 if axis == 0 else nx):
+                    ties[i] *= floats[left + high + i]
+                if axis == 0:
+                    ties[last] *= floats[left + (low if around else high + last)]
+            count = last if axis == 0 and around else nx
+            between(u, out, ties, low, high, count, draws)
+            if count < nx:
+                between(u, out, ties[last:], low + last, low, 1, draws)
+
+
+@lean_inlined
+def sheared(u, out, f, f0, g, g0, e, count, ha, hb, a, b, draws, floats, ints):
+    """What the stress at a row of edges ``e`` does to the faces f and f0 across the axis b, g and g0 across a."""
+    nx, faces = ints[ints[own.FLOW] + flow.CELLS], ints[ints[own.FLOW] + flow.FACES]
+    pull = floats[ints[own.LINES] : ints[own.LINES] + count]
+    push = floats[ints[own.LINES] + nx : ints[own.LINES] + nx + count]
+    whole, per_a, per_b = volume(floats, ints), 1.0 / ha, 1.0 / hb
+    walled = ints[own.LEFT] >= 0
+    thick, own_f, own_g = floats[e : e + count], floats[e : e + count], floats[e : e + count]
+    if walled:
+        own_f = floats[ints[own.LEFT] + (1 + b) * faces + f :]
+        own_g = floats[ints[own.LEFT] + (1 + a) * faces + g :]
+    u_f, u_f0, u_g, u_g0 = u[f : f + count], u[f0 : f0 + count], u[g : g + count], u[g0 : g0 + count]
+    if draws:
+        for i in range(count):
+            pull[i] = push[i] = whole * thick[i]
+        for i in range(count if walled else 0):
+            pull[i] *= own_f[i]
+            push[i] *= own_g[i]
+    elif walled:
+        for i in range(count):
+            by_b, by_a = (u_f[i] - u_f0[i]) * per_b, (u_g[i] - u_g0[i]) * per_a
+            both = min(own_f[i], own_g[i])  # so that what is dissipated stays above 0
+            pull[i] = whole * thick[i] * (own_f[i] * by_b + both * by_a)
+            push[i] = whole * thick[i] * (both * by_b + own_g[i] * by_a)
+    else:
+        for i in range(count):
+            pull[i] = whole * thick[i] * ((u_f[i] - u_f0[i]) * per_b + (u_g[i] - u_g0[i]) * per_a)
+        for i in range(count):
+            push[i] = pull[i]
+    more_f, more_g = (per_b * per_b, per_a * per_a) if draws else (-per_b, -per_a)
+    less_f, less_g = abs(more_f), abs(more_g)
+    add(out[f : f + count], more_f, pull)
+    add(out[f0 : f0 + count], less_f, pull)
+    add(out[g : g + count], more_g, push)
+    add(out[g0 : g0 + count], less_g, push)
+
+
+@lean_inlined
+def add(out, factor, row):
+    """Add a row so many times."""
+    for i in range(out.size):
+        out[i] += factor * row[i]
+
+
+@lean_inlined
+def across(a, b, shear, u, out, draws, floats, ints):
+    """Adds what the stress in the plane of two axes does, at edges whose viscosities begin at ``shear``."""
+    one = ints[ints[own.FLOW] :]
+    nx, ny, nz = one[flow.CELLS], one[flow.CELLS + 1], one[flow.CELLS + 2]
+    around_a, around_b = one[flow.PERIODIC + a] == 1, one[flow.PERIODIC + b] == 1
+    ha, hb = spacing(a, floats, ints), spacing(b, floats, ints)
+    ax, ay, _ = sides(a, one)
+    bx, by, _ = sides(b, one)
+    ex = nx + (1 if a == 0 and not around_a else 0)
+    ey = ny + (1 if (a == 1 and not around_a) or (b == 1 and not around_b) else 0)
+    along_b, along_a = stride(a, b, one), stride(b, a, one)
+    for k in range(nz):
+        for j in range(ny):
+            place_b = j if b == 1 else k
+            if (place_b == 0 and not around_b) or (a == 1 and j == 0 and not around_a):
+                continue
+            f = one[flow.STARTS + a] + ax * (j + ay * k)
+            g = one[flow.STARTS + b] + bx * (j + by * k)
+            f0, e = f + before(place_b, b, along_b, one), shear + ex * (j + ey * k)
+            if a == 1:
+                g0 = g + before(j, a, along_a, one)
+                sheared(u, out, f, f0, g, g0, e, nx, ha, hb, a, b, draws, floats, ints)
+                continue
+            for part in range(2 if around_a else 1):  # the first one's neighbor is the last one
+                i, count = (1, nx - 1) if part == 0 else (0, 1)
+                g0 = g + (0 if part == 0 else nx - 1)
+                sheared(u, out, f + i, f0 + i, g + i, g0, e + i, count, ha, hb, a, b, draws, floats, ints)
 
 
 @lean(types.void(A, A, N, A, I))
@@ -56,62 +171,14 @@ def stress(u, out, what, floats, ints):
     """By face, from velocities u (WITH_WALLS: and those of walls, else as if they were 0); or DRAWS: how many newtons
     its own velocity takes of each [kg/s]."""
     one = ints[ints[own.FLOW] :]
-    nx, ny, nz = one[flow.CELLS], one[flow.CELLS + 1], one[flow.CELLS + 2]
-    whole = volume(floats, ints)
     for f in range(out.size):
         out[f] = 0.0
+    draws = what == DRAWS
     for axis in range(one[flow.AXES]):
-        h = spacing(axis, floats, ints)
-        mx, my, _ = sides(axis, one)
-        step, around, last = stride(axis, axis, one), one[flow.PERIODIC + axis] == 1, one[flow.CELLS + axis] - 1
-        factor = 2.0 * whole / (h * h)
-        for k in range(nz):
-            for j in range(ny):
-                for i in range(nx):
-                    place = i if axis == 0 else (j if axis == 1 else k)
-                    low = one[flow.STARTS + axis] + i + mx * (j + my * k)
-                    high = low - last * step if around and place == last else low + step
-                    pull = factor * floats[ints[own.NORMAL] + i + nx * (j + ny * k)] * left(axis, high, floats, ints)
-                    if what == DRAWS:
-                        out[low] += pull
-                        out[high] += pull
-                    else:
-                        out[low] += pull * (u[high] - u[low])
-                        out[high] -= pull * (u[high] - u[low])
+        along(axis, u, out, draws, floats, ints)
     for pair in range(3 if one[flow.AXES] == 3 else 1):
         a, b = (0 if pair < 2 else 1), (1 if pair == 0 else 2)
-        around_a, around_b = one[flow.PERIODIC + a] == 1, one[flow.PERIODIC + b] == 1
-        ha, hb = spacing(a, floats, ints), spacing(b, floats, ints)
-        ax, ay, _ = sides(a, one)
-        bx, by, _ = sides(b, one)
-        ex = nx + (1 if a == 0 and not around_a else 0)
-        ey = ny + (1 if (a == 1 and not around_a) or (b == 1 and not around_b) else 0)
-        along_b, along_a = stride(a, b, one), stride(b, a, one)
-        for k in range(nz):
-            for j in range(ny):
-                for i in range(nx):
-                    place_a, place_b = (i if a == 0 else j), (j if b == 1 else k)
-                    if (place_a == 0 and not around_a) or (place_b == 0 and not around_b):
-                        continue
-                    f = one[flow.STARTS + a] + i + ax * (j + ay * k)
-                    g = one[flow.STARTS + b] + i + bx * (j + by * k)
-                    f0, g0 = f + before(place_b, b, along_b, one), g + before(place_a, a, along_a, one)
-                    e = ints[own.SHEAR] + ints[own.SHEARS + pair] + i + ex * (j + ey * k)
-                    thick = whole * floats[e]
-                    own_f, own_g = left(b, f, floats, ints), left(a, g, floats, ints)
-                    both = min(own_f, own_g)  # so that what is dissipated stays above 0
-                    if what == DRAWS:
-                        out[f] += thick * own_f / (hb * hb)
-                        out[f0] += thick * own_f / (hb * hb)
-                        out[g] += thick * own_g / (ha * ha)
-                        out[g0] += thick * own_g / (ha * ha)
-                    else:
-                        by_b, by_a = (u[f] - u[f0]) / hb, (u[g] - u[g0]) / ha
-                        pull, push = thick * (own_f * by_b + both * by_a), thick * (both * by_b + own_g * by_a)
-                        out[f] -= pull / hb
-                        out[f0] += pull / hb
-                        out[g] -= push / ha
-                        out[g0] += push / ha
+        across(a, b, ints[own.SHEAR] + ints[own.SHEARS + pair], u, out, draws, floats, ints)
     for e in range(one[flow.EDGES]):
         f = one[flow.EDGE_FACES + e]
         tie = floats[ints[own.WALLS] + e] * floats[one[flow.EDGE_WEIGHTS] + e]

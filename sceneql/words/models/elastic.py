@@ -89,7 +89,8 @@ class Elastic(Model):
         "The object that it fills, which is seen and hit no more, unless other parts name it.", None
     )
     spacing: kinds.FixedLength | None = field(
-        "Of an object: side of the cubes of the lattice that its tetrahedra are of; by default a tenth of its size.",
+        "Of an object: side of the cubes of the lattice that its tetrahedra are of; by default a tenth of its size, "
+        "and a fifth for elements of ten nodes.",
         None,
         above=0,
     )
@@ -305,7 +306,7 @@ class Elastic(Model):
         if self.of is not None and self.look == "object":
             from sceneql.bodies.elements.filled import spacing_of
 
-            spacing = spacing_of(self.of, self.spacing, assembly)
+            spacing = spacing_of(self.of, self.spacing, self.chosen_element(), assembly)
             drawn = cache(partial(skins.carried, self.of, spacing, mesh, assembly))
         resting = solid_modes.Resting(strain, places, held)
         if self.bent is not None:
