@@ -4,7 +4,8 @@ Run it as ``python tests/bench/bench_implicit.py [--tape | --threads] [SCENE...]
 pixels, a ray each, with one hard sun, in which the thing turns: processor time of a frame on one thread from the script
 to the PNG file, start and compilation apart, by its stages. Where POV-Ray is installed, the processor time of a whole
 run of it that writes a PNG file stands beside: of the same picture, without light that surfaces reflect onto one
-another (`diffuse_bounces: 0`). With that light, as films are by default, is the last figure.
+another (`diffuse_bounces: 0`). The figure with that light, as films are by default, follows, and last that of the same
+scene with an area light, a sky and reflections: things are glossy over a matte floor, and edges have 8 rays.
 
 The second column is that of a kernel of the bench alone: one ray a pixel, and a shadow ray where the light is faced.
 A pixel is wrong where its center disagrees with the certified routine.
@@ -37,7 +38,7 @@ from typing import Any
 import numpy as np
 from bench_polygonise import ELSEWHERE, SCENES, quoted, register, scene_tape
 from implicit_films import FRAMES as FILM
-from implicit_films import film, like_for_like, scripts
+from implicit_films import film, like_for_like, scripts, softly
 from implicit_threads import gains
 
 from sceneql.compiled.kernels import over_tiles
@@ -241,16 +242,19 @@ def films(names: list[str]) -> None:
     os.environ["SCENEQL_THREADS"] = "1"
     for name, text in scripts({name: SCENES[name] for name in SCENES if name in names}):
         scene = name.split(" moving")[0]
-        same = like_for_like(text)
+        same, soft = like_for_like(text), softly(text)
         film(same)  # compiles
+        film(soft)
         peer = (lambda scene=scene: povray(scene, 1)[1]) if scene in PEERS and shutil.which("povray") else None
         works = {"default": lambda text=text: film(text)["all"], "same": lambda text=same: film(text)["all"]}
+        works["soft"] = lambda text=soft: film(text)["all"]
         took = medians(works | ({"peer": peer} if peer else {}), TURNS)
         line = f"{name:15} {took['same']:7.1f} ms of one processor a frame"
         if peer:
             line += f", POV-Ray {took['peer']:.0f} ms, ratio {took['peer'] / took['same']:.1f}"
-        print(f"{line}; {took['default']:.1f} ms with light of surfaces", flush=True)
-        for way, script in (("", same), ("with light of surfaces: ", text)):
+        line += f"; {took['default']:.1f} ms with light of surfaces"
+        print(f"{line}, {took['soft']:.1f} ms softly lit, glossy over a floor", flush=True)
+        for way, script in (("", same), ("with light of surfaces: ", text), ("softly lit: ", soft)):
             stages = film(script, by_stages=True)
             print(
                 f"    {way}{', '.join(f'{stage} {ms:.1f}' for stage, ms in stages.items() if stage != 'all')}",

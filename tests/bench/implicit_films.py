@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import statistics
 import tempfile
 import time
@@ -81,6 +82,16 @@ def script(objects: str, height: float, names: str = "", models: str = "", force
 def like_for_like(text: str) -> str:
     """The same film without light that surfaces reflect onto others, of which the peer has none."""
     return text.replace(f"diffuse_bounces: {MOST}", "diffuse_bounces: 0")
+
+
+def softly(text: str) -> str:
+    """The same film by an area light and a sky, its things glossy over a matte floor, with 8 rays at edges."""
+    lines = text.replace("angle: 0 deg", "angle: 3 deg").replace("samples: 1", "samples: 8").splitlines()
+    lines = [line if "floor:" in line else line.replace(CLAY, "material: glossy") for line in lines]
+    if "floor:" not in text:
+        height = float(re.findall(r"height: (\S+) m", text)[-1])
+        lines.insert(lines.index("objects:") + 1, f"  floor: {{plane: {{position: 0 {-height / 2.1:g} 0 m, {CLAY}}}}}")
+    return "\n".join(lines).replace("lights: {", "lights: {fill: {sky: {}}, ") + "\n"
 
 
 def scripts(scenes: dict[str, Any]) -> Iterator[tuple[str, str]]:
