@@ -7,6 +7,7 @@ import pytest
 
 import stage
 from renderers.trace import Trace
+from renderers.tracing import buffers, layout, waves
 from sceneql.frame import PointLight, Sky, Surface
 from stage import GLOW, WHITE, frame, sun, view
 
@@ -151,3 +152,35 @@ def test_no_light_comes_into_a_hollow_mirror(tone):
     seen = view((0.3, 0.2, 0.2), (0.2, 0.1, 0.0), (48, 36), 0.8, orthographic=False)
     lights = sky(1.0), sun((0.5, 1.0, 0.3), (3.0,) * 3, 0.2)
     assert draw(stage.sphere(mirror, radius=0.5), lights=lights, seen=seen).max() < 0.02
+
+
+def heap(surface, along=0.0, above=0.22):
+    """A picture of balls of a surface over a floor, lit by a wide sun and a sky."""
+    places = [(along + 0.4 * i - 0.6, 0.35 * (i % 2) - 0.42 + above, 0.3 * (i % 3)) for i in range(4)]
+    balls = [stage.sphere(surface, place, 0.22) for place in places]
+    return draw(*balls, stage.floor(), lights=(sun((1.0, 1.0, 0.5), (2.0, 2.0, 2.0), 0.05), sky(0.5)))
+
+
+def test_a_faint_reflection_takes_few_rays_beside_those_of_the_surface_that_it_is_seen_in(monkeypatch):
+    listed = []
+    meet = waves.Waves._meet
+
+    def counted(own):
+        listed[-1] += int(own.asked[0, layout.NEXT]) - 1
+        meet(own)
+
+    monkeypatch.setattr(waves.Waves, "_meet", counted)
+    for gloss in ({"roughness": 1.0, "specular": 0.0}, {"roughness": 0.1}):
+        listed.append(0)
+        heap(Surface(color=(0.8, 0.8, 0.8), **gloss))
+    matte, glossy = listed
+    assert matte < glossy < 1.2 * matte  # 1.14; 1.25 by as many samples as surfaces seen directly
+
+
+def test_reflections_are_the_same_whatever_was_drawn_before():
+    glossy = Surface(color=(0.8, 0.8, 0.8), roughness=0.1)
+    buffers._kept.clear()
+    first = heap(glossy).copy()
+    for along in (-0.5, 0.3):
+        heap(glossy, along, 0.5)
+        np.testing.assert_array_equal(heap(glossy), first)

@@ -35,6 +35,7 @@ class Buffers:
         bands = -(-height // TILE)
         self.reached = np.zeros((bands, -(-width // TILE)), dtype=np.int8)
         self.busy = np.ones_like(self.reached)
+        self.mirrored = np.zeros_like(self.reached)
         self.laid, self.chunks = np.ones((2, bands, chunks), dtype=np.int8)
 
     def linear(self) -> NDArray[float32]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, SeenFrame
+    from sceneql.frame import SeenFrame
 
 
 DOUBTED = 0.01
@@ -65,13 +65,22 @@ def draw(
     with_waves = lender(lambda: Waves(scene, together and together(), rows, columns, layers))
 
     def gather(start: int, stop: int) -> None:
-        out = buffers.reached, buffers.busy, buffers.records, buffers.visibility, hard, buffers.radiance
+        out = (
+            buffers.reached,
+            buffers.busy,
+            buffers.mirrored,
+            buffers.records,
+            buffers.visibility,
+            hard,
+            buffers.radiance,
+        )
         counts.append(with_waves(lambda w: w.gather(start, stop, *out)))
 
-    def refine(start: int, stop: int, *of_layer: Floats) -> None:
-        records, visibility, fine = of_layer
-        with_waves(lambda w: w.refine(start, stop, buffers.busy, records, visibility, buffers.means, fine))
+    def refine(start: int, stop: int, *of_layer: Any) -> None:
+        busy, records, visibility, fine = of_layer
+        with_waves(lambda w: w.refine(start, stop, busy, records, visibility, buffers.means, fine))
 
+    buffers.mirrored[:] = 0
     over_rows(height, gather)
     undecided, seconds = map(sum, zip(*counts, strict=True))
     layers_seen = (1, 0) if seconds else (0,)  # layer 0 comes last: the stage of edges reads its planes
@@ -135,7 +144,11 @@ def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> N
     """Filter the visibility of a layer's records into buffers.fine."""
     width, height, columns = buffers.shape[:3]
     records, visibility, fine = buffers.records[layer], buffers.visibility[layer], buffers.fine[layer]
-    marks, planes, sums, means = buffers.chunks, buffers.planes, buffers.sums, buffers.means
+    planes, sums, means = buffers.planes, buffers.sums, buffers.means
+    busy, marks = buffers.busy, buffers.chunks
+    if layer > 0:  # what was in other chunks before is read by no pixel that has a record
+        busy, marks = np.where(buffers.mirrored != 0, busy, np.int8(0)), np.empty_like(marks)
+        choose(busy, np.zeros_like(marks), marks)
 
     def along(start: int, stop: int) -> None:
         lay_out(start, stop, width, marks, records, visibility, planes)
@@ -145,8 +158,8 @@ def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> N
         deepen(start, stop, columns, marks, planes, sums, means, np.empty(LANES, dtype=np.float32))
 
     def at_last(start: int, stop: int) -> None:
-        spread_sky(start, stop, width, columns, buffers.busy, planes, means, fine, np.empty(ROOM, dtype=np.float32))
-        refine_rows(start * width, stop * width, records, visibility, fine)
+        spread_sky(start, stop, width, columns, busy, planes, means, fine, np.empty(ROOM, dtype=np.float32))
+        refine_rows(start * width, stop * width, busy, records, visibility, fine)
 
     for stage in (along, down, at_last):
         over_rows(height, stage)

@@ -26,7 +26,7 @@ from renderers.tracing.path_kernels import (
     refracted,
     refracted_spread,
 )
-from renderers.tracing.record_kernels import IMAGED, ITEM, SURFACE, TINT, TRACED, WEIGHT, copy_record, start_of
+from renderers.tracing.record_kernels import IMAGED, ITEM, SURFACE, TINT, TRACED, WEIGHT, copy_record, enough, start_of
 from renderers.tracing.record_kernels import RADIUS as BROAD
 from renderers.tracing.scene_kernels import ROW as RECORD
 from renderers.tracing.scene_kernels import SCENE, SCRATCH, mists_at, part
@@ -281,7 +281,7 @@ def light_behind(scene, scratch, asked, ways, path, record, visibility):
     Returns False where the sampled rays have no answers yet.
     """
     line = path[DARK] == FAINT_LINE  # each of a pixel's samples lights it by others
-    number, some = (int(path[SAMPLE]), AT_A_LINE) if line else (0, QUICK)
+    number, some = (int(path[SAMPLE]), AT_A_LINE) if line else (0, enough(record, QUICK))
     if not look_around(scene, scratch, asked, ways, record, number, some, some, visibility):
         return False
     r, g, b = shade(scene, record, visibility)

@@ -66,3 +66,17 @@ def copy_record(source, target):
     """Copy a record."""
     for column in range(COLUMNS):
         target[column] = source[column]
+
+
+@part
+def enough(record, most):
+    """How many of ``most`` samples, a power of two, a record is worth by its weight in the pixel; at least one.
+
+    Numbers of pixels are about square roots of light. A reflection of weight w adds noise of w / sqrt(samples) to light
+    of w or more: in these steps sqrt(w / samples), the same for samples in proportion to w.
+    """
+    weight = max(record[WEIGHT], max(record[WEIGHT + 1], record[WEIGHT + 2]))
+    samples = most
+    while samples > 1 and 0.5 * samples >= weight * most:
+        samples //= 2
+    return samples

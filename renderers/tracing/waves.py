@@ -102,14 +102,14 @@ class Waves:
         self.spares = np.zeros((some, COLUMNS), dtype=np.float32)
 
     def gather(
-        self, start: int, stop: int, reached: Array, busy: Array, records: Array, visibility: Array, final: bool,
-        radiance: Array,
+        self, start: int, stop: int, reached: Array, busy: Array, mirrored: Array, records: Array, visibility: Array,
+        final: bool, radiance: Array,
     ) -> tuple[int, int]:  # fmt: skip
         """Fill rows start..stop: records (L, h w, COLUMNS), radiance (h w, 3), visibility (L, h w, V) of L layers.
 
         Returns the numbers of pixels with an undecided root, and with a second record. Radiance is the part that needs
         no visibility, or all of it if visibility is ``final``. Rays are traced only in ``reached`` tiles; tiles with a
-        hit become ``busy``.
+        hit become ``busy``, those with a second record ``mirrored``.
         """
         begun(self.scratch)
         fill_background(self.scene, start, stop, reached, busy, records, radiance)
@@ -117,13 +117,13 @@ class Waves:
         undecided = seconds = 0
         for first in range(0, len(tiles), self.tiles):
             some = tiles[first : first + self.tiles]
-            doubted, more = self._gather(start, stop, some, busy, records, visibility, final, radiance)
+            doubted, more = self._gather(start, stop, some, busy, mirrored, records, visibility, final, radiance)
             undecided, seconds = undecided + doubted, seconds + more
         return undecided, seconds
 
     def _gather(
-        self, start: int, stop: int, tiles: Array, busy: Array, records: Array, visibility: Array, final: bool,
-        radiance: Array,
+        self, start: int, stop: int, tiles: Array, busy: Array, mirrored: Array, records: Array, visibility: Array,
+        final: bool, radiance: Array,
     ) -> tuple[int, int]:  # fmt: skip
         """Run ``gather`` for some tiles."""
         scene, asked, at = self.scene, self.asked, self.at
@@ -139,7 +139,7 @@ class Waves:
 
         self._ask(0, count, look)
         light = at, records, visibility, final, radiance
-        counts: tuple[int, int] = end_pixels(scene, self.gathered[:count], *light, busy)
+        counts: tuple[int, int] = end_pixels(scene, self.gathered[:count], *light, busy, mirrored)
         return counts
 
     def refine(self, start: int, stop: int, *more: Array) -> None:

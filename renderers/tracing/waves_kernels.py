@@ -262,11 +262,13 @@ def end_paths(paths, of, gathered):
         gathered[of[i], 3] = paths[i, DOUBTED]
 
 
-@kernel(types.UniTuple(_i, 2)(SCENE, _paths, _many, _stack, _stack, types.boolean, _rows, MARKS), _nrt=False)
-def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy):
+@kernel(types.UniTuple(_i, 2)(SCENE, _paths, _many, _stack, _stack, types.boolean, _rows, MARKS, MARKS),
+        _nrt=False)  # fmt: skip
+def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy, mirrored):
     """Write the radiance of the pixels ``at`` without their records' light, and whether they are UNSURE.
 
-    Their light is added where their visibility is ``final``. Their tiles become ``busy``. Returns the number of pixels
+    Their light is added where their visibility is ``final``. Their tiles become ``busy``, and ``mirrored`` where
+    one has a second record. Returns the number of pixels
     that are unsure, and of those with a second record.
     """
     u, width = scene.reals, int(scene.reals[layout.WIDTH])
@@ -280,7 +282,9 @@ def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy):
         x, y = next_place(k, before, x, y, width)
         before = k
         doubted += gathered[i, 3] > 0.0
-        seconds += len(records) > 1 and records[len(records) - 1, k, OWNER] > 0.0
+        if len(records) > 1 and records[len(records) - 1, k, OWNER] > 0.0:
+            seconds += 1
+            mirrored[y // TILE, x // TILE] = 1
         records[0, k, UNSURE] = gathered[i, 3]
         for c in range(3):
             radiance[k, c] = gathered[i, c]

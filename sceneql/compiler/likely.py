@@ -36,7 +36,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         found = required if len(required) == 1 else list(_taking(reader, node, cls))
         if len(found) == 1 and "\n" in node.span.text:
             return f"write `{found[0]}:` in a line of its own above it, and indent it below that"
-        return f"write `{{{found[0]}: {node.span.text}}}`" if len(found) == 1 else None
+        told = " or ".join(f"`{{{name}: {node.span.text}}}`" for name in found)
+        return f"write {told}" if 1 <= len(found) <= 2 else None
     if node.text.lower() in TRUE and not required:
         return "write `{}`: all of its fields have defaults"
     if "value" in cls.model_fields and (held := instead("bare", node.text)) is not None:

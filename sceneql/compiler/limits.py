@@ -42,7 +42,8 @@ def check_limits(
             holds, word = LIMITS[limit]
             if not holds(number, bound):
                 asked, given = (_told(one, annotation) for one in (bound, number))
-                help = instead("zero", what.rpartition(".")[2]) if number == 0.0 else None
+                taken = "zero" if number == 0.0 else "negative" if number < 0.0 else None
+                help = None if taken is None else instead(taken, what.rpartition(".")[2])
                 if limit == "at_most" and bound == 1 and 2 <= number <= 100 and given == f"{number:g}":
                     help = f"write `{number:g} %` for a percentage"
                 found.error("out-of-range", f"{what} must be {word} {asked}, not {given}", span, help=help)

@@ -70,6 +70,10 @@ def _is_name(text: str) -> bool:
     return called or words or text.isidentifier() or text.startswith("#") or _HEX.fullmatch(text) is not None
 
 
+_TINT = re.compile(r"(light|pale|dark|deep)[-_ ]?([a-z]+)")
+"""A shade as one says it, of which CSS names some alone."""
+
+
 def _meant(text: str) -> str:
     """The help for a text that is no color."""
     *_, last = text.split() or [""]
@@ -77,6 +81,11 @@ def _meant(text: str) -> str:
         return f'write `"#{digits[1].lower()}"`'
     if text.startswith(("rgb", "rgba")) and len(numbers := [float(one) for one in _DIGITS.findall(text)]) >= 3:
         return _of_bytes(numbers[:3])
+    if (tint := _TINT.fullmatch(text.lower())) is not None and tint[2] in NAMED and "".join(tint.groups()) not in NAMED:
+        share = 0.5 if tint[1] in ("light", "pale") else 1.0
+        mixed = [share * one + 1 - share for one in css_color(tint[2]) or ()]
+        mixed = [0.5 * one for one in mixed] if tint[1] in ("dark", "deep") else mixed
+        return f"this is no CSS name: {_of_bytes(mixed)}"
     near = suggestion("".join(text.split()), NAMED) if len(text.split()) == 1 else None
     if "".join(text.split()).lower() in NAMED:
         near = f"did you mean '{''.join(text.split()).lower()}'?"

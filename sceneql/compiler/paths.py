@@ -7,6 +7,9 @@ from pathlib import Path
 from sceneql.language.tree import Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics
 
+_EXPORTED = (".blend", ".fbx", ".dae", ".3ds", ".max", ".ma", ".mb", ".c4d", ".usd", ".usdz", ".step", ".stp")
+"""Endings of files that programs for meshes write, and that nothing here reads."""
+
 
 def read_path(node: Node, folder: Path, what: str, found: Diagnostics) -> str | None:
     """The path of an existing file below the scene's folder, links followed; None after reporting an error."""
@@ -25,6 +28,8 @@ def read_path(node: Node, folder: Path, what: str, found: Diagnostics) -> str | 
         return None
     if not there:
         help = f"it is looked for at {path}"
+        if path.suffix.lower() in _EXPORTED:
+            help = f"export it there as GLB, OBJ, PLY or STL: a {path.suffix} file is its own program's alone"
         found.error("file-missing", f"there is no file '{node.text}'", node.span, help=help)
         return None
     return str(path)

@@ -37,6 +37,7 @@ from sceneql.quantities.literal import vector_meant
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.spaced import apart
 from sceneql.quantities.span import Span
+from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import describe, in_words, unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
@@ -313,7 +314,21 @@ def remedy(expr: Expr, wanted: Dimension | None) -> str | None:
         one = meant.items[0] if isinstance(meant, Vector) else meant
         if isinstance(one, Number) and suits(one.type.dimension, wanted):
             return f"two units have a sign between them: write `{text}`"
-    return _factor(expr, wanted)
+    return _product(expr, wanted) or _factor(expr, wanted)
+
+
+def _product(expr: Expr, wanted: Dimension | None) -> str | None:
+    """The help for a product of a named value and a number whose unit is one too many: for a length, `r * 2 m`."""
+    has = expr.type.dimension
+    if expr.span is None or has is None or wanted is None:
+        return None
+    text = expr.span.text
+    for found in re.finditer(r"(?<![\w.])(\d[\d.]*)\s*([a-zA-Z]+)(?![\w^/*])", text):
+        unit = UNITS.get(found[2])
+        if unit is not None and "*" in text and wanted * unit[1] == has:
+            rest = text[: found.end(1)] + text[found.end() :]
+            return f"the names in it have units already, and the product has one too many: write `{rest}`"
+    return None
 
 
 def _factor(expr: Expr, wanted: Dimension | None) -> str | None:

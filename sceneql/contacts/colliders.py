@@ -16,7 +16,7 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
-    from sceneql.system import Assembly, Bodies
+    from sceneql.system import Assembly
 
 OFTEN = 1 / 240
 """Longest adaptive step [s] with contacts that act at the ends of steps, or objects that accelerate. The error estimate
@@ -40,14 +40,6 @@ def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...
         heads += [*head, at + len(refs) * layout.OBJECT + len(tail)]
         tail += data
     return (*heads, *tail)
-
-
-def must_be_points(bodies: Bodies, assembly: Assembly) -> None:
-    """Raise ScriptError for rigid bodies, in contacts of masses alone."""
-    if bodies.turning is not None:
-        message = f"'{bodies.model}' is rigid, and rigid bodies do not collide yet: masses do"
-        help = "name under `between` what may touch, without it"
-        raise ScriptError([Diagnostic("no-collider", message, assembly.line(), help)])
 
 
 def must_be_free(model: str, assembly: Assembly) -> None:

@@ -39,6 +39,8 @@ _PROBLEMS: Final = (
 )
 _NO_KEY = re.compile(r"(?:^|[,{\n\r])[ \t]*\Z")
 _PARTED = re.compile(r"([^{},\[;]+);\s*([^\s;,{}\[\]]+)$")
+_QUOTED = re.compile(r"(['\"])[-+.\d][^'\",{}\[\]\n]*\1\s*$")
+"""A number in quotes, before another."""
 _KEY: Final = "write `name: value`"
 _LONGEST: Final = 1024
 """Largest length of a key (YAML 1.2, 7.4: implicit keys)."""
@@ -115,6 +117,11 @@ def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
             if (parted := _PARTED.search(source.text[opening:at])) is not None:
                 help = f"fields are separated by commas: write `{parted[1].strip()}, {parted[2]}: ...`"
             return _syntax("a second colon in this value, where no key can stand", source, at, help)
+        if (quoted := _QUOTED.search(source.text[opening:at])) is not None:
+            more = re.match(r"(?:\s*['\"][^'\",{}\[\]\n]*['\"])+", source.text[at:])
+            items = re.findall(r"['\"]([^'\"]*)['\"]", quoted[0] + (more[0] if more else ""))
+            help = f"a vector stands without quotes: write `{' '.join(items)}`, its unit behind the last number"
+            return _syntax("this does not belong here, or a comma is missing before it", source, at, help)
         help = "separate the items by commas; an expression with brackets goes in quotes"
         return _syntax("this does not belong here, or a comma is missing before it", source, at, help)
     bracket = source.text[opening : opening + 1]

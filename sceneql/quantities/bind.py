@@ -57,6 +57,8 @@ def _bound(node: Expr, bound: dict[int, Expr | None], lookup: Lookup, found: Dia
             try:
                 if isinstance(node, Vector):
                     return Vector(args, listed(args), node.span)
+                if node.op == "hue":
+                    _doubt_hue(node, found)
                 if node.op in TURNS:
                     _doubt_degrees(node, found)
                 return fold(Call(node.op, args, OPERATIONS[node.op].rule(args), node.span))
@@ -106,6 +108,15 @@ def _doubt_degrees(call: Call, found: Diagnostics) -> None:
             text = f"{call.op}({angle.span.text}) is of {angle.value:g} radians"
             help = f"write `{call.op}({angle.span.text} deg)` for degrees"
             found.warning("radians", text, call.span, help=help)
+
+
+def _doubt_hue(call: Call, found: Diagnostics) -> None:
+    """Warn of the hue of a bare number that is most likely meant in degrees, for a hue is told in turns."""
+    (turns,) = call.args
+    if isinstance(turns, Number) and turns.bare and turns.span is not None and abs(turns.value) >= FEWEST_DEGREES:
+        text = f"hue({turns.span.text}) is of {turns.value:g} whole turns: a hue goes from 0, red, to 1, red again"
+        help = f"write `hue({turns.span.text}/360)` for degrees"
+        found.warning("turns", text, call.span, help=help)
 
 
 def _constant(expr: Expr) -> bool:

@@ -101,7 +101,12 @@ OF_FORMULAS = (
         "deltatime delta_time dt",
         "a formula says what is at the `time`, and no step: `1 m/s*time`, in place of what is added in each frame",
     ),
-    ("name", "frame frames", "write `time`, which is 0.4 s at frame 12 of 30 a second"),
+    ("name", "frame frames", "frame 12 of 30 a second is at `0.4 s`: a key stands at that, and a formula has `time`"),
+    (
+        "digits",
+        "one two three four five six seven eight nine ten twelve twenty half hundred thousand",
+        "write a number in digits, and its unit behind it: `2 m`",
+    ),
     ("name", "t", "the time is written 'time'"),
     ("name behind", "if then else elif when", f"{IF}: `sceneql words functions`"),
     (
@@ -122,6 +127,7 @@ OF_FORMULAS = (
         "i index id",
         "copies have numbers, where `repeat: {count: 5, as: i}` makes them: `sceneql words repeat`",
     ),
+    ("negative", "strength", "leave out the minus: a strength is a size; what pulls down, as gravity, points there by itself"),
     ("zero", "mass", "what never moves is an object without a model, or a body or mass with `fixed: yes`"),
 )
 """(what the words were taken for, the words, the sentence)."""

@@ -23,6 +23,11 @@ OF_PARTS = (
         "USE instance instances copy clone ref prototype",
         "a part like another is `{use: ball}`, with that part's name, and the fields that differ: `sceneql words use`",
     ),
+    (
+        "outputs",
+        "gif apng webp",
+        "write `video`, which is MP4; of `images`, numbered PNG files, other programs make a GIF",
+    ),
     ("part", "all everything any", "leave the field out: then it is of all"),
     ("part", "none null nil undefined no false", "leave the field out"),
     ("field.overlays", "font font_family typeface weight style bold", "letters have one font, and a `size`"),

@@ -280,6 +280,8 @@ class _Parser:
             help = f"a unit stands directly after a number: write `{meant}`"
             if expr.span is not None and any(isinstance(n, Name) and n.parts != ("time",) for n in each_once(expr)):
                 help += f", or `{expr.span.text}` where the name has a unit"
+        elif isinstance(expr, Name) and (other := instead("digits", self.before)) is not None:
+            help = other
         elif isinstance(expr, Name) and self.kind == "name" and self.token in UNITS:
             help = f"a unit stands directly after a number: write `{self.before}*(1 {self.token})`"
         elif isinstance(expr, Name) and (index := _INDEX.match(self.text, self.start)) is not None:

@@ -203,9 +203,7 @@ def smoke() -> None:
 
     theirs = [took(step) for _ in range(6)]
     mine, other = min(ours), min(theirs[1:])
-    print(
-        f"smoke 64^2 a step: {1e3 * mine:.2f} ms, PhiFlow {1e3 * other:.0f} ms, {other / mine:.0f} times"
-    )
+    print(f"smoke 64^2 a step: {1e3 * mine:.2f} ms, PhiFlow {1e3 * other:.0f} ms, {other / mine:.0f} times")
 
 
 def took(act: Any, *given: Any) -> float:

@@ -4,9 +4,11 @@ Run it as ``python tests/bench/bench_implicit.py [--tape | --threads] [SCENE...]
 pixels, a ray each, with one hard sun, in which the thing turns: processor time of a frame on one thread from the script
 to the PNG file, start and compilation apart, by its stages. Where POV-Ray is installed, the processor time of a whole
 run of it that writes a PNG file stands beside: of the same picture, without light that surfaces reflect onto one
-another (`diffuse_bounces: 0`). With that light, as films are by default, is the last figure.
+another (`diffuse_bounces: 0`). The figure with that light, as films are by default, follows, and last that of the same
+scene with an area light, a sky and reflections: things are glossy over a matte floor, and edges have 8 rays.
 
-The second column is that of a kernel of the bench alone: one ray a pixel, and a shadow ray where the light is faced.
+The second column is that of a kernel of the bench alone: one ray a pixel, and a shadow ray where the light is faced;
+beside it stands the drawing of the film's frames alone, least of rounds, and its bar: twice the kernel and 12 ms.
 A pixel is wrong where its center disagrees with the certified routine.
 Nothing is compiled for a scene: tapes are interpreted in lanes, and where one is a polynomial or a density of points
 its exact form along each ray is used besides; with ``--tape`` the interpreter works alone, beside half of each bar.
@@ -36,8 +38,8 @@ from typing import Any
 
 import numpy as np
 from bench_polygonise import ELSEWHERE, SCENES, quoted, register, scene_tape
+from implicit_films import DRAW, film, like_for_like, scripts, softly
 from implicit_films import FRAMES as FILM
-from implicit_films import film, like_for_like, scripts
 from implicit_threads import gains
 
 from sceneql.compiled.kernels import over_tiles
@@ -56,6 +58,8 @@ BARS = {"blob40": 12, "gyroid": 25, "barth_sextic": 25, "kummer": 25, "steiner":
 ROUNDS = 9
 TURNS = 3
 """Rounds of films."""
+MORE = 12.0
+"""ms by which ``Trace.draw`` may exceed twice the kernel of the bench."""
 FRAMES = 15
 CROWD = 4000
 PEERS = ("blob40", "blob4000", "gyroid", "barth_sextic", "kummer", "steiner", "ball on plane")
@@ -151,15 +155,15 @@ class Picture:
         return int((met != (self.depth.ravel() >= 0.0)).sum())
 
 
-def milliseconds(draw: Callable[[], object], threads: int) -> float:
+def milliseconds(draw: Callable[[], object], threads: int, clock: Callable[[], float] = time.perf_counter) -> float:
     """Time of a picture among FRAMES in a row, as in a film: the median. POV-Ray has run before, and left other data in
     the processor's caches, and threads that slept are woken on one core and spread later."""
     os.environ["SCENEQL_THREADS"] = str(threads)
     times = []
     for _ in range(FRAMES):
-        start = time.perf_counter()
+        start = clock()
         draw()
-        times.append(1e3 * (time.perf_counter() - start))
+        times.append(1e3 * (clock() - start))
     return statistics.median(times)
 
 
@@ -236,26 +240,40 @@ def povray(name: str, threads: int) -> tuple[float, float]:
         return 1e3 * float(found[1]), 1e3 * whole
 
 
-def films(names: list[str]) -> None:
-    """The table of films: with light that surfaces reflect onto others, as films are by default, and without."""
+def films(names: list[str]) -> dict[str, float]:
+    """The table of films: with light that surfaces reflect onto others, as films are by default, and without.
+
+    Returns ms of ``Trace.draw`` alone in a frame without that light, by name.
+    """
     os.environ["SCENEQL_THREADS"] = "1"
+    drawn: dict[str, float] = {}
     for name, text in scripts({name: SCENES[name] for name in SCENES if name in names}):
         scene = name.split(" moving")[0]
-        same = like_for_like(text)
+        same, soft = like_for_like(text), softly(text)
         film(same)  # compiles
+
+        def alone(name: str = name, same: str = same) -> float:
+            found = film(same)
+            drawn[name] = min(drawn.get(name, np.inf), found[DRAW])
+            return found["all"]
+
+        film(soft)
         peer = (lambda scene=scene: povray(scene, 1)[1]) if scene in PEERS and shutil.which("povray") else None
-        works = {"default": lambda text=text: film(text)["all"], "same": lambda text=same: film(text)["all"]}
+        works = {"default": lambda text=text: film(text)["all"], "same": alone}
+        works["soft"] = lambda text=soft: film(text)["all"]
         took = medians(works | ({"peer": peer} if peer else {}), TURNS)
-        line = f"{name:15} {took['same']:7.1f} ms of one processor a frame"
+        line = f"{name:15} {took['same']:7.1f} ms of one processor a frame, {drawn[name]:.1f} of these {DRAW}"
         if peer:
             line += f", POV-Ray {took['peer']:.0f} ms, ratio {took['peer'] / took['same']:.1f}"
-        print(f"{line}; {took['default']:.1f} ms with light of surfaces", flush=True)
-        for way, script in (("", same), ("with light of surfaces: ", text)):
+        line += f"; {took['default']:.1f} ms with light of surfaces"
+        print(f"{line}, {took['soft']:.1f} ms softly lit, glossy over a floor", flush=True)
+        for way, script in (("", same), ("with light of surfaces: ", text), ("softly lit: ", soft)):
             stages = film(script, by_stages=True)
             print(
                 f"    {way}{', '.join(f'{stage} {ms:.1f}' for stage, ms in stages.items() if stage != 'all')}",
                 flush=True,
             )
+    return drawn
 
 
 def threads(names: list[str]) -> None:
@@ -273,7 +291,7 @@ def threads(names: list[str]) -> None:
 
 def main(names: list[str]) -> None:
     """The tables."""
-    films(names)
+    drawn = films(names)
     for name in names:
         picture = Picture(name)
         spent, certified, undecided = picture.draw()
@@ -289,6 +307,9 @@ def main(names: list[str]) -> None:
         rays = WIDTH * HEIGHT
         line = f"{name:13} {one:6.1f} / {two:5.1f} ms (1 / 2 threads), {spent / rays:.1f} enclosures a pixel,"
         line += f" {certified} rays certified, {undecided} undecided, {picture.wrong()} wrong"
+        if name in drawn:
+            kernel = milliseconds(picture.draw, 1, time.process_time)
+            line += f"; {DRAW} {drawn[name]:.1f} ms of one processor (bar {2.0 * kernel + MORE:.1f})"
         if name in BARS:
             peer = (took["peer 1"], took["peer 2"]) if here else POV_ELSEWHERE[name]
             line += f"; POV-Ray {'here' if here else 'elsewhere'} {peer[0]:.0f} / {peer[1]:.0f} ms:"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import statistics
 import tempfile
 import time
@@ -15,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from renderers.encoders import png
+from renderers.trace import Trace
 from sceneql import pipeline
 
 FRAMES = 48
@@ -67,6 +69,7 @@ STAGES = {
     "PNG": ("renderers.encoders.png:Writer.write",),
 }  # fmt: skip
 """The functions of each stage."""
+DRAW = "Trace.draw"
 CALLS = 10000
 """Of a function that does nothing, to time the timers."""
 
@@ -81,6 +84,16 @@ def script(objects: str, height: float, names: str = "", models: str = "", force
 def like_for_like(text: str) -> str:
     """The same film without light that surfaces reflect onto others, of which the peer has none."""
     return text.replace(f"diffuse_bounces: {MOST}", "diffuse_bounces: 0")
+
+
+def softly(text: str) -> str:
+    """The same film by an area light and a sky, its things glossy over a matte floor, with 8 rays at edges."""
+    lines = text.replace("angle: 0 deg", "angle: 3 deg").replace("samples: 1", "samples: 8").splitlines()
+    lines = [line if "floor:" in line else line.replace(CLAY, "material: glossy") for line in lines]
+    if "floor:" not in text:
+        height = float(re.findall(r"height: (\S+) m", text)[-1])
+        lines.insert(lines.index("objects:") + 1, f"  floor: {{plane: {{position: 0 {-height / 2.1:g} 0 m, {CLAY}}}}}")
+    return "\n".join(lines).replace("lights: {", "lights: {fill: {sky: {}}, ") + "\n"
 
 
 def scripts(scenes: dict[str, Any]) -> Iterator[tuple[str, str]]:
@@ -168,31 +181,40 @@ def timed(stages: Stages) -> Iterator[None]:
 
 
 def film(text: str, by_stages: bool = False) -> dict[str, float]:
-    """ms of processor time of a frame, ``all`` of it and by stages: medians over the film but its first two frames.
+    """ms of processor time of a frame, ``all`` of it, ``Trace.draw`` alone and by stages: medians over the film but its
+    first two frames.
 
     What is in no stage is Python, without what the timers take.
     """
     marks: list[dict[str, float]] = []
     stages = Stages()
-    write = png.Writer.write
+    write, draw, drawing = png.Writer.write, Trace.draw, 0.0
+
+    def drawn(renderer: Any, frame: Any) -> Any:
+        nonlocal drawing
+        begin = time.process_time()
+        found = draw(renderer, frame)
+        drawing += 1e3 * (time.process_time() - begin)
+        return found
 
     def marked(writer: Any, picture: Any) -> None:
         write(writer, picture)
-        marks.append({"all": 1e3 * time.process_time()} | stages.now())
+        marks.append({"all": 1e3 * time.process_time(), DRAW: drawing} | stages.now())
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "film.yaml")
         path.write_text(text, encoding="utf-8")
         graph = pipeline.load(path)
-        png.Writer.write = marked
+        png.Writer.write, Trace.draw = marked, drawn
         try:
             with timed(stages) if by_stages else nullcontext():
                 pipeline.render(graph, folder=Path(folder))
         finally:
-            png.Writer.write = write
+            png.Writer.write, Trace.draw = write, draw
     found = {name: statistics.median(b[name] - a[name] for a, b in pairwise(marks[1:])) for name in marks[0]}
     if not by_stages:
-        return {"all": found["all"]}
+        return {"all": found["all"], DRAW: found[DRAW]}
+    del found[DRAW]
     timers = found.pop("timers")
     found["all"] -= timers
     found["Python"] = found["all"] - sum(found[stage] for stage in STAGES)

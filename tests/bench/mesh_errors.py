@@ -36,6 +36,8 @@ CLIMBERS, CHILDREN, CLIMBS, SHORTER = 128, 8, 12, 0.7
 """Points that climb; new places of each in a round, rounds, and factor of their reach from one to the next."""
 JUDGED = 3000
 """Points of the mesh, the farthest by |f| / |grad f|, whose distance from the surface is measured."""
+RAYS, REACHES, NEAREST, FARTHEST = 24, 16, 1.0e-5, 0.05
+"""Rays from a point along which a change of sign is sought, places on each, the nearest and farthest by the box."""
 NEAR = 48
 """Triangles of about one size among which the nearest is sought."""
 STEP = 1.0e-6
@@ -143,10 +145,13 @@ class Truth:
         return np.stack([(low, u, v)[(k - axis) % 3] for k in range(3)], axis=1)
 
     def off(self, points: Any) -> Any:
-        """(n,) distances of points from the surface: of feet found from them and from the two nearest known points."""
+        """(n,) distances of points from the surface: of feet found from them, from the two nearest known points and
+        from the nearest change of sign around them, which is found at nodes too, where Newton's method is slow.
+        """
         beside, near = self.tree.query(points, 2)
-        best = beside.min(axis=1)
-        for start in (points, self.points[near[:, 0]], self.points[near[:, 1]]):
+        changed = self._changed(points)
+        best = np.minimum(beside.min(axis=1), np.linalg.norm(changed - points, axis=1))
+        for start in (points, self.points[near[:, 0]], self.points[near[:, 1]], changed):
             at = start
             for turn in range(4):
                 if turn or start is not points:
@@ -156,6 +161,34 @@ class Truth:
                 at, arrived = projected(self.f, at, self.size, 4)
                 best = np.minimum(best, np.where(arrived, np.linalg.norm(at - points, axis=1), np.inf))
         return best
+
+    def _changed(self, points: Any) -> Any:
+        """(n, 3) the nearest change of sign of f found along rays from points; far away where there is none."""
+        ways = np.random.default_rng(3).standard_normal((RAYS, 3))
+        ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+        reach = np.concatenate([[0.0], np.geomspace(NEAREST, FARTHEST, REACHES)]) * self.size
+
+        def inside(of: Any, along: Any) -> Any:
+            return self.f(*(np.moveaxis(points[of] + along[..., None] * ways, -1, 0))) < 0
+
+        best, best_at = np.full(len(points), self.size), np.zeros(len(points), dtype=int)
+        for few in np.array_split(np.arange(len(points)), 1 + len(points) // 300):
+            at = (few[:, None],)
+            sign = inside(at, np.zeros((len(few), RAYS)))
+            low, high = np.zeros((len(few), RAYS)), np.full((len(few), RAYS), np.inf)
+            for radius in reach[1:]:
+                open_yet = np.isinf(high)
+                other = inside(at, np.full((len(few), RAYS), radius)) != sign
+                high = np.where(open_yet & other, radius, high)
+                low = np.where(open_yet & ~other, radius, low)
+            met = np.isfinite(high)
+            high = np.where(met, high, self.size)
+            for _ in range(HALVINGS):
+                middle = 0.5 * (low + high)
+                same = inside(at, middle) == sign
+                low, high = np.where(same & met, middle, low), np.where(same | ~met, high, middle)
+            best[few], best_at[few] = high.min(axis=1), high.argmin(axis=1)
+        return points + best[:, None] * ways[best_at]
 
     def hausdorff(self, vertices: Any, triangles: Any) -> float:
         """Largest distance [m] found between a mesh and the surface, in both directions."""

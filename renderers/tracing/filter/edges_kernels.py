@@ -10,7 +10,7 @@ from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.shade_kernels import shade
 from renderers.tracing.light.visibility_kernels import look_around
-from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike
+from renderers.tracing.record_kernels import OWNER, TRACED, UNSURE, alike, enough
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
 from renderers.tracing.tiles_kernels import ACROSS, MARKS, busiest
 from renderers.tracing.waves_kernels import list_ray
@@ -109,8 +109,15 @@ def unlike(records, radiance, k, x, y, width, height):
 
 @part
 def borrow(records, visibility, record, x, y, width, height, found):
-    """Fill ``found`` with the mean visibility of pixels around (x, y) alike a record; returns whether there are any."""
-    count = 0
+    """Fill ``found`` with the mean visibility of pixels around (x, y) alike a record; returns whether there are any.
+
+    For a record of which one sample is ``enough`` the pixel itself will do.
+    """
+    count, k = 0, y * width + x
+    if enough(record, ANEW) == 1 and records[k, OWNER] > 0.0 and alike(record, records[k], SLACK):
+        for c in range(len(found)):
+            found[c] = visibility[k, c]
+        return True
     for j in range(max(y - 1, 0), min(y + 1, height - 1) + 1):
         for i in range(max(x - 1, 0), min(x + 1, width - 1) + 1):
             m = j * width + i
@@ -182,15 +189,21 @@ def look_from_samples(scene, scratch, asked, ways, first, last, each, edges, rec
     """
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
     room = asked.shape[0] - 2 * ANEW * (1 + scene.ints[layout.LIGHT_COUNT])
+    mode = asked[0, layout.MODE]
+    first_time = mode == layout.ASKING or mode == layout.PLAIN
     for i in range(first, last):
-        if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
+        if mode == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         x, y = edges[i // each] % width, edges[i // each] // width
         for layer in range(len(own)):
             if own[layer, i, OWNER] == 0.0:
                 continue
-            if not borrow(records[layer], visibility[layer], own[layer, i], x, y, width, height, found[layer, i]):
-                look_around(scene, scratch, asked, ways, own[layer, i], sample_of(x, y), ANEW, ANEW, found[layer, i])
+            told = first_time and borrow(
+                records[layer], visibility[layer], own[layer, i], x, y, width, height, found[layer, i]
+            )
+            if not told:  # look_around leaves the rows alone that are final already
+                some = enough(own[layer, i], ANEW)
+                look_around(scene, scratch, asked, ways, own[layer, i], sample_of(x, y), some, some, found[layer, i])
     return last
 
 

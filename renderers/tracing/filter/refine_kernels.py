@@ -11,7 +11,7 @@ from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import COUNT, SIDE, SKY_COUNT, sample_of
 from renderers.tracing.light.shade_kernels import shade_here
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, light_sample, look_around, shadow_sample
-from renderers.tracing.record_kernels import OWNER, RADIUS, alike
+from renderers.tracing.record_kernels import OWNER, RADIUS, alike, enough
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
 from renderers.tracing.tiles_kernels import MARKS
 from sceneql.compiled.kernels import kernel
@@ -73,11 +73,11 @@ def roughness(records, means, columns, x, y, column):
 
 @part
 def share_of_light(scene, scratch, asked, record, l, number):
-    """Visible share of light l by OWN / 2 samples of the net of the sky, those of pixel ``number``."""
-    total = 0.0
-    for k in range(OWN // 2):
-        total += light_sample(scene, scratch, asked, record, l, (number * (OWN // 2) + k) % SKY_COUNT)
-    return total / (OWN // 2)
+    """Visible share of light l by at most OWN / 2 samples of the net of the sky, those of pixel ``number``."""
+    total, samples = 0.0, enough(record, OWN // 2)
+    for k in range(samples):
+        total += light_sample(scene, scratch, asked, record, l, (number * samples + k) % SKY_COUNT)
+    return total / samples
 
 
 @part
@@ -94,11 +94,17 @@ def is_even(scene, k, x, y, means, fine):
 
 
 @part
+def few_for(record):
+    """FEW for a record by what its samples are worth: see ``enough``."""
+    return FEW * enough(record, THIN) / THIN
+
+
+@part
 def refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, records, visibility, means, fine):
     """``refine`` for pixel k, at (x, y), of which the filter has joined so many ``pixels``."""
     columns = visibility.shape[1]
-    if pixels < FEW:
-        samples = THIN if pixels < 0.5 * FEW else THIN // 2
+    if pixels < few_for(records[k]):
+        samples = enough(records[k], THIN if pixels < 0.5 * few_for(records[k]) else THIN // 2)
         told = look_around(scene, scratch, asked, ways, records[k], sample_of(x, y), samples, 0, fine[k])
         for c in range(FIRST_LIGHT if told else 0):
             joined = samples * fine[k, c] + pixels * mean_of(means, columns, x, y, 1 + c)
@@ -123,7 +129,7 @@ def refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, re
         if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
             fine[k, column] = visibility[k, column]
             continue
-        samples = OWN if reach < REACH else OWN // 2
+        samples = enough(records[k], OWN if reach < REACH else OWN // 2)
         total = 0.0
         first = sample_of(x, y) * samples % COUNT
         for sample in range(first, first + samples):
@@ -161,7 +167,7 @@ def refine(scene, scratch, asked, ways, start, stop, waiting, busy, records, vis
         begin = asked[0, layout.NEXT]
         if asking and begin > room:
             return k
-        if first and pixels >= FEW and is_even(scene, k, x, y, means, fine):
+        if first and pixels >= few_for(records[k]) and is_even(scene, k, x, y, means, fine):
             continue
         refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, records, visibility, means, fine)
         if asking and asked[0, layout.NEXT] > begin:

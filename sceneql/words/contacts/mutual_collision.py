@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from sceneql.kinds import Contact, DrawnRef, Gives, Ref, Scalar, field
+from sceneql.kinds import Contact, DrawnRef, Gives, Model, Ref, Scalar, field
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Type
 
@@ -59,6 +59,19 @@ class MutualCollision(Contact):
         """The models and objects of `between`."""
         return self.between or ()
 
+    def refusals(self, models: Mapping[str, Model]) -> Iterator[Diagnostic]:
+        """Rigid bodies, which turn: `collision` is their word, with the names to write."""
+        rigid = [name for name, model in models.items() if model.turns]
+        if not rigid:
+            return
+        message = f"'{rigid[0]}' is rigid, and `mutual_collision` is of masses, which do not turn"
+        touched = dict.fromkeys(rigid + [ref.name for ref in self.between or () if ref.name not in models])
+        help = f"write `collision: {{between: [{', '.join(touched)}]}}`"
+        if len(rigid) < len(models):
+            help += " for what is rigid, and name the masses alone here, under `between`"
+        written = next((ref.span for ref in self.between or () if ref.name == rigid[0]), None)
+        yield Diagnostic("no-collider", message, written, help)
+
     def assemble_carried(
         self,
         name: str,
@@ -81,11 +94,9 @@ class MutualCollision(Contact):
         import numpy as np
 
         from sceneql.bodies.neighbors import table
-        from sceneql.contacts.colliders import OFTEN, must_be_points, surfaces
+        from sceneql.contacts.colliders import OFTEN, surfaces
         from sceneql.contacts.mutual.sphere_pair_kernels import BODY, HEAD, INSTANT, MOST_WARM, PAIR
 
-        for bodies in everyone:
-            must_be_points(bodies, assembly)
         rows = [
             (
                 at.position_at + 3 * k,
