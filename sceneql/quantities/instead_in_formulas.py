@@ -127,7 +127,7 @@ OF_FORMULAS = (
         "i index id",
         "copies have numbers, where `repeat: {count: 5, as: i}` makes them: `sceneql words repeat`",
     ),
-    ("negative", "strength", "leave out the minus: a strength is a size; what pulls down, as gravity, points there by itself"),
+    ("negative", "strength", "leave out the minus: what pulls down, as gravity, points there by itself"),
     ("zero", "mass", "what never moves is an object without a model, or a body or mass with `fixed: yes`"),
 )
 """(what the words were taken for, the words, the sentence)."""
