@@ -8,6 +8,8 @@ from numpy.random import Generator, Philox
 
 import sceneql.system.channels as channels
 from runs import watch
+from sceneql.bodies.elements.filled import bounded_by
+from sceneql.kinds import Exceeds
 from sceneql.pipeline import load as load_graph
 from sceneql.run.run import Run
 from solids import Solid
@@ -311,3 +313,8 @@ def test_by_default_the_nodes_of_all_elements_are_as_dense(tmp_path, element):
     path = tmp_path / "scene.yaml"
     path.write_text(script)
     assert 2000 < Run(load_graph(path, pruned=False)).islands[0].bodies["body"].count < 4000  # p2 had 20,000
+
+
+def test_a_lattice_of_more_places_than_there_are_numbers_is_told_as_too_many():
+    with pytest.raises(Exceeds):
+        bounded_by(1e-3)(np.zeros(3), np.full(3, 1e299))

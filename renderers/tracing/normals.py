@@ -11,7 +11,7 @@ from renderers.tracing.light.sampling_kernels import subpixels
 from renderers.tracing.normals_kernels import normal_rows, undecided_rows
 from renderers.tracing.pack import pack
 from renderers.tracing.picture import Picture, over_rows
-from renderers.tracing.scratch import scratch
+from renderers.tracing.scratch import patient, scratch
 
 if TYPE_CHECKING:
     from sceneql.frame import SeenFrame
@@ -40,7 +40,7 @@ def draw_undecided(frame: SeenFrame, tolerance: float = TOLERANCE) -> Picture:
     undecided: list[int] = []
 
     def band(start: int, stop: int) -> None:
-        undecided.append(undecided_rows(scene, scratch(rows), start, stop, picture))
+        undecided.append(undecided_rows(scene, patient(scratch(rows)), start, stop, picture))
 
     over_rows(height, band)
     return Picture(picture, sum(undecided))

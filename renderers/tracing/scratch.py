@@ -25,6 +25,12 @@ def begun(memory: Floats) -> Floats:
     return memory
 
 
+def patient(memory: Floats) -> Floats:
+    """Working memory with which no ray is given up: each undecided one has been searched."""
+    memory[-1, layout.LOST] = -np.inf
+    return memory
+
+
 def scratch_beside(asked: Floats, scene: Scene, rows: int) -> Floats:
     """Working memory of one thread with a list of rays for packets.
 

@@ -56,7 +56,7 @@ def bounded_by(spacing: float) -> Callable[[Floats, Floats], None]:
     """A function (low, high) of a box's corners that raises Exceeds where its lattice has too many nodes to test."""
 
     def check(low: Floats, high: Floats) -> None:
-        bounded(2.0 * float(np.prod(lattice_counts(low, high, spacing))), "places of a lattice", PLACE)
+        bounded(2.0 * prod(lattice_counts(low, high, spacing).tolist()), "places of a lattice", PLACE)
 
     return check
 
