@@ -83,12 +83,12 @@ def test_a_ball_is_pressed_on_a_plane_by_hertz_law(tmp_path):
     cuts += "{box: {size: 4 4 3 m, position: 0 0 -1.5 m}}"
     hold = f"top: {{where: y > {1 + gap - 1e-6}, shift: '[0 m, {-d} m/s*time, 0 m]'}}, "
     hold += "x: {where: x < 1e-6, components: x}, z: {where: z < 1e-6, components: z}"
-    finer = f"pole: {{near: 0 {gap} 0 m, within: {1.3 * radius} m, spacing: {0.35 * radius} m}}"
+    finer = f"pole: {{near: 0 {gap} 0 m, within: {1.3 * radius} m, spacing: {0.5 * radius} m}}"
     path = tmp_path / "scene.yaml"
     path.write_text(
         "clock: {end: 1 s}\nsolvers: {main: equilibrium}\nobjects:\n  floor: plane\n"
         f"  part: {{difference: {{of: [{{sphere: {{radius: 1 m}}}}, {cuts}], position: 0 {1 + gap} 0 m}}}}\n"
-        f"models:\n  ball: {{elastic: {{of: part, spacing: 0.3 m, finer: {{{finer}}}, element: p1, "
+        f"models:\n  ball: {{elastic: {{of: part, spacing: 0.3 m, finer: {{{finer}}}, element: p2, "
         f"law: {{linear: {{modulus: 1 MPa, poisson: 0.3}}}}, hold: {{{hold}}}}}}}\n"
         f"contacts: {{touch: {{collision: {{between: [ball, floor], gap: {gap} m}}}}}}\n"
         "outputs: {table: {record: {of: [ball.top.force]}}}\n",

@@ -29,6 +29,16 @@ NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
 
 
+def first_of(name: str, node: Node) -> str | None:
+    """The help for several values of a field that has one: the first, with its unit."""
+    if isinstance(node, Sequence):
+        first = node.items[0].span.text if node.items else ""
+    else:
+        first, *_, last = (*node.span.text.replace(",", " ").split(), "")[:-1] or ("", "")
+        first += f" {last}" if last[:1].isalpha() or last == "%" else ""
+    return f"it is one number: write `{name}: {first}`" if first else None
+
+
 def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     """The help for a field without its colon, or for a value that suits one field of a record."""
     required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]

@@ -158,7 +158,8 @@ def _by_axis(node: Node, numbers: Sequence[float], found: Diagnostics) -> bool:
     if tuple(axis) == (0.0, 0.0, 0.0) and angle == 1.0:
         text = "as a quaternion `w x y z` this turns by 180 deg about z"
         found.warning("quaternion-order", text, node.span, help="w stands first: `1 0 0 0` turns nothing")
-    if abs(sum(c * c for c in axis) - 1.0) > 1e-3 or angle in (0.0, 1.0, -1.0):
+    square = sum(c * c for c in axis)
+    if abs(square - 1.0) > 1e-3 or abs(square + angle * angle - 1.0) < 2e-3 or angle in (1.0, -1.0):
         return False
     unit = "rad" if abs(angle) <= 2 * pi else "deg"
     text = "four numbers are a quaternion `w x y z`, of length 1"

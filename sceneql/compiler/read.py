@@ -111,9 +111,8 @@ class Reader:
                     better = likely.elsewhere(self, written[name], info, rest)
                     if better is None and self.found.found[before].message.endswith(PLANAR):
                         better = "a number is missing: it has one for each of x, y and z"
-                    if better is None and SINGLE in self.found.found[before].message:
-                        first = written[name].span.text.strip("[]").replace(",", " ").split()[0]
-                        better = f"it is one number: write `{name}: {first}`"
+                    if better is None and self.found.found[before].message.startswith(f"{name}{SINGLE}"):
+                        better = likely.first_of(name, written[name])
                     self.found.found[before] = replace(self.found.found[before], help=better)
         if not ok:
             raise Unreadable

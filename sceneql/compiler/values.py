@@ -121,7 +121,7 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
         help = None if written is None else f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
         found.error("missing-value", "a value is missing here", node.span, help=help)
         return None
-    if (between := _CHANCE.search(text)) is not None:
+    if (between := _CHANCE.search(text)) is not None and _range(between[1], between[2]):
         told = f"`{between[0]}` is a number from 0 to 1, of the whole numbers {between[1]} and {between[2]}"
         help = f"a number from {between[1]} to {between[2]} is `mix({between[1]}, {between[2]}, random(1))`"
         found.warning("chance-range", told, node.span, help=help)
@@ -131,6 +131,15 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
         for diagnostic in error.diagnostics:
             found.add(diagnostic)
         return None
+
+
+def _range(low: str, high: str) -> bool:
+    """Whether two numbers behind `random` can only be meant as the ends of a range: they count numbers else."""
+    try:
+        ends = float(low), float(high)
+    except ValueError:
+        return False
+    return ends[0] < ends[1] and (ends[0] < 0 or not all(one.is_integer() for one in ends))
 
 
 def parsed_text(node: Scalar) -> str:

@@ -15,7 +15,9 @@ _PLAIN = re.compile(rf"\\(?:mathrm|mathbf|mathit|text|num|si|unit|operatorname|v
 _POWER = re.compile(rf"([\^_])\s*{_GROUP}")
 _PRODUCT = re.compile(r"\s*\\(?:cdot|times|ast)(?![a-zA-Z])\s*")
 _CALLED = re.compile(r"\\(sin|cos|tan|exp|log|ln|sqrt)(?![a-zA-Z])\s*(?:\(|([\w.]+))")
+_FACTOR_CALLED = re.compile(r"(?<=[\w)])\s*\\(?=(?:sin|cos|tan|exp|log|ln|sqrt)(?![a-zA-Z]))")
 _NAME = re.compile(r"([\w)]?)(\s*)\\([a-zA-Z]+)")
+_FACTOR = re.compile(r"(\s*)(?=[a-zA-Z0-9(]|\\(?!cdot|times|ast))([a-zA-Z]*)")
 _TOKEN = re.compile(r"[\w.]+")
 
 
@@ -27,23 +29,40 @@ def from_latex(text: str) -> str | None:
         result = _QUANTITY.sub(r"\1 \2", result)
         result = _PLAIN.sub(r"\1", result)
         result = _POWER.sub(lambda one: one[1] + (one[2] if one[1] == "_" else _whole(one[2])), result)
-        result = _ROOT.sub(lambda one: f"sqrt({one[2]})" if one[1] is None else f"({one[2]})^(1/{one[1]})", result)
+        result = _ROOT.sub(_root, result)
         result = _FRACTION.sub(_fraction, result)
         result = _PRODUCT.sub("*", result)
+        result = _FACTOR_CALLED.sub(r"*\\", result)
         result = _CALLED.sub(lambda one: f"{one[1]}({'' if one[2] is None else one[2] + ')'}", result)
         result = _NAME.sub(_name, result)
     result = re.sub(r"(?<![\w.])ln\(", "log(", " ".join(result.split()))
+    result = re.sub(r"(?<=[\w)])\* (?=[\w(])", "*", result)
     return None if result == text or re.search(r"[\\{}]", result) else result
 
 
 def _fraction(found: re.Match[str]) -> str:
     over, under = found[3].strip(), found[4].strip()
     sign = "" if not found[1] else found[2] if over in UNITS else "*"
-    return f"{found[1]}{sign or found[2]}{_whole(over)}/{_whole(under)}"
+    before, after = found.string[: found.start()].rstrip(), found.string[found.end() :]
+    text = f"{_whole(over)}/{_whole(under)}"
+    if sign == "*" or (not found[1] and before.endswith(("/", "^"))) or after.lstrip().startswith("^"):
+        text = f"({text})"
+    return f"{found[1]}{sign or found[2]}{text}{_times(after, units=True)}"
+
+
+def _times(after: str, *, units: bool = False) -> str:
+    """The sign of a product where one is left out before ``after``; ``units``: it may begin with a unit."""
+    factor = _FACTOR.match(after)
+    return "" if factor is None or (units and factor[1] and factor[2] in UNITS) else "*"
+
+
+def _root(found: re.Match[str]) -> str:
+    text = f"sqrt({found[2]})" if found[1] is None else f"({found[2]})^(1/{found[1]})"
+    return text + _times(found.string[found.end() :])
 
 
 def _name(found: re.Match[str]) -> str:
-    return f"{found[1]}{'*' if found[1] else found[2]}{found[3]}"
+    return f"{found[1]}{'*' if found[1] else found[2]}{found[3]}{_times(found.string[found.end() :])}"
 
 
 def _whole(text: str) -> str:

@@ -50,11 +50,20 @@ def parse_value(text: str, span: Span) -> Expr:
         return parse_expression(text, span) if value is None else value
     except ScriptError as error:
         (found,) = error.diagnostics
+        if found.code == "unknown-unit" and (sides := _crossed(text)) is not None:
+            raise ScriptError([Diagnostic("syntax", "sizes have no 'x' between them", found.span, sides)]) from None
         spaced = found.code in ("syntax", "unknown-unit") and len(text) <= LONGEST
         if not spaced or (vector := bracketed(text, span)) is None:
             raise
         help = f"a vector with formulas stands in brackets: write `{vector}`"
         raise ScriptError([Diagnostic("syntax", "two values stand side by side", found.span, help)]) from None
+
+
+def _crossed(text: str) -> str | None:
+    """The help for sizes with crosses between them, ``1 x 2 x 3 m``."""
+    crossed = len(text) <= LONGEST and _CROSSED.fullmatch(text.strip()) is not None
+    sides = vector_meant(re.sub(r"\s*[x×]\s*", ", ", text.strip())) if crossed else None
+    return f"write `{sides}`" if sides else None
 
 
 def parse_expression(text: str, span: Span) -> Expr:
@@ -258,9 +267,8 @@ class _Parser:
             at = self.text.index(odd)
             help = instead("sign", odd)
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
-        crossed = _CROSSED.fullmatch(self.text.strip())
-        if crossed is not None and (sides := vector_meant(re.sub(r"\s*[x×]\s*", ", ", self.text.strip()))):
-            help = f"write `{sides}`"
+        if (sides := _crossed(self.text)) is not None:
+            help = sides
         elif isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
             help = formula
         elif isinstance(expr, Number) and self.kind == "number" and self.before.endswith("%"):

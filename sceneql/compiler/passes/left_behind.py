@@ -10,7 +10,7 @@ from sceneql.kinds import Contact, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
 NEAR = 1e-9
-"""Distance [m] below which an object stands where a mass starts."""
+"""Distance, over that of a mass from the origin, below which an object stands where a mass starts."""
 
 
 def warn_of_left_behind(tasks: Mapping[str, Task], found: Diagnostics) -> None:
@@ -26,7 +26,7 @@ def warn_of_left_behind(tasks: Mapping[str, Task], found: Diagnostics) -> None:
         if not isinstance(place, Value) or not place.constant or place.span is None or not any(place.number()):
             continue
         for mass, start in masses:
-            if dist(start, place.number()) < NEAR:
+            if dist(start, place.number()) <= NEAR * max(map(abs, start)):
                 text = f"'{task.name}' stands where '{mass}' starts, and stays there when that moves"
                 found.warning("left-behind", text, place.span, help=f"to follow it write `position: {mass}.position`")
                 break

@@ -25,11 +25,11 @@ def warn_of_unforced(tasks: Mapping[str, Task], groups: Sequence[Island], found:
     moved = [task.name for task in tasks.values() if isinstance(task.kind, Object) and not task.kind.grounds]
     acting = [t for t in tasks.values() if isinstance(t.kind, Interaction | Contact) and not isinstance(t.kind, Tie)]
     some = [ref for task in acting if isinstance(task.kind, Interaction) for ref in task.kind.targets() or ()]
-    for task in acting[:1] if moved and not solved else ():
+    led = any(not value.constant for task in tasks.values() if _leads(task) for value in values_of(task.kind))
+    for task in acting[:1] if moved and not solved and not led else ():
         text = f"'{task.name}' acts on masses, and no model has any: nothing moves"
         help = f"a model moves an object: `models: {{fall: {{particles: {{of: {moved[0]}, mass: 1 kg}}}}}}`"
         found.warning("nothing-moves", text, task.span, help=help)
-    led = any(not value.constant for task in tasks.values() if _leads(task) for value in values_of(task.kind))
     for island in groups:
         models = [tasks[name] for name in island.models]
         if len(solved) == len(models) and all(map(_held, models)):

@@ -25,8 +25,9 @@ def warn_of_unseen(
             help = f"leave out `hidden: yes`, as of '{written[0].name}'"
             found.warning("nothing-drawn", text, tasks[picture].span or written[0].span, help=help)
         camera = tasks.get(cameras.get(picture, ""))
-        if camera is not None and parts and all(_behind(task, camera) for task in parts):
-            text = f"'{camera.name}' sees nothing: all that is drawn is behind it"
+        mirrors = any(getattr(tasks[name].kind, "material", None) for name in names if tasks[name] not in parts)
+        if camera is not None and parts and not mirrors and all(_behind(task, camera) for task in parts):
+            text = f"'{camera.name}' sees nothing but the ground: all else that is drawn is behind it"
             found.warning("not-seen", text, camera.span, help="turn it round: `look_at` is the place in the middle")
 
 

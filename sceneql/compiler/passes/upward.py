@@ -13,9 +13,12 @@ MOSTLY = 0.9
 
 
 def warn_of_z_up(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Warn of a weight along z, unless a camera of the script has z upwards, too."""
+    """Warn of a weight along z, unless a camera or a ground has z upwards, too, or another weight has not."""
     ups = [getattr(task.kind, "up", None) for task in tasks.values() if isinstance(task.kind, Camera)]
-    if any(_along_z(up) for up in ups):
+    ups += [getattr(task.kind, "normal", None) for task in tasks.values() if getattr(task.kind, "grounds", False)]
+    weights = [task.kind for task in tasks.values() if isinstance(task.kind, Interaction) and task.kind.weighs]
+    along = [any(_along_z(getattr(one, field, None)) for field in ("acceleration", "direction")) for one in weights]
+    if any(_along_z(up) for up in ups) or not all(along):
         return
     for task in tasks.values():
         if not (isinstance(task.kind, Interaction) and task.kind.weighs):

@@ -12,6 +12,9 @@ from sceneql.shapes.color import linear
 if TYPE_CHECKING:
     from sceneql import frame
 
+STEEP = 0.3
+"""Part of a direction down from which on it is taken for that of the light's rays; rims may shine from below."""
+
 
 class Sun(Light):
     """Light from one direction, everywhere equally strong.
@@ -33,7 +36,7 @@ class Sun(Light):
         if self.direction is None or not self.direction.constant:
             return
         x, y, z = (float(c) for c in self.direction.number())
-        if y < 0:
+        if y < -STEEP * math.hypot(x, y, z):
             text = "it shines from below: its `direction` is that from the scene towards it, and this points down"
             back = " ".join(f"{0.0 - c:g}" for c in (x, y, z))
             yield Doubt("light-from-below", text, self.direction.span, f"write `direction: {back}`")
