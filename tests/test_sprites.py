@@ -133,3 +133,10 @@ def test_the_light_on_smoke_is_the_same_wherever_its_lamp_shines_from():
         np.testing.assert_allclose(one, other, rtol=1e-3, atol=1e-3)
     inside = PointLight((0.05, 0.1, 0.27), (1.0, 1.0, 1.0))
     assert np.isfinite(lit(pair, (inside,), np.eye(3))).all()
+
+
+def test_a_disc_that_is_nowhere_takes_no_light_from_the_others():
+    sound = smoke((0, 0, 0), (0.1, 0, -0.6))
+    burst = smoke((0, 0, 0), (0.1, 0, -0.6), (np.nan, 0, 0))
+    sun = Sun((0.0, 0.0, 1.0), (3.0, 3.0, 3.0), 0.0)
+    assert np.array_equal(seen_in(sun, shapes=[burst]), seen_in(sun, shapes=[sound]))

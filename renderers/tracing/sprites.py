@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,8 +57,11 @@ def _radiances(shape: Points, frame: SeenFrame) -> Floats:
         return found
     from renderers.tracing.light.discs import lit
 
-    for k, given in enumerate(lit(shape, frame.lights, frame.view.axes)):
-        found[:, k] = own * given
+    sound = np.isfinite(shape.centers).all(axis=1) & np.isfinite(shape.radii)
+    discs = replace(shape, centers=shape.centers[sound], radii=shape.radii[sound], colors=None)
+    for k, given in enumerate(lit(discs, frame.lights, frame.view.axes)):
+        found[sound, k] = given
+    found *= own.reshape(-1, 1, 3)
     return found
 
 

@@ -38,6 +38,6 @@ def hardly_seen(seen: DryRun, graph: SimulationGraph) -> Iterator[Diagnostic]:
     if part < SMALL:
         names = ", ".join(f"'{name}'" for name in seen.changing[:3])
         text = f"what moves ({names}) is {100 * part:.1g} % as large as its surroundings and its way: it is hardly seen"
-        window = f"{graph.settings.clock.end * WINDOW:.1g} s"
+        window = f"{float(f'{graph.settings.clock.end * WINDOW:.1g}'):g} s"
         help = f"`cameras: {{near: {{auto: {{window: {window}}}}}}}` goes along with it; a `trail` shows it from afar"
         yield Diagnostic("hardly-seen", text, graph.tasks[seen.changing[0]].span, help, severity="warning")

@@ -92,7 +92,10 @@ def refined(
         if not len(more):
             found = stitched(whole, coarse, kept, fine, sides, curves)
             break
+        before = len(groups)
         groups = np.unique(np.concatenate([groups, more // group]), axis=0)
+        if len(groups) == before:
+            break
     return unfolded(whole, found), _left(fine_shop, np.concatenate([groups, doubt.where // group]), doubt)
 
 
