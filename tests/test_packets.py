@@ -47,6 +47,14 @@ def test_no_crossing_of_any_tape_is_missed_in_packets(tape, ray, spread, seed):
     assert ((status == ops.HIT) == ((certified == ops.HIT) | (certified == ops.INSIDE)))[settled].all()
 
 
+def test_rays_that_are_left_undecided_are_outside_up_to_their_place():
+    code = np.array([[1, 0, 0, 0], [20, 0, 0, 0]], dtype=np.int32)  # the random tape that found it: inside from 0 on
+    tape = replace(tape_of("x"), code=code, constants=np.zeros(0), parts=np.zeros((0, 8)))
+    status, t = cast_together(tape, np.zeros((150, 3)), np.zeros((150, 3)), np.zeros(150), np.full(150, 1e-4))
+    assert (status != ops.MISS).all()
+    assert (t <= 1e-10 + 1e-12).all()
+
+
 @pytest.mark.parametrize("count", [100, 150, 180, 205, 250])
 def test_all_columns_of_a_bundle_are_searched_where_the_shortened_tape_holds(count):
     # Two bores, 0 < x < 3 and 2 < x < 6, in a slab: near the first root, x = 6, the first bore does not count.

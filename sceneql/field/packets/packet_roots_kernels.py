@@ -61,6 +61,10 @@ def certify_queued(code, constants, parts, scratch, rays, queue, count, end, any
             certified += 1
             certify_ray(code, constants, parts, scratch, rays, j, end, anywhere, found)
             lost += found[FOUND_STATUS, j] == ops.UNDECIDED
+        elif found[FOUND_STATUS, j] == ops.UNDECIDED:  # the ray is outside up to FOUND_LOW, and no further for sure
+            found[FOUND_ROOT, j] = found[FOUND_LOW, j]
+            if anywhere:
+                found[FOUND_HIGH, j] = found[FOUND_LOW, j]
     return certified
 
 
