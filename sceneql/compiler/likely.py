@@ -34,8 +34,8 @@ def first_of(name: str, node: Node) -> str | None:
     if isinstance(node, Sequence):
         first = node.items[0].span.text if node.items else ""
     else:
-        first, *_, last = (*node.span.text.replace(",", " ").split(), "")[:-1] or ("", "")
-        first += f" {last}" if last[:1].isalpha() or last == "%" else ""
+        first, *more = node.span.text.replace(",", " ").split() or ("",)
+        first += f" {more[-1]}" if more and (more[-1][:1].isalpha() or more[-1] == "%") else ""
     return f"it is one number: write `{name}: {first}`" if first else None
 
 
