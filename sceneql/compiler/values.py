@@ -48,7 +48,6 @@ _MISSING = (
 )
 """(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
 viscosity to dynamic, conductivity to diffusivity."""
-_CHANCE = re.compile(r"\brandom\(\s*(-?[\d.]+)\s*,\s*(-?[\d.]+)\s*\)")
 _EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
@@ -121,25 +120,12 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
         help = None if written is None else f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
         found.error("missing-value", "a value is missing here", node.span, help=help)
         return None
-    if (between := _CHANCE.search(text)) is not None and _range(between[1], between[2]):
-        told = f"`{between[0]}` is a number from 0 to 1, of the whole numbers {between[1]} and {between[2]}"
-        help = f"a number from {between[1]} to {between[2]} is `mix({between[1]}, {between[2]}, random(1))`"
-        found.warning("chance-range", told, node.span, help=help)
     try:
         return names.parsed.tree(node, text, names.lookup, found)
     except ScriptError as error:
         for diagnostic in error.diagnostics:
             found.add(diagnostic)
         return None
-
-
-def _range(low: str, high: str) -> bool:
-    """Whether two numbers behind `random` can only be meant as the ends of a range: they count numbers else."""
-    try:
-        ends = float(low), float(high)
-    except ValueError:
-        return False
-    return ends[0] < ends[1] and (ends[0] < 0 or not all(one.is_integer() for one in ends))
 
 
 def parsed_text(node: Scalar) -> str:

@@ -59,6 +59,8 @@ def _bound(node: Expr, bound: dict[int, Expr | None], lookup: Lookup, found: Dia
                     return Vector(args, listed(args), node.span)
                 if node.op == "hue":
                     _doubt_hue(node, found)
+                if node.op == "random":
+                    _doubt_range(node, found)
                 if node.op in TURNS:
                     _doubt_degrees(node, found)
                 return fold(Call(node.op, args, OPERATIONS[node.op].rule(args), node.span))
@@ -117,6 +119,19 @@ def _doubt_hue(call: Call, found: Diagnostics) -> None:
         text = f"hue({turns.span.text}) is of {turns.value:g} whole turns: a hue goes from 0, red, to 1, red again"
         help = f"write `hue({turns.span.text}/360)` for degrees"
         found.warning("turns", text, call.span, help=help)
+
+
+def _doubt_range(call: Call, found: Diagnostics) -> None:
+    """Warn of two numbers behind `random` that can only be meant as the ends of a range: they are whole ones else."""
+    texts = ["" if arg.span is None else arg.span.text for arg in call.args]
+    try:
+        low, high = map(float, texts)
+    except ValueError:
+        return
+    if low < high and (low < 0 or not (low.is_integer() and high.is_integer())):
+        text = f"`random({texts[0]}, {texts[1]})` is a number from 0 to 1, of the whole numbers {low:g} and {high:g}"
+        help = f"a number from {low:g} to {high:g} is `mix({low:g}, {high:g}, random(1))`"
+        found.warning("chance-range", text, call.span, help=help)
 
 
 def _constant(expr: Expr) -> bool:
