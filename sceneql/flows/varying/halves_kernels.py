@@ -60,15 +60,22 @@ def row_of(values, j, k, a, b, line, one):
     mean_row(values, y0, yn, z0, zn, line, one)
 
 
-@lean(types.void(A, N, N, N, N, N, A, I), inner=True)
-def layer_of(values, j, k, a, b, side, line, one):
-    """As `row_of`, of half ``side`` alone of those along the axis b = 1 or 2, across which the cells lie at faces."""
+@lean_inlined
+def across_x(j, k, a, b, side, one):
+    """First halves and how many, along y and z, of the cell of a face of component a; along b half ``side`` alone."""
     y0, yn = (side, 1) if b == 1 else reach(j, one[flow.CELLS + 1], a == 1, one[flow.PERIODIC + 1] == 1)
     z0, zn = 0, 1
     if b == 2:
         z0 = side
     elif one[flow.AXES] == 3:
         z0, zn = reach(k, one[flow.CELLS + 2], a == 2, one[flow.PERIODIC + 2] == 1)
+    return y0, yn, z0, zn
+
+
+@lean(types.void(A, N, N, N, N, N, A, I), inner=True)
+def layer_of(values, j, k, a, b, side, line, one):
+    """As `row_of`, of half ``side`` alone of those along the axis b = 1 or 2, across which the cells lie at faces."""
+    y0, yn, z0, zn = across_x(j, k, a, b, side, one)
     mean_row(values, y0, yn, z0, zn, line, one)
 
 
@@ -95,12 +102,7 @@ def at_wall(values, i, j, k, a, b, side, one):
     """The mean over half ``side`` alone of those along the axis b, of the cell of a face of component a."""
     nx, ny, nz = halves(one)
     x0, xn = (side, 1) if b == 0 else reach(i, one[flow.CELLS], a == 0, one[flow.PERIODIC] == 1)
-    y0, yn = (side, 1) if b == 1 else reach(j, one[flow.CELLS + 1], a == 1, one[flow.PERIODIC + 1] == 1)
-    z0, zn = 0, 1
-    if b == 2:
-        z0 = side
-    elif one[flow.AXES] == 3:
-        z0, zn = reach(k, one[flow.CELLS + 2], a == 2, one[flow.PERIODIC + 2] == 1)
+    y0, yn, z0, zn = across_x(j, k, a, b, side, one)
     found = 0.0
     for c in range(zn):
         for d in range(yn):
