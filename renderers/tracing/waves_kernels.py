@@ -325,8 +325,10 @@ def look_from(scene, scratch, asked, ways, first, last, at, records, visibility)
         if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         k = at[i]
-        number = sample_of(k % width, k // width)
         for layer in range(len(records)):
-            if records[layer, k, OWNER] > 0.0 and (not ending or visibility[layer, k, 0] == AWAITED):
+            if ending and visibility[layer, k, 0] != AWAITED:
+                continue
+            if records[layer, k, OWNER] > 0.0:
+                number = sample_of(k % width, k // width)
                 look_around(scene, scratch, asked, ways, records[layer, k], number, 1, 1, visibility[layer, k])
     return last

@@ -168,7 +168,7 @@ def refine(scene, scratch, asked, ways, start, stop, waiting, busy, records, vis
         begin = asked[0, layout.NEXT]
         if asking and begin > room:
             return k
-        if first and pixels >= few_for(records[k]) and is_even(scene, k, x, y, means, fine):
+        if first and (pixels >= FEW or pixels >= few_for(records[k])) and is_even(scene, k, x, y, means, fine):
             continue
         refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, records, visibility, means, fine)
         if asking and asked[0, layout.NEXT] > begin:
