@@ -21,13 +21,13 @@ def scratch(rows: int) -> Floats:
 
 def begun(memory: Floats) -> Floats:
     """Working memory as a thread begins a piece of work that does not depend on the number of threads: nothing LOST."""
-    memory[-1, layout.LOST] = 0.0
+    memory[:, layout.LOST] = 0.0
     return memory
 
 
 def patient(memory: Floats) -> Floats:
     """Working memory with which no ray is given up: each undecided one has been searched."""
-    memory[-1, layout.LOST] = -np.inf
+    memory[:, layout.LOST] = -np.inf
     return memory
 
 

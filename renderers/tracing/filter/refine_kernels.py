@@ -1,6 +1,7 @@
 # mypy: ignore-errors
 """Third stage: edges of shadows finer than the filter's window get samples of their own; then all is shaded."""
 
+import numpy as np
 from numba import types
 
 from renderers.tracing import layout
@@ -9,9 +10,9 @@ from renderers.tracing.filter.filter_kernels import REACH
 from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import COUNT, SIDE, SKY_COUNT, sample_of
-from renderers.tracing.light.shade_kernels import shade_here
+from renderers.tracing.light.shade_kernels import shade_under, sky_on
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, light_sample, look_around, shadow_sample
-from renderers.tracing.record_kernels import OWNER, RADIUS, alike, enough
+from renderers.tracing.record_kernels import NORMAL, OWNER, RADIUS, alike, enough
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
 from renderers.tracing.tiles_kernels import MARKS
 from sceneql.compiled.kernels import kernel
@@ -206,6 +207,7 @@ def settle(records, fine, lights, k, x, y, width, height, visibility):
 def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
     """Write the final visibility (2, n, V) and add both records' light to the radiance (n, 3)."""
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
+    rising, open_sky = np.float32(np.nan), (0.0, 0.0, 0.0)  # height of the normal at hand, and the sky's light on it
     for y in range(start, stop):
         for x in range(width):
             if busy[y // TILE, x // TILE] == 0:
@@ -225,7 +227,9 @@ def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
                     height,
                     visibility[layer, k],
                 )
-                r, g, b = shade_here(scene, records[layer, k], visibility[layer, k])
+                if records[layer, k, NORMAL + 1] != rising:
+                    rising, open_sky = records[layer, k, NORMAL + 1], sky_on(scene.reals, records[layer, k], False)
+                r, g, b = shade_under(scene, records[layer, k], visibility[layer, k], open_sky)
                 radiance[k, 0] += r
                 radiance[k, 1] += g
                 radiance[k, 2] += b
