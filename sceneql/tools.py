@@ -313,7 +313,8 @@ def frame_of(
     from sceneql.shapes.color import linear
 
     drawn = shapes_of(graph.drawn[output], moment, index)  # first: what cannot be drawn is no failure of the camera's
-    moment = replace(moment, shown=drawn.shapes)
+    shapes = (*drawn.shapes, *moment.supports(graph.drawn[output]))
+    moment = replace(moment, shown=shapes)
     eye = graph.tasks[camera or graph.cameras[output]]
     with failing_as(eye.name, moment.time, eye.span):
         view = cast(Camera, eye.kind).view(size, moment)
@@ -331,7 +332,7 @@ def frame_of(
     return SeenFrame(
         index=drawn.index,
         time=drawn.time,
-        shapes=drawn.shapes,
+        shapes=shapes,
         lights=tuple(lights),
         view=view,
         seed=graph.settings.clock.seed,

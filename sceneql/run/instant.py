@@ -48,6 +48,10 @@ class Running(Framed, Protocol):
     diverged: Sequence[Diverged]
     """The variants that a framing of this run and others left out."""
 
+    @property
+    def supports(self) -> Sequence[tuple[str, Drawn]]:
+        """What holds bodies to the world: names of objects, each with a shape that holds it."""
+
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order."""
 
@@ -252,6 +256,11 @@ class Instant:
                 elif isinstance(task.kind, Model):
                     shapes += task.kind.lower(name, self.state(name), self)
         return shapes
+
+    def supports(self, names: Iterable[str]) -> list[Drawn]:
+        """The shapes of what holds the named objects to the world."""
+        shown = set(names)
+        return [shape for name, shape in self.run.supports if name in shown]
 
     @cached_property
     def everything(self) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING, Any, cast
 
@@ -23,6 +24,7 @@ from sceneql.run.history import History
 from sceneql.run.instant import Instant
 from sceneql.run.leaving import Leaving, warning
 from sceneql.run.ranges import ranged
+from sceneql.run.supports import Support, supports
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -84,6 +86,11 @@ class Run:
     def state(self, name: str) -> ModelState:
         """The latest state of a model that is solved, of a contact, or of a tie."""
         return self.island_of[name].state(name)
+
+    @cached_property
+    def supports(self) -> Sequence[Support]:
+        """What holds bodies to the world."""
+        return supports(self.graph, lambda: Run(self.graph, marching=False).at(0.0))
 
     def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
         """Low and high corner (3,) [m] of each part over the whole run."""
