@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from sceneql.pictures.arrangement import Arrangement
     from sceneql.pictures.layout import Panel
     from sceneql.quantities.diagnostic import Diagnostic
-    from sceneql.run.instant import Framed, Instant
+    from sceneql.run.framed import Framed
+    from sceneql.run.instant import Instant
 
 
 @dataclass
