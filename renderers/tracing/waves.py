@@ -59,7 +59,7 @@ apply if packets intersect the whole scene: a single ray then costs as much as a
 class Waves:
     """Working memory of a thread for bands of a picture, at most TILE rows high.
 
-    All of it is written before it is read: zeros in each frame would take a twentieth of its time.
+    All of it is written before it is read: zeros in each frame would take a thirtieth of its time.
     """
 
     def __init__(self, scene: Scene, packets: Packets | None, rows: int, columns: int, layers: int) -> None:
