@@ -10,6 +10,8 @@ from renderers.tracing import layout
 from sceneql.field.tape.tape_ops import SCRATCH_COLUMNS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from renderers.tracing.scene_kernels import Scene
     from sceneql.frame import Floats
 
@@ -29,6 +31,13 @@ def patient(memory: Floats) -> Floats:
     """Working memory with which no ray is given up: each undecided one has been searched."""
     memory[:, layout.LOST] = -np.inf
     return memory
+
+
+def asked_rays(rays: int, solids: Sequence[int] = ()) -> Floats:
+    """Empty list of rays (1 + rays, columns), for packets that know ``solids``; see scene_kernels.ASKED."""
+    out = np.empty((1 + rays, layout.ANSWERS + len(solids)))
+    out[0, : layout.ANSWERS], out[0, layout.ANSWERS :] = 0.0, solids
+    return out
 
 
 def scratch_beside(asked: Floats, scene: Scene, rows: int) -> Floats:

@@ -22,7 +22,7 @@ from renderers.tracing.light import look_lanes_kernels as looks
 from renderers.tracing.light.bounce_kernels import WAY, dress_hits, follow_all, look_about, step_all
 from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_paths
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.scratch import begun, scratch_beside
+from renderers.tracing.scratch import asked_rays, begun, scratch_beside
 from renderers.tracing.solids.plain_lanes import lanes_for
 from renderers.tracing.tiles_kernels import fill_background
 from renderers.tracing.waves_kernels import (
@@ -57,7 +57,10 @@ apply if packets intersect the whole scene: a single ray then costs as much as a
 
 
 class Waves:
-    """Working memory of a thread for bands of a picture, at most TILE rows high."""
+    """Working memory of a thread for bands of a picture, at most TILE rows high.
+
+    All of it is written before it is read: zeros in each frame would take a thirtieth of its time.
+    """
 
     def __init__(self, scene: Scene, packets: Packets | None, rows: int, columns: int, layers: int) -> None:
         """``packets``: intersect solids in packets, if not None; ``rows``: of scratch; ``columns``: of visibility;
@@ -67,7 +70,7 @@ class Waves:
         self.tiles = TILES if around else MORE_TILES
         room, rays = (TILE * TILE * count for count in (self.tiles, RAYS if around else MORE_RAYS))
         width = -(-int(scene.reals[layout.WIDTH]) // TILE) * TILE
-        self.asked = np.zeros((1 + rays, layout.ANSWERS)) if packets is None else packets.asked(rays)
+        self.asked = asked_rays(rays) if packets is None else packets.asked(rays)
         self.scratch = scratch_beside(self.asked, scene, rows)
         self.lanes = lanes_for(scene, packets is not None)
         if self.lanes is not None:
@@ -79,30 +82,30 @@ class Waves:
         lights, others = scene.ints[layout.LIGHT_COUNT], scene.ints[[layout.EMBERS, layout.MISTS]]
         alone = self.asked[0, layout.ALONE] != 0.0
         self.looks = np.zeros(looks.ROOM) if alone and lights <= looks.MOST_LIGHTS and not others.any() else None
-        self.waiting = np.zeros(2 + rays, dtype=np.int64)
-        self.cones, self.each = np.zeros((room, 3)), np.arange(room, dtype=np.int64)
-        self.at = np.zeros((-(-width // TILE // self.tiles), room), dtype=np.int64)
+        self.waiting = np.empty(2 + rays, dtype=np.int64)
+        self.cones, self.each = np.empty((room, 3)), np.arange(room, dtype=np.int64)
+        self.at = np.empty((-(-width // TILE // self.tiles), room), dtype=np.int64)
         self.awaited: list[tuple[Callable[[int, int], int], int, int]] = []
         """What is to be run again when the light paths have ended that waves of a band have begun: see ``_ask``."""
         some = room if layers > 1 or scene.ints[layout.HAS_THIN] else 1  # no path begins in a wholly matte scene
-        self.paths, self.of = np.zeros((some, PATH)), np.zeros(some, dtype=np.int64)
-        self.hits, self.met, self.skins = np.zeros(room, dtype=np.int64), np.zeros((room, 5)), np.zeros((room, 6))
-        self.gathered = np.zeros((room, 4))
+        self.paths, self.of = np.empty((some, PATH)), np.empty(some, dtype=np.int64)
+        self.hits, self.met, self.skins = np.empty(room, dtype=np.int64), np.empty((room, 5)), np.empty((room, 6))
+        self.gathered = np.empty((room, 4))
         count = 2 * (1 + rays) if self.listed and around else 1
         self.ways, self.live, self.ways_hit = (
-            np.zeros((count, WAY)),
-            np.zeros(count, np.int64),
-            np.zeros(count, np.int64),
+            np.empty((count, WAY)),
+            np.empty(count, np.int64),
+            np.empty(count, np.int64),
         )
-        self.ways_met, self.ways_skins = np.zeros((count, 5)), np.zeros((count, 6))
+        self.ways_met, self.ways_skins = np.empty((count, 5)), np.empty((count, 6))
         self.marks, self.same = (
-            np.zeros((TILE, -(-width // LANES) * LANES), np.float32),
-            np.zeros(LANES, np.float32),
+            np.empty((TILE, -(-width // LANES) * LANES), np.float32),
+            np.empty(LANES, np.float32),
         )
-        self.edges, self.sums = np.zeros(width * TILE, dtype=np.int64), np.zeros((room, 4))
-        self.own = np.zeros((layers, room, COLUMNS), dtype=np.float32)
-        self.found = np.zeros((layers, room, columns), dtype=np.float32)
-        self.spares = np.zeros((some, COLUMNS), dtype=np.float32)
+        self.edges, self.sums = np.empty(width * TILE, dtype=np.int64), np.empty((room, 4))
+        self.own = np.empty((layers, room, COLUMNS), dtype=np.float32)
+        self.found = np.empty((layers, room, columns), dtype=np.float32)
+        self.spares = np.empty((some, COLUMNS), dtype=np.float32)
 
     def gather(
         self, start: int, stop: int, reached: Array, busy: Array, mirrored: Array, records: Array, visibility: Array,
