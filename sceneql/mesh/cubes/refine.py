@@ -31,9 +31,10 @@ if TYPE_CHECKING:
 
     Keys = NDArray[np.int64]
 
-FEW_GROUPS, MANY_GROUPS = 2**9, 2**12
-"""Above these numbers of groups, fine cells are bisected once, and not at all, to prove them empty; above the second
-cells are not subdivided by FINEST."""
+FEW_CELLS = 2**12
+"""From this number of fine cells on that are not proved empty or full, none is halved; from an eighth on, but once."""
+MANY_GROUPS = 2**12
+"""Above this number of groups cells are not subdivided by FINEST."""
 MOST_BENT, MOST_TOO_BENT = 2**17, 2**18
 """Most triangles of the fine cells in which normals vary by much, or only by too much: beyond them, and beyond 2 and 4
 times the coarse triangles, the surface is left to shorter cells that are asked for."""
@@ -71,7 +72,7 @@ def refined(
     whole, grid = bounded(tape, low, high), grid_around(low, high, cell)
     shop, numbers = GridExtraction(whole, grid), Numbering(grid)
     blocks = shop.met()
-    coarse, doubt = level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks, finer=FINE)
+    coarse, doubt = level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks, 0, FINE)
     for cells, parts, most in _to_cut(whole, coarse, tolerance):
         group = BLOCK // parts  # coarse cells along a group, which is one block of the fine grid
         groups = np.unique(np.concatenate([cells, doubt.where[doubt.seen]]).astype(np.int64) // group, axis=0)
@@ -96,18 +97,40 @@ def refined(
         groups = np.unique(np.concatenate([groups, more // group]), axis=0)
         if len(groups) == before:
             break
-    return unfolded(whole, found), _left(fine_shop, np.concatenate([groups, doubt.where // group]), doubt)
+    return unfolded(whole, found), _left(fine_shop, groups, coarse.cells, doubt, numbers)
 
 
-def _left(fine_shop: GridExtraction, groups: Keys, doubt: Unresolved) -> Unresolved:
-    """The unresolved ones of the fine cells in ``groups`` (n, 3), or the coarse ones where these are too many."""
+def _left(fine_shop: GridExtraction, groups: Keys, met: Keys, doubt: Unresolved, numbers: Numbering) -> Unresolved:
+    """The unresolved ones of the fine cells of the coarse cells in doubt, and of those ``met`` (n, 3) by the surface in
+    the ``groups`` (g, 3); the coarse ones where these are too many.
+    """
     import numpy as np
 
-    groups = np.unique(groups, axis=0)
-    if len(groups) > MOST_GROUPS:
+    group = BLOCK // round(doubt.grid.cell / fine_shop.grid.cell)
+    within = met[among(numbers.of(met // group), np.sort(numbers.of(groups)))] if len(groups) else met[:0]
+    blocks, eighths = _by_eighths(np.concatenate([within, doubt.where]), group)
+    if len(blocks) > MOST_GROUPS:
         return doubt
-    deepest = DEEPEST if len(groups) < FEW_GROUPS else 1 if len(groups) < MANY_GROUPS else 0
-    return hidden_in(fine_shop, groups.astype(np.int32), deepest)
+    left = hidden_in(fine_shop, blocks, 0, eighths=eighths)
+    if 0 < left.cells < FEW_CELLS:
+        blocks, eighths = _by_eighths(left.where, BLOCK)
+        left = hidden_in(fine_shop, blocks, DEEPEST if left.cells < FEW_CELLS / 8 else 1, eighths=eighths)
+    return left
+
+
+def _by_eighths(cells: Keys, group: int) -> tuple[Ints, NDArray[np.uint8]]:
+    """Groups (n, 3) of ``group`` cells along each axis that cells (m, 3) lie in, and (n,) in which eighths of these."""
+    import numpy as np
+
+    where = cells // group
+    size = where.max(axis=0, initial=0) + 1
+    keys, first, owner = np.unique(
+        where @ np.array([1, size[0], size[0] * size[1]]), return_index=True, return_inverse=True
+    )
+    eighths = np.full(len(keys), 255 if group == 1 else 0, dtype=np.uint8)
+    half = 2 * (cells - group * where) // group
+    np.bitwise_or.at(eighths, owner, (1 << (half @ np.array([1, 2, 4]))).astype(np.uint8))
+    return where[first].astype(np.int32), eighths
 
 
 def _to_cut(tape: Tape, coarse: Level, tolerance: float | None) -> list[tuple[Keys, int, float]]:
@@ -115,9 +138,7 @@ def _to_cut(tape: Tape, coarse: Level, tolerance: float | None) -> list[tuple[Ke
     count = len(coarse.triangles)
     too_bent, none = coarse.cells[coarse.bent == 2], coarse.cells[:0]
     if tolerance is None:
-        bent = coarse.cells[coarse.bent > 0]
-        by_bends = (bent, FINE, max(2 * count, MOST_BENT)), (too_bent, FINE, max(4 * count, MOST_TOO_BENT))
-        return [*by_bends, (too_bent, COARSER, inf), (none, COARSER, inf)]
+        return [(too_bent, FINE, max(4 * count, MOST_TOO_BENT)), (too_bent, COARSER, inf), (none, COARSER, inf)]
     off = _off(tape, coarse, tolerance)
     if (off > tolerance).sum() > FEW * len(off):
         return [(too_bent, FINE, inf), (none, FINE, inf)]

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 ROUNDS = 12
 WIDENED = 3
 """Rounds after which the vertices one ring farther out are moved too."""
+RINGS = ROUNDS // WIDENED + 2
+"""Rings around folds that are looked at: those that move in the last round, and one of triangles on either side."""
 MOST = 2**10
 """Most folds for which vertices are moved; more arise from a field too fine for its cells."""
 
@@ -31,20 +33,34 @@ def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
     """
     import numpy as np
 
-    best, best_rows = polygons, overturned(tape, polygons)
-    rows, found = best_rows, polygons
+    rows = overturned(tape, polygons)
+    if not 0 < len(rows) <= MOST:
+        return polygons
+    near = np.zeros(len(polygons.vertices), dtype=bool)
+    near[polygons.triangles[rows]] = True
+    for _ in range(RINGS):
+        near[polygons.triangles[touched(near, polygons.triangles)]] = True
+    part = touched(near, polygons.triangles)
+    some, rest = polygons.triangles[part], polygons.triangles[~part]
+    best, fewest = None, len(rows)
+    found = Polygons(polygons.vertices, some, polygons.normals)
+    rows = (np.cumsum(part) - 1)[rows]
     for turn in range(ROUNDS):
-        if not 0 < len(rows) <= MOST:
-            break
-        near = np.zeros(len(polygons.vertices), dtype=bool)
+        near[:] = False
         near[found.triangles[rows]] = True
         for _ in range(turn // WIDENED):
             near[found.triangles[touched(near, found.triangles)]] = True
         found = _relaxed(tape, found, near)
-        rows = overturned(tape, found)
-        if len(rows) < len(best_rows):
-            best, best_rows = found, rows
-    return best
+        rows = overturned(tape, found, rest)
+        if len(rows) < fewest:
+            best, fewest = found, len(rows)
+        if not 0 < len(rows) <= MOST:
+            break
+    if best is None:
+        return polygons
+    triangles = polygons.triangles.copy()
+    triangles[part] = best.triangles
+    return Polygons(best.vertices, triangles, best.normals)
 
 
 def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_]) -> Polygons:
