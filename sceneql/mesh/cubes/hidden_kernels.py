@@ -67,8 +67,8 @@ def enough(code, constants, parts, scratch, second, h):
 def proved(code, constants, parts, scratch, second, x, y, z, half, negative, least):
     """(whether f is proved to keep its sign in the box of half side ``half`` about a point, way, thickness).
 
-    By its range, by the mean value form, or, as in ``enough``, by ``least``, the least |f| at the box's corners. Without
-    a proof, f may have the other sign only up to a ``thickness`` [m] from a face, ``way`` as ``bulged`` takes it.
+    By its range, by the mean value form, or, as in ``enough``, by ``least``, the least |f| at the box's corners.
+    Without a proof, f may have the other sign only up to a ``thickness`` [m] from a face, ``way`` as ``bulged`` has it.
     """
     low, high, status = box(
         code, constants, parts, scratch, x - half, x + half, y - half, y + half, z - half, z + half
@@ -110,8 +110,8 @@ def proved(code, constants, parts, scratch, second, x, y, z, half, negative, lea
 def bulged(code, constants, parts, scratch, x, y, z, h, negative, way):
     """Whether a neighbor of the cube of side ``h`` from (x, y, z) on has a corner where f has the other sign.
 
-    The neighbor is the one along axis |way| - 1, upward if ``way`` > 0; f has one sign at all corners of the cube. Where
-    f is monotone along the axis, what has the other sign in the cube is a bulge of the neighbor's through their face.
+    The neighbor is the one along axis |way| - 1, upward if ``way`` > 0; f has one sign at all corners of the cube.
+    Where f is monotone along the axis, what has the other sign in the cube is the neighbor's, through their face.
     """
     axis = abs(way) - 1
     for n in range(4):
@@ -274,10 +274,7 @@ def hidden(
                     code2, constants, parts2, scratch, second,
                     u + 0.5 * h, v + 0.5 * h, w + 0.5 * h, 0.5 * h * WIDER, negative, least,
                 )  # fmt: skip
-                if sure or (
-                    thick <= CAP * h
-                    and bulged(code, constants, parts, scratch, u, v, w, h, negative, way)
-                ):
+                if sure or (thick <= CAP * h and bulged(code, constants, parts, scratch, u, v, w, h, negative, way)):
                     continue
                 seen[count] = finer > 1 and crossed(
                     code2, constants, parts2, registers, points, u, v, w, h / finer, finer + 1, negative

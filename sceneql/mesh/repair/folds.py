@@ -63,6 +63,8 @@ def overturned(tape: Tape, polygons: Polygons, rest: Ints | None = None) -> Rows
     import numpy as np
 
     rows = doubtful(polygons)
+    if not len(rows):
+        return rows
     facing_in = rows[facing(tape, polygons.vertices[polygons.triangles[rows]]) < 0.0]
     found = np.union1d(inverted(polygons, facing_in, rest), wrinkles(polygons, facing_in))
     return np.union1d(found, turned_over(polygons, rows))

@@ -99,6 +99,15 @@ def move(code, constants, parts, scratch, places, normals, star, vertex, shares,
             size = (gx * gx + gy * gy + gz * gz) ** 0.5
             scale = 1.0 / size if 0.0 < size < 1.0e300 else 0.0
             gx, gy, gz = gx * scale, gy * scale, gz * scale
+        far = 0.0
+        for t in range(star.shape[0]):
+            for k in range(3):
+                other = star[t, k]
+                if other != vertex:
+                    x, y, z = places[other, 0] - at[0], places[other, 1] - at[1], places[other, 2] - at[2]
+                    far = max(far, x * x + y * y + z * z)
+        if far > reach:  # lest edges grow from move to move
+            continue
         found = least_facing(code, constants, parts, scratch, places, star, vertex, at)
         if found > most:
             most = found

@@ -1,10 +1,14 @@
-"""Folds of marching cubes' meshes, repaired by moving vertices along the surface. Imports numpy and numba."""
+"""Folds of marching cubes' meshes: vertices move along the surface, edges are flipped, the last ones collapsed.
+
+Imports numpy and numba.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from sceneql.mesh.polygons import Polygons, touched
+from sceneql.mesh.repair.collapse import collapsed
 from sceneql.mesh.repair.flips import faced_outward
 from sceneql.mesh.repair.folds import overturned
 from sceneql.mesh.repair.move_vertices import settled
@@ -29,7 +33,8 @@ MOST = 2**10
 def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
     """The mesh with vertices at folds moved along the surface to the means of their neighbors, and edges flipped.
 
-    Neither changes the topology. The best of ROUNDS rounds is returned, which may still have folds.
+    Edges of the folds that the best of ROUNDS rounds leaves are collapsed. Nothing of it changes the topology; some
+    folds may stay.
     """
     import numpy as np
 
@@ -42,9 +47,9 @@ def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
         near[polygons.triangles[touched(near, polygons.triangles)]] = True
     part = touched(near, polygons.triangles)
     some, rest = polygons.triangles[part], polygons.triangles[~part]
-    best, fewest = None, len(rows)
     found = Polygons(polygons.vertices, some, polygons.normals)
     rows = (np.cumsum(part) - 1)[rows]
+    best, best_rows = found, rows
     for turn in range(ROUNDS):
         near[:] = False
         near[found.triangles[rows]] = True
@@ -52,15 +57,19 @@ def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
             near[found.triangles[touched(near, found.triangles)]] = True
         found = _relaxed(tape, found, near)
         rows = overturned(tape, found, rest)
-        if len(rows) < fewest:
-            best, fewest = found, len(rows)
+        if len(rows) < len(best_rows):
+            best, best_rows = found, rows
         if not 0 < len(rows) <= MOST:
             break
-    if best is None:
-        return polygons
-    triangles = polygons.triangles.copy()
-    triangles[part] = best.triangles
-    return Polygons(best.vertices, triangles, best.normals)
+    best = collapsed(tape, best, best_rows, rest)
+    if len(best.triangles) == len(some):
+        triangles = polygons.triangles.copy()
+        triangles[part] = best.triangles
+        return Polygons(best.vertices, triangles, best.normals)
+    triangles = np.concatenate([rest, best.triangles])
+    used = np.zeros(len(best.vertices), dtype=bool)
+    used[triangles] = True
+    return Polygons(best.vertices[used], (np.cumsum(used) - 1)[triangles].astype(np.int32), best.normals[used])
 
 
 def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_]) -> Polygons:
