@@ -24,6 +24,8 @@ class Methods:
     stiff: Stepper | None = None
     """A stiff method to which the march switches, and back, where stability limits the steps of ``first``
     (Method.stability)."""
+    stiff_cost: float | None = None
+    """Steps of dopri5 that one of ``stiff`` costs; None: as many as one of radau."""
     otherwise: Stepper | None = None
     """A method that replaces ``first`` for good at the first step of given length for which ``first`` finds no
     solution."""
