@@ -63,6 +63,8 @@ class Variants:
     names: tuple[str, ...] = ()
     may_fail: bool = False
     """Whether the script says that the run of this variant may fail."""
+    this: str = ""
+    """The name of the variant that the graph is; empty for the script itself."""
     load: Callable[[str], SimulationGraph] | None = field(default=None, compare=False)
     """Function that loads the graph of a variant by its name."""
 

@@ -38,7 +38,7 @@ from sceneql.interrupts import held, within
 from sceneql.kinds import FAMILIES, Camera, Kind, Model, Output, Picture
 from sceneql.language.patch import Patch
 from sceneql.language.script import read_script
-from sceneql.quantities.diagnostic import Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 from sceneql.tools import Report, Tools, frame_of, shapes_of
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def load(
     script = read_script(Path(path), variant, sets, families=families, settings=KEYS, found=found)
     graph = compile_script(script, Catalogue(words), found, pruned=pruned)
     of_name = cache(lambda name: load(path, variant=name, sets=sets, words=words, pruned=pruned))
-    return replace(graph, variants=replace(graph.variants, load=of_name))
+    return replace(graph, variants=replace(graph.variants, load=of_name, this=variant or ""))
 
 
 def simulate(
@@ -170,12 +170,17 @@ def render(
         gc.unfreeze()
         ending.close()
     report.warnings = (*missing(report.present, graph.tasks), *decided_by_rounding(report.rounded, graph.tasks))
-    report.warnings += (*watch.warnings(), *run.warnings(), *blind(report.within, graph.tasks))
+    report.warnings += (*watch.warnings(), *run.warnings(), *_diverged(runs), *blind(report.within, graph.tasks))
     report.conserved = watch.account()
     seconds, count = _compiled()
     report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]
     report.run_seconds = time.perf_counter() - started - report.compile_seconds
     return report
+
+
+def _diverged(runs: Iterable[Run]) -> Iterable[Diagnostic]:
+    """A warning for each variant that the panels of others leave out."""
+    return {one.graph.variants.this: one.warning() for run in runs for one in run.diverged}.values()
 
 
 class _Busy(NamedTuple):

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from sceneql.pictures.arrangement import Arrangement
     from sceneql.pictures.layout import Panel
     from sceneql.quantities.diagnostic import Diagnostic
-    from sceneql.run.instant import Framed, Instant
+    from sceneql.run.framed import Framed
+    from sceneql.run.instant import Instant
 
 
 @dataclass
@@ -312,7 +313,8 @@ def frame_of(
     from sceneql.shapes.color import linear
 
     drawn = shapes_of(graph.drawn[output], moment, index)  # first: what cannot be drawn is no failure of the camera's
-    moment = replace(moment, shown=drawn.shapes)
+    shapes = (*drawn.shapes, *moment.supports(graph.drawn[output]))
+    moment = replace(moment, shown=shapes)
     eye = graph.tasks[camera or graph.cameras[output]]
     with failing_as(eye.name, moment.time, eye.span):
         view = cast(Camera, eye.kind).view(size, moment)
@@ -330,7 +332,7 @@ def frame_of(
     return SeenFrame(
         index=drawn.index,
         time=drawn.time,
-        shapes=drawn.shapes,
+        shapes=shapes,
         lights=tuple(lights),
         view=view,
         seed=graph.settings.clock.seed,

@@ -46,6 +46,8 @@ class FakeMoment:
     box: tuple[Any, Any] = ((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
     room: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
+    end: float = 1.0
+
     def at(self, value: Value) -> Any:
         return evaluate(value.expr, self._look_up, arrays=True)
 
@@ -76,7 +78,10 @@ class FakeMoment:
     def outline(self) -> Any:
         return np.array(list(product(*zip(*self.box, strict=True))), dtype=float)
 
-    def moving(self) -> Any:
+    def standing(self) -> Any:
+        return self.outline()
+
+    def moving(self, window: float | None) -> Any:
         return np.zeros((0, 4))
 
 

@@ -21,7 +21,7 @@ from sceneql.pictures.framing import axes_towards, corners, inner
 from sceneql.pictures.layout import Panel
 from sceneql.pictures.lettering import Letterer
 from sceneql.pictures.plot import Axis, Curve, _head, draw_plot
-from sceneql.pipeline import Report, Tools, load, simulate
+from sceneql.pipeline import Report, Tools, load, render, simulate
 from sceneql.report.explain import explain
 from sceneql.words.objects.arrow import Arrow
 from sceneql.words.overlays.labels import label_boxes
@@ -31,6 +31,7 @@ objects: {{ball: {{sphere: {{radius: 0.2 m, position: 0 2 0 m}}}}}}
 models: {{fall: {{particles: {{of: ball, mass: 1 kg}}}}}}
 forces: [gravity, collision]
 overlays: {overlays}
+cameras: {{eye: {{auto: {{window: 0 s}}}}}}
 outputs: {{film: {{video: {{size: {size}}}}}}}
 """
 WIDE = """
@@ -111,6 +112,28 @@ def test_a_subject_between_overlays_fills_what_they_leave(tmp_path, size):
     _, above, _, below = outline(corners(low, high), view)
     assert top < above < below < bottom
     assert below - above > 0.85 * (bottom - top)
+
+
+def test_what_a_camera_follows_stays_clear_of_overlays(tmp_path):
+    text = FALL.format(overlays=TITLES, size="640 360").replace("window: 0 s", "")
+    (tmp_path / "scene.yaml").write_text(text)
+    graph = load(tmp_path / "scene.yaml")
+    eye, output = graph.tasks[graph.cameras["film"]].kind, graph.tasks["film"].kind
+    tools, heights, distances = Tools(graph, "film", Report(), tmp_path / "it"), [], []
+    for moment in simulate(graph, [0.0, 0.4, 0.6, 0.9, 1.5, 2.0, 3.0, 4.0]):
+        found = tools._arrangement(output, moment, None, tools_file.WHOLE)
+        view = eye.view(output.pixels, replace(moment, room=found.room))
+        center = moment.read("fall", "position")
+        ball = outline(corners(center - 0.19, center + 0.19), view)
+        shown = [kind for kind in found.overlays.values() if kind.show is None or moment.at(kind.show)]
+        assert len(shown) > 1
+        assert not any(meet(kind.box(kind.place, output.pixels, moment, 1.0), ball) for kind in shown)
+        assert 0 < ball[0] < ball[2] < 640
+        heights.append((ball[3] - ball[1]) / 360)
+        distances.append(np.linalg.norm(view.origin))
+    assert heights[0] < 0.15
+    assert heights[-1] > 0.4
+    assert distances == sorted(distances, reverse=True)
 
 
 def test_room_for_overlays_makes_nothing_smaller_than_margins_inside_of_it_would():
@@ -312,6 +335,25 @@ def test_a_variant_that_bursts_does_not_make_the_others_vanish(tmp_path):
     near, far, middle = (Panel(graph.variant(name)) for name in ("near", "far", "middle"))
     moment = replace(near.at(0.0), beside=(far, middle))
     assert moment.bounds(())[1][0] == pytest.approx(2.1)
+
+
+@pytest.mark.parametrize(("mass", "told"), [("1 kg", True), ("2 kg", False)])
+def test_a_variant_that_diverges_by_its_solver_alone_leaves_the_picture_and_is_told(tmp_path, mass, told):
+    """Of swings with another mass, too, the large one is no error of a solver: it stays in the picture."""
+    text = VARIANTS.format(fails="").replace("301 100", "120 40").replace("mass: 1 kg", "mass: heavy")
+    before, _, after = text.partition("variants:")
+    exact, euler = "honest: {}", f"wrong: {{solvers.main: {{euler: {{step: 0.2 s}}}}, define.heavy: {mass}}}"
+    tail = after[after.index("\n") :]
+    text = before.replace("define: {far: 1 m}", "define: {far: 1 m, heavy: 1 kg}") + f"variants: {{{exact}, {euler}}}"
+    (tmp_path / "scene.yaml").write_text(text + tail)
+    graph = load(tmp_path / "scene.yaml")
+    found = [one for one in render(graph, folder=tmp_path, draft=True).warnings if one.code == "diverges"]
+    assert len(found) == told
+    for one in found:
+        assert "'wrong' leaves its panel, from 0." in one.message
+        assert "as 'honest', which differs in its solver alone" in one.message
+        assert one.span is not None
+        assert one.span.line == next(k for k, line in enumerate(text.splitlines(), 1) if "euler" in line)
 
 
 @pytest.mark.parametrize("far", [1e308, math.inf, -math.inf, math.nan])

@@ -1,4 +1,4 @@
-"""The default camera holds still, and says of what it hardly shows; with a `window` it goes along, softly."""
+"""The default camera holds still unless it pays, and says of what it hardly shows; with a `window` it goes along."""
 
 from __future__ import annotations
 
@@ -37,6 +37,34 @@ def views(tmp_path, script, count=None):
 
 def test_without_a_window_it_holds_still(tmp_path):
     origins = {tuple(origin) for origin, *_ in views(tmp_path, THROWN.format(0.2, ""), 9)}
+    assert len(origins) == 1
+
+
+SETTLED = """
+models: {{ball: {{particles: {{list: {{a: {{position: 0 2 0 m, radius: 0.2 m}}}}}}}}}}
+forces: [gravity]
+contacts: {{c: {{collision: {{restitution: {0}}}}}}}
+clock: {{end: 6 s}}
+{1}
+outputs: {{p: {{image: {{size: 64 36}}}}}}
+"""
+
+
+def test_what_lies_long_after_a_fall_is_gone_to_and_the_fall_is_seen_whole(tmp_path):
+    found = views(tmp_path, SETTLED.format(0.3, ""))
+    for _, x, y, radius in found:
+        assert abs(x) + radius * SIZE[1] / SIZE[0] < 1
+        assert abs(y) + radius < 1
+    assert found[0][3] < 0.2
+    assert 2.5 * found[0][3] < found[-1][3] < 5 * found[0][3]
+    heights = np.diff([origin[1] for origin, *_ in found])
+    assert (heights <= 1e-9).all()
+    assert np.abs(heights).max() < 0.15
+
+
+@pytest.mark.parametrize(("restitution", "camera"), [(1, ""), (0.3, "cameras: {near: {auto: {window: 0 s}}}")])
+def test_what_bounces_on_is_seen_from_one_place_as_is_all_with_a_window_of_no_time(tmp_path, restitution, camera):
+    origins = {tuple(origin) for origin, *_ in views(tmp_path, SETTLED.format(restitution, camera))}
     assert len(origins) == 1
 
 

@@ -10,6 +10,8 @@ from renderers.tracing import layout
 from sceneql.field.tape.tape_ops import SCRATCH_COLUMNS
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from renderers.tracing.scene_kernels import Scene
     from sceneql.frame import Floats
 
@@ -21,14 +23,21 @@ def scratch(rows: int) -> Floats:
 
 def begun(memory: Floats) -> Floats:
     """Working memory as a thread begins a piece of work that does not depend on the number of threads: nothing LOST."""
-    memory[-1, layout.LOST] = 0.0
+    memory[:, layout.LOST] = 0.0
     return memory
 
 
 def patient(memory: Floats) -> Floats:
     """Working memory with which no ray is given up: each undecided one has been searched."""
-    memory[-1, layout.LOST] = -np.inf
+    memory[:, layout.LOST] = -np.inf
     return memory
+
+
+def asked_rays(rays: int, solids: Sequence[int] = ()) -> Floats:
+    """Empty list of rays (1 + rays, columns), for packets that know ``solids``; see scene_kernels.ASKED."""
+    out = np.empty((1 + rays, layout.ANSWERS + len(solids)))
+    out[0, : layout.ANSWERS], out[0, layout.ANSWERS :] = 0.0, solids
+    return out
 
 
 def scratch_beside(asked: Floats, scene: Scene, rows: int) -> Floats:

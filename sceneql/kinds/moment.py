@@ -148,8 +148,12 @@ class Moment(Protocol):
     def outline(self) -> Floats:
         """Points (n, 3) [m] whose hull encloses all that is drawn over the whole film, except what leaves for good."""
 
-    def moving(self) -> Floats:
+    def standing(self) -> Floats:
+        """Points (n, 3) [m] whose hull encloses all that is drawn and does not change."""
+
+    def moving(self, window: float | None) -> Floats:
         """Instants [s] over the film and points [m], rows (n, 1 + 3).
 
-        Their hull at each instant encloses all that moves and stays. Without rows nothing moves.
+        Their hull at each instant encloses all that moves and stays. Without rows nothing moves. ``window``: for how
+        long at once a camera shows it [s], with all that stands; None: a camera shows it alone.
         """

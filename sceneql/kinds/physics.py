@@ -318,6 +318,10 @@ class Tie(Interaction):
         """The body that can only rotate about a fixed point of the world; None where there is none."""
         return None
 
+    def support(self) -> tuple[Value, Value | None] | None:
+        """Where pictures show a bead that holds a body to the world, or a pin along an axis; None for none."""
+        return None
+
     def read(self, output: str, state: ModelState) -> Any:
         """An output at a state."""
         raise TypeError(f"{type(self).__name__} gives no {output}")

@@ -30,6 +30,8 @@ CELLS = 90
 """Number of cells along the picture's height, in masks of what the subject covers."""
 INSTANTS = 8
 """Number of instants, besides the first, at which a moving camera's view is sampled."""
+EDGE = 0.06
+"""Part of the width and height at each edge that a camera leaves free of the subject in any case."""
 MOST = 0.75
 """Largest fraction of the picture's width or height that overlays may keep free."""
 WAYS = 64
@@ -93,7 +95,8 @@ def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> A
     parts = sight.parts()
     stand = {name: _boxes(sight, task) for name, task in tasks.items()}
     taken = [*fixed, *(box for name, boxes in stand.items() if name not in seekers for box in boxes.values())]
-    masks = covered(parts, list(_views(sight)), sight.size)
+    views = list(_views(sight))
+    masks = covered(parts, views, sight.size)
     for name in sorted(seekers, key=lambda name: -max(map(_area, stand[name].values()), default=0)):
         costs = {place: _hidden(box, masks, sight.size) + _clash(box, taken) for place, box in stand[name].items()}
         if costs:
@@ -101,7 +104,7 @@ def arranged(sight: Sight, tasks: Mapping[str, Task], fixed: Sequence[Box]) -> A
             place = next(place for place, cost in costs.items() if cost <= (least and least + ALIKE))
             overlays[name] = overlays[name].model_copy(update={"place": place})
             taken.append(stand[name][place])
-    return Arrangement(overlays, _room(sight, parts, taken) if sight.yields else NO_ROOM)
+    return Arrangement(overlays, _room(sight, parts, taken, len(views) > 1) if sight.yields else NO_ROOM)
 
 
 def _boxes(sight: Sight, task: Task) -> dict[str, Box]:
@@ -206,12 +209,18 @@ def _clash(box: Box, taken: Iterable[Box]) -> float:
     return APART * total
 
 
-def _room(seen: Sight, parts: Sequence[tuple[Floats, Floats]], taken: Sequence[Box]) -> Room:
-    """Room at the edges with which no box lies on the subject and the subject is largest."""
+def _room(seen: Sight, parts: Sequence[tuple[Floats, Floats]], taken: Sequence[Box], moves: bool) -> Room:
+    """Room at the edges with which no box lies on the subject and the subject is largest.
+
+    A camera that ``moves`` may bring the subject anywhere between the rooms: then none of the boxes lies there.
+    """
     room, kept = NO_ROOM, list[Box]()
     while True:
         masks = covered(parts, [seen.look(replace(seen.moment, room=room))], seen.size)
-        met = [box for box in taken if box not in kept and _sides(box, seen.size) and _hidden(box, masks, seen.size)]
+        free = [box for box in taken if box not in kept and _sides(box, seen.size)]
+        met = [box for box in free if _hidden(box, masks, seen.size)]
+        if moves and not met:
+            met = [box for box in free if _within(box, room, seen.size)]
         if not met:
             return room
         kept += met
@@ -219,6 +228,13 @@ def _room(seen: Sight, parts: Sequence[tuple[Floats, Floats]], taken: Sequence[B
         if not ways:
             return room
         room = max(ways, key=lambda way: (round(_largeness(seen, parts, way)), -sum(way)))
+
+
+def _within(box: Box, room: Room, size: tuple[int, int]) -> bool:
+    """Whether a box reaches farther than EDGE between the rooms."""
+    left, top, right, bottom = (max(part, EDGE) for part in room)
+    (wide, high), (x, y, far_x, far_y) = size, box
+    return x < wide * (1 - right) and far_x > wide * left and y < high * (1 - bottom) and far_y > high * top
 
 
 def _sides(box: Box, size: tuple[int, int]) -> list[Room]:

@@ -134,11 +134,17 @@ class Panel:
 
         return self._whole.outline() if self.boxes() else np.zeros((0, 3))
 
-    def moving(self) -> Floats:
+    def standing(self) -> Floats:
+        """Points (n, 3) [m] whose hull contains all that does not change (run.Run)."""
+        import numpy as np
+
+        return self._whole.standing() if self.boxes() else np.zeros((0, 3))
+
+    def moving(self, window: float | None) -> Floats:
         """Instants [s] and points [m], rows (n, 1 + 3), of what moves and stays (run.Run)."""
         import numpy as np
 
-        return self._whole.moving() if self.boxes() else np.zeros((0, 4))
+        return self._whole.moving(window) if self.boxes() else np.zeros((0, 4))
 
     def at(self, time: float) -> Instant:
         """Moment at ``time`` [s], or the last before a failure. Raises RunFailure unless the script allows failures."""

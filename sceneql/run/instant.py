@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -15,43 +15,25 @@ from sceneql.failure import RunFailure, failing_as
 from sceneql.kinds import Contact, Material, Model, Object, Ref, Tie, Value
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Link, Symbol
+from sceneql.run.diverging import Diverged, together
+from sceneql.run.framed import Framed
 from sceneql.shapes.color import default_color, linear
 from sceneql.shapes.placement import Placed, compose
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats, Surface
     from sceneql.frame import Shape as Drawn
-    from sceneql.graph import SimulationGraph
     from sceneql.kinds.moment import Remembered
     from sceneql.run.history import History
     from sceneql.system import ModelState
 
 IDENTITY = np.eye(3, 4)
-BURST = 100.0
-"""Size ratio to the smallest variant from which on a variant counts as burst: the common framing leaves it out."""
 T = TypeVar("T")
-
-
-class Framed(Protocol):
-    """A run as cameras see it: the boxes of its parts over the film."""
-
-    def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
-        """Low and high corner (3,) [m] of each part over the whole run."""
-
-    def bounds(self, names: Iterable[str]) -> tuple[Floats, Floats] | None:
-        """Low and high corner (3,) [m] of what the parts draw over the whole run; without names of all that stays."""
-
-    def outline(self) -> Floats:
-        """Points (n, 3) [m] whose hull encloses all that is drawn and stays, over the whole run."""
-
-    def moving(self) -> Floats:
-        """Instants [s] and points [m], rows (n, 1 + 3), whose hull at each encloses all that moves and stays."""
 
 
 class Running(Framed, Protocol):
     """The run of an instant, as it uses it (run.Run), or a run ahead of that."""
 
-    graph: SimulationGraph
     ahead: bool
     """Whether it is a dry run ahead of the film."""
     orders: dict[str, int]
@@ -63,6 +45,12 @@ class Running(Framed, Protocol):
     history: History
     kept: dict[str, tuple[Hashable, Any]]
     """By part the key and the result of the latest `Instant.kept`."""
+    diverged: Sequence[Diverged]
+    """The variants that a framing of this run and others left out."""
+
+    @property
+    def supports(self) -> Sequence[tuple[str, Drawn]]:
+        """What holds bodies to the world: names of objects, each with a shape that holds it."""
 
     def moments(self, times: Iterable[float]) -> Iterator[Instant]:
         """The instants [s] asked for, in order."""
@@ -206,23 +194,33 @@ class Instant:
     def outline(self) -> Floats:
         """Points (n, 3) [m] whose hull encloses all that stays over the whole film, in all panels."""
         points = self._of_panels(lambda run: run.outline())
+        self.run.diverged = self._together[1]
         return points if len(points) else np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
 
-    def moving(self) -> Floats:
+    def standing(self) -> Floats:
+        """Points (n, 3) [m] whose hull encloses all that does not change, in all panels."""
+        return self._of_panels(lambda run: run.standing())
+
+    def moving(self, window: float | None) -> Floats:
         """Instants [s] and points [m], rows (n, 1 + 3), whose hull at each instant encloses all that moves and stays.
 
-        In all panels; none where nothing moves.
+        In all panels; none where nothing moves. ``window``: for how long at once a camera shows it [s], with all that
+        stands; None: a camera shows it alone.
         """
-        return self._of_panels(lambda run: run.moving())
+        return self._of_panels(lambda run: run.moving(window))
+
+    @property
+    def _together(self) -> tuple[list[Framed], list[Diverged]]:
+        """This run and those beside it that share one framing, and the variants left out (diverging.together)."""
+        runs = () if self.run.ahead else (self.run, *self.beside)
+        return self.kept("panels of variants", tuple(map(id, runs)), lambda: together(runs))
 
     def _of_panels(self, points_of: Callable[[Framed], Floats | None]) -> Floats:
-        """Rows of this run and of those beside it, except variants that burst; a row ends in a place."""
-        runs = () if self.run.ahead else (self.run, *self.beside)
-        found = [points for run in runs if (points := points_of(run)) is not None and len(points)]
-        sizes = [float(np.linalg.norm(np.ptp(points[:, -3:], axis=0))) for points in found]
-        most = BURST * min(sizes, default=0.0) or np.inf
-        kept = [points for points, size in zip(found, sizes, strict=True) if size <= most]
-        return np.concatenate(kept) if kept else np.zeros((0, 3))
+        """Finite rows of this run and of those beside it, except variants that diverge; a row ends in a place."""
+        found = [points for run in self._together[0] if (points := points_of(run)) is not None and len(points)]
+        rows = np.concatenate(found) if found else np.zeros((0, 3))
+        whole: Floats = rows[np.isfinite(rows).all(axis=1)]
+        return whole
 
     def place(self, name: str) -> Floats:
         """(3, 4) map to the world from the coordinates of an object's position."""
@@ -258,6 +256,11 @@ class Instant:
                 elif isinstance(task.kind, Model):
                     shapes += task.kind.lower(name, self.state(name), self)
         return shapes
+
+    def supports(self, names: Iterable[str]) -> list[Drawn]:
+        """The shapes of what holds the named objects to the world."""
+        shown = set(names)
+        return [shape for name, shape in self.run.supports if name in shown]
 
     @cached_property
     def everything(self) -> list[str]:

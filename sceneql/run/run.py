@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING, Any, cast
 
@@ -14,6 +16,7 @@ from sceneql.graph import Island, SimulationGraph
 from sceneql.kinds import Interaction, Model, Object, Solver, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 from sceneql.quantities.expression import Link
+from sceneql.run.diverging import Diverged
 from sceneql.run.dry_run import DryRun, asked, dry_run
 from sceneql.run.grounded import grounded
 from sceneql.run.hardly_seen import hardly_seen
@@ -21,6 +24,7 @@ from sceneql.run.history import History
 from sceneql.run.instant import Instant
 from sceneql.run.leaving import Leaving, warning
 from sceneql.run.ranges import ranged
+from sceneql.run.supports import Support, supports
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -52,7 +56,9 @@ class Run:
         self.history = History(graph.tasks.values() if marching else ())
         self._ranged = ranged(graph, islands)
         self._let_go: Sequence[Leaving] = ()
-        self._holds_still, self._goes_along = False, False
+        self.diverged: Sequence[Diverged] = ()
+        self._framed = False
+        self._window: float | None = math.inf
         self._dry_runs: dict[str | None, DryRun] = {}
         self.kept: dict[str, tuple[Hashable, Any]] = {}
         """By part the key and the result of the latest `Instant.kept`."""
@@ -81,6 +87,11 @@ class Run:
         """The latest state of a model that is solved, of a contact, or of a tie."""
         return self.island_of[name].state(name)
 
+    @cached_property
+    def supports(self) -> Sequence[Support]:
+        """What holds bodies to the world."""
+        return supports(self.graph, lambda: Run(self.graph, marching=False).at(0.0))
+
     def boxes(self) -> Mapping[str, tuple[Floats, Floats]]:
         """Low and high corner (3,) [m] of each part over the whole run."""
         return self._bounded().bounds or {}
@@ -103,16 +114,26 @@ class Run:
     def outline(self) -> Floats:
         """Points (n, 3) [m] whose hull encloses all that is drawn and stays, over the whole run."""
         seen = self._bounded()
-        self._let_go, self._holds_still = seen.leaving, True
+        self._let_go, self._framed = seen.leaving, True
         if seen.staying is not None:
             return np.array(list(product(*zip(*seen.staying, strict=True))))
         return np.concatenate(
             [np.zeros((0, 3)), *(seen.outlines[name] for name in self.orders if name in seen.outlines)]
         )
 
-    def moving(self) -> Floats:
-        """Instants [s] of the run, and points (n, 1 + 3) whose hull at each encloses all that may change and stays."""
-        seen, self._goes_along = self._bounded(), True
+    def standing(self) -> Floats:
+        """Points (n, 3) [m] whose hull encloses all that is drawn and does not change."""
+        seen = self._bounded()
+        still = [points for name, points in seen.outlines.items() if name not in seen.changing]
+        found = np.concatenate([np.zeros((0, 3)), *still])
+        return found if seen.staying is None else np.clip(found, *seen.staying)
+
+    def moving(self, window: float | None) -> Floats:
+        """Instants [s] of the run, and points (n, 1 + 3) whose hull at each encloses all that may change and stays.
+
+        ``window``: for how long at once a camera shows it [s], with all that stands; None: a camera shows it alone.
+        """
+        seen, self._window = self._bounded(), window
         rows = [np.column_stack([np.full(len(points), time), points]) for time, points in seen.moving]
         found = np.concatenate([np.zeros((0, 4)), *rows])
         if seen.staying is not None:
@@ -122,7 +143,8 @@ class Run:
 
     def warnings(self) -> tuple[Diagnostic, ...]:
         """Warnings of things that leave for good, where a camera let them go, and of what is small where it stood."""
-        small = hardly_seen(self._bounded(), self.graph) if self._holds_still and not self._goes_along else ()
+        window = self._window if self._framed else None
+        small = () if window is None else hardly_seen(self._bounded(), self.graph, window)
         return (*(warning(one, self.graph.tasks) for one in self._let_go), *small)
 
     def _bounded(self) -> DryRun:
@@ -264,6 +286,7 @@ class IslandRun:
             stepper,
             end,
             stiff=self.methods.stiff,
+            stiff_cost=self.methods.stiff_cost,
             otherwise=self.methods.otherwise,
             with_jacobian=None if stepper.needs.jacobian else lambda: self.assembly.finish(jacobian=True),
             before=before,

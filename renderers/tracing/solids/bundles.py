@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from renderers.tracing import layout
+from renderers.tracing.scratch import asked_rays
 from renderers.tracing.solids.bundles_kernels import RAYS, meet_asked
 from renderers.tracing.solids.skins_kernels import LANES, skin_hits
 from sceneql.field.packets.packets import Memory, lined
@@ -80,9 +81,7 @@ class Packets:
 
     def asked(self, rays: int) -> Floats:
         """Empty list of rays (1 + rays, columns); see scene_kernels.ASKED."""
-        asked = np.zeros((1 + rays, layout.ANSWERS + len(self.solids)))
-        asked[0, layout.ANSWERS :] = self.solids
-        return asked
+        return asked_rays(rays, self.solids)
 
     def meet(self, asked: Floats) -> None:
         """Write the first crossings of all listed rays with the solids into ``asked``."""

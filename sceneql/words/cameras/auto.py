@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Angle, Camera, FixedScalar, FixedTime, Moment, field
 from sceneql.pictures import framing
+from sceneql.pictures.following import NEARER, WINDOW, Follower, with_feet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from sceneql.frame import Floats, View
 
+NO_ROOM = (0.0, 0.0, 0.0, 0.0)
 Toward = tuple[float, float, float]
 """From the scene towards the camera, of any length."""
 THREE_QUARTER = (0.55, 0.38, 1.0)
@@ -39,12 +40,13 @@ class Auto(Camera):
     """A three-quarter view of all that is drawn, from the right front and above, that holds still over the whole film.
 
     A scene that is flat along an axis is seen along it, one that is flat and tilted from nearer to its normal, one that
-    is long and lies across. The few of many things that leave for good are let go. Panels of variants share one view,
-    and overlays are left room.
+    is long and lies across. The few of many things that leave for good are let go, and variants that grow three times
+    as large as another by their solver alone. Panels of variants share one view, and overlays are left room.
 
-    It holds still, so that what moves in the picture moves in the scene, as fast and as far: beside a camera that goes
-    along, a ball that falls hangs before an empty ground. So what is small on a long way is small; where it is hardly
-    seen a warning says so. With a `window` the camera goes along; to one that holds still a `trail` shows the way.
+    It holds still, so that what moves in the picture moves in the scene, as fast and as far. Where most of the picture
+    would be empty for long, as around a ball that has come to rest, it goes along slowly, within half of the film, at
+    the least with all that stands. What stays small on a long way has a warning: with a `window` the camera goes along
+    closely; to one that holds still, `window: 0 s`, a `trail` shows the way.
     """
 
     yields: ClassVar[bool] = True
@@ -52,51 +54,44 @@ class Auto(Camera):
     field_of_view: Angle = field("Vertical field of view.", "30 deg", above=0, below=math.pi)
     margin: FixedScalar = field("Part of half the picture that is left free.", "0.12", at_least=0, below=1)
     window: FixedTime | None = field(
-        "It moves softly and frames, at each instant, what moves within half of this time before and after; by default "
-        "it holds still.",
+        "It moves softly and frames, at each instant, what moves within half of this time before and after; 0: it "
+        "holds still; by default it does, or goes along within half of the film, with what stands, where that pays.",
         None,
-        above=0,
+        at_least=0,
     )
 
     def view(self, size: tuple[int, int], moment: Moment) -> View:
-        """The view of the whole film."""
+        """The view now, of the whole film, or of what is near in time."""
         half = math.tan(0.5 * float(moment.at(self.field_of_view)))
         points = moment.outline()
         slopes, middle = framing.inner(half, size, self.margin, moment.room, HEADROOM)
         axes = framing.axes_towards(_towards(points, slopes))
-        rows = moment.moving() if self.window is not None else points[:0]
-        if self.window is None or len(rows) == 0:
-            origin, _ = framing.fitted(points, axes, slopes, middle=middle)
+        origin, distance = framing.fitted(points, axes, slopes, middle=middle)
+        alone, window = self.window is not None, WINDOW * moment.end if self.window is None else self.window
+        rows = moment.moving(None if alone else window) if window > 0.0 else points[:0]
+        if len(rows) == 0:
             return framing.view(origin, axes, size, half)
+        standing = points[:0]
+        if not alone:
+            rows, standing = with_feet(rows, float(points[:, 1].min())), moment.standing()
 
-        def stand(some: Floats) -> Floats:
-            return framing.fitted(some, axes, slopes, middle=middle)[0]
+        def follower(slopes: tuple[float, float], middle: tuple[float, float], least: float) -> Follower:
+            fit = partial(framing.fitted, axes=axes, slopes=slopes, middle=middle)
+            return Follower(rows, standing, fit, axes[2], window, least)
 
-        return framing.view(_softly(rows, moment.time, self.window, stand), axes, size, half)
+        def following() -> tuple[Follower | None]:
+            if not alone:
+                plain, _ = framing.inner(half, size, self.margin, NO_ROOM, HEADROOM)  # overlays ask whether it pays
+                still, far = framing.fitted(points, axes, plain)
+                if not follower(plain, (0.0, 0.0), far / NEARER).pays(still):
+                    return (None,)
+            return (follower(slopes, middle, 0.0 if alone else distance / NEARER),)
 
-
-def _softly(rows: Floats, time: float, window: float, stand: Callable[[Floats], Floats]) -> Floats:
-    """Position (3,) [m] of a camera at a time [s] that follows what moves, softly.
-
-    ``rows``: instants and points (n, 1 + 3) of what moves; ``stand``: where a camera sees points. The position is a
-    mean over the instants of half a window before and after, with weights that fade to none, each of the camera that
-    sees what moves within half a window of its instant. So what moves now is in the picture: each of these sees it, and
-    the places from which cameras of one direction see a point are convex.
-    """
-    import numpy as np
-
-    times = np.unique(rows[:, 0])
-    spacing = float(np.diff(times).max()) if len(times) > 1 else window
-    reach = max(0.5 * window, spacing)
-    ages = (times - time) / reach
-    near = np.abs(ages) < 1.0
-    if not near.any():  # the run ahead failed before
-        near[np.abs(ages).argmin()], ages = True, np.zeros(len(ages))
-    weights = (1.0 - ages[near] ** 2) ** 2
-    seen = [rows[np.abs(rows[:, 0] - at) <= reach + spacing, 1:] for at in times[near]]
-    total = sum((w * stand(some) for w, some in zip(weights, seen, strict=True)), np.zeros(3))
-    position: Floats = total / weights.sum()
-    return position
+        key = size, half, self.margin, moment.room, window, alone, points.tobytes(), rows.tobytes()
+        found = moment.kept("a camera that follows", key, following)[0]
+        if found is not None:
+            origin = found.at(moment.time)
+        return framing.view(origin, axes, size, half)
 
 
 def _towards(points: Floats, slopes: tuple[float, float]) -> Toward:

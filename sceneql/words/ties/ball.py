@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
 
 class Ball(Joint):
-    """A point of one body stays at a point of the other; they turn about it freely."""
+    """A point of one body stays at a point of the other; they turn about it freely.
+
+    Pictures show a bead where it holds an object to the world, unless something at rest stands there.
+    """
 
     gives: ClassVar[Mapping[str, Gives]] = FORCES
 
@@ -25,6 +28,10 @@ class Ball(Joint):
         if first.name and second.name:
             return None
         return first if first.name else second
+
+    def support(self) -> tuple[Value, None] | None:
+        """A bead at its point, where one of the bodies is the world."""
+        return None if self.at is None or self.pivot() is None else (self.at, None)
 
     def places(self) -> Iterator[tuple[Value, tuple[Ref, ...]]]:
         """Its point, on both."""

@@ -64,6 +64,8 @@ class Hinge(Driven):
     bodies of the same island collide in mode `exact`, stops are impacts with their own restitution, located as all
     others, and motors and friction have the solver's order. A motor that follows an angle goes by the angle's own speed
     and (angle - what it is)/settling; a stop at which the body is as slow as its forces make it in two steps holds it.
+
+    Pictures show a pin where it holds an object to the world, unless something at rest stands there.
     """
 
     said_by: ClassVar[Mapping[str, str]] = {"drive": "that is a motor: `motor: {torque: 3 N*m}`"}
@@ -90,6 +92,10 @@ class Hinge(Driven):
     damping: Annotated[Value, Quantity(TORQUE * dim.TIME)] | None = field(
         "Torque for an angular speed [N m s/rad].", None, at_least=0
     )
+
+    def support(self) -> tuple[Value, Value] | None:
+        """A pin along its axis, where one of the bodies is the world."""
+        return None if all(ref.name for ref in self.between) else (self.at, self.axis)
 
     def places(self) -> Iterator[tuple[Value, tuple[Ref, ...]]]:
         """Its point, on both."""
