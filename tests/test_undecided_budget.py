@@ -41,6 +41,7 @@ def test_what_rounding_decides_is_drawn_alike_by_any_threads_and_is_told_at_its_
     assert pictures[0] == pictures[1]
     (undecided,) = report.undecided["still"].values()
     assert undecided > 0
+    assert report.unsearched["still"] > 0
     (told,) = [one for one in report.warnings if "rounding alone" in (one.help or "")]
     assert told.span.line == 5
 

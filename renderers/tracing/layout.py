@@ -97,7 +97,7 @@ WIDE_RADIUS, WIDE_SPREAD, WIDE_FROM = 2, 3, 4
 are 0 for other rays, the first two also for one that has met its MOST_LINES capsules as wide as its cone."""
 LOST = 5
 """In the rows for shapes: a column, how many rays have ended after many undecided places in one since the band of rows
-was begun."""
+was begun, and how many were given up after MOST_LOST of these."""
 MOST_LOST = 4
 """Of these in a band: from then on what only the certified search could decide of that shape is undecided at once,
 since each takes some 0.1 s. So the time of a frame is bounded, whatever its formulas, and a sound one beside is

@@ -27,6 +27,12 @@ def begun(memory: Floats) -> Floats:
     return memory
 
 
+def given_up(memory: Floats, shapes: int) -> int:
+    """How many rays at so many shapes were not searched since ``begun``, after MOST_LOST had been LOST at the same."""
+    lost = memory[-1 - shapes : -1, layout.LOST] - layout.MOST_LOST
+    return int(lost[lost > 0.0].sum())
+
+
 def patient(memory: Floats) -> Floats:
     """Working memory with which no ray is given up: each undecided one has been searched."""
     memory[:, layout.LOST] = -np.inf

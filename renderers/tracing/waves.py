@@ -22,7 +22,7 @@ from renderers.tracing.light import look_lanes_kernels as looks
 from renderers.tracing.light.bounce_kernels import WAY, dress_hits, follow_all, look_about, step_all
 from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_paths
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.scratch import asked_rays, begun, scratch_beside
+from renderers.tracing.scratch import asked_rays, begun, given_up, scratch_beside
 from renderers.tracing.solids.plain_lanes import lanes_for
 from renderers.tracing.tiles_kernels import fill_background
 from renderers.tracing.waves_kernels import (
@@ -110,12 +110,12 @@ class Waves:
     def gather(
         self, start: int, stop: int, reached: Array, busy: Array, mirrored: Array, records: Array, visibility: Array,
         final: bool, radiance: Array,
-    ) -> tuple[int, int]:  # fmt: skip
+    ) -> tuple[int, int, int]:  # fmt: skip
         """Fill rows start..stop: records (L, h w, COLUMNS), radiance (h w, 3), visibility (L, h w, V) of L layers.
 
-        Returns the numbers of pixels with an undecided root, and with a second record. Radiance is the part that needs
-        no visibility, or all of it if visibility is ``final``. Rays are traced only in ``reached`` tiles; tiles with a
-        hit become ``busy``, those with a second record ``mirrored``.
+        Returns the numbers of pixels with an undecided root, of those with a second record, and of rays given up.
+        Radiance is the part that needs no visibility, or all of it if visibility is ``final``. Rays are traced only in
+        ``reached`` tiles; tiles with a hit become ``busy``, those with a second record ``mirrored``.
         """
         begun(self.scratch)
         fill_background(self.scene, start, stop, reached, busy, records, radiance)
@@ -126,7 +126,7 @@ class Waves:
             doubted, more = self._gather(start, stop, some, at, busy, mirrored, records, visibility, final, radiance)
             undecided, seconds = undecided + doubted, seconds + more
         self._end_ways()
-        return undecided, seconds
+        return undecided, seconds, given_up(self.scratch, int(self.scene.ints[layout.SHAPE_COUNT]))
 
     def _gather(
         self, start: int, stop: int, tiles: Array, at: Array, busy: Array, mirrored: Array, records: Array,

@@ -120,6 +120,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             )
         if status == UNDECIDED:
             if scratch[own_row, layout.LOST] >= layout.MOST_LOST:
+                scratch[own_row, layout.LOST] += 1.0
                 scratch[last_row, 0] += 1.0
                 return NONE
             status, root = isolate(
