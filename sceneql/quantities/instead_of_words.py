@@ -53,7 +53,7 @@ OF_PARTS = (
     ),
     (
         "field.models",
-        "usegravity use_gravity gravity gravity_scale",
+        "usegravity use_gravity gravity_scale",
         "gravity is in the section `forces`, `forces: [gravity]`, and pulls all models but where it is `on: [NAME]`",
     ),
     (
