@@ -86,7 +86,10 @@ class _Builder:
                 self.fluids.must_stand(True)
             self.moving = MovingSolids(model.around, model, self.faces, assembly)
         elif model.around or model.domain is not None:
-            self.solids = Solids(model.around, self.faces, staircase, assembly, model.domain, model.boundary)
+            walled = np.array([part.wall is not None for part, _ in self.parts] + [True])[
+                self.part_of
+            ]  # -1: by default
+            self.solids = Solids(model.around, self.faces, staircase, assembly, model.domain, model.boundary, walled)
 
     def build(self) -> Flow:
         assembly, faces, cells = self.assembly, self.faces, self.cells
