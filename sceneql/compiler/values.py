@@ -107,7 +107,7 @@ def read_expr(
                 return _by_component(node, dimension, what, names, found)
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
-            help = f"write `[{', '.join(texts)}]`" if listed else None
+            help = _keyed(node) or (f"write `[{', '.join(texts)}]`" if listed else None)
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None
 
@@ -163,7 +163,7 @@ def _by_component(
 ) -> Expr | None:
     for key in node.entries:
         if key not in COMPONENTS:
-            help = vector_meant_by(node) or suggestion(key, (*COMPONENTS, "keys"))
+            help = _keyed(node) or vector_meant_by(node) or suggestion(key, (*COMPONENTS, "keys"))
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"
@@ -180,6 +180,12 @@ def _by_component(
             return None
         items.append(value.expr)
     return Vector(tuple(items), Type((3,), quantity.dimension), node.span)
+
+
+def _keyed(node: MappingNode) -> str | None:
+    """The help for keyframes without `keys` around them."""
+    timed = all(re.fullmatch(r"[\d.]+ *(s|ms|min)", key) for key in node.entries)
+    return f"values over time stand in `keys`: write `{{keys: {node.span.text}}}`" if node.entries and timed else None
 
 
 def _keys(
