@@ -10,7 +10,7 @@ from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
-from sceneql.compiler.vector_fields import vector_meant_by
+from sceneql.compiler.vector_fields import timed, vector_meant_by
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
@@ -107,7 +107,7 @@ def read_expr(
                 return _by_component(node, dimension, what, names, found)
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
-            help = _keyed(node) or (f"write `[{', '.join(texts)}]`" if listed else None)
+            help = timed(node) or (f"write `[{', '.join(texts)}]`" if listed else None)
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None
 
@@ -147,12 +147,14 @@ def _vector(items: list[Expr], what: str, span: Span, found: Diagnostics) -> Exp
             found.error("wrong-shape", f"the items of {what} differ in their number of components", item.span or span)
             return None
         if other is not None and other != dimension and not _zero(item):
-            vector = vector_meant(", ".join("" if one.span is None else one.span.text for one in items))
+            texts = ", ".join("" if one.span is None else one.span.text for one in items)
+            vector, rate = vector_meant(texts), dimension / other in (TIME, FREQUENCY)
+            help = "times the `time` a velocity is a length: `1 m/s*time`" if rate else vector and f"write `{vector}`"
             found.error(
                 "dimension-mismatch",
                 f"the components of {what} differ: {describe(dimension)} and {describe(other)}",
                 item.span or span,
-                help=None if vector is None else f"write `{vector}`",
+                help=help,
             )
             return None
     return Vector(tuple(items), Type((len(items), *inner), dimension), span)
@@ -163,7 +165,7 @@ def _by_component(
 ) -> Expr | None:
     for key in node.entries:
         if key not in COMPONENTS:
-            help = _keyed(node) or vector_meant_by(node) or suggestion(key, (*COMPONENTS, "keys"))
+            help = vector_meant_by(node) or suggestion(key, (*COMPONENTS, "keys"))
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"
@@ -180,12 +182,6 @@ def _by_component(
             return None
         items.append(value.expr)
     return Vector(tuple(items), Type((3,), quantity.dimension), node.span)
-
-
-def _keyed(node: MappingNode) -> str | None:
-    """The help for keyframes without `keys` around them."""
-    timed = all(re.fullmatch(r"[\d.]+ *(s|ms|min)", key) for key in node.entries)
-    return f"values over time stand in `keys`: write `{{keys: {node.span.text}}}`" if node.entries and timed else None
 
 
 def _keys(

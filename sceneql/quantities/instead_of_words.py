@@ -68,6 +68,11 @@ OF_PARTS = (
     ),
     (
         "field.models",
+        "material color colour",
+        "the object has it that the model moves: `objects: {ball: {sphere: {material: metal}}}`",
+    ),
+    (
+        "field.models",
         "rods rod bars",
         "a rod is a tie, `ties: {r: {rod: {between: [net.a, net.b]}}}`: `sceneql words rod`",
     ),

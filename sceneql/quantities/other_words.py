@@ -46,7 +46,7 @@ _LISTS = (
     ("field_of_view", "zoom focal_length angle fov_angle view_angle fovy fovx"),
     ("follow", "track tracking"),
     ("to", "end stop finish"),
-    ("count", "segments pieces"),
+    ("count", "segments pieces resolution divisions"),
     ("pins", "pin fixed anchors anchored hold held fix"),
     ("field", "formula function expression equation f"),
     ("distance", "radius orbit_radius"),
