@@ -46,13 +46,13 @@ at the start of the step; then the acceleration of each mover by these [m/s^2]."
 LITTLE, ROUNDING = 1e-5, 1e-12
 """Part of the kinetic energy that is an error of a step, and no more; of the sums, that is rounding."""
 CLOSED = 4e-6
-"""Way that bodies may be shifted in a step as gaps are closed, in parts of their size."""
+"""Way that bodies may be shifted as gaps are closed, or fall too far from rest in a step, in parts of their size."""
 
 
-@lean(types.UniTuple(F, 5)(F, A, A, I))
-def accounts(h, y, floats, ints):
-    """Of what is looked at: kinetic energy, what contacts have taken, the work of the other forces since the step of
-    length h began, the power of their torques, and the error of that work [J, W]."""
+@lean(types.UniTuple(F, 5)(A, A, I))
+def accounts(y, floats, ints):
+    """Of what is looked at: kinetic energy, what contacts have taken, the work of the other forces since the step
+    began, the power of their torques, and the error of that work [J, W]."""
     kinetic = taken = given = power = error = 0.0
     for m in range(ints[MOVERS]):
         at, mover, pull, work = (
@@ -73,10 +73,9 @@ def accounts(h, y, floats, ints):
             square += mean * mean
             size += abs(floats[mover + AT_X + c])
         given += way / floats[mover + AT_MASS]
-        # (A method of order 1 errs by what it falls in a step.)
         shape = ints[SHAPES_AT] + SHAPE * m
         reach = floats[ints[shape + FLOATS] + REACH] if m < ints[SHAPES] else size
-        error += (h * h * square + math.sqrt(square) * (CLOSED * reach + ROUNDING * size)) / floats[mover + AT_MASS]
+        error += math.sqrt(square) * (CLOSED * reach + ROUNDING * size) / floats[mover + AT_MASS]
         if ints[at + ROTATION] >= 0:
             # (What turns the axes of a free body has no power.)
             power += dot(*times_inertia(floats, mover, *three(floats, pull + 3)), *three(floats, mover + AT_W))
@@ -87,7 +86,7 @@ def accounts(h, y, floats, ints):
 def begin_account(y, floats, ints):
     """Keep what a step begins with; of what is looked at."""
     memory = ints[MEMORY_AT]
-    kinetic, taken, _, floats[memory + POWER], _ = accounts(0.0, y, floats, ints)
+    kinetic, taken, _, floats[memory + POWER], _ = accounts(y, floats, ints)
     floats[memory + ENERGY] = kinetic + taken
     for m in range(ints[MOVERS]):
         put(floats, memory + PULLS + EACH * m, *three(floats, pull_at(ints, m)))
@@ -104,7 +103,7 @@ def made_energy(t, y, floats, ints):
         return False
     look(t, y, floats, ints)
     h, before = t - floats[memory + BEGUN], floats[memory + ENERGY]
-    kinetic, taken, given, power, error = accounts(h, y, floats, ints)
+    kinetic, taken, given, power, error = accounts(y, floats, ints)
     turned, earlier = 0.5 * h * (power + floats[memory + POWER]), h * abs(power - floats[memory + POWER])
     allowed = LITTLE * kinetic + error + earlier + ROUNDING * (abs(taken) + abs(before))
     return abs(kinetic + taken - before - given - turned) > allowed

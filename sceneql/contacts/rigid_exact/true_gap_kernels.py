@@ -44,9 +44,9 @@ from sceneql.system.signatures_kernels import A, F, I, N
 
 UNSEEN = 1e-6
 """Depth, and gap of what is held, in parts of the smaller body, that the contacts do not tell and that is an error."""
-DRIFT = 1e-3
-"""Speed, in parts of the speeds that it is a sum of, up to which a contact that pushed in the step before is kept: what
-the step's error leaves is closed after it."""
+DRIFT, SINKS = 1e-3, 1e-9
+"""Speed, in parts of the speeds that it is a sum of and [m/s], up to which a contact that pushed in the step before is
+kept: what the step's error leaves is closed after it."""
 
 
 @lean(F(A, I, N))
@@ -78,7 +78,7 @@ def drifts(floats, ints, pair, most):
         rec = ints[RECORDS_AT] + RECORD * k
         if floats[rec + PAIR] == pair and floats[rec + PUSHES] > 0.0:
             a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
-            if floats[rec + GAP] < most or floats[rec + SPEED] < -DRIFT * pace(floats, rec, a, b):
+            if floats[rec + GAP] < most or floats[rec + SPEED] < -SINKS - DRIFT * pace(floats, rec, a, b):
                 return True
     return False
 
