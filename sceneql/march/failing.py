@@ -34,7 +34,7 @@ MESSAGES = {
     kernels.STUCK: "contacts push against each other at one instant without end",
     kernels.UNSEEN: "bodies are in each other, or held apart, by a contact that mode `exact` has not seen",
     kernels.COSTLY: "contacts take more work than they may",
-    kernels.MADE: "contacts make energy, in however short a step",
+    kernels.MADE: "contacts make or lose energy, in however short a step",
 }
 AHEAD = 1e-9
 """Interval ahead, relative to the time reached, in which a rate without a value is searched for."""
