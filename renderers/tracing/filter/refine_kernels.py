@@ -1,6 +1,7 @@
 # mypy: ignore-errors
 """Third stage: edges of shadows finer than the filter's window get samples of their own; then all is shaded."""
 
+import numpy as np
 from numba import types
 
 from renderers.tracing import layout
@@ -9,9 +10,9 @@ from renderers.tracing.filter.filter_kernels import REACH
 from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import COUNT, SIDE, SKY_COUNT, sample_of
-from renderers.tracing.light.shade_kernels import shade_here
+from renderers.tracing.light.shade_kernels import shade_under, sky_on
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, light_sample, look_around, shadow_sample
-from renderers.tracing.record_kernels import OWNER, RADIUS, alike, enough
+from renderers.tracing.record_kernels import NORMAL, OWNER, RADIUS, alike, enough
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
 from renderers.tracing.tiles_kernels import MARKS
 from sceneql.compiled.kernels import kernel
@@ -23,13 +24,14 @@ CRISP = 1.5
 FINE = 3.0
 """Widths [pixels] of penumbras that are searched in 3 x 3 and in 5 x 5 pixels."""
 OWN = 16
-"""Samples of a light for each pixel of a fine edge."""
+"""Samples of a light for each pixel of a fine edge; a quarter of these where it is as wide as the window's reach, and
+half of them in wider penumbras that are ROUGH."""
 ROUGH = 0.03
 """Difference of a light's share from the mean of those SIDE pixels away on both sides, from which on a wide penumbra
 takes samples of its own: behind rows of thin things the one of each pixel in the filter's window is too few."""
 LEAST, MOST = 0.0001, 0.9999
 """Shares of a light up to which it counts as hidden, and from which on as seen whole."""
-FEW, THIN = 20.0, 32
+FEW, THIN = 20.0, 16
 """Pixels joined by the filter below which a pixel takes samples of the sky of its own, on small or thin surfaces, and
 how many it takes below half of FEW; above that half as many."""
 
@@ -129,7 +131,7 @@ def refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, re
         if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
             fine[k, column] = visibility[k, column]
             continue
-        samples = enough(records[k], OWN if reach < REACH else OWN // 2)
+        samples = enough(records[k], OWN if reach < REACH else OWN // 4)
         total = 0.0
         first = sample_of(x, y) * samples % COUNT
         for sample in range(first, first + samples):
@@ -167,7 +169,7 @@ def refine(scene, scratch, asked, ways, start, stop, waiting, busy, records, vis
         begin = asked[0, layout.NEXT]
         if asking and begin > room:
             return k
-        if first and pixels >= few_for(records[k]) and is_even(scene, k, x, y, means, fine):
+        if first and (pixels >= FEW or pixels >= few_for(records[k])) and is_even(scene, k, x, y, means, fine):
             continue
         refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, records, visibility, means, fine)
         if asking and asked[0, layout.NEXT] > begin:
@@ -178,7 +180,11 @@ def refine(scene, scratch, asked, ways, start, stop, waiting, busy, records, vis
 
 @part
 def settle(records, fine, lights, k, x, y, width, height, visibility):
-    """Final visibility of a record: as refined; wider penumbras are averaged over 3 x 3 or 5 x 5 pixels."""
+    """Final visibility of a record: as refined; wider penumbras are averaged over 3 x 3 or 5 x 5 pixels.
+
+    Pixels at the rim of such a window have half of their weight, so that it holds the samples of 2 x 2 or 4 x 4 pixels,
+    which are a net.
+    """
     for c in range(len(visibility)):
         visibility[c] = fine[k, c]
     for l in range(lights):
@@ -186,21 +192,22 @@ def settle(records, fine, lights, k, x, y, width, height, visibility):
         reach = int(fine[k, column + 1])
         if reach == 0:
             continue
-        total = 0.0
-        count = 0
+        total = joined = 0.0
         for j in range(max(y - reach, 0), min(y + reach, height - 1) + 1):
             for i in range(max(x - reach, 0), min(x + reach, width - 1) + 1):
                 m = j * width + i
                 if alike(records[k], records[m], SLACK):
-                    total += fine[m, column]
-                    count += 1
-        visibility[column] = total / count
+                    weight = (0.5 if abs(i - x) == reach else 1.0) * (0.5 if abs(j - y) == reach else 1.0)
+                    total += weight * fine[m, column]
+                    joined += weight
+        visibility[column] = total / joined
 
 
 @kernel(types.void(SCENE, _i, _i, MARKS, _stack, _stack, _stack, _rows), _nrt=False)
 def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
     """Write the final visibility (2, n, V) and add both records' light to the radiance (n, 3)."""
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
+    rising, open_sky = np.float32(np.nan), (0.0, 0.0, 0.0)  # height of the normal at hand, and the sky's light on it
     for y in range(start, stop):
         for x in range(width):
             if busy[y // TILE, x // TILE] == 0:
@@ -220,7 +227,9 @@ def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
                     height,
                     visibility[layer, k],
                 )
-                r, g, b = shade_here(scene, records[layer, k], visibility[layer, k])
+                if records[layer, k, NORMAL + 1] != rising:
+                    rising, open_sky = records[layer, k, NORMAL + 1], sky_on(scene.reals, records[layer, k], False)
+                r, g, b = shade_under(scene, records[layer, k], visibility[layer, k], open_sky)
                 radiance[k, 0] += r
                 radiance[k, 1] += g
                 radiance[k, 2] += b
