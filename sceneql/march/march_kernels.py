@@ -383,7 +383,7 @@ def march(
                 rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1
-        counts[SHRUNK] = max(0, counts[SHRUNK] - 1)
+        counts[SHRUNK] = max(0, counts[SHRUNK] - 1) if counts[ADAPTIVE] == 0 else 0
         counts[STEPS] += 1
         if counts[ADAPTIVE] == 0:
             counts[GRID] += t1 >= grid

@@ -19,9 +19,11 @@ from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.core_kernels import FLOATS, REACH
 from sceneql.contacts.rigid_exact.contact_kernels import dot, three
+from sceneql.contacts.rigid_exact.curved_find_kernels import is_curved
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     BEGUN,
     BEGUN_AT,
+    BODIES,
     DRIVES,
     KEPT,
     MEMORY,
@@ -43,8 +45,9 @@ from sceneql.system.signatures_kernels import A, F, I
 ENERGY, POWER, PULLS, ROOM, EACH = MEMORY, MEMORY + 1, MEMORY + 2, 2, 3
 """Behind the memory: kinetic energy and what contacts have taken [J], the power of the torques of all other forces [W],
 at the start of the step; then the acceleration of each mover by these [m/s^2]."""
-LITTLE, ROUNDING = 1e-5, 1e-12
-"""Part of the kinetic energy that is an error of a step, and no more; of the sums, that is rounding."""
+LITTLE, MORE, ROUNDING = 1e-5, 1e-3, 1e-12
+"""Part of the kinetic energy that is an error of a step, and no more, of what is round, whose forces may grow without
+bound, and of what is not; of the sums, that is rounding."""
 CLOSED = 4e-6
 """Way that bodies may be shifted as gaps are closed, or fall too far from rest in a step, in parts of their size."""
 
@@ -105,5 +108,9 @@ def made_energy(t, y, floats, ints):
     h, before = t - floats[memory + BEGUN], floats[memory + ENERGY]
     kinetic, taken, given, power, error = accounts(y, floats, ints)
     turned, earlier = 0.5 * h * (power + floats[memory + POWER]), h * abs(power - floats[memory + POWER])
-    allowed = LITTLE * kinetic + error + earlier + ROUNDING * (abs(taken) + abs(before))
-    return abs(kinetic + taken - before - given - turned) > allowed
+    curved = False
+    for k in range(ints[BODIES]):
+        curved = curved or is_curved(ints, ints[SHAPES_AT] + SHAPE * k)
+    allowed = (LITTLE if curved else MORE) * kinetic + error + earlier + ROUNDING * (abs(taken) + abs(before))
+    made = kinetic + taken - before - given - turned
+    return made > allowed or (curved and made < -allowed)

@@ -103,7 +103,11 @@ def unseen(t, y, floats, ints, first):
         told = kept_gap(floats, ints, pair, math.inf if held else 0.0)
         size = smaller(floats, ints, ints[ints[PAIRS_AT] + 2 * pair], ints[ints[PAIRS_AT] + 2 * pair + 1])
         a, b = ints[ints[PAIRS_AT] + 2 * pair], ints[ints[PAIRS_AT] + 2 * pair + 1]
-        if held and drifts(floats, ints, pair, min(0.0, floats[allowed]) - UNSEEN * size):
+        if (
+            held
+            and is_curved(ints, ints[SHAPES_AT] + SHAPE * a)
+            and drifts(floats, ints, pair, min(0.0, floats[allowed]) - UNSEEN * size)
+        ):
             found = True
         if is_curved(ints, ints[SHAPES_AT] + SHAPE * a) and now < size:
             found = found or is_cut(floats, ints, ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b)))
