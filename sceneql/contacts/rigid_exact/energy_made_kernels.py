@@ -67,7 +67,10 @@ def accounts(y, floats, ints):
         if work < 0 or ints[at + POSITION] < 0 or floats[mover + AT_MASS] == 0.0:
             continue
         kinetic += energy(y, floats, ints, m)
-        taken += y[work]
+        counted = False  # (bodies of one model share what contacts have taken)
+        for other in range(m):
+            counted = counted or ints[ints[WORKS_AT] + other] == work
+        taken += 0.0 if counted else y[work]
         before, begun = ints[MEMORY_AT] + PULLS + EACH * m, ints[BEGUN_AT] + PLACE * m
         way = square = size = 0.0
         for c in range(3):
