@@ -368,7 +368,7 @@ def march(
                 copy(rate0, rate1)
                 made = floats[channels.CHANGED] == channels.MADE
                 unseen = floats[channels.CHANGED] == channels.UNSEEN
-                if (made or (unseen and counts[ADAPTIVE] == 0)) and part > LEAST_PART:
+                if (made or unseen) and part > LEAST_PART:
                     floats[channels.CHANGED] = 0.0
                     counts[PENDING] = -1
                     counts[REJECTED] += 1
@@ -383,7 +383,7 @@ def march(
                 rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1
-        counts[SHRUNK] = max(0, counts[SHRUNK] - 1) if counts[ADAPTIVE] == 0 else 0
+        counts[SHRUNK] = max(0, counts[SHRUNK] - 1)
         counts[STEPS] += 1
         if counts[ADAPTIVE] == 0:
             counts[GRID] += t1 >= grid
