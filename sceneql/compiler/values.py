@@ -49,6 +49,7 @@ _MISSING = (
 """(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
 viscosity to dynamic, conductivity to diffusivity."""
 _EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
+_TENS = re.compile(r"(?<![\w.])(\d+\.?\d*)\s*[x×·⋅*]\s*10\s*(?:\^|\*\*)\s*\(?([-+−]?\d+)")
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
 
@@ -120,12 +121,15 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
         help = None if written is None else f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
         found.error("missing-value", "a value is missing here", node.span, help=help)
         return None
+    before, expr = len(found.found), None
     try:
-        return names.parsed.tree(node, text, names.lookup, found)
+        expr = names.parsed.tree(node, text, names.lookup, found)
     except ScriptError as error:
-        for diagnostic in error.diagnostics:
-            found.add(diagnostic)
-        return None
+        found.extend(error.diagnostics)
+    if expr is None and len(found.found) > before and (ten := _TENS.search(text)) is not None:
+        help = f"write `{ten[1]}e{ten[2]}`, with the unit behind it"
+        found.found[before] = replace(found.found[before], help=help)
+    return expr
 
 
 def parsed_text(node: Scalar) -> str:
@@ -300,6 +304,8 @@ def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
 
 def remedy(expr: Expr, wanted: Dimension | None) -> str | None:
     """The help where a quantity lacks a factor, or has a unit with a prefix where two units were meant."""
+    if wanted == TEMPERATURE and expr.span is not None and expr.span.text[-1:] in ("C", "F"):
+        return f"write `{expr.span.text[:-1].strip()} °{expr.span.text[-1]}`"
     text = None if expr.span is None or isinstance(expr, Link) else apart(expr.span.text)
     if text is not None and expr.span is not None:
         try:

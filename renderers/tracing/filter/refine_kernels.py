@@ -24,14 +24,13 @@ CRISP = 1.5
 FINE = 3.0
 """Widths [pixels] of penumbras that are searched in 3 x 3 and in 5 x 5 pixels."""
 OWN = 16
-"""Samples of a light for each pixel of a fine edge; a quarter of these where it is as wide as the window's reach, and
-half of them in wider penumbras that are ROUGH."""
+"""Samples of a light for each pixel of a fine edge."""
 ROUGH = 0.03
 """Difference of a light's share from the mean of those SIDE pixels away on both sides, from which on a wide penumbra
 takes samples of its own: behind rows of thin things the one of each pixel in the filter's window is too few."""
 LEAST, MOST = 0.0001, 0.9999
 """Shares of a light up to which it counts as hidden, and from which on as seen whole."""
-FEW, THIN = 20.0, 16
+FEW, THIN = 20.0, 32
 """Pixels joined by the filter below which a pixel takes samples of the sky of its own, on small or thin surfaces, and
 how many it takes below half of FEW; above that half as many."""
 
@@ -131,7 +130,7 @@ def refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, re
         if reach < REACH and not mixed(records, visibility, k, x, y, width, height, column, reach):
             fine[k, column] = visibility[k, column]
             continue
-        samples = enough(records[k], OWN if reach < REACH else OWN // 4)
+        samples = enough(records[k], OWN if reach < REACH else OWN // 2)
         total = 0.0
         first = sample_of(x, y) * samples % COUNT
         for sample in range(first, first + samples):
@@ -182,8 +181,7 @@ def refine(scene, scratch, asked, ways, start, stop, waiting, busy, records, vis
 def settle(records, fine, lights, k, x, y, width, height, visibility):
     """Final visibility of a record: as refined; wider penumbras are averaged over 3 x 3 or 5 x 5 pixels.
 
-    Pixels at the rim of such a window have half of their weight, so that it holds the samples of 2 x 2 or 4 x 4 pixels,
-    which are a net.
+    Pixels at the rim of 5 x 5 have half of their weight, so that it holds the samples of 4 x 4, which are a net.
     """
     for c in range(len(visibility)):
         visibility[c] = fine[k, c]
@@ -197,7 +195,7 @@ def settle(records, fine, lights, k, x, y, width, height, visibility):
             for i in range(max(x - reach, 0), min(x + reach, width - 1) + 1):
                 m = j * width + i
                 if alike(records[k], records[m], SLACK):
-                    weight = (0.5 if abs(i - x) == reach else 1.0) * (0.5 if abs(j - y) == reach else 1.0)
+                    weight = (0.5 if abs(i - x) == 2 else 1.0) * (0.5 if abs(j - y) == 2 else 1.0)
                     total += weight * fine[m, column]
                     joined += weight
         visibility[column] = total / joined

@@ -76,7 +76,7 @@ def refined(
     whole, grid = bounded(tape, low, high), grid_around(low, high, cell)
     shop, numbers = GridExtraction(whole, grid), Numbering(grid)
     blocks = shop.met()
-    coarse, doubt = Level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks, 0, FINE)
+    coarse, doubt = Level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks, 1, FINE)
     for cells, parts, most in _to_cut(whole, coarse, grid.cell, tolerance):
         group = BLOCK // parts  # coarse cells along a group, which is one block of the fine grid
         groups = _distinct(np.concatenate([cells, doubt.where[doubt.seen]]) // group, numbers)
