@@ -10,7 +10,7 @@ from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
-from sceneql.compiler.vector_fields import vector_meant_by
+from sceneql.compiler.vector_fields import timed, vector_meant_by
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
@@ -107,7 +107,7 @@ def read_expr(
                 return _by_component(node, dimension, what, names, found)
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
-            help = f"write `[{', '.join(texts)}]`" if listed else None
+            help = timed(node) or (f"write `[{', '.join(texts)}]`" if listed else None)
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None
 
@@ -147,12 +147,14 @@ def _vector(items: list[Expr], what: str, span: Span, found: Diagnostics) -> Exp
             found.error("wrong-shape", f"the items of {what} differ in their number of components", item.span or span)
             return None
         if other is not None and other != dimension and not _zero(item):
-            vector = vector_meant(", ".join("" if one.span is None else one.span.text for one in items))
+            texts = ", ".join("" if one.span is None else one.span.text for one in items)
+            vector, rate = vector_meant(texts), dimension / other in (TIME, FREQUENCY)
+            help = "times the `time` a velocity is a length: `1 m/s*time`" if rate else vector and f"write `{vector}`"
             found.error(
                 "dimension-mismatch",
                 f"the components of {what} differ: {describe(dimension)} and {describe(other)}",
                 item.span or span,
-                help=None if vector is None else f"write `{vector}`",
+                help=help,
             )
             return None
     return Vector(tuple(items), Type((len(items), *inner), dimension), span)

@@ -68,6 +68,26 @@ OF_PARTS = (
     ),
     (
         "field.models",
+        "material color colour",
+        "the object has it that the model moves: `objects: {ball: {sphere: {material: metal}}}`",
+    ),
+    (
+        "field.models",
+        "rods rod bars",
+        "a rod is a tie, `ties: {r: {rod: {between: [net.a, net.b]}}}`: `sceneql words rod`",
+    ),
+    (
+        "field.objects",
+        "hollow shell wall_thickness inner_radius outer_radius",
+        "cut it out: `{difference: {of: [outer, inner]}}`: `sceneql words difference`",
+    ),
+    (
+        "field.objects",
+        "bevel rounded corner_radius fillet edge_radius chamfer",
+        "its edges are sharp; where members of a `union` or `difference` meet, their `blend` is a fillet",
+    ),
+    (
+        "field.models",
         "params parameters constants variables args",
         "constants have names under `define`, `define: {sigma: 10}` at the left margin: `sceneql words define`",
     ),
@@ -123,7 +143,8 @@ OF_PARTS = (
     (
         "field.models",
         "shape radius size dimensions geometry half_extents",
-        "the shape is an object, `objects: {ball: {sphere: {radius: 0.3 m}}}`, which the model names: `of: ball`",
+        "the shape is an object, `objects: {ball: {sphere: {radius: 0.3 m}}}`, which the model names:"
+        " `of: ball`, or `domain: ball` of a field",
     ),
     (
         "field.models",
@@ -225,7 +246,7 @@ OF_PARTS = (
     ),
     (
         "field.objects",
-        "modifiers modifier subdivision subsurf bevel smooth shade_smooth segments subdivisions",
+        "modifiers modifier subdivision subsurf smooth shade_smooth segments subdivisions",
         "surfaces are exact and need no finer mesh; `union`, `difference`, `bend`, `twist` and `taper` make objects of"
         " objects",
     ),
