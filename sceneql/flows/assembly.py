@@ -86,10 +86,7 @@ class _Builder:
                 self.fluids.must_stand(True)
             self.moving = MovingSolids(model.around, model, self.faces, assembly)
         elif model.around or model.domain is not None:
-            walled = np.array([part.wall is not None for part, _ in self.parts] + [True])[
-                self.part_of
-            ]  # -1: by default
-            self.solids = Solids(model.around, self.faces, staircase, assembly, model.domain, model.boundary, walled)
+            self.solids = Solids(model.around, self.faces, staircase, assembly, model.domain, model.boundary)
 
     def build(self) -> Flow:
         assembly, faces, cells = self.assembly, self.faces, self.cells

@@ -1,26 +1,17 @@
-"""Gaps between solids that stand in a flow, and beside its walls: one narrower than a cell is no passage.
-
-No cell of it is whole.
-"""
+"""Gaps between solids that stand in a flow: one narrower than a cell is no passage, as no cell of it is whole."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations, product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sceneql.grids.domain.cells import SIDES
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from numpy import bool_
-    from numpy.typing import NDArray
-
-    from sceneql.flows.staggered import Faces
     from sceneql.frame import Floats
     from sceneql.kinds import Ref
 
@@ -34,53 +25,20 @@ SLOPES = 1e-3
 """Cells over which a level set's gradient is read."""
 
 
-@dataclass(frozen=True, slots=True)
-class WallSide:
-    """A side of the box that is a wall all over, as a solid beyond it."""
-
-    name: str
-    axis: int
-    sign: float
-    """1.0 for a low side, -1.0 for a high one: where the fluid is along the axis."""
-    place: float
-    """[m] along the axis."""
-
-    def values(self, points: Floats) -> Floats:
-        """Distance (k,) [m] of points (k, 3) from the wall, positive in the box."""
-        found: Floats = self.sign * (points[:, self.axis] - self.place)
-        return found
-
-
-def wall_sides(faces: Faces, walled: NDArray[bool_]) -> list[WallSide]:
-    """The sides of a box that are walls all over; ``walled``: whether each of its boundary faces is one."""
-    found = []
-    for axis, high in product(range(faces.axes), (0, 1)):
-        if not faces.periodic[axis] and walled[faces.side(axis, high)].all():
-            place = faces.low[axis] + high * faces.cells.shape[axis] * faces.cells.spacing[axis]
-            found.append(WallSide(SIDES[2 * axis + high], axis, 1.0 - 2.0 * high, float(place)))
-    return found
-
-
 def must_leave_cells(
-    refs: Sequence[Ref], levels: Sequence[Any], walls: Sequence[WallSide], shape: Sequence[int], centers: Floats,
-    cell: Floats,
-) -> None:  # fmt: skip
-    """Raise ScriptError for a solid with less than one cell between it and another, or a wall, that it does not touch.
+    refs: Sequence[Ref], levels: Sequence[Any], shape: Sequence[int], centers: Floats, cell: Floats
+) -> None:
+    """Raise ScriptError for two solids that do not touch and have less than one cell between them.
 
     ``levels``: of each solid, positive in the fluid; ``shape``: cells along z, y, x; ``centers`` (cells, 3); ``cell``
     (3,): its sides.
     """
     near = [_beside_surface(level.values(centers).reshape(shape)) for level in levels]
-    near += [(wall.values(centers) < 2.0 * cell[wall.axis]).reshape(shape) for wall in walls]
-    told = [f"'{ref.name}'" for ref in refs] + [f"the wall '{wall.name}'" for wall in walls]
-    surfaces = [*levels, *walls]
     axes = [axis for axis in range(3) if shape[2 - axis] > 1]
     offsets = np.zeros((2 ** len(axes), 3))
     offsets[:, axes] = list(product((-0.25, 0.25), repeat=len(axes)))
     side = float(cell[axes].min())
-    for (first, one), (second, other) in combinations(enumerate(surfaces), 2):
-        if first >= len(refs):
-            break  # walls alone
+    for (first, one), (second, other) in combinations(enumerate(levels), 2):
         places = centers[(near[first] & near[second]).ravel()]
         if not len(places):
             continue
@@ -94,16 +52,10 @@ def must_leave_cells(
             point, gap = point - d[:, None] * normal, float(d[0])
         if TOUCHING * side < gap < side:
             x, y, z = point[0]
-            text = f"{told[first]} and {told[second]} leave {gap:.3g} m between them, near "
+            text = f"'{refs[first].name}' and '{refs[second].name}' leave {gap:.3g} m between them, near "
             text += f"({x:.4g}, {y:.4g}, {z:.4g}) m: less than a cell of {side:.3g} m"
             help = f"take a `cell` of {gap / 3:.2g} m, so that fluid flows there, or let them touch"
-            raise ScriptError(
-                [
-                    Diagnostic(
-                        "no-cell", text, refs[second if second < len(refs) else first].span or refs[first].span, help
-                    )
-                ]
-            )
+            raise ScriptError([Diagnostic("no-cell", text, refs[second].span or refs[first].span, help)])
 
 
 def _beside_surface(values: Floats) -> Any:

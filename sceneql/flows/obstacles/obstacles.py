@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from sceneql.flows.fluid_box import around
-from sceneql.flows.obstacles.gaps import must_leave_cells, wall_sides
+from sceneql.flows.obstacles.gaps import must_leave_cells
 from sceneql.flows.obstacles.no_slip_numbers import LEAST, SLIVER
 from sceneql.grids.domain.cut import below
 from sceneql.grids.domain.domain import inside
@@ -22,9 +22,6 @@ from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 
 if TYPE_CHECKING:
     from collections.abc import Container, Sequence
-
-    from numpy import bool_
-    from numpy.typing import NDArray
 
     from sceneql.flows.staggered import Faces
     from sceneql.frame import Floats
@@ -64,13 +61,11 @@ class Solids:
         assembly: Assembly,
         domain: Ref | None = None,
         named: Container[str] = (),
-        walled: NDArray[bool_] | None = None,
     ) -> None:
         """``domain``: the object that the fluid fills, whose complement is the last solid; ``named``: sides of the box
-        that the script names; ``walled``: whether each boundary face of the box is a wall; None: none is.
+        that the script names.
 
-        Raises ScriptError for an object without an inside, and where solids fill the box or the gap between two,
-        or beside a wall.
+        Raises ScriptError for an object without an inside, and where solids fill the box or the gap between two.
         """
         self.faces, self.staircase, self.spacing = faces, staircase, np.array(faces.cells.spacing)
         self.refs = refs if domain is None else (*refs, domain)
@@ -97,9 +92,8 @@ class Solids:
         if not (self.parts > 0.0).any():
             text = "the solids fill the whole box: no cell is left to flow through"
             raise ScriptError([Diagnostic("no-cell", text, self.refs[0].span, "take smaller ones, or a larger `size`")])
-        walls = [] if walled is None or domain is not None else wall_sides(faces, walled)
-        if len(self.refs) + len(walls) > 1:
-            must_leave_cells(self.refs, self.levels, walls, faces.cells.shape[::-1], centers, self.spacing)
+        if len(self.refs) > 1:
+            must_leave_cells(self.refs, self.levels, faces.cells.shape[::-1], centers, self.spacing)
 
     def _centers(self) -> Floats:
         found = self.faces.cells.centers()
