@@ -78,3 +78,10 @@ def test_edges_are_counted_at_a_vertex_of_many_too():
     rim = np.random.default_rng(5).permutation(np.arange(1, 2001))
     fan = np.stack([np.zeros(1999, dtype=int), rim[:-1], rim[1:]], axis=1)
     assert edge_counts(np.concatenate([fan, fan[:1]])) == (2000 + 1999, 2 + 1998 - 1, 1 + 0)
+
+
+def test_meshes_that_are_read_only_are_measured():
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    sides = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype=np.int32)
+    corners.flags.writeable = sides.flags.writeable = False
+    assert volume(corners, sides) == pytest.approx(1 / 6)
