@@ -24,9 +24,9 @@ def volume_and_area(vertices: Floats, triangles: Ints) -> tuple[float, float]:
         return 0.0, 0.0
     from sceneql.mesh.cubes.triangle_kernels import sum_up
 
-    kind, found = ["C", "W"], np.zeros(2)  # W: kernels take no array that is read-only
-    places = np.require(vertices, np.float64, kind)
-    sum_up(places, np.require(triangles, np.int32, kind), places.mean(axis=0), found)
+    found = np.zeros(2)
+    places = np.require(vertices, np.float64, ["C", "W"])  # kernels take no array that is read-only
+    sum_up(places, np.require(triangles, np.int32, ["C", "W"]), places.mean(axis=0), found)
     return float(found[0] / 6.0), float(0.5 * found[1])
 
 
