@@ -135,6 +135,12 @@ def test_the_ball_hits_and_rests_when_the_series_of_its_bounces_says():
     assert moment.read("ground", "rest.time") == pytest.approx(first * (1 + 0.8) / (1 - 0.8), abs=1e-9)
 
 
+def test_a_disk_rolls_in_steps_of_its_tolerance():
+    """Of Euler's disk: a sharper account of its contact's energy halved each of them thousands of times."""
+    (moment,) = pipeline.simulate(pipeline.load(named("spinners"), sets=["clock.end=0.2 s"]), [0.2])
+    assert max(island.march.statistics.steps for island in moment.run.islands) < 1000
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("path", SOLVED, ids=lambda path: path.stem)
 def test_the_physics_does_not_know_the_frame_rate(path):

@@ -38,15 +38,13 @@ pair whose impact is due (-1: none)."""
     CRAWLED,
     SETTLES,
     WATCHED,
-    SHRUNK,
     COUNTS,
-) = range(8, 23)
+) = range(8, 22)
 """Properties of solver and island (system.Stepper); whether a body rests on a local contact (channels.HOLDS); whether
 the arrays of the step's start and end are swapped, for the end of a step is the next one's start; whether there are
 kernels that act after steps (Assembly.after_step), and whether they changed anything after the last one; successive
 steps that have hardly moved time; whether there are such kernels that act on samples, too; whether surfaces may pass
-one another in a whole step (Assembly.limit); how often the step to try next is halved for what exact contacts did in
-those before, which is forgotten by and by."""
+one another in a whole step (Assembly.limit)."""
 
 SHORTEST = 1e-3
 """Part of a fixed step below which it is not halved any more."""
@@ -258,12 +256,12 @@ def march(
     back_off = pointers.back_off_at(functions[pointers.AT_BACK_OFF])
     after_step = pointers.after_step_at(functions[pointers.AT_AFTER_STEP])
     settle = pointers.settle_at(functions[pointers.AT_SETTLE])
-    n = y0.size
+    n, part = y0.size, 1.0
     while clock[T1] < target:
         if counts[LEFT] <= 0:
             return PAUSED
         counts[LEFT] -= 1
-        t0, part = clock[T1], 0.5 ** counts[SHRUNK]
+        t0 = clock[T1]
         y0, y1 = y1, y0
         rate0, rate1 = rate1, rate0
         counts[SWAPPED] = 1 - counts[SWAPPED]
@@ -302,7 +300,7 @@ def march(
             copy(y0, y1)
             copy(rate0, rate1)
             if leaving.size > 0 and counts[ADAPTIVE] == 0 and status in (GROWTH, NOT_FINITE) and part > LEAST_PART:
-                counts[SHRUNK] += 1
+                part *= 0.5
                 continue
             return status
         if counts[LAST_STAGE] >= 0:
@@ -368,11 +366,11 @@ def march(
                 copy(rate0, rate1)
                 made = floats[channels.CHANGED] == channels.MADE
                 unseen = floats[channels.CHANGED] == channels.UNSEEN
-                if (made or unseen) and part > LEAST_PART:
+                if (made or (unseen and counts[ADAPTIVE] == 0)) and part > LEAST_PART:
                     floats[channels.CHANGED] = 0.0
                     counts[PENDING] = -1
                     counts[REJECTED] += 1
-                    counts[SHRUNK] += 1
+                    part *= 0.5
                     continue
                 return MADE if made else (UNSEEN if unseen else COSTLY)
             if floats[channels.CHANGED] == 1.0:
@@ -383,7 +381,7 @@ def march(
                 rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1
-        counts[SHRUNK] = max(0, counts[SHRUNK] - 1)
+        part = 1.0
         counts[STEPS] += 1
         if counts[ADAPTIVE] == 0:
             counts[GRID] += t1 >= grid
