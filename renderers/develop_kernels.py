@@ -20,7 +20,9 @@ def toned(r, g, b):
         return r, g, b
     top = SHOULDER + (1.0 - SHOULDER) * np.tanh((peak - SHOULDER) / (1.0 - SHOULDER))
     share = top / peak
-    white = 1.0 - np.exp(-WHITENING * max(peak - 1.0, 0.0))
+    if peak <= 1.0:
+        return r * share, g * share, b * share
+    white = 1.0 - np.exp(-WHITENING * (peak - 1.0))
     return (
         r * share + white * (top - r * share),
         g * share + white * (top - g * share),
@@ -42,13 +44,22 @@ def encoded(x):
     return SRGB[k] + (place - k) * (SRGB[k + 1] - SRGB[k])
 
 
-@inlined
-def threshold(x, y):
-    """Bayer's 8 x 8 dither threshold of a pixel, in (0, 1): the bits of x ^ y and y interleaved, lowest first."""
+def _rank(x, y):
+    """The bits of x ^ y and y interleaved, lowest first."""
     rank = 0
     for bit in range(3):
         rank = 4 * rank + 2 * (((x ^ y) >> bit) & 1) + ((y >> bit) & 1)
-    return (rank + 0.5) / 64.0
+    return rank
+
+
+THRESHOLDS = np.array([[(_rank(x, y) + 0.5) / 64.0 for x in range(8)] for y in range(8)])
+"""Bayer's 8 x 8 dither thresholds, by y and x, in (0, 1)."""
+
+
+@inlined
+def threshold(x, y):
+    """The threshold of a pixel."""
+    return THRESHOLDS[y & 7, x & 7]
 
 
 @inlined

@@ -19,9 +19,9 @@ class Trace(Renderer):
     the surface around a pixel, so that a film has no grain; the bytes are the same from run to run and for any number
     of threads.
 
-    Where rounding decides what a formula is, each ray's search takes long and ends undecided. After 4 such rays in a
-    band of 16 rows of pixels the others that only such a search could decide are undecided at once: the run tells how
-    many, and `renderer: undecided` shows them.
+    Where rounding decides what a formula is, each ray's search takes long and ends undecided. After 4 such rays at an
+    object in a band of 16 rows of pixels the others at it that only such a search could decide are undecided at once:
+    the run tells how many, and `renderer: undecided` shows them.
 
     `sceneql render --draft` draws a third of the pixels along each side, with 2 samples and one reflection onto matte
     surfaces, and enlarges them: its light and shadows, less sharp, in about a sixth of the time, for trying things out.

@@ -113,9 +113,11 @@ def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path 
         click.echo(found)
     for name, frames in report.undecided.items():
         worst = max(frames, key=lambda index: frames[index])
+        unsearched = report.unsearched.get(name, 0)
         click.echo(
             f"{name}: {sum(frames.values())} pixels undecided in {len(frames)} frames, at most {frames[worst]} in frame"
             f" {worst}: proved neither hit nor miss at the tolerance; `renderer: undecided` shows them"
+            + (f"; {unsearched} rays were given up unsearched, after others beside them" if unsearched else "")
         )
 
 

@@ -33,6 +33,8 @@ class Report:
     frames: int = 0
     undecided: dict[str, dict[int, int]] = field(default_factory=dict)
     """By output and frame: pixels whose ray could be proved neither hit nor miss; only frames that have some."""
+    unsearched: dict[str, int] = field(default_factory=dict)
+    """By output: rays in such frames that were given up unsearched, after others at the same object were in vain."""
     compile_seconds: float = 0.0
     compilations: int = 0
     run_seconds: float = 0.0
@@ -143,6 +145,7 @@ class Tools:
             look_at_rounding(frame.shapes, self.report.rounded)
             counts = self.report.undecided.setdefault(self.name, {})
             counts[frame.index] = counts.get(frame.index, 0) + picture.undecided
+            self.report.unsearched[self.name] = self.report.unsearched.get(self.name, 0) + picture.unsearched
         linear = picture.linear
         if parts > 1:
             self._light = linear / parts if part == 0 else self._light + linear / parts

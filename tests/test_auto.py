@@ -179,3 +179,17 @@ contacts: {touch: {collision: {friction: 0.4, restitution: 0}}}"""
     assert "radau" in taken(ours)
     assert ours.statistics.evaluations < 2 * named.statistics.evaluations
     assert ours._switch._early == 0  # the trial is over: none of its checks is taken for one of the explicit method
+
+
+def test_auto_marches_a_beam_by_steps_of_its_slow_motion(tmp_path):
+    """At a tolerance of 1e-6 it took 2,100 steps of order 8 for half of this, held by waves across the beam."""
+    script = (
+        "models: {beam: {elastic: {block: {size: 1 0.1 0.1 m, cells: [4, 1, 1]}, element: p2, "
+        "law: {neo_hookean: {modulus: 1 MPa}}, hold: {wall: {where: x < -0.49}}}}}\nforces: [gravity]"
+    )
+    end, march = marched(tmp_path, script, "auto: {}", 0.5)
+    exact, _ = marched(tmp_path, script, "radau: {tolerance: 1e-5}", 0.5)
+    positions = march.system.partner >= 0
+    np.testing.assert_allclose(end[positions], exact[positions], atol=1e-3)
+    assert taken(march)[-1] == "tr_bdf2"
+    assert march.statistics.steps < 500

@@ -249,7 +249,7 @@ def test_a_ball_that_lands_takes_few_factorizations_a_stage(tmp_path):
     )
     island.advance(0.1)
     stages = island.march.floats[channels.STAGES]
-    assert island.march._settings[newton_kernels.FACTORIZATIONS] <= 9 * stages
+    assert island.march._settings[newton_kernels.FACTORIZATIONS] <= 6 * stages
     assert island.march.statistics.rejected <= 2
 
 

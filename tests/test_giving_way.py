@@ -38,7 +38,10 @@ def test_what_exact_contacts_cannot_follow_goes_on_in_steps_and_is_told(tmp_path
         modes.append(run.islands[0].assembly.contact_mode)
     assert modes[0] == "exact"
     assert modes[-1] == "local"
-    np.testing.assert_allclose(energies, energies[0], rtol=1e-5)
+    # Samples within a step of mode `local` are of order 1 in it: the energy there is up to 1 % off, with what friction
+    # took, and back at the step's end. Where all is at rest there is no such error.
+    assert energies[-1] == pytest.approx(energies[0], rel=1e-5)
+    np.testing.assert_allclose(energies, energies[0], rtol=1e-2)
     assert places[-1][1] < 0  # it has slid over the edge, and lies below
     steps = np.diff(np.array(places)[:, 0])
     assert steps.max() < 0.2

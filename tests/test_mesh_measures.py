@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from meshes import (
@@ -14,7 +15,7 @@ from meshes import (
     cut_finer,
     cut_sharp,
 )
-from sceneql.mesh.measures import area, curved_volume, volume
+from sceneql.mesh.measures import area, curved_volume, edge_counts, volume
 
 VOLUMES = [
     (BALL, 1.1, 4 * math.pi / 3),
@@ -70,3 +71,17 @@ def test_flat_faces_and_what_has_no_normals_are_not_curved():
 def test_area_of_a_torus():
     found = cut(TORUS, 1.5, 128)
     assert area(found.vertices, found.triangles) == pytest.approx(15.7913670417, rel=1e-3)
+
+
+def test_edges_are_counted_at_a_vertex_of_many_too():
+    """At the apex of a fan its edges stand in the order of the triangles, here any."""
+    rim = np.random.default_rng(5).permutation(np.arange(1, 2001))
+    fan = np.stack([np.zeros(1999, dtype=int), rim[:-1], rim[1:]], axis=1)
+    assert edge_counts(np.concatenate([fan, fan[:1]])) == (2000 + 1999, 2 + 1998 - 1, 1 + 0)
+
+
+def test_meshes_that_are_read_only_are_measured():
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    sides = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], dtype=np.int32)
+    corners.flags.writeable = sides.flags.writeable = False
+    assert volume(corners, sides) == pytest.approx(1 / 6)

@@ -145,3 +145,18 @@ def test_smooth_logs_are_pushed_apart_by_the_one_on_them(tmp_path):
 def test_rough_logs_stay_on_one_another(tmp_path):
     rows = watch(tmp_path, *logs(np.radians(33)), [0, 2], "it.positions", law="restitution: 0, friction: 0.3")
     np.testing.assert_allclose(rows[1][0], rows[0][0], atol=1e-9)
+
+
+def test_a_cube_bounces_elastically_on_a_torus_and_keeps_its_energy(tmp_path):
+    turn = "rotation: {about: 1 0.4 0.2, angle: 33 deg}"
+    objects = {
+        "cube": f"{{box: {{size: 0.6 0.6 0.6 m, position: 0.05 0.6 0.02 m, {turn}}}}}",
+        "ring": "{torus: {radius: 0.5 m, tube: 0.15 m}}",
+    }
+    rows = rigid_scenes.watch(
+        tmp_path, objects, {"cube": "{of: cube, mass: 1 kg, spin: 1 2 -1 rad/s}"}, np.linspace(0, 0.5, 21),
+        "it.energy", "touch.hits.count", law="mode: exact, restitution: 1, friction: 0",
+    )  # fmt: skip
+    energy, hits = np.array(rows).T
+    assert hits[-1] > 2
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-9)

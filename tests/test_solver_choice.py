@@ -130,14 +130,18 @@ def test_auto_marches_a_field_by_another_word():
     assert type(Auto().choose(plate()).solver) is TrBdf2
 
 
-@pytest.mark.parametrize(("unknowns", "taken"), [(3 * 1999, Auto), (3 * 2000, Bdf2)])
-def test_auto_marches_large_solids_by_bdf2_with_a_larger_tolerance(unknowns, taken):
-    methods = Auto().choose(IslandFacts(2 * unknowns, in_solids=unknowns))
-    assert type(methods.solver) is taken
-    if taken is Bdf2:
-        assert methods.first.control.tolerance == 1e-4
-        assert methods.stiff is None
-        assert "6,000 unknowns" in methods.remark
+@pytest.mark.parametrize("unknowns", [300, 60_000])
+def test_auto_marches_elastic_solids_explicitly_or_by_tr_bdf2_with_a_larger_tolerance(unknowns):
+    methods = Auto().choose(IslandFacts(2 * unknowns, in_solids=unknowns, solids_size=0.02))
+    assert (methods.first.method.name, methods.stiff.method.name) == ("dop853", "tr_bdf2")
+    assert (methods.first.control.tolerance, methods.stiff.control.tolerance) == (1e-5, 1e-4)
+    assert methods.stiff.control.absolute == pytest.approx(2e-6)  # of a solid of 2 cm
+    assert methods.stiff_cost < 10.0
+
+
+def test_auto_keeps_radau_for_elastic_solids_at_small_tolerances():
+    assert Auto(tolerance=1e-8).choose(IslandFacts(600, in_solids=300)).stiff.method.name == "radau"
+    assert type(Auto(tolerance=1e-8).choose(IslandFacts(60_000, in_solids=30_000)).solver) is Bdf2
 
 
 def test_a_drift_has_the_general_way_at_hand():

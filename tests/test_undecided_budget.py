@@ -10,6 +10,7 @@ from sceneql.field.packets.packets import Memory
 from sceneql.field.packets.ray_rows import FOUND_STATUS
 from sceneql.field.tape.tape_ops import UNDECIDED
 
+HOPELESS = "(x+1e8)^2-2e8*x-1e16+y^2+z^2-0.5"
 SCENE = """
 objects:
   thing:
@@ -40,12 +41,28 @@ def test_what_rounding_decides_is_drawn_alike_by_any_threads_and_is_told_at_its_
     assert pictures[0] == pictures[1]
     (undecided,) = report.undecided["still"].values()
     assert undecided > 0
+    assert report.unsearched["still"] > 0
     (told,) = [one for one in report.warnings if "rounding alone" in (one.help or "")]
     assert told.span.line == 5
 
 
+def test_a_sound_formula_beside_what_rounding_decides_is_searched_all_the_same(tmp_path):
+    sound = '  sound: {implicit: {field: "sin(3*x)^2+y^2+z^2-0.25", bounds: {ball: 1}, position: 2.2 0 0 m}}'
+    beside = SCENE.replace("look_at: 0 0 0 m, height: 2.2 m", "look_at: 1.1 0 0 m, height: 5 m")
+    beside = beside.replace("-0.5 -0.4 -0.75", "0 0 -1").replace("size: 96 54", "size: 64 36")
+    beside = beside.replace("samples: 1", "samples: 1, tolerance: 1e-8")  # ray by ray
+    counts = []
+    for name, text in (("alone", beside), ("both", beside.replace("objects:", f"objects:\n{sound}"))):
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "scene.yaml").write_text(text, encoding="utf-8")
+        report = pipeline.render(pipeline.load(folder / "scene.yaml"), folder=folder)
+        counts.append(sum(report.undecided["still"].values()))
+    assert counts[0] == counts[1] > 0
+
+
 def test_a_packet_of_what_rounding_decides_leaves_nearly_all_rays_unsearched():
-    tape = tape_of("(x+1e8)^2-2e8*x-1e16+y^2+z^2-0.5")
+    tape = tape_of(HOPELESS)
     memory = Memory(tape, 256)
     memory.rays[:3, :256] = np.random.default_rng(0).uniform(-0.3, 0.3, (3, 256))
     memory.rays[2, :256] = 1.0

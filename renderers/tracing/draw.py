@@ -60,7 +60,7 @@ def draw(
     hard = bool(is_hard(scene))
     buffers = take(width, height, columns, layers, hard)
     reach(scene, buffers.reached)
-    counts: list[tuple[int, int]] = []
+    counts: list[tuple[int, int, int]] = []
     together = None if march else packets_for(frame, tolerance)
     with_waves = lender(lambda: Waves(scene, together and together(), rows, columns, layers))
 
@@ -82,7 +82,7 @@ def draw(
 
     buffers.mirrored[:] = 0
     over_rows(height, gather)
-    undecided, seconds = map(sum, zip(*counts, strict=True))
+    undecided, seconds, unsearched = map(sum, zip(*counts, strict=True))
     layers_seen = (1, 0) if seconds else (0,)  # layer 0 comes last: the stage of edges reads its planes
     if hard:
         _soften(with_waves, buffers, layers_seen)
@@ -117,7 +117,7 @@ def draw(
         linear[:] = buffers.radiance
     over(frame, buffers.records[0], linear, scene, rows)
     put_back(buffers)
-    return Picture(linear.reshape(height, width, 3), undecided)
+    return Picture(linear.reshape(height, width, 3), undecided, unsearched)
 
 
 def _soften(with_waves: Callable[..., None], buffers: Buffers, layers: Sequence[int]) -> None:

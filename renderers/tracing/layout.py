@@ -20,12 +20,12 @@ HALF_SPACE (a quadric that is nothing else): unit normal, height of its face alo
 GRID: as grid_kernels says.
 THIN: as ROUND, of a capsule that the camera may see thinner than a pixel (thin_capsules_kernels), and the length of the
 line that it is a piece of: 11.
-IMPLICIT and SHEET: low, high, place of its ranges, a ball that it is in (4; radius inf: none is known): 11. The ranges,
-in ints: place of the code, its rows, place of the constants, their number, place of the parts, their rows; place of the
-cells; the same six of its paint and of what a sheet lies within (no rows: it has none); place of the plan for single
-rays (sceneql.field.tape.plans), its length."""
-BALL = 7
-"""Column of the ball among these reals."""
+IMPLICIT and SHEET: low, high, place of its ranges, a ball that it is in (4; radius inf: none is known), index of its
+shape: 12. The ranges, in ints: place of the code, its rows, place of the constants, their number, place of the parts,
+their rows; place of the cells; the same six of its paint and of what a sheet lies within (no rows: it has none); place
+of the plan for single rays (sceneql.field.tape.plans), its length."""
+BALL, OF_SHAPE = 7, 11
+"""Columns of the ball and of the shape among these reals."""
 CELLS_AT, PAINT, WITHIN, PLAN, RANGES = 6, 7, 13, 19, 21
 """Columns of the ranges, and their number."""
 CELLS = 32
@@ -96,10 +96,12 @@ WIDE_RADIUS, WIDE_SPREAD, WIDE_FROM = 2, 3, 4
 """In the same row: the cone of a camera's ray, and the distance up to which it is through with thin capsules; all
 are 0 for other rays, the first two also for one that has met its MOST_LINES capsules as wide as its cone."""
 LOST = 5
-"""In the same row: how many rays have ended after many undecided places since the band of rows was begun."""
+"""In the rows for shapes: a column, how many rays have ended after many undecided places in one since the band of rows
+was begun, and how many were given up after MOST_LOST of these."""
 MOST_LOST = 4
-"""Of these in a band: from then on what only the certified search could decide is undecided at once, since each takes
-some 0.1 s. So the time of a frame is bounded, whatever its formulas; bands do not depend on the number of threads."""
+"""Of these in a band: from then on what only the certified search could decide of that shape is undecided at once,
+since each takes some 0.1 s. So the time of a frame is bounded, whatever its formulas, and a sound one beside is
+searched all the same; bands do not depend on the number of threads."""
 FAR, WANT, REST_AT, REST_ITEM, REST_LIGHT, ANSWERS = range(6, 12)
 FIRST, ANYWHERE, NOTHING = range(3)
 """Want of a ray: the first hit, any hit, or none, for a ray that misses all boxes."""

@@ -234,7 +234,7 @@ class Rows:
 
     def _implicit(self, index: int, shape: seen.Implicit) -> None:
         ball = ball_around(shape.tape) if shape.within is None else NO_BALL
-        box = np.array([[*shape.low, *shape.high, 0.0, *ball]], dtype=np.float64)
+        box = np.array([[*shape.low, *shape.high, 0.0, *ball, index]], dtype=np.float64)
         self.implicits.append(self._size)
         self._items(index, layout.IMPLICIT if shape.within is None else layout.SHEET, box[:, :6], box)
         ranges = self._tape(shape.tape)

@@ -24,6 +24,8 @@ class Picture:
     """(h, w, 3): scene-referred linear RGB, or data."""
     undecided: int = 0
     """Number of pixels with a ray on which root isolation left an interval undecided."""
+    unsearched: int = 0
+    """Number of rays that were not searched, since the search of others at the same object had led nowhere."""
 
 
 def over_rows(height: int, work: Callable[[int, int], object]) -> None:

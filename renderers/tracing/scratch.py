@@ -23,13 +23,19 @@ def scratch(rows: int) -> Floats:
 
 def begun(memory: Floats) -> Floats:
     """Working memory as a thread begins a piece of work that does not depend on the number of threads: nothing LOST."""
-    memory[-1, layout.LOST] = 0.0
+    memory[:, layout.LOST] = 0.0
     return memory
+
+
+def given_up(memory: Floats, shapes: int) -> int:
+    """How many rays at so many shapes were not searched since ``begun``, after MOST_LOST had been LOST at the same."""
+    lost = memory[-1 - shapes : -1, layout.LOST] - layout.MOST_LOST
+    return int(lost[lost > 0.0].sum())
 
 
 def patient(memory: Floats) -> Floats:
     """Working memory with which no ray is given up: each undecided one has been searched."""
-    memory[-1, layout.LOST] = -np.inf
+    memory[:, layout.LOST] = -np.inf
     return memory
 
 

@@ -22,7 +22,7 @@ from renderers.tracing.light import look_lanes_kernels as looks
 from renderers.tracing.light.bounce_kernels import WAY, dress_hits, follow_all, look_about, step_all
 from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_paths
 from renderers.tracing.record_kernels import COLUMNS
-from renderers.tracing.scratch import asked_rays, begun, scratch_beside
+from renderers.tracing.scratch import asked_rays, begun, given_up, scratch_beside
 from renderers.tracing.solids.plain_lanes import lanes_for
 from renderers.tracing.tiles_kernels import fill_background
 from renderers.tracing.waves_kernels import (
@@ -51,7 +51,7 @@ TILES, RAYS = 10, 40
 """Size of a wave of the camera's rays, and of a list of rays, in tiles; a wave's memory stays in a core's cache."""
 MORE_TILES, MORE_RAYS = 40, 80
 """Sizes in scenes without light from around: for most pictures a wave is a whole band, to save calls from Python."""
-FEW = 16
+FEW = 4
 """Number of light paths below which each is followed singly, because a wave costs more than it saves. This does not
 apply if packets intersect the whole scene: a single ray then costs as much as a wave."""
 
@@ -83,12 +83,15 @@ class Waves:
         alone = self.asked[0, layout.ALONE] != 0.0
         self.looks = np.zeros(looks.ROOM) if alone and lights <= looks.MOST_LIGHTS and not others.any() else None
         self.waiting = np.empty(2 + rays, dtype=np.int64)
-        self.cones, self.at, self.each = np.empty((room, 3)), np.empty(room, np.int64), np.arange(room, dtype=np.int64)
+        self.cones, self.each = np.empty((room, 3)), np.arange(room, dtype=np.int64)
+        self.at = np.empty((-(-width // TILE // self.tiles), room), dtype=np.int64)
+        self.awaited: list[tuple[Callable[[int, int], int], int, int]] = []
+        """What is to be run again when the light paths have ended that waves of a band have begun: see ``_ask``."""
         some = room if layers > 1 or scene.ints[layout.HAS_THIN] else 1  # no path begins in a wholly matte scene
         self.paths, self.of = np.empty((some, PATH)), np.empty(some, dtype=np.int64)
         self.hits, self.met, self.skins = np.empty(room, dtype=np.int64), np.empty((room, 5)), np.empty((room, 6))
         self.gathered = np.empty((room, 4))
-        count = rays if self.listed and around else 1
+        count = 2 * (1 + rays) if self.listed and around else 1
         self.ways, self.live, self.ways_hit = (
             np.empty((count, WAY)),
             np.empty(count, np.int64),
@@ -107,29 +110,30 @@ class Waves:
     def gather(
         self, start: int, stop: int, reached: Array, busy: Array, mirrored: Array, records: Array, visibility: Array,
         final: bool, radiance: Array,
-    ) -> tuple[int, int]:  # fmt: skip
+    ) -> tuple[int, int, int]:  # fmt: skip
         """Fill rows start..stop: records (L, h w, COLUMNS), radiance (h w, 3), visibility (L, h w, V) of L layers.
 
-        Returns the numbers of pixels with an undecided root, and with a second record. Radiance is the part that needs
-        no visibility, or all of it if visibility is ``final``. Rays are traced only in ``reached`` tiles; tiles with a
-        hit become ``busy``, those with a second record ``mirrored``.
+        Returns the numbers of pixels with an undecided root, of those with a second record, and of rays given up.
+        Radiance is the part that needs no visibility, or all of it if visibility is ``final``. Rays are traced only in
+        ``reached`` tiles; tiles with a hit become ``busy``, those with a second record ``mirrored``.
         """
         begun(self.scratch)
         fill_background(self.scene, start, stop, reached, busy, records, radiance)
         tiles = np.flatnonzero(reached[start // TILE])
         undecided = seconds = 0
-        for first in range(0, len(tiles), self.tiles):
-            some = tiles[first : first + self.tiles]
-            doubted, more = self._gather(start, stop, some, busy, mirrored, records, visibility, final, radiance)
+        for wave, first in enumerate(range(0, len(tiles), self.tiles)):
+            some, at = tiles[first : first + self.tiles], self.at[wave]
+            doubted, more = self._gather(start, stop, some, at, busy, mirrored, records, visibility, final, radiance)
             undecided, seconds = undecided + doubted, seconds + more
-        return undecided, seconds
+        self._end_ways()
+        return undecided, seconds, given_up(self.scratch, int(self.scene.ints[layout.SHAPE_COUNT]))
 
     def _gather(
-        self, start: int, stop: int, tiles: Array, busy: Array, mirrored: Array, records: Array, visibility: Array,
-        final: bool, radiance: Array,
+        self, start: int, stop: int, tiles: Array, at: Array, busy: Array, mirrored: Array, records: Array,
+        visibility: Array, final: bool, radiance: Array,
     ) -> tuple[int, int]:  # fmt: skip
-        """Run ``gather`` for some tiles."""
-        scene, asked, at = self.scene, self.asked, self.at
+        """Run ``gather`` for some tiles, but for the light of paths that begin there: see ``_end_ways``."""
+        scene, asked = self.scene, self.asked
         count = list_pixels(scene, start, stop, tiles, asked, self.cones, at)
         self._follow(count, at, records)
 
@@ -140,7 +144,7 @@ class Waves:
             kernel = looks.tell_looks if telling else look_from
             return int(kernel(scene, self.scratch, asked, self.ways, first, last, at, records, visibility))
 
-        self._ask(0, count, look)
+        self._ask(0, count, look, together=True)
         light = at, records, visibility, final, radiance
         counts: tuple[int, int] = end_pixels(scene, self.gathered[:count], *light, busy, mirrored)
         return counts
@@ -248,24 +252,41 @@ class Waves:
         )
         return end
 
-    def _ask(self, start: int, stop: int, work: Callable[[int, int], int]) -> None:
+    def _ask(self, start: int, stop: int, work: Callable[[int, int], int], together: bool = False) -> None:
         """Run ``work`` twice on each part of start..stop whose rays fit the list: to list them, and with the answers.
 
-        A third run follows after light paths from around have ended, if there are any. Without a list, ``work`` runs
-        only once, on all.
+        A third run follows after light paths from around have ended, if there are any; ``together``: not before
+        ``_end_ways``, so that the paths of several calls make one wave. Without a list, ``work`` runs only once, on
+        all.
         """
         if not self.listed:
             work(start, stop)
             return
+        head = self.asked[0]
         while start < stop:
-            self.asked[0, layout.WAYS] = 0
+            if head[layout.WAYS] + len(self.asked) > len(self.ways):
+                self._end_ways()
+            before = int(head[layout.WAYS])
             end = self._twice(start, stop, work)
-            count = int(self.asked[0, layout.WAYS])
-            if count:
-                self._light_ways(count)
-                self.asked[0, layout.MODE], self.asked[0, layout.NEXT] = layout.ENDING, 0
+            if together:
+                self.awaited.append((work, start, end))
+            elif head[layout.WAYS] > before:
+                self._light_ways(before)
+                head[layout.MODE], head[layout.NEXT] = layout.ENDING, before
                 work(start, end)
+                head[layout.WAYS] = before
             start = end
+
+    def _end_ways(self) -> None:
+        """Follow the light paths that calls of ``_ask`` have begun together, and run what awaits them."""
+        head = self.asked[0]
+        if head[layout.WAYS] > 0:
+            self._light_ways(0)
+            head[layout.MODE], head[layout.NEXT] = layout.ENDING, 0
+            for work, start, end in self.awaited:
+                work(start, end)
+            head[layout.WAYS] = 0
+        self.awaited.clear()
 
     def _twice(self, start: int, stop: int, work: Callable[[int, int], int]) -> int:
         """List the rays of as much of start..stop as fits, and use the answers; returns the end of that part."""
@@ -278,10 +299,12 @@ class Waves:
         work(start, end)
         return end
 
-    def _light_ways(self, count: int) -> None:
-        """Follow the first ``count`` light paths to their ends, in waves; the last few one by one."""
+    def _light_ways(self, first: int) -> None:
+        """Follow the light paths from the ``first`` on to their ends, in waves; the last few one by one."""
         scene, asked, ways, live, hits = self.scene, self.asked, self.ways, self.live, self.ways_hit
-        live[:count] = np.arange(count)
+        last = int(asked[0, layout.WAYS])
+        count = last - first
+        live[:count] = np.arange(first, last)
         few = 1 if self.lanes is None and asked[0, layout.ALONE] else FEW
         while True:
             count, some = look_about(scene, self.scratch, ways, live, count, hits, self.ways_met)

@@ -24,7 +24,7 @@ from renderers.tracing.gather_kernels import (
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.light_kernels import backdrop, sharpness
 from renderers.tracing.light.sampling_kernels import sample_of
-from renderers.tracing.light.shade_kernels import is_dark, reflects, shade, shade_matte
+from renderers.tracing.light.shade_kernels import is_dark, reflects, shade, shade_matte, sky_on
 from renderers.tracing.light.visibility_kernels import AWAITED, look_around
 from renderers.tracing.path_kernels import describe_by, describe_plain, faded, is_plain
 from renderers.tracing.record_kernels import OWNER, SURFACE, UNSURE, WEIGHT, erase
@@ -295,7 +295,7 @@ def end_pixels(scene, gathered, at, records, visibility, final, radiance, busy, 
                 if reflects(u, s):
                     r, g, b = shade(scene, record, visibility[layer, k])
                 else:
-                    r, g, b = shade_matte(scene, record, visibility[layer, k], s, dark)
+                    r, g, b = shade_matte(scene, record, visibility[layer, k], s, sky_on(u, record, dark))
                 radiance[k, 0], radiance[k, 1], radiance[k, 2] = (
                     radiance[k, 0] + r,
                     radiance[k, 1] + g,
@@ -325,8 +325,10 @@ def look_from(scene, scratch, asked, ways, first, last, at, records, visibility)
         if asked[0, layout.MODE] == layout.ASKING and asked[0, layout.NEXT] > room:
             return i
         k = at[i]
-        number = sample_of(k % width, k // width)
         for layer in range(len(records)):
-            if records[layer, k, OWNER] > 0.0 and (not ending or visibility[layer, k, 0] == AWAITED):
+            if ending and visibility[layer, k, 0] != AWAITED:
+                continue
+            if records[layer, k, OWNER] > 0.0:
+                number = sample_of(k % width, k // width)
                 look_around(scene, scratch, asked, ways, records[layer, k], number, 1, 1, visibility[layer, k])
     return last

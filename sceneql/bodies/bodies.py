@@ -251,3 +251,9 @@ def places_named(output: str, names: Mapping[str, int], bodies: Bodies) -> NDArr
     name, _, what = output.rpartition(".")
     found = places({"position": "positions", "velocity": "velocities"}.get(what, ""), bodies)
     return None if found is None or name not in names else found[names[name]]
+
+
+def diagonal(bodies: Bodies, start: Floats) -> float:
+    """Diagonal [m] of the box, along the axes, of the masses at the start; ``start``: the island's state there."""
+    places = start[bodies.position_at :][: 3 * bodies.count].reshape(-1, 3)
+    return float(((places.max(axis=0) - places.min(axis=0)) ** 2).sum() ** 0.5)

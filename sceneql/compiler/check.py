@@ -217,7 +217,7 @@ class _Checker:
             if entry.word in self.templates:
                 hint: str | None = "it is a template: what is made of it stands under 'parts:'"
             else:
-                hint = word_meant(entry, family, self.catalogue)
+                hint = word_meant(entry, family, self.catalogue, self.family_of)
             self.found.error(
                 "unknown-word",
                 f"'{entry.word}' is no word of {family}",

@@ -35,8 +35,9 @@ from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
 from sceneql.compiler.passes.unforced import warn_of_unforced
 from sceneql.compiler.passes.unmoved import report_moving
-from sceneql.compiler.passes.unseen import warn_of_unseen
-from sceneql.compiler.passes.unshown import warn_of_unshown
+from sceneql.compiler.passes.unseen import warn_of_buried, warn_of_unseen
+from sceneql.compiler.passes.unshown import warn_of_unshown, warn_of_unused_cameras
+from sceneql.compiler.passes.unused import warn_of_unused_defines
 from sceneql.compiler.passes.upward import warn_of_z_up
 from sceneql.compiler.studies import check_studies
 from sceneql.compiler.values_below import values_of
@@ -102,10 +103,13 @@ def compile_script(
     warn_of_left_behind(tasks, found)
     warn_of_z_up(tasks, found)
     warn_of_unseen(tasks, drawn, cameras, found)
+    warn_of_buried(tasks, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}
     warn_of_unshown(tasks, order, expected, found)
+    warn_of_unused_cameras(tasks, order, found)
+    warn_of_unused_defines(script, found)
     if not pruned:
         order = {**order, **{name: task for name, task in tasks.items() if name not in order}}
     return SimulationGraph(

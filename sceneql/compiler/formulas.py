@@ -78,7 +78,8 @@ def read_formula(
             return Symbol("time" if parts[0] == "t" else parts[0], Type((), PLAIN), span)
         lost = parts[0] in names.broken
         if parts[0] not in names.defines and parts[0] not in CONSTANTS and len(parts) == 1 and not lost:
-            help = suggestion(parts[0], [*free, *names.defines]) or "free here are " + ", ".join(sorted(free))
+            here = f"free here are {', '.join(sorted(free))}; other names stand under `define`, `{parts[0]}: 1`"
+            help = suggestion(parts[0], [*free, *names.defines]) or here
             if parts[0] == "time" and "t" in free:
                 help = SECONDS
             return Diagnostic("unknown-name", f"nothing is called '{parts[0]}'", span, help)

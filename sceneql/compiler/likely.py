@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Sequence as Sequenced
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, get_args, get_origin
@@ -19,12 +20,14 @@ from sceneql.compiler.annotations import example_of, first_field, is_fixed, mark
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
-from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.diagnostic import Diagnostics, suggestion
 from sceneql.quantities.instead import instead
 
 TRUE = ("true", "yes", "on")
 _NAME = r"[^\W\d][\w.]*"
 _NAMES = re.compile(rf"{_NAME}(?:\s*[-+&|*/,]\s*{_NAME})+")
+_MEASURED = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*[^\W\d].*")
+_NUMBERS = re.compile(r"((?:[-+]?[\d.]+(?:[eE][-+]?\d+)?\s+)*[-+]?[\d.]+(?:[eE][-+]?\d+)?)\s+[^\W\d]\S*")
 NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
 
@@ -52,6 +55,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         return "write `{}`: all of its fields have defaults"
     if "value" in cls.model_fields and (held := instead("bare", node.text)) is not None:
         return held
+    if "value" in cls.model_fields and not required and _takes(reader, node, cls, "value"):
+        return f"write `{{value: {node.span.text}}}`"
     name, _, rest = node.text.partition(" ")
     if name in map(kinds.written_name, cls.model_fields):
         rest = rest.strip().removeprefix("=").strip()
@@ -67,8 +72,15 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         example = f"{alone[0]}: {example_of(cls, alone[0])}"
         return f"write `{{{example}, {kinds.written_name(fitting[0])}: {node.span.text}}}`"
     names = _NAMES.fullmatch(node.text.strip())
-    if alone and names is not None and _listing(cls, alone[0]):
-        return f"write `{{{alone[0]}: [{', '.join(re.findall(_NAME, node.text))}]}}`"
+    lists = alone or [name for name in map(kinds.written_name, cls.model_fields) if _listing(cls, name)]
+    if len(lists) == 1 and names is not None and _listing(cls, lists[0]):
+        return f"write `{{{lists[0]}: [{', '.join(re.findall(_NAME, node.text))}]}}`"
+    number = _MEASURED.fullmatch(node.span.text)
+    if not (fitting or alone) and number is not None:
+        bare = replace(node, text=number[1], end=node.start + len(number[1]))
+        plain = list(_fitting(reader, bare, cls.model_fields))
+        if len(plain) == 1:
+            return f"it has no unit: write `{{{kinds.written_name(plain[0])}: {number[1]}}}`"
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
     return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
 
@@ -91,6 +103,19 @@ def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> 
     return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
 
 
+def direction_alone(node: Node) -> str | None:
+    """The help for a direction with a unit behind its numbers."""
+    numbers = _NUMBERS.fullmatch(node.span.text)
+    return None if numbers is None else f"a direction has no unit, and its length does not matter: write `{numbers[1]}`"
+
+
+def choice_meant(text: str, choices: Sequenced[str]) -> str | None:
+    """The help for a choice that is written otherwise: its words in another order, or joined, `upper left`."""
+    pieces = re.sub(r"[^a-z]+", " ", text.lower()).replace("upper", "top").replace("lower", "bottom").split()
+    same = [one for one in choices if sorted(one.split()) == sorted(pieces)]
+    return f"did you mean '{same[0]}'?" if len(same) == 1 else suggestion(text, choices)
+
+
 def listed(node: MappingNode, item: Any, what: str) -> str | None:
     """The help where the items of a list of records stand under names."""
     if not (isinstance(item, type) and issubclass(item, BaseModel)) or not node.entries:
@@ -105,9 +130,16 @@ def listed(node: MappingNode, item: Any, what: str) -> str | None:
     return f"it is a list: write `{what}: [{', '.join(f'{{{one}}}' for one in items)}]`"
 
 
-def by_name(node: Node, item: Any) -> str:
-    """The help where records that stand under names are a list, or are named without fields."""
+def by_name(node: Node, item: Any, parts: bool) -> str:
+    """The help where records that stand under names are a list, or are named without fields.
+
+    ``parts``: whether the names are those of parts.
+    """
     items = node.items if isinstance(node, Sequence) else []
+    texts = [one.span.text for one in items or [node]]
+    if parts and all(text.isidentifier() for text in texts):
+        told = ", ".join(f"{text}: {text.replace('_', ' ')}" for text in texts)
+        return f"write `{{{told}}}`, the name of each part before what is told of it"
     record = isinstance(item, type) and issubclass(item, BaseModel)
     texts = [f"{name}: {{{_inside(one, NAMES)}}}" for one in items if (name := _name_in(one))]
     if record and items and len(texts) == len(items):
@@ -142,6 +174,11 @@ def _taking(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
             if not nothing.errors:
                 yield kinds.written_name(name)
         nothing.found.clear()
+
+
+def _takes(reader: Any, node: Node, cls: type[BaseModel], name: str) -> bool:
+    """Whether a field of a record, a formula or a quantity, accepts a value."""
+    return name in _formulas(reader, node, cls) or name in _fitting(reader, node, {name: cls.model_fields[name]})
 
 
 def _paints(reader: Any, node: Node, cls: type[BaseModel]) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf, pi
 
 from sceneql.compiler.css_colors import NAMED, css_color
@@ -27,6 +28,8 @@ _DIGITS = re.compile(r"\d+\.?\d*|\.\d+")
 DARK = 16
 """A color whose numbers are all at most this is not taken as bytes: as such it would be nearly black."""
 BRIGHTER = "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
+OPAQUE = "it has three numbers; what one sees through is `material: glass`: `sceneql words glass`"
+RED = 'write a CSS name, `orange`, "#ff8800", or three numbers from 0 to 1, `1 0.5 0`'
 _ABOUT = re.compile(r"([-+]?[\d.]+)\s*(?:deg)?\s*\*?\s*([xyz])")
 EULER = ("euler", "angles", "degrees", "euler_angles")
 """Fields of other programs for angles about x, y and z."""
@@ -53,7 +56,11 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
                 found.error("unknown-color", f"'{text}' is no color", node.span, help=_meant(text))
                 return None
             return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
+    before = len(found.found)
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
+    if [one.code for one in found.found[before:] if one.help is None] == ["wrong-shape"]:
+        meant = OPAQUE if found.found[-1].message.endswith("not a vector of 4") else RED
+        found.found[-1] = replace(found.found[-1], help=meant)
     numbers = evaluate(value.expr, {}) if value is not None and value.constant else (0.0,)
     if not all(0 <= number <= 1 for number in numbers):  # nor are they NaN
         told = all(0 <= number < inf for number in numbers)

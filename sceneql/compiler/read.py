@@ -17,7 +17,7 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler import likely, limits, paint, values
-from sceneql.compiler.annotations import could_be, is_fixed, unwrap
+from sceneql.compiler.annotations import could_be, is_fixed, quantities, unwrap
 from sceneql.compiler.corners import by_corners
 from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.likely import TRUE
@@ -32,7 +32,7 @@ from sceneql.language.scope import Scope
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
-from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.span import Span
 
@@ -104,7 +104,9 @@ class Reader:
                 got[python_name] = reader.field(written[name], info, name)
             except Unreadable:
                 ok = False
-                if [(one.code, one.help) for one in self.found.found[before:]] == [("wrong-shape", None)]:
+                told = [(one.code, one.help) for one in self.found.found[before:]]
+                pointing = any(mark.direction for mark in quantities(info))
+                if told == [("wrong-shape", None)] or (pointing and told == [("dimension-mismatch", None)]):
                     rest = {
                         key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
                     }
@@ -113,6 +115,8 @@ class Reader:
                         better = "a number is missing: it has one for each of x, y and z"
                     if better is None and self.found.found[before].message.startswith(f"{name}{SINGLE}"):
                         better = likely.first_of(name, written[name])
+                    if better is None and pointing and told[0][0] == "dimension-mismatch":
+                        better = likely.direction_alone(written[name])
                     self.found.found[before] = replace(self.found.found[before], help=better)
         if not ok:
             raise Unreadable
@@ -249,7 +253,7 @@ class Reader:
             several = text.replace("x", " ").replace("*", " ").split()  # 640x360
             hint = f"write `{' '.join(several)}`" if len(several) > 1 and "".join(several).isdecimal() else None
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
-        hint = suggestion(text, [str(c) for c in choices]) or f"one of {every}"
+        hint = likely.choice_meant(text, [str(c) for c in choices]) or f"one of {every}"
         hint = f"it is always `{what}: {every}`" if len(choices) == 1 else hint
         raise self._fail("unknown-choice", f"{what} cannot be '{text}'", node.span, hint)
 
@@ -284,6 +288,8 @@ class Reader:
         names = re.split(r"\s*[-/&+>]+\s*", node.text) if isinstance(node, Scalar) else []
         if len(names) == len(arms) and all(name.isidentifier() for name in names):
             help = f"write `{what}: [{', '.join(names)}]`"
+        if help is None and count == 1 and isinstance(node, Scalar):
+            help = f"write `{' '.join(len(arms) * [node.text])}`, one for each"
         return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
 
     def _copies(self, node: Node, annotation: Any) -> list[Node]:
@@ -309,7 +315,7 @@ class Reader:
 
     def _dict(self, node: Node, arms: tuple[Any, ...], what: str) -> dict[Any, Any]:
         if not isinstance(node, MappingNode):
-            better = likely.by_name(node, arms[1])
+            better = likely.by_name(node, arms[1], bool(unwrap(arms[0])[1]))
             raise self._fail("wrong-shape", f"{what} takes names with values, `{{name: value}}`", node.span, better)
         named, result, ok = unwrap(arms[0])[1], {}, True  # names of parts are references
         for name, item in node.entries.items():

@@ -112,7 +112,10 @@ def _told(
     if expr is None:
         return None
     if expr.type.shape:
-        found.error("wrong-shape", "a text tells single values; take a component, such as `.x`", part.span)
+        help = (
+            f"write `{{length({part.text})}}` for its size, or `{{{part.text}.x}}`" if expr.type.shape == (3,) else None
+        )
+        found.error("wrong-shape", "a text tells single values; take a component, such as `.x`", part.span, help=help)
         return None
     if not mark.over_time and not momentary(expr, part.span, found):
         return None

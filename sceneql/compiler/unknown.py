@@ -16,7 +16,7 @@ from sceneql.language.tree import Mapping, Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
 from sceneql.quantities.instead import instead
 
-DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere"}
+DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere", "contacts": "collision"}
 """The word of a family that is shown where several have a field."""
 MANY = 6
 """Largest number of words of which all that have a field are listed."""
@@ -83,14 +83,19 @@ def _empty(node: Node) -> bool:
     return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
 
 
-def word_meant(entry: Entry, family: str, catalogue: Catalogue) -> str | None:
-    """The help for an entry with a word that is not in its family."""
+def word_meant(entry: Entry, family: str, catalogue: Catalogue, family_of: Naming[str, str]) -> str | None:
+    """The help for an entry with a word that is not in its family; ``family_of``: the families of all parts."""
     words, fields = catalogue.choices(family), entry.fields
     inner = next(iter(fields.entries)) if isinstance(fields, Mapping) and len(fields.entries) == 1 else ""
     if fields is not None and entry.name == entry.word and catalogue.load(family, inner) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.span.text}}}`"
     if isinstance(fields, Scalar) and entry.name == entry.word and catalogue.load(family, fields.text) is not None:
         return f"a part that has a name stands in no list: write `{family}: {{{entry.word}: {fields.text}}}`"
+    if fields is None and family_of.get(entry.word, family) != family:
+        pairs = _having(["between"], family, catalogue)
+        word = DEFAULT.get(family) if DEFAULT.get(family) in pairs else next(iter(pairs), None)
+        if word is not None:
+            return f"a part is named within a word, `{{{word}: {{between: [{entry.word}, ...]}}}}`"
     if (same := same_as(entry.word, words)) is not None:
         return f"did you mean '{same}'?"
     if others := catalogue.families_of(entry.word):

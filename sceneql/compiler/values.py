@@ -10,7 +10,7 @@ from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
-from sceneql.compiler.vector_fields import vector_meant_by
+from sceneql.compiler.vector_fields import timed, vector_meant_by
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
@@ -49,6 +49,7 @@ _MISSING = (
 """(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
 viscosity to dynamic, conductivity to diffusivity."""
 _EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
+_TENS = re.compile(r"(?<![\w.])(\d+\.?\d*)\s*[x×·⋅*]\s*10\s*(?:\^|\*\*)\s*\(?([-+−]?\d+)")
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
 
@@ -106,7 +107,7 @@ def read_expr(
                 return _by_component(node, dimension, what, names, found)
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
-            help = f"write `[{', '.join(texts)}]`" if listed else None
+            help = timed(node) or (f"write `[{', '.join(texts)}]`" if listed else None)
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None
 
@@ -120,12 +121,15 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
         help = None if written is None else f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
         found.error("missing-value", "a value is missing here", node.span, help=help)
         return None
+    before, expr = len(found.found), None
     try:
-        return names.parsed.tree(node, text, names.lookup, found)
+        expr = names.parsed.tree(node, text, names.lookup, found)
     except ScriptError as error:
-        for diagnostic in error.diagnostics:
-            found.add(diagnostic)
-        return None
+        found.extend(error.diagnostics)
+    if expr is None and len(found.found) > before and (ten := _TENS.search(text)) is not None:
+        help = f"write `{ten[1]}e{ten[2]}`, with the unit behind it"
+        found.found[before] = replace(found.found[before], help=help)
+    return expr
 
 
 def parsed_text(node: Scalar) -> str:
@@ -143,12 +147,14 @@ def _vector(items: list[Expr], what: str, span: Span, found: Diagnostics) -> Exp
             found.error("wrong-shape", f"the items of {what} differ in their number of components", item.span or span)
             return None
         if other is not None and other != dimension and not _zero(item):
-            vector = vector_meant(", ".join("" if one.span is None else one.span.text for one in items))
+            texts = ", ".join("" if one.span is None else one.span.text for one in items)
+            vector, rate = vector_meant(texts), dimension / other in (TIME, FREQUENCY)
+            help = "times the `time` a velocity is a length: `1 m/s*time`" if rate else vector and f"write `{vector}`"
             found.error(
                 "dimension-mismatch",
                 f"the components of {what} differ: {describe(dimension)} and {describe(other)}",
                 item.span or span,
-                help=None if vector is None else f"write `{vector}`",
+                help=help,
             )
             return None
     return Vector(tuple(items), Type((len(items), *inner), dimension), span)
@@ -300,6 +306,8 @@ def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
 
 def remedy(expr: Expr, wanted: Dimension | None) -> str | None:
     """The help where a quantity lacks a factor, or has a unit with a prefix where two units were meant."""
+    if wanted == TEMPERATURE and expr.span is not None and expr.span.text[-1:] in ("C", "F"):
+        return f"write `{expr.span.text[:-1].strip()} °{expr.span.text[-1]}`"
     text = None if expr.span is None or isinstance(expr, Link) else apart(expr.span.text)
     if text is not None and expr.span is not None:
         try:

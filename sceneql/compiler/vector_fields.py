@@ -10,7 +10,7 @@ SIDES = (("width", "w", "breadth"), ("height", "h"), ("depth", "d", "length", "l
 
 def vector_meant_by(node: Mapping) -> str | None:
     """The help for fields that stand in place of a vector's components; None where nothing is known of them."""
-    return _timed(node) or _by_side(node) or _from_to(node)
+    return timed(node) or _by_side(node) or _from_to(node)
 
 
 def _by_side(node: Mapping) -> str | None:
@@ -27,9 +27,9 @@ def _from_to(node: Mapping) -> str | None:
     return f"write `{{keys: {{0 s: {ends[0]}, 2 s: {ends[1]}}}}}`: `sceneql words keys`" if len(ends) == 2 else None
 
 
-def _timed(node: Mapping) -> str | None:
+def timed(node: Mapping) -> str | None:
     """The help where times and values stand without `keys` around them."""
-    if not all(key[:1].isdigit() for key in node.entries):
+    if not node.entries or not all(key[:1].isdigit() for key in node.entries):
         return None
     first = next(iter(node.entries))
     return f"write `{{keys: {{{first}: {node.entries[first].span.text}, ...}}}}`: `sceneql words keys`"

@@ -139,6 +139,11 @@ class Picture(Record):
 class Part(Record):
     """What holds on a part of the boundary: one of value, flux, robin, periodic, open."""
 
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("type", "kind", "condition", "bc"),
+        "what it has says so: `{value: 300}`, or `{flux: 5}`; where nothing is said, nothing crosses",
+    )
+
     value: VALUE | None = field("The value there (Dirichlet).", None)
     flux: FLUX | None = field("What comes in a second and square meter, D dc/dn outwards (Neumann).", None)
     robin: Exchange | None = field("Exchange with the outside (Robin).", None)

@@ -24,6 +24,8 @@ class Methods:
     stiff: Stepper | None = None
     """A stiff method to which the march switches, and back, where stability limits the steps of ``first``
     (Method.stability)."""
+    stiff_cost: float | None = None
+    """Cost of a step of ``stiff``, in explicit steps of six rates; None: by the number of unknowns."""
     otherwise: Stepper | None = None
     """A method that replaces ``first`` for good at the first step of given length for which ``first`` finds no
     solution."""

@@ -22,6 +22,7 @@ _MOST_HOPS: Final = 64
 _Known = dict[int, float | None]
 _NUMBERED = re.compile(r"(\w*?)_?[{[(<$%]+(\w+)[}\])>]*\w*?((?:[{[(<$%]+\w+[}\])>]*\w*)*)")
 _RANGE = re.compile(r"\b(?:range|linspace|arange)\(.*?(\w+)\W*\)")
+_APART: Final = {"spacing", "offset", "distance", "shift", "gap", "step"}
 _COPY = re.compile(r"(.+?)[._\[]\{?([^\W\d]\w*)\}?\]?\s*([-+]\s*\d+)?\]?")
 _LOOP = re.compile(r"for(?:each)?\s+\(?(?:int |let |var )?\s*(\w+)\b.*")
 
@@ -83,11 +84,17 @@ def read_repeat(
         if (loop := _RANGE.search(given)) is not None:
             given = loop[1]
         help = f"write `repeat: {{count: {given}, as: i}}`"
+        if isinstance(node, Mapping) and node.entries.keys() & _APART:
+            help += ", and say where each is: `position: [i*(0.5 m), 1 m, 0 m]`"
         found.error("repeat-shape", "`repeat` takes a count, and a name for the number", node.span, help=help)
         return None
     index = node.entries.get("as")
     if index is not None and not (isinstance(index, Scalar) and index.text.isidentifier()):
-        found.error("repeat-shape", "`as` takes a name", index.span, help="write `as: i`")
+        rows = (
+            "rows and columns are one count: write `{count: 9, as: i}`, and `mod(i, 3)` and `floor(i/3)` in its fields"
+        )
+        help = rows if isinstance(index, Sequence) else "write `as: i`"
+        found.error("repeat-shape", "`as` takes a name", index.span, help=help)
         return None
     count = _whole(node.entries["count"], scope, define, lost, found)
     if count is None:

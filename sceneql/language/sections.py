@@ -53,7 +53,8 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
     if not words and node.partial:
         return None
     if not words:
-        found.error("entry-shape", f"{what} has no word", node.span, help=_ENTRY)
+        help = f"if {what} is the word, a name stands before it: write `main: {name}`; {_ENTRY}"
+        found.error("entry-shape", f"{what} has no word", node.span, help=help if name.isidentifier() else _ENTRY)
         return None
     if len(words) > 1:
         first, second = node.keys[words[0]], node.keys[words[1]]

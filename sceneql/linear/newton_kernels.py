@@ -56,8 +56,9 @@ UNSEEN = 0.05
 """Least contraction that is assumed before two updates measure it."""
 TINY = 0.01
 """Update, in units of the tolerance, below which a single one may end the iteration."""
-LOADED = 1e-3
-"""Part by which loads of friction may differ from those that the stage was solved with."""
+LOADED, LOOSELY = 1e-3, 0.1
+"""Part by which loads of friction may differ from those that the stage was solved with; the most, a hundred times the
+relative tolerance."""
 MOST_TURNS = 8
 """Largest number of solutions of a stage, each with the loads of the one before (Li et al. 2020, 5.5)."""
 NOISE = 1e-4
@@ -162,6 +163,12 @@ def leave(rate, t, a, base, y, residual, plan, floats, ints):
     at = plan[POSITIONS_AT]
     for k in range(at, at + 3 * plan[POSITIONS], 3):
         residual[plan[k]] = 0.0
+
+
+@lean_inlined
+def unlike(memory):
+    """The part by which loads of friction may differ from those that the stage was solved with."""
+    return min(LOOSELY, max(LOADED, 100.0 * memory[RELATIVE]))
 
 
 @lean_inlined
@@ -286,7 +293,7 @@ def newton(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if turn == MOST_TURNS - 1:
             floats[channels.STALE] = 0.0
         found = converge(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memory, plan, floats, ints)
-        if not found or floats[channels.STALE] <= LOADED:
+        if not found or floats[channels.STALE] <= unlike(memory):
             break
         foresee(y, y, floats)
         floats[channels.LAGS] += 1.0

@@ -33,7 +33,6 @@ from sceneql.linear.newton_kernels import (
     FACTORED,
     FACTORIZATIONS,
     ITERATIONS,
-    LOADED,
     NEWTON,
     NOISE,
     NOISE_APART,
@@ -46,6 +45,7 @@ from sceneql.linear.newton_kernels import (
     largest,
     norm,
     remain,
+    unlike,
 )
 from sceneql.linear.stage_kernels import (
     BORDER,
@@ -70,6 +70,8 @@ TRUE_AFTER, TRUE_AFTER_APART = 3, 1
 RARELY = 8
 ENOUGH = 1e-4
 """Part of the fall that the slope predicts which a step must bring (Armijo)."""
+KEPT = 4
+"""Evaluations of slopes where surfaces are kept apart that take those of strain from before (channels.KEEPS)."""
 EASY = 4
 """Updates up to which a search where surfaces are kept apart was none: the next stage begins plainly, and may keep its
 factors through free flight."""
@@ -181,16 +183,20 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         best[k] = y[k]
     positive, searching = True, has_limit
     stale = regular = True
+    kept, kept_positive = 0, True
     slow = failing = since = 0
     patience, slowed = (TRUE_AFTER_APART, SLOWED_APART) if has_limit else (TRUE_AFTER, SLOWED)
     before = before_mean = first = 0.0
-    rubs = floats[channels.STALE] > LOADED
+    rubs = floats[channels.STALE] > unlike(memory)
     for update in range(MOST_APART if has_limit else MOST):
         while stale:
             floats[channels.NEWTON] = a * a
             floats[channels.POSITIVE] = 1.0 if positive else 0.0
+            keeps = has_limit and kept > 0 and kept_positive
+            floats[channels.KEEPS] = 1.0 if keeps else 0.0
+            kept, kept_positive = (kept - 1, True) if keeps else (KEPT, positive)
             slopes(functions, t, y, jacobian, floats, ints)
-            floats[channels.NEWTON] = floats[channels.POSITIVE] = 0.0
+            floats[channels.NEWTON] = floats[channels.POSITIVE] = floats[channels.KEEPS] = 0.0
             if floats[channels.GROWS] != 0.0:
                 return False
             memory[FACTORIZATIONS] += 1.0
@@ -230,9 +236,9 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
         if has_limit and not noisy and not value <= lowest + ENOUGH * part * slope + rounding:
             # Friction learns where the whole update led (friction_slopes_kernels), though only a part of it is taken.
             floats[channels.NEWTON] = a * a
-            floats[channels.POSITIVE] = 1.0
+            floats[channels.POSITIVE] = floats[channels.KEEPS] = 1.0
             slopes(functions, t, y, jacobian, floats, ints)
-            floats[channels.NEWTON] = floats[channels.POSITIVE] = floats[channels.GROWS] = 0.0
+            floats[channels.NEWTON] = floats[channels.POSITIVE] = floats[channels.GROWS] = floats[channels.KEEPS] = 0.0
         while (
             searching
             and not noisy
@@ -286,7 +292,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 floats[channels.LAGS] += 1.0
                 floats[channels.STALE] = first = 0.0
                 remain(functions, t, a, base, y, residual, plan, floats, ints)
-                rubs = floats[channels.STALE] > LOADED
+                rubs = floats[channels.STALE] > unlike(memory)
                 done = False
             if done:
                 memory[FACTORED] = a
@@ -314,7 +320,8 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 positive = searching = stale = True
                 failing = since = slow = 0
                 continue
-        stale = positive or part < 1.0 or (since > 1 and contraction > SLOW)
+        well = has_limit and since > 1 and contraction <= SLOWED_APART
+        stale = (positive and not well) or part < 1.0 or (since > 1 and contraction > SLOW)
         slow = slow + 1 if contraction > slowed and since > 1 else 0
         if positive and slow >= patience:
             positive, slow, stale = False, 0, True

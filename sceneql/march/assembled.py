@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import cast
 
+from sceneql.bodies.bodies import diagonal
 from sceneql.doing import doing
 from sceneql.graph import Island, SimulationGraph, Task
 from sceneql.island.island import IslandAssembly
@@ -103,6 +104,7 @@ class Assembled:
         """The facts by which a solver chooses its methods; call it once forces and contacts are added."""
         made = self.assembly
         forces = [cast(Interaction, self.graph.tasks[force].kind) for force, _ in self.island.forces]
+        solids = [one for one in self.bodies.values() if one is not None and one.skin is not None]
         return IslandFacts(
             entries=len(made.start()),
             local_contacts="local" in made.contact_mode,
@@ -111,7 +113,8 @@ class Assembled:
             floats=made.numbers,
             orbits=bool(forces) and made.moved_by_forces_alone and all(force.at_a_distance() for force in forces),
             apart="barrier" in made.contact_mode,
-            in_solids=sum(3 * one.count for one in self.bodies.values() if one is not None and one.skin is not None),
+            in_solids=sum(3 * one.count for one in solids),
+            solids_size=min((diagonal(one, made.start()) for one in solids), default=1.0),
         )
 
     def act(self) -> None:

@@ -19,13 +19,17 @@ def jacobian(functions, t, y, values, floats, ints):
     end = ints[at + layout.VALUES] + ints[at + layout.ENTRIES]
     if ints[at + layout.BORDERED] != 0:
         rate_at(functions[AT_RATE])(t, y, values[end : end + y.size], floats, ints)
-    for k in range(end):
+    for k in range(ints[at + layout.VALUES]):
         values[k] = 0.0
     for g in range(ints[at + layout.KERNELS]):
         kernel = ints[at + layout.KERNELS_AT] + layout.CALLS * g
+        if floats[channels.KEEPS] != 0.0 and ints[kernel + 1] != 0:
+            continue
         positive = floats[channels.POSITIVE] != 0.0 and ints[kernel + 1] != 0
         slopes = rate_at(brought(ints[kernel + 1]) if positive else ints[kernel])
         for b in range(ints[at + layout.HEAD + g], ints[at + layout.HEAD + g + 1], 4):
+            for k in range(ints[b + 2], ints[b + 3]):
+                values[k] = 0.0
             slopes(t, y, values[ints[b + 2] : ints[b + 3]], floats, ints[ints[b] : ints[b + 1]])
     gather(t, y, values, floats, ints)
 

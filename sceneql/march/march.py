@@ -54,12 +54,13 @@ class March:
         end: float,
         *,
         stiff: Stepper | None = None,
+        stiff_cost: float | None = None,
         otherwise: Stepper | None = None,
         with_jacobian: Callable[[], System] | None = None,
         before: March | None = None,
         kept: int = 0,
     ) -> None:
-        """``stiff``, ``otherwise``: methods that may replace ``stepper`` (kinds.Methods).
+        """``stiff``, ``otherwise``: methods that may replace ``stepper`` (kinds.Methods, also of ``stiff_cost``).
 
         ``with_jacobian``: lays the island out again, with its Jacobian, for one of them that needs it. ``before``: a
         march that stops where this begins; its first entries and its first ``kept`` floats are this one's, too.
@@ -93,7 +94,7 @@ class March:
         self._switch = None
         if stiff is not None:
             local = bool(system.structure.local)
-            self._switch = Switch(stepper, stiff, self.rate, system.partner, end, local=local)
+            self._switch = Switch(stepper, stiff, self.rate, system.partner, end, cost=stiff_cost, local=local)
         self._last_look = 0
         self._at_once = max(AT_ONCE, ENTRIES_AT_ONCE // (n + 1))
         self._from = 0.0 if before is None else self._go_on_from(before, kept)
@@ -283,7 +284,10 @@ class March:
         step = self.stepper.control.first_step
         step = step or first_step(self.stepper, y, self._rate1, self._alone, self.end, self.rate)
         if self._switch is not None:
-            self._switch.start(y, step)
+            stiff, longest = self._switch.stiff, step
+            if stiff.method.order == 2:  # its steps are shorter than those of an explicit one of order 8
+                longest = first_step(stiff, y, self._rate1, self._alone, self.end, self.rate)
+            self._switch.start(y, min(step, longest))
             if self._switch.active is not self.stepper:
                 self._change(self._switch, self._from)
         self._clock[kernels.STEP] = step

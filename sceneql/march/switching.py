@@ -52,9 +52,19 @@ class Switch:
     """The choice of the method of one march."""
 
     def __init__(
-        self, explicit: Stepper, stiff: Stepper, rate_at: Rate, partner: Partners, end: float, *, local: bool = False
+        self,
+        explicit: Stepper,
+        stiff: Stepper,
+        rate_at: Rate,
+        partner: Partners,
+        end: float,
+        *,
+        cost: float | None = None,
+        local: bool = False,
     ) -> None:
         """``rate_at``, ``partner``: the island's, see `spectrum`; ``end`` [s]: that of the run.
+
+        ``cost``: steps of dopri5 that a stiff step costs; by default as many as one of radau.
 
         ``local``: whether local contacts act. Their modes hold no explicit step, which backs off: stiff steps that are
         shorter than the explicit ones before are worth nothing, however fast these modes.
@@ -86,11 +96,12 @@ class Switch:
         """Number of consecutive trials of the stiff method in vain: each doubles the explicit steps before the next
         trial."""
         self._possible = self.size <= LARGEST
+        self._cost = step_cost(self.size) if cost is None else cost
 
     @property
     def cost(self) -> float:
         """Cost of one stiff step, in explicit steps."""
-        return step_cost(self.size) * STAGES / (len(self.explicit.method.stability) - 1)
+        return self._cost * STAGES / (len(self.explicit.method.stability) - 1)
 
     @property
     def switching(self) -> float:

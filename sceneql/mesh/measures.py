@@ -1,4 +1,4 @@
-"""Volume, area, edges and topology of triangle meshes. Imports numpy, and numba where edges are counted."""
+"""Volume, area, edges and topology of triangle meshes. Imports numpy, and numba where triangles are gone through."""
 
 from __future__ import annotations
 
@@ -22,13 +22,12 @@ def volume_and_area(vertices: Floats, triangles: Ints) -> tuple[float, float]:
 
     if not len(triangles):
         return 0.0, 0.0
-    # Columns of coordinates, one beside the other in memory: four times as fast as rows of three.
-    columns = (vertices - vertices.mean(axis=0)).T.copy()
-    corners = triangles.T.astype(np.int64)
-    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (of.take(corners) for of in columns)
-    ux, uy, uz, vx, vy, vz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
-    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-    return float((ax * nx + ay * ny + az * nz).sum() / 6.0), float(0.5 * np.sqrt(nx**2 + ny**2 + nz**2).sum())
+    from sceneql.mesh.cubes.triangle_kernels import sum_up
+
+    found = np.zeros(2)
+    places = np.require(vertices, np.float64, ["C", "W"])  # kernels take no array that is read-only
+    sum_up(places, np.require(triangles, np.int32, ["C", "W"]), places.mean(axis=0), found)
+    return float(found[0] / 6.0), float(0.5 * found[1])
 
 
 def curved_volume(vertices: Floats, triangles: Ints, normals: Floats) -> float:

@@ -30,23 +30,46 @@ def write(path: Path, polygons: Polygons, colors: Floats | None = None) -> None:
 
     ``colors`` (n, 3): linear RGB of the vertices, left out of an STL file. Raises Unsuitable and OSError.
     """
-    import trimesh
-
     smooth = bool(polygons.normals.any(axis=1).all())
-    mesh = trimesh.Trimesh(
-        vertices=polygons.vertices,
-        faces=polygons.triangles,
-        vertex_normals=polygons.normals if smooth else None,
-        process=False,
-    )
     kind = format_of(path)
-    if colors is not None:
+    hues = None
+    if colors is not None and kind != "stl":
         from sceneql.mesh.display_colors import levels
 
-        curved = kind != "glb"  # glb stores linear colors (glTF 2.0, 3.7.2.1)
-        mesh.visual = trimesh.visual.ColorVisuals(mesh, vertex_colors=levels(colors, curved=curved))
-    normals = {"ply": "vertex_normal", "obj": "include_normals", "glb": "include_normals"}
-    options: dict[str, Any] = {normals[kind]: smooth} if kind in normals else {}
-    data: Any = mesh.export(file_type=kind, **options)
+        hues = levels(colors, curved=kind != "glb")  # glb stores linear colors (glTF 2.0, 3.7.2.1)
     with whole(path) as stream:
-        stream.write(data.encode() if isinstance(data, str) else data)
+        stream.write(_ply(polygons, smooth, hues) if kind == "ply" else _by_trimesh(polygons, smooth, hues, kind))
+
+
+def _ply(polygons: Polygons, smooth: bool, hues: Any) -> bytes:
+    """A binary PLY file (Turk 1994), the columns of a vertex in the order that trimesh writes them."""
+    import numpy as np
+
+    vertices, triangles = polygons.vertices, polygons.triangles
+    columns = [("x y z", "<f4", "float", vertices)]
+    columns += [("nx ny nz", "<f4", "float", polygons.normals)] if smooth else []
+    columns += [("red green blue", "u1", "uchar", hues)] if hues is not None else []
+    rows = np.empty(len(vertices), dtype=[(names, code, 3) for names, code, _, _ in columns])
+    for names, _, _, values in columns:
+        rows[names] = values
+    faces = np.empty(len(triangles), dtype=[("count", "u1"), ("corners", "<i4", 3)])
+    faces["count"], faces["corners"] = 3, triangles
+    lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(vertices)}"]
+    lines += [f"property {kind} {name}" for names, _, kind, _ in columns for name in names.split()]
+    lines += [f"element face {len(triangles)}", "property list uchar int vertex_indices", "end_header", ""]
+    return "\n".join(lines).encode() + rows.tobytes() + faces.tobytes()
+
+
+def _by_trimesh(polygons: Polygons, smooth: bool, hues: Any, kind: str) -> bytes:
+    """A file of one of the other FORMATS."""
+    import trimesh
+
+    normals = polygons.normals if smooth else None
+    mesh = trimesh.Trimesh(
+        vertices=polygons.vertices, faces=polygons.triangles, vertex_normals=normals, process=False
+    )  # fmt: skip
+    if hues is not None:
+        mesh.visual = trimesh.visual.ColorVisuals(mesh, vertex_colors=hues)
+    options: dict[str, Any] = {} if kind == "stl" else {"include_normals": smooth}
+    data: Any = mesh.export(file_type=kind, **options)
+    return data.encode() if isinstance(data, str) else bytes(data)

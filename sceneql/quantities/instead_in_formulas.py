@@ -101,6 +101,22 @@ OF_FORMULAS = (
         "deltatime delta_time dt",
         "a formula says what is at the `time`, and no step: `1 m/s*time`, in place of what is added in each frame",
     ),
+    ("name", "about", "an axis is a field: `rotation: {about: z, angle: 30 deg}`"),
+    ("name", "water", "water has a density of `1000 kg/m^3`, and a viscosity of `1e-3 Pa*s`"),
+    ("name", "air", "air has a density of `1.2 kg/m^3`, and a viscosity of `1.8e-5 Pa*s`"),
+    ("unit name", "cp cps centipoise poise", "a poise is `0.1 Pa*s`, a hundredth of it `1e-3 Pa*s`"),
+    ("name", "G", "write `6.6743e-11 m^3/(kg*s^2)`, or define it so: `define: {G: 6.6743e-11 m^3/(kg*s^2)}`"),
+    ("sign", '"', "an inch is `inch`, a foot `ft`: `4 2 1 inch`"),
+    (
+        "unit name",
+        "solar_mass solar_masses solarmass msun m_sun sun_mass",
+        "the sun has `1.989e30 kg`, the earth `5.972e24 kg`, the moon `7.35e22 kg`",
+    ),
+    (
+        "unit name",
+        "earth_mass earth_masses mearth m_earth earth_radius earth_radii",
+        "the earth has `5.972e24 kg`, and a radius of `6371 km`",
+    ),
     ("name", "frame frames", "frame 12 of 30 a second is at `0.4 s`: a key stands at that, and a formula has `time`"),
     (
         "digits",

@@ -1,11 +1,11 @@
-"""Sentences on parts: what to write instead of words, fields and sections of other programs.
+"""Sentences on parts: what to write instead of words and fields of other programs.
 
 For messages alone.
 """
 
 from __future__ import annotations
 
-from sceneql.quantities.instead_in_formulas import IF, REPEAT
+from sceneql.quantities.instead_in_formulas import REPEAT
 
 _WORD = "the word stands around its fields: `{sphere: {radius: 1 m}}`: `sceneql words sections`"
 
@@ -51,6 +51,84 @@ OF_PARTS = (
         "forces force",
         "forces are a section of their own, `forces: [gravity]`; one acts on some models by `on: [NAME]`",
     ),
+    (
+        "field.models",
+        "usegravity use_gravity gravity_scale",
+        "gravity is in the section `forces`, `forces: [gravity]`, and pulls all models but where it is `on: [NAME]`",
+    ),
+    (
+        "field.models",
+        "drag air_drag angular_drag angulardrag linear_drag air_resistance linear_damping angular_damping",
+        "drag is a force, `forces: {air: {drag: {linear: 0.1 N*s/m}}}`: `sceneql words drag`",
+    ),
+    (
+        "field.models",
+        "angle launch_angle elevation heading direction",
+        "a velocity has three numbers, at 45 deg `velocity: [10 m/s*cos(45 deg), 10 m/s*sin(45 deg), 0 m/s]`",
+    ),
+    (
+        "field.models",
+        "material color colour",
+        "the object has it that the model moves: `objects: {ball: {sphere: {material: metal}}}`",
+    ),
+    (
+        "field.models",
+        "rods rod bars",
+        "a rod is a tie, `ties: {r: {rod: {between: [net.a, net.b]}}}`: `sceneql words rod`",
+    ),
+    (
+        "field.objects",
+        "hollow shell wall_thickness inner_radius outer_radius",
+        "cut it out: `{difference: {of: [outer, inner]}}`: `sceneql words difference`",
+    ),
+    (
+        "field.objects",
+        "bevel rounded corner_radius fillet edge_radius chamfer",
+        "its edges are sharp; where members of a `union` or `difference` meet, their `blend` is a fillet",
+    ),
+    (
+        "field.models",
+        "params parameters constants variables args",
+        "constants have names under `define`, `define: {sigma: 10}` at the left margin: `sceneql words define`",
+    ),
+    (
+        "field.objects",
+        "make_trail trail retain leave_trail",
+        "a trail is an object of its own, `objects: {way: {trail: {of: ball.position}}}`: `sceneql words trail`",
+    ),
+    (
+        "field.objects",
+        "transform translate",
+        "write `position: 0 1 0 m` and `rotation: {about: y, angle: 30 deg}` among its fields",
+    ),
+    ("field.solvers", "substeps sub_steps steps iterations", "a solver has the length of its step, `step: 1 ms`"),
+    (
+        "field",
+        "damping_ratio zeta",
+        "a damping is a force for a speed: of a ratio z write `damping: 2*z*sqrt(k*m)`, k the stiffness, m the mass",
+    ),
+    (
+        "objects",
+        "extrude extrusion linear_extrude rotate_extrude lathe loft sweep",
+        "there is none: solids are cut and put together by `union`, `difference` and `intersection`, a pipe is a"
+        " `tube`, and any other shape comes in a file, `{mesh: {file: part.stl}}`",
+    ),
+    (
+        "field.overlays",
+        "min max vmin vmax low high limits range",
+        "what shows it has the range: `{graph: {y: ..., range: 0 1}}`, or `{field_map: {of: ..., range: 0 1}}`",
+    ),
+    ("field.outputs", "background background_color bg", "it stands at the left margin, `background: white`"),
+    (
+        "field.outputs",
+        "samples antialiasing antialias spp max_samples",
+        "edges are smooth without it: leave it out",
+    ),
+    (
+        "field.overlays",
+        "legend key",
+        "each curve has its name, `y: {kinetic: fall.kinetic, potential: fall.potential}`",
+    ),
     ("field.models", "solver integrator", "solvers are a section of their own, `solvers: {main: {rk4: {step: 1 ms}}}`"),
     (
         "field.models",
@@ -64,11 +142,16 @@ OF_PARTS = (
     ),
     (
         "field.models",
+        "shape radius size dimensions geometry half_extents",
+        "the shape is an object, `objects: {ball: {sphere: {radius: 0.3 m}}}`, which the model names:"
+        " `of: ball`, or `domain: ball` of a field",
+    ),
+    (
+        "field.models",
         "freejoint free_joint free joint joints joint_type",
         "a body is free where no tie holds it; hinges and others stand in `ties`: `sceneql words hinge`",
     ),
     ("field.models", "feed kill", "what is fed and dies stands in the rates: `rate: -u*v^2 + 0.03*(1 - u)`"),
-    ("section", "args arguments inputs", "what an instance may be given stands under `fields: {radius: 1 m}`"),
     ("field.ties", "length distance", "a rod is as long as its ends are apart at the start: `from` and `to`"),
     ("field.objects", "axis", "it stands along y, and is turned: `rotation: {about: x, angle: 90 deg}`"),
     ("field.objects", "static fixed kinematic dynamic", "an object that no model moves stands still"),
@@ -78,59 +161,6 @@ OF_PARTS = (
         "free neumann insulated adiabatic reflecting noflux no_flux",
         "so it is where nothing is said: leave it out",
     ),
-    ("section", "seed", "write `clock: {seed: 5}`"),
-    (
-        "section",
-        "setup draw update loop main start animate init render_loop",
-        "a script says what there is and how it moves, not what is done in each frame: values may be formulas of"
-        " `time`, models move objects; `sceneql words sections` shows a whole script",
-    ),
-    (
-        "section",
-        "import from require",
-        "functions are there without it, `sceneql words functions`; `include: more.yaml` takes in a script",
-    ),
-    ("section", "for while foreach", REPEAT),
-    ("section", "if switch", f"there is no `if` around parts; in a value {IF}"),
-    (
-        "section",
-        "def class fn",
-        "a piece with fields of its own is a template: `sceneql words templates`",
-    ),
-    (
-        "section",
-        "let var const float int double",
-        "values have names under `define`, `define: {r: 1 m}`: `sceneql words define`",
-    ),
-    (
-        "section",
-        "option options physics_options compiler settings config",
-        "write `clock: {end: 4 s}`, `solvers: {main: {rk4: {step: 2 ms}}}`, `forces: [gravity]`:"
-        " `sceneql words sections`",
-    ),
-    ("section", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
-    (
-        "section",
-        "worldbody body geom geoms",
-        "write `objects: {ball: {sphere: {radius: 0.1 m}}}`, and what moves in `models`: `sceneql words sections`",
-    ),
-    ("section", "actuator actuators motor motors", "a tie has it, `hinge: {..., motor: {...}}`: `sceneql words hinge`"),
-    (
-        "section",
-        "sensor sensors",
-        "`outputs: {data: {record: {values: {height: ball.position.y}}}}`: `sceneql words record`",
-    ),
-    (
-        "section",
-        "asset assets",
-        "a file is named where it is used: `{mesh: {file: cow.obj}}`; materials stand in `materials`",
-    ),
-    (
-        "section",
-        "light sun lamp",
-        "write `lights: {lamp: {sun: {elevation: 45 deg}}}`: `sceneql words sun`",
-    ),
-    ("section", "camera", "write `cameras: {main: {perspective: {position: 0 2 5 m, look_at: 0 1 0 m}}}`"),
     ("field entry", "repeat for foreach loop array times", REPEAT),
     (
         "keys",
@@ -167,8 +197,14 @@ OF_PARTS = (
     (
         "field",
         "roughness metallic metalness shininess specular reflectivity",
-        "a material says it, `material: {metal: {roughness: 0.2}}`: `sceneql words glossy`",
+        "a material says it, `material: {metal: {roughness: 0.2}}`, or `glossy`, `mirror`: `sceneql words glossy`",
     ),
+    (
+        "field.materials",
+        "reflectivity reflectance specular_color",
+        "its color says how much comes back: `color: 0.9 0.9 0.9`",
+    ),
+    ("field.materials", "metallic metalness", "the word says it: `metal` is all of metal, `glossy` not at all"),
     (
         "field.materials",
         "shininess gloss smoothness glossiness",
@@ -210,7 +246,7 @@ OF_PARTS = (
     ),
     (
         "field.objects",
-        "modifiers modifier subdivision subsurf bevel smooth shade_smooth segments subdivisions",
+        "modifiers modifier subdivision subsurf smooth shade_smooth segments subdivisions",
         "surfaces are exact and need no finer mesh; `union`, `difference`, `bend`, `twist` and `taper` make objects of"
         " objects",
     ),
@@ -273,42 +309,11 @@ OF_PARTS = (
     ("field", "visible show enabled", "write `hidden: yes` for a part that is not drawn"),
     ("field", "parent", "a part moves with others in a group, `{group: {children: [a, b]}}`: `sceneql words group`"),
     (
-        "section",
-        "joints hinges constraints constraint",
-        "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
-    ),
-    (
         "field",
         "hole holes cutout",
         "cut it out of the object, `{difference: {of: [plate, hole]}}`: `sceneql words difference`",
     ),
-    ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
-    ("section", "collision contact", "write `forces: [gravity, collision]`"),
-    ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),
-    ("section", "fps framerate frame_rate", "write `clock: {fps: 30}`: `sceneql words clock`"),
-    ("section", "resolution size width height", "write `outputs: {film: {video: {size: 720p}}}`"),
-    (
-        "section",
-        "render rendering renderer camera_settings scene_settings",
-        "write `outputs: {film: {video: {size: 1080p}}}`",
-    ),
-    ("section", "world environment", "write `background: black`, or `lights: {sky: sky}`; parts stand in sections"),
-    ("section", "sky_sphere skybox sky", "write `lights: {sky: sky}`, or `background: skyblue`"),
-    ("section", "fog", "there is no fog over a scene; `mist` draws a field that fills a space: `sceneql words mist`"),
-    (
-        "section",
-        "controls orbitcontrols mouse",
-        "a film has no mouse: a camera goes round by `cameras: {c: turntable}`",
-    ),
-    (
-        "section",
-        "route routes connect connections",
-        "a field takes a value of another part by its name, `position: swing.bob.position`: `sceneql words links`",
-    ),
-    ("section", "scene root project", "the sections stand by themselves, with no key around them"),
-    ("section", "floor", "write `objects: {floor: plane}`"),
     ("absent", "floor", "write `objects: {floor: none}`"),
-    ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
     ("body", "wall ground static base ceiling earth fixed none null", "what stands still is `world`"),
     ("body", "floor", "a body is of a model; what stands still is `world`"),
     (
@@ -321,7 +326,19 @@ OF_PARTS = (
         "ellipsoid egg spheroid",
         "write its formula: `{implicit: {field: (x/2)^2 + y^2 + z^2 - 1, bounds: {box: [-2 -1 -1, 2 1 1]}}}`",
     ),
+    (
+        "objects",
+        "translate rotate scale transform move resize",
+        "the object has fields for that, `{box: {size: 1 1 1 m, position: 1 0 0 m, rotation: {about: y, angle: 30 deg},"
+        " color: red}}`; a `group` moves, turns and scales several",
+    ),
     ("objects", "boolean bool csg", "write `{difference: {of: [a, b]}}`, or `union`, `intersection`"),
+    (
+        "field.forces",
+        "coefficient drag_coefficient cd c_d cw area",
+        "of a drag coefficient C and an area A write `quadratic: 0.5*1.2 kg/m^3*C*A`, the 1.2 kg/m^3 being air's;"
+        " `linear: 0.1 N*s/m` goes with the speed",
+    ),
     ("field.forces", "mass", "write its `strength`, G times the mass: `6.67e-11*1e10 m^3/s^2`"),
     ("objects", "indexedfaceset faces triangles polygons vertices", "a file has them: `{mesh: {file: cow.obj}}`"),
     ("objects", "text title label caption", "text stands in `overlays: {title: {caption: {text: ...}}}`"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, of_library, suggestion
 from sceneql.quantities.expression import Call, Expr, Name, Number, Vector, children, each_once
@@ -19,7 +20,7 @@ from sceneql.quantities.literal import (
     whole_value,
 )
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
-from sceneql.quantities.spaced import bracketed
+from sceneql.quantities.spaced import bracketed, two_ends
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
@@ -52,6 +53,9 @@ def parse_value(text: str, span: Span) -> Expr:
         (found,) = error.diagnostics
         if found.code == "unknown-unit" and (sides := _crossed(text)) is not None:
             raise ScriptError([Diagnostic("syntax", "sizes have no 'x' between them", found.span, sides)]) from None
+        if (ends := two_ends(text)) is not None:
+            help = f"two ends stand side by side, with one unit: write `{ends}`"
+            raise ScriptError([replace(found, help=help)]) from None
         spaced = found.code in ("syntax", "unknown-unit") and len(text) <= LONGEST
         if not spaced or (vector := bracketed(text, span)) is None:
             raise

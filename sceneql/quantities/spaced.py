@@ -36,7 +36,9 @@ def bracketed(text: str, span: Span) -> str | None:
     if len(pieces) != SIZE or all(plain) or not any(plain) or not text.isascii():
         return None
     for number, piece in pairwise(pieces):  # 1 m*sin 3
-        if _NUMBER.fullmatch(number) and (word := _NAME.match(piece)) is not None and word.group() in UNITS:
+        word = _NAME.match(piece) if _NUMBER.fullmatch(number) else None
+        name = piece in UNITS and unit in UNITS and UNITS[piece][1] != UNITS[unit][1]  # 0 h 0 m, a height
+        if word is not None and word.group() in UNITS and not name:
             return None
     if any(piece.startswith(_JOINS) or piece.endswith((*_JOINS, "-")) for piece in pieces):
         return None
@@ -63,6 +65,14 @@ def _pieces(text: str) -> list[str]:
         else:
             pieces[-1] += character
     return [piece for piece in pieces if piece]
+
+
+def two_ends(text: str) -> str | None:
+    """Two numbers with the sign of a range between them as a vector of two, ``-30 30`` for ``-30..30``; else None."""
+    found = re.fullmatch(r"\s*([-+]?[\d.]*?\d)\s*(?:\.\.\.?|–|to)\s*([-+]?\d[\d.]*)\s*([^\W\d]\S*|°)?\s*", text)
+    if found is None:
+        return None
+    return f"{found[1]} {found[2]}" + ("" if found[3] is None else f" {found[3].replace('°', 'deg')}")
 
 
 def apart(text: str) -> str | None:

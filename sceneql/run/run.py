@@ -286,6 +286,7 @@ class IslandRun:
             stepper,
             end,
             stiff=self.methods.stiff,
+            stiff_cost=self.methods.stiff_cost,
             otherwise=self.methods.otherwise,
             with_jacobian=None if stepper.needs.jacobian else lambda: self.assembly.finish(jacobian=True),
             before=before,

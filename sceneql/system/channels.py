@@ -5,7 +5,9 @@ script and memories of words follow. Where a solver needs slopes, three arrays o
 Only this file says where they are.
 """
 
-RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, GROWS, LAGS, STALE, STATIC, HEAD = range(14)
+RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, GROWS, LAGS, STALE, STATIC, KEEPS, HEAD = (
+    range(15)
+)
 """RATES: number of evaluations of the rate so far.
 
 STEP_END: above 0, the planned end [s] of the step, which local contacts may only lower in this call; 0 where they
@@ -42,7 +44,10 @@ numbers at that evaluation; 1 where a stage has begun.
 
 STATIC: RESTING in a march of static equilibria: prescribed motions then have neither velocity nor acceleration.
 PLACING: the rates of prescribed positions are instead their distances from where they should be [m]. 0 in a march in
-time."""
+time.
+
+KEEPS: not 0 where the entries of terms that have positive slopes, as strain does, stay in the Jacobian as they were
+evaluated last: within a stage they change by far less than those of contacts."""
 
 NO_SLOPES, OUTSIDE, BETWEEN = 0.0, -1.0, -2.0
 """Values of STAGE, for contacts. NO_SLOPES: they act between steps, and no solver needs slopes. OUTSIDE: they act

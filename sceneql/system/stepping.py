@@ -139,3 +139,5 @@ class IslandFacts:
     """Whether a barrier keeps surfaces apart; explicit steps would become ever shorter near it."""
     in_solids: int = 0
     """Number of velocity entries of elastic solids' nodes: their many couplings fill up the factors of the Jacobian."""
+    solids_size: float = 1.0
+    """Size [m] of the smallest of these solids at the start: the diagonal of its box."""

@@ -1,11 +1,11 @@
 """Films of the common implicit scenes, of an empty picture and of a ball on a plane, beside POV-Ray.
 
-Run it as ``python tests/bench/bench_implicit.py [--tape | --threads] [SCENE...]``. Films have 48 frames of 640 x 360
-pixels, a ray each, with one hard sun, in which the thing turns: processor time of a frame on one thread from the script
-to the PNG file, start and compilation apart, by its stages. Where POV-Ray is installed, the processor time of a whole
-run of it that writes a PNG file stands beside: of the same picture, without light that surfaces reflect onto one
-another (`diffuse_bounces: 0`). The figure with that light, as films are by default, follows, and last that of the same
-scene with an area light, a sky and reflections: things are glossy over a matte floor, and edges have 8 rays.
+Run it as ``python tests/bench/bench_implicit.py [--tape | --threads | --before=DIR] [SCENE...]``. Films have 48 frames
+of 640 x 360 pixels, a ray each, with one hard sun, in which the thing turns: processor time of a frame on one thread
+from the script to the PNG file, start and compilation apart, by its stages. Where POV-Ray is installed, the processor
+time of a whole run of it that writes a PNG file stands beside: of the same picture, without light that surfaces reflect
+onto one another (`diffuse_bounces: 0`). The figure with that light, as films are by default, follows, and last that of
+the same scene with an area light, a sky and reflections: things are glossy over a matte floor, and edges have 8 rays.
 
 The second column is that of a kernel of the bench alone: one ray a pixel, and a shadow ray where the light is faced;
 beside it stands the drawing of the film's frames alone, least of rounds, and its bar: twice the kernel and 12 ms.
@@ -14,6 +14,7 @@ Nothing is compiled for a scene: tapes are interpreted in lanes, and where one i
 its exact form along each ray is used besides; with ``--tape`` the interpreter works alone, beside half of each bar.
 With ``--threads`` nothing but the wall time of films is measured: the gain by two threads beside that by two processes
 of one thread side by side, which wants two processors with nothing else to do: see the load that is printed.
+With ``--before=DIR`` nothing but the softly lit films is measured, in turns with those of another checkout's code.
 POV-Ray is run where it is installed; its figures from another machine are given else, and fidget's always. Times are
 medians of rounds in which each is run once, ours for some frames in a row.
 """
@@ -32,6 +33,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -40,7 +42,7 @@ import numpy as np
 from bench_polygonise import ELSEWHERE, SCENES, quoted, register, scene_tape
 from implicit_films import DRAW, film, like_for_like, scripts, softly
 from implicit_films import FRAMES as FILM
-from implicit_threads import gains
+from implicit_threads import before, gains
 
 from sceneql.compiled.kernels import over_tiles
 from sceneql.field.packets import packets
@@ -289,6 +291,16 @@ def threads(names: list[str]) -> None:
             )
 
 
+def compare(names: list[str], checkout: str) -> None:
+    """The table of softly lit films beside those of another checkout, which may not know `diffuse_bounces`."""
+    for name, text in scripts({name: SCENES[name] for name in SCENES if name in names}):
+        script = softly(text).replace(", diffuse_bounces: 256", "")
+        here, there = (1e3 * seconds / FILM for seconds in before(script, checkout, TURNS))
+        print(
+            f"{name}: {here:.1f} ms of one processor a frame softly lit, {there:.1f} before: {there / here:.2f} times"
+        )
+
+
 def main(names: list[str]) -> None:
     """The tables."""
     drawn = films(names)
@@ -320,9 +332,12 @@ def main(names: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    names = [name for name in sys.argv[1:] if name not in ("--tape", "--threads")]
+    names = [name for name in sys.argv[1:] if not name.startswith("--")]
     if "--tape" in sys.argv:
         packets.plan_of = lambda tape: np.array([-1, 0, -1, -1])
         BARS = {name: bar / 2 for name, bar in BARS.items()}
-    table = threads if "--threads" in sys.argv else main
+    table: Callable[[list[str]], None] = threads if "--threads" in sys.argv else main
+    for option in sys.argv:
+        if option.startswith("--before="):
+            table = partial(compare, checkout=option.partition("=")[2])
     table(names or ["blob40", "blob4000", "gyroid", "barth_sextic", "kummer", "steiner", "shell"])

@@ -264,9 +264,9 @@ def table(subject: Subject, rounds: int) -> None:
             return last["polygons"].vertices, last["polygons"].triangles, account
 
         def peers(nodes: int) -> tuple[Any, Any, Any]:
-            vertices, triangles, _, _ = marching_cubes(subject.grid(nodes), 0.0)
+            vertices, triangles, normals, _ = marching_cubes(subject.grid(nodes), 0.0)
             vertices = vertices.astype(float) * (2 * half / (nodes - 1)) - half
-            write(folder / "theirs.ply", Polygons(vertices, triangles, np.zeros_like(vertices)))
+            write(folder / "theirs.ply", Polygons(vertices, triangles, normals))  # the same file as ours
             return vertices, triangles, None
 
         ours(CELLS[0])  # compiles

@@ -5,7 +5,7 @@ from numba import types
 
 from renderers.tracing import layout
 from renderers.tracing.camera_kernels import TILE, place_of
-from renderers.tracing.filter.planes_kernels import HALO, LANES, LINE, ONE, OWN, SLACK, ZERO, alike_lanes
+from renderers.tracing.filter.planes_kernels import HALO, LANES, LINE, ONE, OWN, SLACK, ZERO, alike_lanes, one_face
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import sample_of
 from renderers.tracing.light.shade_kernels import shade
@@ -67,9 +67,13 @@ def contrast(radiance, k, red, green, blue):
 @part
 def mark_edges(y, planes, size, chunk, same, marks):
     """Set marks to 1 for the pixels of a chunk in row y whose neighbors show another surface, else to 0."""
-    a = planes[y, chunk * size + HALO :]
+    a, flat = planes[y, chunk * size + HALO :], True
     for i in range(LANES):
         marks[i] = ZERO
+    for row in range(max(y - 1, 0), min(y + 1, planes.shape[0] - 1) + 1):
+        flat = flat and one_face(planes[y, chunk * size :], planes[row, chunk * size :])
+    if flat:
+        return
     for place in range(9):
         row, off = y + place // 3 - 1, place % 3 - 1
         if place == 4 or row < 0 or row >= planes.shape[0]:

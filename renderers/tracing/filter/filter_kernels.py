@@ -7,6 +7,7 @@ from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.filter import planes_kernels as chunks
 from renderers.tracing.filter.planes_kernels import HALO, LANES, WIDE, ZERO, F
 from renderers.tracing.light.sampling_kernels import SIDE
+from renderers.tracing.scene_kernels import part
 from renderers.tracing.tiles_kernels import BLANK, LAY, MARKS
 from sceneql.compiled.kernels import kernel
 
@@ -35,21 +36,44 @@ def widen(start, stop, columns, marks, planes, sums, same):
         for chunk in range(sums.shape[1] // own):
             if marks[y // TILE, chunk] == BLANK:
                 continue
-            a, out = planes[y, chunk * size + HALO :], sums[y, chunk * own :]
+            whole, out = planes[y, chunk * size :], sums[y, chunk * own :]
+            a, flat = whole[HALO:], chunks.one_face(whole, whole)
             for i in range(own):
                 out[i] = ZERO
             if not chunks.known(a):
                 continue
+            mixed = columns
+            while mixed > 0 and chunks.even(whole, mixed - 1) != chunks.MIXED:
+                mixed -= 1
             for j in range(-REACH, REACH + 1):
-                b = planes[y, chunk * size + HALO + j :]
+                b = whole[HALO + j :]
                 if j == 0:
                     chunks.itself(a, same)
+                elif flat:
+                    chunks.both(a, b, same)
                 else:
                     chunks.alike_lanes(a, b, same)
                 share = F(0.5) if abs(j) == REACH else F(1.0)
                 for i in range(LANES):
                     out[i] += share * same[i]
-                add_lanes(same, share, b[chunks.KEYS :], WIDE, out[LANES:], LANES, columns)
+                add_lanes(same, share, b[chunks.KEYS :], WIDE, out[LANES:], LANES, mixed)
+            for column in range(mixed, columns):
+                if chunks.even(whole, column) == chunks.ONE:
+                    total = out[(1 + column) * LANES :]
+                    for i in range(LANES):
+                        total[i] = out[i]
+
+
+@part
+def evenly(planes, first, last, at, column):
+    """Whether a column of the visibility of a chunk has one number, 0 or 1, in all rows first..last."""
+    place = at + chunks.EVEN + column
+    if column >= chunks.MOST or planes[first, place] == chunks.MIXED:
+        return False
+    for row in range(first + 1, last + 1):
+        if planes[row, place] != planes[first, place]:
+            return False
+    return True
 
 
 @kernel(types.void(_i, _i, _i, MARKS, chunks.PLANES, chunks.PLANES, chunks.PLANES, chunks.LINE), _nrt=False)
@@ -66,20 +90,31 @@ def deepen(start, stop, columns, marks, planes, sums, means, same):
                 continue
             for i in range(chunk * of_means, (chunk + 1) * of_means):
                 means[y, i] = ZERO
-            a, out = planes[y, chunk * size + HALO :], means[y, chunk * of_means + HALO :]
+            whole, out = planes[y, chunk * size :], means[y, chunk * of_means + HALO :]
+            a, first, last = whole[HALO:], max(-REACH, -y), min(REACH, planes.shape[0] - 1 - y)
             if not chunks.known(a):
                 continue
-            for j in range(max(-REACH, -y), min(REACH, planes.shape[0] - 1 - y) + 1):
+            mixed = columns
+            while mixed > 0 and evenly(planes, y + first, y + last, chunk * size, mixed - 1):
+                mixed -= 1
+            for j in range(first, last + 1):
+                b = planes[y + j, chunk * size :]
                 if j == 0:
                     chunks.itself(a, same)
+                elif chunks.one_face(whole, b):
+                    chunks.both(a, b[HALO:], same)
                 else:
-                    chunks.alike_lanes(a, planes[y + j, chunk * size + HALO :], same)
+                    chunks.alike_lanes(a, b[HALO:], same)
                 share = F(0.5) if abs(j) == REACH else F(1.0)
-                add_lanes(same, share, sums[y + j, chunk * of_sums :], LANES, out, WIDE, 1 + columns)
-            for column in range(1, 1 + columns):
-                total = out[column * WIDE :]
+                add_lanes(same, share, sums[y + j, chunk * of_sums :], LANES, out, WIDE, 1 + mixed)
+            for column in range(mixed):
+                total = out[(1 + column) * WIDE :]
                 for i in range(LANES):
                     total[i] = total[i] / out[i] if out[i] > ZERO else ZERO
+            for column in range(mixed, columns):
+                total, value = out[(1 + column) * WIDE :], chunks.even(whole, column)
+                for i in range(LANES):
+                    total[i] = value if out[i] > ZERO else ZERO
         for chunk in range(across):
             for plane in range(1 + columns if marks[y // TILE, chunk] == LAY else 0):
                 at = chunk * of_means + plane * WIDE

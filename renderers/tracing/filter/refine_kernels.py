@@ -1,6 +1,7 @@
 # mypy: ignore-errors
 """Third stage: edges of shadows finer than the filter's window get samples of their own; then all is shaded."""
 
+import numpy as np
 from numba import types
 
 from renderers.tracing import layout
@@ -9,9 +10,9 @@ from renderers.tracing.filter.filter_kernels import REACH
 from renderers.tracing.filter.planes_kernels import HALO, LANES, SLACK, WIDE
 from renderers.tracing.light.bounce_kernels import WAYS
 from renderers.tracing.light.sampling_kernels import COUNT, SIDE, SKY_COUNT, sample_of
-from renderers.tracing.light.shade_kernels import shade_here
+from renderers.tracing.light.shade_kernels import shade_under, sky_on
 from renderers.tracing.light.visibility_kernels import FIRST_LIGHT, light_sample, look_around, shadow_sample
-from renderers.tracing.record_kernels import OWNER, RADIUS, alike, enough
+from renderers.tracing.record_kernels import NORMAL, OWNER, RADIUS, alike, enough
 from renderers.tracing.scene_kernels import ASKED, SCENE, SCRATCH, part
 from renderers.tracing.tiles_kernels import MARKS
 from sceneql.compiled.kernels import kernel
@@ -167,7 +168,7 @@ def refine(scene, scratch, asked, ways, start, stop, waiting, busy, records, vis
         begin = asked[0, layout.NEXT]
         if asking and begin > room:
             return k
-        if first and pixels >= few_for(records[k]) and is_even(scene, k, x, y, means, fine):
+        if first and (pixels >= FEW or pixels >= few_for(records[k])) and is_even(scene, k, x, y, means, fine):
             continue
         refine_pixel(scene, scratch, asked, ways, k, x, y, width, height, pixels, records, visibility, means, fine)
         if asking and asked[0, layout.NEXT] > begin:
@@ -178,7 +179,10 @@ def refine(scene, scratch, asked, ways, start, stop, waiting, busy, records, vis
 
 @part
 def settle(records, fine, lights, k, x, y, width, height, visibility):
-    """Final visibility of a record: as refined; wider penumbras are averaged over 3 x 3 or 5 x 5 pixels."""
+    """Final visibility of a record: as refined; wider penumbras are averaged over 3 x 3 or 5 x 5 pixels.
+
+    Pixels at the rim of 5 x 5 have half of their weight, so that it holds the samples of 4 x 4, which are a net.
+    """
     for c in range(len(visibility)):
         visibility[c] = fine[k, c]
     for l in range(lights):
@@ -186,21 +190,22 @@ def settle(records, fine, lights, k, x, y, width, height, visibility):
         reach = int(fine[k, column + 1])
         if reach == 0:
             continue
-        total = 0.0
-        count = 0
+        total = joined = 0.0
         for j in range(max(y - reach, 0), min(y + reach, height - 1) + 1):
             for i in range(max(x - reach, 0), min(x + reach, width - 1) + 1):
                 m = j * width + i
                 if alike(records[k], records[m], SLACK):
-                    total += fine[m, column]
-                    count += 1
-        visibility[column] = total / count
+                    weight = (0.5 if abs(i - x) == 2 else 1.0) * (0.5 if abs(j - y) == 2 else 1.0)
+                    total += weight * fine[m, column]
+                    joined += weight
+        visibility[column] = total / joined
 
 
 @kernel(types.void(SCENE, _i, _i, MARKS, _stack, _stack, _stack, _rows), _nrt=False)
 def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
     """Write the final visibility (2, n, V) and add both records' light to the radiance (n, 3)."""
     width, height = int(scene.reals[layout.WIDTH]), int(scene.reals[layout.HEIGHT])
+    rising, open_sky = np.float32(np.nan), (0.0, 0.0, 0.0)  # height of the normal at hand, and the sky's light on it
     for y in range(start, stop):
         for x in range(width):
             if busy[y // TILE, x // TILE] == 0:
@@ -220,7 +225,9 @@ def shade_rows(scene, start, stop, busy, records, fine, visibility, radiance):
                     height,
                     visibility[layer, k],
                 )
-                r, g, b = shade_here(scene, records[layer, k], visibility[layer, k])
+                if records[layer, k, NORMAL + 1] != rising:
+                    rising, open_sky = records[layer, k, NORMAL + 1], sky_on(scene.reals, records[layer, k], False)
+                r, g, b = shade_under(scene, records[layer, k], visibility[layer, k], open_sky)
                 radiance[k, 0] += r
                 radiance[k, 1] += g
                 radiance[k, 2] += b

@@ -32,6 +32,8 @@ def join(planes, means, y, row, at, mean_at, off, share, sums, same):
         return
     if row == y and off == 0:
         chunks.itself(planes[y, at:], same)
+    elif chunks.one_face(planes[y, at - HALO :], planes[row, at - HALO :]):
+        chunks.both(planes[y, at:], planes[row, at + off :], same)
     else:
         chunks.alike_lanes(planes[y, at:], planes[row, at + off :], same)
     mean = means[row, mean_at + off :]

@@ -82,6 +82,12 @@ def is_dark(u):
 
 
 @part
+def sky_on(u, record, dark):
+    """Irradiance / pi (3) of the unobstructed sky on a record; ``dark``: what ``is_dark`` says."""
+    return (0.0, 0.0, 0.0) if dark else sky_ambient(u, float(record[NORMAL + 1]))
+
+
+@part
 def share_seen(scene, visibility, l):
     """Share of light l that reaches a record, past all that is solid and through mists."""
     share = visibility[FIRST_LIGHT + 2 * l]
@@ -97,16 +103,15 @@ def reflects(u, s):
 
 
 @part
-def shade_matte(scene, record, visibility, s, dark):
+def shade_matte(scene, record, visibility, s, open_sky):
     """``shade`` of a surface that does not reflect: bit for bit the same, since those terms are 0.
 
-    ``dark``: what ``is_dark`` says.
+    ``open_sky`` (3): what ``sky_on`` says.
     """
     u = scene.reals
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
     body = (1.0 - u[s + layout.METALLIC]) * (1.0 - u[s + layout.TRANSMISSION])
-    open_sky = (0.0, 0.0, 0.0) if dark else sky_ambient(u, ny)
     r, g, b = 0.0, 0.0, 0.0
     for l in range(int(scene.ints[layout.LIGHT_COUNT])):
         lx, ly, lz, _, ir, ig, ib = light_at(u, l, x, y, z)
@@ -127,19 +132,24 @@ def shade_matte(scene, record, visibility, s, dark):
 @part
 def shade_here(scene, record, visibility):
     """Radiance (3) of a record times its weight, without the rays that are traced further."""
+    return shade_under(scene, record, visibility, sky_on(scene.reals, record, False))
+
+
+@part
+def shade_under(scene, record, visibility, open_sky):
+    """``shade_here``, by what ``sky_on`` says: most neighbors have the same normal."""
     u = scene.reals
     s = int(record[SURFACE])
     nx, ny, nz = float(record[NORMAL]), float(record[NORMAL + 1]), float(record[NORMAL + 2])
     vx, vy, vz = float(record[VIEW]), float(record[VIEW + 1]), float(record[VIEW + 2])
     x, y, z = float(record[PLACE]), float(record[PLACE + 1]), float(record[PLACE + 2])
     if not reflects(u, s):
-        return shade_matte(scene, record, visibility, s, is_dark(u))
+        return shade_matte(scene, record, visibility, s, open_sky)
     roughness = u[s + layout.ROUGHNESS]
     nv = facing_ratio(record)
     f0 = reflectance_at_normal(u, record)
     specular = mean_specular(u, record, nv)
     body = (1.0 - u[s + layout.METALLIC]) * (1.0 - u[s + layout.TRANSMISSION])
-    open_sky = sky_ambient(u, ny)
     twice = 2.0 * (nx * vx + ny * vy + nz * vz)
     mirrored_sky = sky_radiance(u, twice * ny - vy)
     boxes = soft_boxes(scene, twice * nx - vx, twice * ny - vy, twice * nz - vz, 2.0 * roughness * roughness)

@@ -93,6 +93,7 @@ def occupied(scene, scratch, k, ox, oy, oz, dx, dy, dz, start, stop):
 def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
     """Crossing of implicit object k behind ``near``; with ``anywhere`` of any place inside, not the first."""
     b, last_row = scene.reals, scratch.shape[0] - 1
+    own_row = last_row - 1 - int(b[k + layout.OF_SHAPE])
     side = min(b[k + 3] - b[k], b[k + 4] - b[k + 1], b[k + 5] - b[k + 2]) / layout.CELLS
     enter, stop = box_part(scene, k, ox, oy, oz, dx, dy, dz, near, far)
     if not enter < stop:
@@ -118,7 +119,8 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
                 code, constants, parts, scratch, plan, ox, oy, oz, dx, dy, dz, begin, stop, 1.0, anywhere
             )
         if status == UNDECIDED:
-            if scratch[last_row, layout.LOST] >= layout.MOST_LOST:
+            if scratch[own_row, layout.LOST] >= layout.MOST_LOST:
+                scratch[own_row, layout.LOST] += 1.0
                 scratch[last_row, 0] += 1.0
                 return NONE
             status, root = isolate(
@@ -145,7 +147,7 @@ def crossing(scene, scratch, k, ox, oy, oz, dx, dy, dz, near, far, anywhere):
             t = root + 4.0 * tolerance * (end - begin) * FARTHER**tries
             tries += 1
             if tries == RETRIES:
-                scratch[last_row, layout.LOST] += 1.0
+                scratch[own_row, layout.LOST] += 1.0
         else:
             t = end + past
     return NONE

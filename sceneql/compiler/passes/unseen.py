@@ -1,4 +1,4 @@
-"""Warnings of pictures that show nothing: all is hidden, or behind the camera."""
+"""Warnings of pictures that show nothing: all is hidden, or behind the camera; and of lamps under the ground."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from math import dist, sqrt
 
 from sceneql.graph import Task
-from sceneql.kinds import Model, Object, Value
+from sceneql.kinds import Light, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
 
@@ -29,6 +29,32 @@ def warn_of_unseen(
         if camera is not None and parts and not mirrors and all(_behind(task, camera) for task in parts):
             text = f"'{camera.name}' sees nothing but the ground: all else that is drawn is behind it"
             found.warning("not-seen", text, camera.span, help="turn it round: `look_at` is the place in the middle")
+
+
+def warn_of_buried(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of each lamp that stands still under a level ground, which throws its shadow over all above it."""
+    level = _ground(tasks)
+    if level is None:
+        return
+    for task in tasks.values():
+        at = _place(getattr(task.kind, "position", None)) if isinstance(task.kind, Light) else None
+        if at is not None and at[1] < level:
+            text = f"'{task.name}' stands under the ground, so that none of its light is seen"
+            higher = f"{at[0]:g} {level + 2.0:g} {at[2]:g} m"
+            found.warning("buried-light", text, task.span, help=f"y is up: write `position: {higher}`")
+
+
+def _ground(tasks: Mapping[str, Task]) -> float | None:
+    """The height [m] of a level ground that is drawn and stands still; None where there is none, or it is not known."""
+    for task in tasks.values():
+        kind = task.kind
+        if not isinstance(kind, Object) or not kind.grounds or kind.hidden:
+            continue
+        height, up = getattr(kind, "height", None), _place(getattr(kind, "normal", None)) or (0.0, 1.0, 0.0)
+        base = _place(getattr(kind, "position", None)) or (0.0, 0.0, 0.0)
+        if isinstance(height, Value) and height.constant and up[0] == up[2] == 0 < up[1]:
+            return base[1] + float(height.number())
+    return None
 
 
 def _behind(task: Task, camera: Task) -> bool:

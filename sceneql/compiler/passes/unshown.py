@@ -1,11 +1,11 @@
-"""Warnings of models that are left out because all of their objects are hidden."""
+"""Warnings of models that are left out because all of their objects are hidden, and of cameras that draw nothing."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 
 from sceneql.graph import Task
-from sceneql.kinds import Model, Object, Output
+from sceneql.kinds import Camera, Model, Object, Output, Picture
 from sceneql.quantities.diagnostic import Diagnostics
 
 
@@ -30,3 +30,21 @@ def warn_of_unshown(
             members = any(kind.members() for name in hidden if isinstance(kind := tasks[name].kind, Object))
             help = f"leave out `hidden: yes` of '{one}'" + (": it is drawn in place of its parts" if members else "")
             found.warning("not-shown", text, task.span, help=help)
+
+
+def warn_of_unused_cameras(tasks: Mapping[str, Task], kept: Collection[str], found: Diagnostics) -> None:
+    """Warn of cameras that no picture is seen from, where pictures take the script's first one by themselves.
+
+    ``kept``: the parts that outputs need.
+    """
+    pictures = [task for task in tasks.values() if isinstance(task.kind, Picture)]
+    cameras = [task for task in tasks.values() if isinstance(task.kind, Camera) and task.span is not None]
+    taking = [task for task in pictures if task.kind.camera is None]  # type: ignore[attr-defined]
+    for task in cameras[1:] if taking else ():
+        if task.name not in kept:
+            one = taking[0]
+            name = one.name if one.span is not None else "film"
+            first = f"pictures without a `camera` are from '{cameras[0].name}', the first"
+            text = f"nothing is seen from '{task.name}': {first}"
+            help = f"write `outputs: {{{name}: {{{one.word}: {{camera: {task.name}}}}}}}`, or leave '{task.name}' out"
+            found.warning("unused-camera", text, task.span, help=help)

@@ -5,10 +5,11 @@ from sceneql.compiled.kernels import inlined, lean
 from sceneql.field.tape.gradient_kernels import gradient
 from sceneql.field.tape.tape_ops import TAPE
 from sceneql.mesh.cubes.grid import BLOCK
+from sceneql.mesh.cubes.triangle_kernels import turn
 
 CENTERS = 12
-BENDS = 0.866, 0.5
-"""Cosines of 30 and 60 degrees: where normals in a cube turn by more, it is coarse, or too coarse, for its surface."""
+BENT = 0.5
+"""Cosine of 60 degrees: where normals in a cube turn by more, it is too coarse for its surface."""
 
 
 @inlined
@@ -43,12 +44,11 @@ def vertex(edge, x, y, z, block, beyond, begin, keys, local):
 
 @inlined
 def bends(normal, a, b, c):
-    """How many of BENDS the normals of a triangle's vertices, zero ones apart, turn by more than."""
+    """Whether the normals of a triangle's vertices, zero ones apart, turn by more than BENT."""
     ab = normal[a, 0] * normal[b, 0] + normal[a, 1] * normal[b, 1] + normal[a, 2] * normal[b, 2]
     bc = normal[b, 0] * normal[c, 0] + normal[b, 1] * normal[c, 1] + normal[b, 2] * normal[c, 2]
     ca = normal[c, 0] * normal[a, 0] + normal[c, 1] * normal[a, 1] + normal[c, 2] * normal[a, 2]
-    least = min(min(ab, bc), ca)
-    return 2 if least < BENDS[1] else 1 if least < BENDS[0] else 0
+    return min(min(ab, bc), ca) < BENT
 
 
 @inlined
@@ -72,17 +72,17 @@ def settle(code, constants, parts, scratch, place, normal, v, low, h):
 @lean(
     f"void({TAPE}, float64[::1], int32[:, ::1], int64, int64, int32[:, ::1], int64[::1], int64[::1], int64[::1],"
     " int64[::1], int16[::1], int32[:, ::1], int32[::1], int32[:, ::1], int32[:, :, ::1], int32[::1], float64[::1],"
-    " float64[:, ::1], float64[:, ::1], int32[:, ::1], int8[::1])"
+    " float64[:, ::1], float64[:, ::1], int32[:, ::1], boolean[::1], float64[::1])"
 )
 def connect(
     code, constants, parts, scratch, grid, blocks, first, last, beyond, begin, cube_at, triangle_at, own_at,
-    keys, cubes, start, triangles, around, local, low, place, normal, out, bent,
+    keys, cubes, start, triangles, around, local, low, place, normal, out, bent, turns,
 ):  # fmt: skip
     """Triangles of blocks first..last-1 into ``out``, and their inner vertices into ``place`` and ``normal``.
 
     Vertices of block b begin at begin[b], its cubes at cube_at[b], its triangles at triangle_at[b] and its inner
     vertices at own_at[b]. ``beyond`` has the numbers of the neighboring blocks, as in grid_extraction.Found. ``bent``
-    (cubes,) is the greatest ``bends`` of a cube's triangles.
+    (cubes,) is whether a cube's triangles have ``bends``, ``turns`` (cubes,) the largest ``turn`` of a side [m].
     """
     h = grid[3]
     for b in range(first, last):
@@ -125,6 +125,11 @@ def connect(
                     place[fresh, axis] /= count
                 settle(code, constants, parts, scratch, place, normal, fresh, low, h)
                 fresh += 1
-            bent[n] = 0
-            for triangle in range(at, t):
-                bent[n] = max(bent[n], bends(normal, out[triangle, 0], out[triangle, 1], out[triangle, 2]))
+            bent[n] = False
+            turns[n] = 0.0
+            for row in range(at, t):
+                p, q, r = out[row, 0], out[row, 1], out[row, 2]
+                bent[n] |= bends(normal, p, q, r)
+                turns[n] = max(
+                    turns[n], turn(place, normal, p, q), turn(place, normal, q, r), turn(place, normal, r, p)
+                )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import frexp, ldexp
 from typing import TYPE_CHECKING
 
 from sceneql.mesh.bounded import Corner
@@ -12,6 +13,8 @@ if TYPE_CHECKING:
 
 BLOCK = 8
 """Cells along a block."""
+BITS = 40
+"""Bits of a cell's side, by which products with numbers of cells are exact."""
 MOST_BLOCKS = 2**23
 """Most blocks of a grid, empty ones included."""
 
@@ -42,6 +45,8 @@ def grid_around(low: Corner, high: Corner, cell: float) -> Grid:
     corners = np.array([low, high], dtype=np.float64)
     if not (np.isfinite(corners).all() and (corners[1] > corners[0]).all() and 0.0 < cell < np.inf):
         raise ValueError("a grid needs a finite box and a cell above 0")
+    # So that nodes of cells cut finer lie on planes of symmetry through zero, if near them, and not beside by rounding.
+    cell = round(ldexp(cell, BITS - frexp(cell)[1])) * ldexp(1.0, frexp(cell)[1] - BITS)
     cells = np.ceil((corners[1] - corners[0]) / cell * (1.0 - 1e-12)) + 1.0
     blocks = np.ceil(cells / BLOCK)
     with np.errstate(over="ignore"):
@@ -52,4 +57,4 @@ def grid_around(low: Corner, high: Corner, cell: float) -> Grid:
     # A quarter of a cell off the middle: planes of symmetry then hold neither nodes nor middles of cells, where samples
     # are exactly zero and errors do not average out.
     first = 0.5 * (corners[0] + corners[1]) - 0.5 * cells * cell - 0.25 * cell
-    return Grid(first, float(cell), blocks.astype(np.int32))
+    return Grid(first, cell, blocks.astype(np.int32))

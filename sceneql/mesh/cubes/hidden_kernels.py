@@ -23,6 +23,8 @@ WIDER = 1.0 + 1.0e-12
 """Factor of a cube's side for its rounding."""
 SHALLOW = 1.0e-12
 """Depth to which f may go to the other side of zero by rounding, where it touches zero."""
+CAP = 0.125
+"""Greatest thickness, in cubes, of a bulge through a face that counts as a part of the sheet beyond the face."""
 
 
 @inlined
@@ -63,32 +65,66 @@ def enough(code, constants, parts, scratch, second, h):
 
 @inlined
 def proved(code, constants, parts, scratch, second, x, y, z, half, negative, least):
-    """Whether f is proved to keep its sign in the box of half side ``half`` about a point.
+    """(whether f is proved to keep its sign in the box of half side ``half`` about a point, way, thickness).
 
     By its range, by the mean value form, or, as in ``enough``, by ``least``, the least |f| at the box's corners.
+    Without a proof, f may have the other sign only up to a ``thickness`` [m] from a face, ``way`` as ``bulged`` has it.
     """
     low, high, status = box(
         code, constants, parts, scratch, x - half, x + half, y - half, y + half, z - half, z + half
     )  # fmt: skip
     if status == NOWHERE:
-        return not negative
+        return not negative, 0, np.inf
     if negative:
         if status != WHOLE:
-            return False
+            return False, 0, np.inf
         if high < SHALLOW:
-            return True
+            return True, 0, 0.0
     elif low >= -SHALLOW:
-        return True
+        return True, 0, 0.0
     if status != WHOLE:
-        return False
+        return False, 0, np.inf
     outer, inner = enough(code, constants, parts, scratch, second, 2.0 * half)
-    if least > (inner if negative else outer):
-        return True
+    deep = (inner if negative else outer) - least
+    if deep < 0.0:
+        return True, 0, 0.0
+    if not outer < 1.0e300:
+        return False, 0, np.inf
     last = code.shape[0] - 1
-    slope = max(-scratch[last, 2], scratch[last, 3]) + max(-scratch[last, 4], scratch[last, 5])
-    slope += max(-scratch[last, 6], scratch[last, 7])
+    slope, steepest, way = 0.0, 0.0, 0
+    for axis in range(3):
+        falls, rises = scratch[last, 2 + 2 * axis], scratch[last, 3 + 2 * axis]
+        slope += max(-falls, rises)
+        if max(falls, -rises) > steepest:
+            steepest = max(falls, -rises)
+            way = -1 - axis if (falls > 0.0) != negative else 1 + axis
     f = value(code, constants, parts, scratch, x, y, z)
-    return outer < 1.0e300 and abs(f) > half * slope * (1.0 + 1.0e-9) and (f < 0.0) == negative
+    return (
+        abs(f) > half * slope * (1.0 + 1.0e-9) and (f < 0.0) == negative,
+        way,
+        deep / steepest if steepest > 0.0 else np.inf,
+    )
+
+
+@inlined
+def bulged(code, constants, parts, scratch, x, y, z, h, negative, way):
+    """Whether a neighbor of the cube of side ``h`` from (x, y, z) on has a corner where f has the other sign.
+
+    The neighbor is the one along axis |way| - 1, upward if ``way`` > 0; f has one sign at all corners of the cube.
+    Where f is monotone along the axis, what has the other sign in the cube is the neighbor's, through their face.
+    """
+    axis = abs(way) - 1
+    for n in range(4):
+        along = 2.0 * h if way > 0 else -h
+        u, v = (n & 1) * h, (n >> 1) * h
+        f = value(
+            code, constants, parts, scratch,
+            x + (along if axis == 0 else u), y + (along if axis == 1 else u if axis == 0 else v),
+            z + (along if axis == 2 else v),
+        )  # fmt: skip
+        if (f < 0.0) != negative:
+            return True
+    return False
 
 
 @inlined
@@ -104,15 +140,11 @@ def nodes_of(code, constants, parts, registers, points, x, y, z, step, nodes):
 
 @inlined
 def doubtful(
-    code, constants, parts, scratch, second, registers, points, x, y, z, h, negative, least, deepest, stack,
+    code, constants, parts, scratch, second, registers, points, x, y, z, h, negative, deepest, stack,
 ):  # fmt: skip
     """Volume [m^3] of the parts of the cube of side ``h`` from (x, y, z) on that are not proved to have its corners'
-    sign; |f| there >= ``least``.
+    sign, halved up to ``deepest`` times.
     """
-    if proved(
-        code, constants, parts, scratch, second, x + 0.5 * h, y + 0.5 * h, z + 0.5 * h, 0.5 * h * WIDER, negative, least
-    ):
-        return 0.0
     if deepest == 0:
         return h * h * h
     volume = 0.0
@@ -120,24 +152,28 @@ def doubtful(
     step = h / (nodes - 1)
     nodes_of(code, constants, parts, registers, points, x, y, z, step, nodes)
     values = registers[code.shape[0] - 1]
-    stack[0] = 0
-    top = 1
+    for n in range(8):
+        half = 1 << (deepest - 1)
+        stack[n, 0] = half if n & 1 else 0
+        stack[n, 1] = half if n & 2 else 0
+        stack[n, 2] = half if n & 4 else 0
+        stack[n, 3] = 1
+    top = 8
     while top > 0:
         top -= 1
         i, j, k, depth = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
         wide = 1 << (deepest - depth)
         side = step * wide
-        if depth > 0:
-            some = of_corners(values, nodes, i, j, k, wide)
-            if proved(
-                code, constants, parts, scratch, second,
-                x + (i + 0.5 * wide) * step, y + (j + 0.5 * wide) * step, z + (k + 0.5 * wide) * step,
-                0.5 * side * WIDER, negative, some[1] if some[0] == negative and some[1] < np.inf else 0.0,
-            ):  # fmt: skip
-                continue
-            if depth == deepest:
-                volume += side * side * side
-                continue
+        some = of_corners(values, nodes, i, j, k, wide)
+        if proved(
+            code, constants, parts, scratch, second,
+            x + (i + 0.5 * wide) * step, y + (j + 0.5 * wide) * step, z + (k + 0.5 * wide) * step,
+            0.5 * side * WIDER, negative, some[1] if some[0] == negative and some[1] < np.inf else 0.0,
+        )[0]:  # fmt: skip
+            continue
+        if depth == deepest:
+            volume += side * side * side
+            continue
         wide //= 2
         for n in range(8):
             stack[top, 0] = i + (wide if n & 1 else 0)
@@ -178,17 +214,19 @@ def crossed(code, constants, parts, registers, points, x, y, z, step, nodes, neg
 
 @lean(
     f"int64({TAPE}, int32[:, :, ::1], float64[:, :, ::1], float64[:, ::1], float64[:, ::1],"
-    " float64[::1], int64[:, ::1], float64[:, ::1], float64[::1], int32[:, ::1], int64, int64, int32[:, ::1],"
-    " float64[::1], boolean[::1])"
+    " float64[::1], int64[:, ::1], float64[:, ::1], float64[::1], int32[:, ::1], uint8[::1], int64, int64,"
+    " int32[:, ::1], float64[::1], boolean[::1])"
 )
 def hidden(
     code, constants, parts, scratch, short, near, registers, points, values, stack, second, grid, blocks,
-    deepest, finer, cells, rest, seen,
+    eighths, deepest, finer, cells, rest, seen,
 ):  # fmt: skip
     """Find the cubes of some blocks with corners of one sign, but no proof for their inside; returns their number.
 
-    Cubes are halved up to ``deepest`` times. Their places go into ``cells`` (n, 3), the volumes [m^3] without a proof
-    into ``rest``, and into ``seen`` whether f has the other sign at a node of cells ``finer`` times as fine, at most 5.
+    Of block b those are looked at whose eighth, from 0 along x, y and z to 7, is a bit of ``eighths[b]``.
+    A thin bulge of what a neighbor shows needs none. Cubes are halved up to ``deepest`` times. Their places go into
+    ``cells`` (n, 3), the volumes [m^3] without a proof into ``rest``, and into ``seen`` whether f has the other sign at
+    a node of cells ``finer`` times as fine, at most 5: such cubes are not halved.
     """
     h = grid[3]
     count = 0
@@ -209,6 +247,8 @@ def hidden(
         sample(code2, constants, parts2, registers, short[2], points, grid, i, j, k, values)
         for part in range(SIDE**3):
             x0, y0, z0 = 2 * (part % SIDE), 2 * (part // SIDE % SIDE), 2 * (part // SIDE**2)
+            if eighths[b] >> (x0 // SIDE + y0 // SIDE * 2 + z0 // SIDE * 4) & 1 == 0:
+                continue
             some = False
             for n in range(8):
                 negative, least = of_corners(values, NODES, x0 + (n & 1), y0 + (n >> 1 & 1), z0 + (n >> 2), 1)
@@ -229,19 +269,23 @@ def hidden(
                     status == WHOLE and high < SHALLOW if negative else low >= -SHALLOW
                 ):
                     continue
+                u, v, w = grid[0] + (i + x) * h, grid[1] + (j + y) * h, grid[2] + (k + z) * h
+                sure, way, thick = proved(
+                    code2, constants, parts2, scratch, second,
+                    u + 0.5 * h, v + 0.5 * h, w + 0.5 * h, 0.5 * h * WIDER, negative, least,
+                )  # fmt: skip
+                if sure or (thick <= CAP * h and bulged(code, constants, parts, scratch, u, v, w, h, negative, way)):
+                    continue
+                seen[count] = finer > 1 and crossed(
+                    code2, constants, parts2, registers, points, u, v, w, h / finer, finer + 1, negative
+                )
                 rest[count] = doubtful(
                     code2, constants, parts2, scratch, second, registers, points,
-                    grid[0] + (i + x) * h, grid[1] + (j + y) * h, grid[2] + (k + z) * h, h,
-                    negative, least, deepest, stack,
+                    u, v, w, h, negative, 0 if seen[count] else deepest, stack,
                 )  # fmt: skip
                 if rest[count] > 0.0:
                     cells[count, 0] = i + x
                     cells[count, 1] = j + y
                     cells[count, 2] = k + z
-                    seen[count] = finer > 1 and crossed(
-                        code2, constants, parts2, registers, points,
-                        grid[0] + (i + x) * h, grid[1] + (j + y) * h, grid[2] + (k + z) * h,
-                        h / finer, finer + 1, negative,
-                    )  # fmt: skip
                     count += 1
     return count

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from sceneql.mesh.cubes.cases import cases
@@ -14,43 +14,47 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sceneql.frame import Floats, Ints
-
     Keys = NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
 class Level:
-    """Vertices and triangles of the cells of one size."""
+    """Vertices and triangles of the cells of one size, those of the first ``blocks`` blocks of what was found.
 
-    places: Floats
-    normals: Floats
-    triangles: Ints
-    """(t, 3)"""
-    doubled: Keys
-    """(v, 3) midpoints of the grid edges on which vertices lie, in half cells."""
-    cells: Keys
-    """(t, 3) place of each triangle's cell."""
-    bent: NDArray[np.int8]
-    """(t,) how much the normals in the triangle's cell vary: 2 where by too much for a cell of this size, 1 by much."""
+    ``bent`` and ``turns``, both (c,), as ``connected`` has them, are of the cells ``met``.
+    """
 
+    def __init__(self, shop: GridExtraction, found: Found, blocks: int) -> None:
+        self.triangles, self.bent, self.turns = connected(shop, found, blocks)
+        self.places, self.normals = found.place, found.normal
+        self._found, self._blocks = found, blocks
 
-def level(shop: GridExtraction, found: Found, blocks: int) -> Level:
-    """The triangles of the first ``blocks`` blocks."""
-    import numpy as np
+    @cached_property
+    def doubled(self) -> Keys:
+        """(v, 3) midpoints of the grid edges on which vertices lie, in half cells."""
+        import numpy as np
 
-    triangles, bent = connected(shop, found, blocks)
-    key = found.keys.astype(np.int64)
-    owner = np.repeat(found.blocks.astype(np.int64), np.diff(found.begin), axis=0)
-    doubled = 2 * (BLOCK * owner + _within(key // 3))
-    doubled[np.arange(len(key)), key % 3] += 1
-    cube = found.cubes[: len(bent)]
-    inside = np.repeat(found.blocks[:blocks].astype(np.int64), np.diff(found.cube_at[: blocks + 1]), axis=0)
-    cells = BLOCK * inside + _within(cube[:, 0].astype(np.int64))
-    counts = np.diff(cases().start)[cube[:, 1]]
-    return Level(
-        found.place, found.normal, triangles, doubled, np.repeat(cells, counts, axis=0), np.repeat(bent, counts)
-    )
+        key = self._found.keys.astype(np.int64)
+        owner = np.repeat(self._found.blocks.astype(np.int64), np.diff(self._found.begin), axis=0)
+        doubled = 2 * (BLOCK * owner + _within(key // 3))
+        doubled[np.arange(len(key)), key % 3] += 1
+        return doubled
+
+    @cached_property
+    def met(self) -> Keys:
+        """(c, 3) places of the cells that the surface meets."""
+        import numpy as np
+
+        counts = np.diff(self._found.cube_at[: self._blocks + 1])
+        owner = np.repeat(self._found.blocks[: self._blocks].astype(np.int64), counts, axis=0)
+        return BLOCK * owner + _within(self._found.cubes[: len(self.bent), 0].astype(np.int64))
+
+    @cached_property
+    def cells(self) -> Keys:
+        """(t, 3) place of each triangle's cell."""
+        import numpy as np
+
+        counts = np.diff(cases().start)[self._found.cubes[: len(self.bent), 1]]
+        return np.repeat(self.met, counts, axis=0)
 
 
 def _within(place: Keys) -> Keys:

@@ -15,11 +15,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sceneql.frame import Ints, Tape
+    from sceneql.frame import Floats, Ints, Tape
 
 
-def connected(shop: GridExtraction, found: Found, blocks: int) -> tuple[Ints, NDArray[np.int8]]:
-    """Triangles (t, 3) of the first ``blocks`` blocks, and (c,) how much each cube's normals vary (``bends``).
+def connected(shop: GridExtraction, found: Found, blocks: int) -> tuple[Ints, NDArray[np.bool_], Floats]:
+    """Triangles (t, 3) of the first ``blocks`` blocks, and of each cube (c,) whether its normals vary by too much
+    (``bends``) and the largest difference of normals along a side of its triangles (``turn``) [m].
 
     Writes positions and normals of the inner vertices into ``found``.
     """
@@ -27,17 +28,18 @@ def connected(shop: GridExtraction, found: Found, blocks: int) -> tuple[Ints, ND
 
     table = cases()
     triangles = np.empty((int(found.triangle_at[blocks]), 3), dtype=np.int32)
-    bent = np.zeros(int(found.cube_at[blocks]), dtype=np.int8)
+    bent, turns = np.zeros(int(found.cube_at[blocks]), dtype=bool), np.zeros(int(found.cube_at[blocks]))
 
     def work(r: Room, first: int, last: int) -> None:
         connect(
             *shop.program, r.scratch, shop.grid.numbers, found.blocks, first, last, found.beyond,
             found.begin, found.cube_at, found.triangle_at, found.own_at, found.keys, found.cubes,
-            table.start, table.triangles, table.around, r.local, r.low, found.place, found.normal, triangles, bent,
+            table.start, table.triangles, table.around, r.local, r.low, found.place, found.normal, triangles,
+            bent, turns,
         )  # fmt: skip
 
     shop.over_blocks(blocks, work)
-    return triangles, bent
+    return triangles, bent, turns
 
 
 def polygonise(tape: Tape, low: Corner, high: Corner, cell: float) -> Polygons:
@@ -47,5 +49,5 @@ def polygonise(tape: Tape, low: Corner, high: Corner, cell: float) -> Polygons:
     """
     shop = GridExtraction(bounded(tape, low, high), grid_around(low, high, cell))
     found = shop.extracted(shop.met())
-    triangles, _ = connected(shop, found, len(found.blocks))
+    triangles, _, _ = connected(shop, found, len(found.blocks))
     return Polygons(found.place, triangles, found.normal)

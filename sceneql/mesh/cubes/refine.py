@@ -15,7 +15,7 @@ from sceneql.mesh.cubes.faces import Curves, Sides, among, border_curves, face_s
 from sceneql.mesh.cubes.grid import BLOCK, Grid, grid_around
 from sceneql.mesh.cubes.grid_extraction import GridExtraction
 from sceneql.mesh.cubes.hidden_kernels import DEEPEST
-from sceneql.mesh.cubes.levels import Level, Numbering, level
+from sceneql.mesh.cubes.levels import Level, Numbering
 from sceneql.mesh.cubes.stitch import stitched
 from sceneql.mesh.cubes.tolerance import distances_off
 from sceneql.mesh.cubes.triangle_kernels import most_turn
@@ -31,15 +31,20 @@ if TYPE_CHECKING:
 
     Keys = NDArray[np.int64]
 
-FEW_GROUPS, MANY_GROUPS = 2**9, 2**12
-"""Above these numbers of groups, fine cells are bisected once, and not at all, to prove them empty; above the second
-cells are not subdivided by FINEST."""
-MOST_BENT, MOST_TOO_BENT = 2**17, 2**18
-"""Most triangles of the fine cells in which normals vary by much, or only by too much: beyond them, and beyond 2 and 4
-times the coarse triangles, the surface is left to shorter cells that are asked for."""
+FEW_BLOCKS, FEW_CELLS = 2**8, 10_000
+"""From these numbers of blocks with fine cells that are not proved empty or full, and of such cells, on, they are
+halved but once, and not at all."""
+MANY_GROUPS = 2**12
+"""Above this number of groups cells are not subdivided by FINEST."""
+MOST_BENT = 2**18
+"""Most triangles of the fine cells in which normals vary by too much: beyond it, and beyond 4 times the coarse
+triangles, the surface is left to shorter cells that are asked for."""
 COARSER, FINE, FINEST = 2, 4, 8
 """Factors of subdivision along a cell's side: where FINE would make too many triangles, the usual one, and one for a
 tolerance that FINE would miss."""
+TURN = 0.8
+"""Largest difference of normals along a side, in cells, of triangles that stay: about eight times their distance from
+the surface."""
 SAFE = 0.5
 """Share of the tolerance to be reached along creases, where the error falls with the factor of subdivision."""
 FEW = 0.25
@@ -60,7 +65,7 @@ def refined(
     """Triangles of the solid {tape < 0} clipped at the box low..high, from cells with side ``cell`` [m], and the
     unresolved cells.
 
-    Subdivided are cells in which the normals vary by more than 30 degrees, within MOST_BENT triangles, else 60, and
+    Subdivided are cells in which the normals vary by more than 60 degrees, or by TURN, within MOST_BENT triangles, and
     cells with corners of one sign in which f has the other; with a ``tolerance`` [m] also cells with triangles farther
     from the surface, unless these are more than FEW. No cell is subdivided if their groups are more than MOST_GROUPS.
     The mesh is a closed 2-manifold; its bytes do not depend on the number of threads. Raises ValueError as
@@ -71,10 +76,10 @@ def refined(
     whole, grid = bounded(tape, low, high), grid_around(low, high, cell)
     shop, numbers = GridExtraction(whole, grid), Numbering(grid)
     blocks = shop.met()
-    coarse, doubt = level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks, finer=FINE)
-    for cells, parts, most in _to_cut(whole, coarse, tolerance):
+    coarse, doubt = Level(shop, shop.extracted(blocks), len(blocks)), hidden_in(shop, blocks, 1, FINE)
+    for cells, parts, most in _to_cut(whole, coarse, grid.cell, tolerance):
         group = BLOCK // parts  # coarse cells along a group, which is one block of the fine grid
-        groups = np.unique(np.concatenate([cells, doubt.where[doubt.seen]]).astype(np.int64) // group, axis=0)
+        groups = _distinct(np.concatenate([cells, doubt.where[doubt.seen]]) // group, numbers)
         if len(groups) > (MANY_GROUPS if parts == FINEST else MOST_GROUPS) or not len(groups):
             continue
         if parts**2 * among(numbers.of(coarse.cells // group), np.sort(numbers.of(groups))).sum() <= most:
@@ -84,7 +89,7 @@ def refined(
     while 0 < len(groups) <= MOST_GROUPS:
         chosen = np.sort(numbers.of(groups))
         owned = _with_owners(groups)
-        fine = level(fine_shop, fine_shop.extracted(owned), len(groups))
+        fine = Level(fine_shop, fine_shop.extracted(owned), len(groups))
         kept = ~among(numbers.of(coarse.cells // group), chosen)
         sides = face_sides(coarse, kept, numbers, chosen, group)
         curves = border_curves(fine, parts, numbers, chosen, group)
@@ -93,35 +98,66 @@ def refined(
             found = stitched(whole, coarse, kept, fine, sides, curves)
             break
         before = len(groups)
-        groups = np.unique(np.concatenate([groups, more // group]), axis=0)
+        groups = _distinct(np.concatenate([groups, more // group]), numbers)
         if len(groups) == before:
             break
-    return unfolded(whole, found), _left(fine_shop, np.concatenate([groups, doubt.where // group]), doubt)
+    return unfolded(whole, found), _left(fine_shop, groups, coarse, doubt, numbers)
 
 
-def _left(fine_shop: GridExtraction, groups: Keys, doubt: Unresolved) -> Unresolved:
-    """The unresolved ones of the fine cells in ``groups`` (n, 3), or the coarse ones where these are too many."""
+def _left(fine_shop: GridExtraction, groups: Keys, coarse: Level, doubt: Unresolved, numbers: Numbering) -> Unresolved:
+    """The unresolved ones of the fine cells of the coarse cells in doubt, and of those that the surface meets in the
+    ``groups`` (g, 3); the coarse ones where these are too many.
+    """
     import numpy as np
 
-    groups = np.unique(groups, axis=0)
-    if len(groups) > MOST_GROUPS:
+    group = BLOCK // round(doubt.grid.cell / fine_shop.grid.cell)
+    within = coarse.met[among(numbers.of(coarse.met // group), np.sort(numbers.of(groups)))] if len(groups) else groups
+    blocks, eighths = _by_eighths(np.concatenate([within, doubt.where]), group)
+    if len(blocks) > MOST_GROUPS:
         return doubt
-    deepest = DEEPEST if len(groups) < FEW_GROUPS else 1 if len(groups) < MANY_GROUPS else 0
-    return hidden_in(fine_shop, groups.astype(np.int32), deepest)
+    left = hidden_in(fine_shop, blocks, 0, eighths=eighths)
+    if 0 < left.cells < FEW_CELLS:
+        blocks, eighths = _by_eighths(left.where.astype(np.int64), BLOCK)
+        left = hidden_in(fine_shop, blocks, DEEPEST if len(blocks) < FEW_BLOCKS else 1, eighths=eighths)
+    return left
 
 
-def _to_cut(tape: Tape, coarse: Level, tolerance: float | None) -> list[tuple[Keys, int, float]]:
+def _distinct(places: Keys, numbers: Numbering) -> Keys:
+    """The distinct ones of integer places (n, 3)."""
+    import numpy as np
+
+    return places[np.unique(numbers.of(places), return_index=True)[1]].astype(np.int64)
+
+
+def _by_eighths(cells: Keys, group: int) -> tuple[Ints, NDArray[np.uint8]]:
+    """Groups (n, 3) of ``group`` cells along each axis that cells (m, 3) lie in, and (n,) in which eighths of these."""
+    import numpy as np
+
+    where = cells // group
+    size = where.max(axis=0, initial=0) + 1
+    keys, first, owner = np.unique(
+        where @ np.array([1, size[0], size[0] * size[1]]), return_index=True, return_inverse=True
+    )
+    eighths = np.full(len(keys), 255 if group == 1 else 0, dtype=np.uint8)
+    half = 2 * (cells - group * where) // group
+    np.bitwise_or.at(eighths, owner, (1 << (half @ np.array([1, 2, 4]))).astype(np.uint8))
+    return where[first].astype(np.int32), eighths
+
+
+def _to_cut(tape: Tape, coarse: Level, cell: float, tolerance: float | None) -> list[tuple[Keys, int, float]]:
     """Choices (cells (n, 3) to subdivide, factor of subdivision, most triangles), from the best to the cheapest."""
+    import numpy as np
+
     count = len(coarse.triangles)
-    too_bent, none = coarse.cells[coarse.bent == 2], coarse.cells[:0]
+    too_bent, none = coarse.met[coarse.bent], np.zeros((0, 3), dtype=np.int64)
     if tolerance is None:
-        bent = coarse.cells[coarse.bent > 0]
-        by_bends = (bent, FINE, max(2 * count, MOST_BENT)), (too_bent, FINE, max(4 * count, MOST_TOO_BENT))
-        return [*by_bends, (too_bent, COARSER, inf), (none, COARSER, inf)]
+        most = max(4 * count, MOST_BENT)
+        asked = coarse.met[coarse.bent | (coarse.turns > TURN * cell)]
+        return [(asked, FINE, most), (too_bent, FINE, most), (too_bent, COARSER, inf), (none, COARSER, inf)]
     off = _off(tape, coarse, tolerance)
     if (off > tolerance).sum() > FEW * len(off):
         return [(too_bent, FINE, inf), (none, FINE, inf)]
-    cells = coarse.cells[(coarse.bent == 2) | (off > tolerance)]
+    cells = np.concatenate([too_bent, coarse.cells[off > tolerance]])
     finest = off.max(initial=0.0) > SAFE * FINE * tolerance
     first = [(cells, FINEST, inf)] if finest else []
     return [*first, (cells, FINE, inf), (too_bent, FINE, inf), (none, FINE, inf)]

@@ -6,6 +6,8 @@ from collections import defaultdict
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from sceneql.field.tape.tape_solid import field_values
+from sceneql.mesh.cubes.connect_kernels import BENT
 from sceneql.mesh.polygons import Polygons
 from sceneql.mesh.repair.move_vertices import settled, turned_outward
 
@@ -13,9 +15,13 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from sceneql.frame import Tape
+    from sceneql.frame import Floats, Tape
     from sceneql.mesh.cubes.faces import Curves, Sides
     from sceneql.mesh.cubes.levels import Level
+
+
+TRIED, HALVINGS = 8, 40
+"""Places to either side at which a change of sign is sought, and halvings of what is found."""
 
 
 def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, sides: Sides, curves: Curves) -> Polygons:
@@ -56,7 +62,8 @@ def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, si
     places, normals = np.concatenate([coarse.places, fine.places]), np.concatenate([coarse.normals, fine.normals])
     means = np.array([places[ring].mean(axis=0) for ring in middles]).reshape(-1, 3)
     reach = [np.linalg.norm(places[ring] - mean, axis=1).max() for ring, mean in zip(middles, means, strict=True)]
-    own, slopes = settled(tape, means, np.array(reach))
+    ways = np.array([normals[ring].sum(axis=0) for ring in middles]).reshape(-1, 3)
+    own, slopes = _on_sheets(tape, means, ways, np.array(reach))
     triangles = np.concatenate(
         [same[coarse.triangles[plain]], np.array(fans, dtype=np.int64).reshape(-1, 3), fine.triangles + offset]
     )
@@ -66,3 +73,35 @@ def stitched(tape: Tape, coarse: Level, kept: NDArray[np.bool_], fine: Level, si
     triangles = (np.cumsum(used) - 1)[triangles].astype(np.int32)
     seams = np.arange(plain.sum(), len(triangles) - len(fine.triangles))
     return turned_outward(tape, Polygons(places[used], triangles, normals[used]), seams)
+
+
+def _on_sheets(tape: Tape, means: Floats, ways: Floats, reach: Floats) -> tuple[Floats, Floats]:
+    """Points (n, 3) on the surface near ``means`` (n, 3), at most ``reach`` (n,) [m] away, and the normals there.
+
+    Beside a rim Newton's method may go to the face beyond: where the normal is not as ``ways`` (n, 3), those of the
+    vertices around, the surface is sought along these.
+    """
+    import numpy as np
+
+    own, slopes = settled(tape, means, reach)
+    sizes = np.linalg.norm(ways, axis=1, keepdims=True)
+    ways = np.divide(ways, sizes, out=np.zeros_like(ways), where=sizes > 0.0)
+    beyond = np.flatnonzero(np.einsum("nj,nj->n", slopes, ways) < BENT)
+    if not len(beyond):
+        return own, slopes
+    begun, along = means[beyond], reach[beyond, None] * ways[beyond]
+    steps = np.linspace(-1.0, 1.0, 2 * TRIED + 1)
+    inside = (field_values(tape, (begun[:, None] + steps[:, None] * along[:, None]).reshape(-1, 3)) < 0.0).reshape(
+        len(begun), -1
+    )
+    left = inside[:, :-1] & ~inside[:, 1:]
+    first = np.where(left, np.abs(steps[:-1] + steps[1:]), np.inf).argmin(axis=1)
+    low, high = steps[first], steps[first + 1]
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        within = field_values(tape, begun + middle[:, None] * along) < 0.0
+        low, high = np.where(within, middle, low), np.where(within, high, middle)
+    new, normals = settled(tape, begun + low[:, None] * along, reach[beyond])
+    better = left.any(axis=1) & (np.einsum("nj,nj->n", normals, ways[beyond]) >= BENT)
+    own[beyond[better]], slopes[beyond[better]] = new[better], normals[better]
+    return own, slopes

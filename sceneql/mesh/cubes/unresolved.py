@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats, Ints, Tape
     from sceneql.mesh.cubes.grid import Grid
 
+    Bytes = NDArray[np.uint8]
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Unresolved:
@@ -58,15 +60,19 @@ def unresolved(tape: Tape, low: Corner, high: Corner, cell: float) -> Unresolved
     return hidden_in(shop, shop.met())
 
 
-def hidden_in(shop: GridExtraction, blocks: Ints, deepest: int = DEEPEST, finer: int = 0) -> Unresolved:
+def hidden_in(
+    shop: GridExtraction, blocks: Ints, deepest: int = DEEPEST, finer: int = 0, eighths: Bytes | None = None
+) -> Unresolved:
     """Cells of some blocks that may hide surface.
 
     A cell is bisected up to ``deepest`` times. Each part is proved empty or full by an interval enclosure of f or by
     the mean value form (Moore 1966). Cells without a proof are looked into at the nodes of cells ``finer`` times finer.
+    ``eighths`` (b,) has a bit for each eighth of a block in which cells are looked at; by default in all.
     """
     import numpy as np
 
     count = -(-len(blocks) // BATCH)
+    bits = np.full(len(blocks), 255, dtype=np.uint8) if eighths is None else eighths
     found: list[Any] = [(np.zeros((0, 3), np.int32), np.zeros(0), np.zeros(0, bool))] * (count + 1)
 
     def work(batch: int) -> None:
@@ -75,7 +81,8 @@ def hidden_in(shop: GridExtraction, blocks: Ints, deepest: int = DEEPEST, finer:
         cells, rest, seen = np.empty((most, 3), dtype=np.int32), np.empty(most), np.empty(most, dtype=bool)
         n = hidden(
             *shop.program, r.scratch, r.short, r.near, r.registers, r.points, r.values, r.stack,
-            r.second, shop.grid.numbers, mine, deepest, finer, cells, rest, seen,
+            r.second, shop.grid.numbers, mine,
+            bits[batch * BATCH : (batch + 1) * BATCH], deepest, finer, cells, rest, seen,
         )  # fmt: skip
         found[batch] = cells[:n].copy(), rest[:n].copy(), seen[:n].copy()
 

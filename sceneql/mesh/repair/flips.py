@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from sceneql.field.tape.tape_solid import many_gradients
 from sceneql.mesh.polygons import touched
+from sceneql.mesh.repair.move_kernels import SLIVER
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
     Rows = NDArray[np.int64]
 
 ROUNDS = 8
-SLIVER = 1.0e-6
-"""Twice a triangle's area over its squared longest side, below which its normal is rounding noise."""
 
 
 def faced_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Ints:
@@ -40,7 +39,11 @@ def faced_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Ints:
             break
         for at, row in changed.items():
             found[around[at]] = row
-        doubtful = np.union1d(turned, around[list(changed)])
+        # Of a triangle none of whose vertices are in a changed one, nothing is new.
+        rows = around[list(changed)]
+        near[:] = False
+        near[found[rows]] = True
+        doubtful = np.union1d(turned[touched(near, found[turned])], rows)
     return found.astype(np.int32)
 
 

@@ -54,16 +54,19 @@ def folds(tape: Tape, polygons: Polygons) -> Rows:
     return inverted(polygons, against(tape, polygons))
 
 
-def overturned(tape: Tape, polygons: Polygons) -> Rows:
+def overturned(tape: Tape, polygons: Polygons, rest: Ints | None = None) -> Rows:
     """(n,) rows of ``folds``, ``wrinkles`` and ``turned_over``, the last two where the surface is smooth.
 
-    For meshes without sharp edges: where edges are kept, normals turn at correct triangles, too.
+    For meshes without sharp edges: where edges are kept, normals turn at correct triangles, too. ``rest`` (t, 3) are
+    the triangles that close the mesh, where ``polygons`` is a part of it.
     """
     import numpy as np
 
     rows = doubtful(polygons)
+    if not len(rows):
+        return rows
     facing_in = rows[facing(tape, polygons.vertices[polygons.triangles[rows]]) < 0.0]
-    found = np.union1d(inverted(polygons, facing_in), wrinkles(polygons, facing_in))
+    found = np.union1d(inverted(polygons, facing_in, rest), wrinkles(polygons, facing_in))
     return np.union1d(found, turned_over(polygons, rows))
 
 
@@ -116,8 +119,11 @@ def turned_over(polygons: Polygons, rows: Rows) -> Rows:
     return told
 
 
-def inverted(polygons: Polygons, rows: Rows) -> Rows:
-    """Rows, among ``rows`` (n,), of triangles whose outer side lies inside the closed mesh, by its winding number."""
+def inverted(polygons: Polygons, rows: Rows, rest: Ints | None = None) -> Rows:
+    """Rows, among ``rows`` (n,), of triangles whose outer side lies inside the closed mesh, by its winding number.
+
+    ``rest`` (t, 3): further triangles that close it.
+    """
     import numpy as np
 
     if not len(rows):
@@ -125,7 +131,9 @@ def inverted(polygons: Polygons, rows: Rows) -> Rows:
     a, b, c = (polygons.vertices[polygons.triangles[rows, k]] for k in range(3))
     across = np.cross(b - a, c - a)
     sizes = np.linalg.norm(across, axis=1, keepdims=True)
-    around = winding((a + b + c) / 3.0 + OFF * across / np.sqrt(sizes), polygons.vertices, polygons.triangles)
+    around = np.zeros(len(rows), dtype=np.int64)
+    for triangles in (polygons.triangles,) if rest is None else (polygons.triangles, rest):
+        around += winding((a + b + c) / 3.0 + OFF * across / np.sqrt(sizes), polygons.vertices, triangles)
     found: Rows = rows[around != 0]
     return found
 

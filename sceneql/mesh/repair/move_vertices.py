@@ -5,9 +5,10 @@ from __future__ import annotations
 from math import inf
 from typing import TYPE_CHECKING
 
-from sceneql.field.tape.tape_solid import field_values, many_gradients
+from sceneql.field.tape.tape_solid import field_values, many_gradients, scratch
 from sceneql.mesh.polygons import Polygons, touched
-from sceneql.mesh.repair.flips import faced_outward, facing, inward
+from sceneql.mesh.repair.flips import faced_outward, inward
+from sceneql.mesh.repair.move_kernels import STEPS
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 
     Rows = NDArray[np.int64]
 
-STEPS = 4
-"""Newton steps towards the surface."""
 ROUNDS = 8
 MOST = 256
 """Most inward facing triangles for which vertices are moved; more arise from a field too fine for its cells."""
@@ -106,22 +105,11 @@ class Stars:
 
 
 def _moved(tape: Tape, places: Floats, normals: Floats, star: Ints, vertex: int) -> bool:
-    """Move a vertex of the triangles ``star`` (n, 3) if that improves the worst of them; returns whether it moved.
-
-    Newton's method may move it by at most the length of its longest edge.
-    """
+    """Move a vertex of the triangles ``star`` (n, 3) as the kernel ``move`` does; returns whether it moved."""
     import numpy as np
 
-    at = places[star]
-    before = facing(tape, at).min()
-    if before > 0.0:
-        return False
-    middle = places[np.setdiff1d(star, [vertex])].mean(axis=0)
-    reach = np.linalg.norm(at - places[vertex], axis=-1).max()
-    choices, slopes = settled(tape, places[vertex] + np.array(SHARES)[:, None] * (middle - places[vertex]), reach)
-    after = np.where((star == vertex)[:, :, None], choices[:, None, None], at)
-    gains = facing(tape, after.reshape(-1, 3, 3)).reshape(len(choices), -1).min(axis=1) - before
-    best = int(np.argmax(gains))
-    if gains[best] > 0.0:
-        places[vertex], normals[vertex] = choices[best], slopes[best]
-    return bool(gains[best] > 0.0)
+    from sceneql.mesh.repair.move_kernels import move
+
+    program = tape.code, tape.constants, tape.parts, scratch(tape)
+    star = star.astype(np.int64)
+    return bool(move(*program, places, normals, star, vertex, np.array(SHARES), np.empty((4, 3))))

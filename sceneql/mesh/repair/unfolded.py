@@ -1,10 +1,14 @@
-"""Folds of marching cubes' meshes, repaired by moving vertices along the surface. Imports numpy and numba."""
+"""Folds of marching cubes' meshes: vertices move along the surface, edges are flipped, the last ones collapsed.
+
+Imports numpy and numba.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from sceneql.mesh.polygons import Polygons, touched
+from sceneql.mesh.repair.collapse import collapsed
 from sceneql.mesh.repair.flips import faced_outward
 from sceneql.mesh.repair.folds import overturned
 from sceneql.mesh.repair.move_vertices import settled
@@ -20,6 +24,8 @@ if TYPE_CHECKING:
 ROUNDS = 12
 WIDENED = 3
 """Rounds after which the vertices one ring farther out are moved too."""
+RINGS = ROUNDS // WIDENED + 2
+"""Rings around folds that are looked at: those that move in the last round, and one of triangles on either side."""
 MOST = 2**10
 """Most folds for which vertices are moved; more arise from a field too fine for its cells."""
 
@@ -27,24 +33,43 @@ MOST = 2**10
 def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
     """The mesh with vertices at folds moved along the surface to the means of their neighbors, and edges flipped.
 
-    Neither changes the topology. The best of ROUNDS rounds is returned, which may still have folds.
+    Edges of the folds that the best of ROUNDS rounds leaves are collapsed. Nothing of it changes the topology; some
+    folds may stay.
     """
     import numpy as np
 
-    best, best_rows = polygons, overturned(tape, polygons)
-    rows, found = best_rows, polygons
+    rows = overturned(tape, polygons)
+    if not 0 < len(rows) <= MOST:
+        return polygons
+    near = np.zeros(len(polygons.vertices), dtype=bool)
+    near[polygons.triangles[rows]] = True
+    for _ in range(RINGS):
+        near[polygons.triangles[touched(near, polygons.triangles)]] = True
+    part = touched(near, polygons.triangles)
+    some, rest = polygons.triangles[part], polygons.triangles[~part]
+    found = Polygons(polygons.vertices, some, polygons.normals)
+    rows = (np.cumsum(part) - 1)[rows]
+    best, best_rows = found, rows
     for turn in range(ROUNDS):
-        if not 0 < len(rows) <= MOST:
-            break
-        near = np.zeros(len(polygons.vertices), dtype=bool)
+        near[:] = False
         near[found.triangles[rows]] = True
         for _ in range(turn // WIDENED):
             near[found.triangles[touched(near, found.triangles)]] = True
         found = _relaxed(tape, found, near)
-        rows = overturned(tape, found)
+        rows = overturned(tape, found, rest)
         if len(rows) < len(best_rows):
             best, best_rows = found, rows
-    return best
+        if not 0 < len(rows) <= MOST:
+            break
+    best = collapsed(tape, best, best_rows, rest)
+    if len(best.triangles) == len(some):
+        triangles = polygons.triangles.copy()
+        triangles[part] = best.triangles
+        return Polygons(best.vertices, triangles, best.normals)
+    triangles = np.concatenate([rest, best.triangles])
+    used = np.zeros(len(best.vertices), dtype=bool)
+    used[triangles] = True
+    return Polygons(best.vertices[used], (np.cumsum(used) - 1)[triangles].astype(np.int32), best.normals[used])
 
 
 def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_]) -> Polygons:

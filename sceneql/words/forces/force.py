@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from sceneql.bodies.place import model_of, place_of, place_problems
 from sceneql.island.static_rates import On, by_formulas
@@ -25,6 +25,11 @@ class Force(Family):
     [m]), vx vy vz (velocity [m/s]), t (time [s]) and m (mass [kg]) are plain numbers in the formulas. What a force by
     components does to the masses is counted in the work, so that the energy is conserved with both.
     """
+
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("start", "end", "until", "duration", "from", "to", "begin"),
+        "a formula says when, from 1 s to 2 s `components: [where((t > 1)*(t < 2), 5, 0), 0, 0]`",
+    )
 
     components: Annotated[Formula, Symbols(SYMBOLS, dim.FORCE, several=True)] | None = field(
         "`[fx, fy, fz]`: its components [N].", None

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Color, FixedLength, Material, Moment, Scalar, field
 from sceneql.shapes.color import linear
@@ -13,6 +14,10 @@ if TYPE_CHECKING:
 
 class Checker(Material):
     """Squares of two colors in the world's x and z (and y, off horizontal faces), one with a corner at the origin."""
+
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("scale", "tiles", "count", "repeat", "frequency"), "the side of a square is its `size: 0.5 m`"
+    )
 
     color: Color = field("Color of the first squares.", "0.84 0.84 0.85")
     other: Color = field("Color of the squares between.", "0.58 0.59 0.61")

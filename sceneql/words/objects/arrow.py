@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 from sceneql.kinds import FixedScalar, Length, Moment, Object, Position, Quantity, Value, Words, field
@@ -30,6 +30,10 @@ class Arrow(Object):
     """
 
     decorates: ClassVar[bool] = True
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("to", "end", "head", "tip"),
+        "it goes from `at` by a vector, here the tip's place less that of `at`: `vector: b.position - a.position`",
+    )
 
     at: Position = field("Where it begins.", "0 0 0 m")
     vector: Vector = field("What it shows.")

@@ -25,10 +25,16 @@ class Plane(Object):
     collides: ClassVar[bool] = True
     grounds: ClassVar[bool] = True
 
-    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
-        ("size", "width", "length", "depth", "sides"),
-        "it is endless; a plate is a flat box, `{box: {size: 4 0.1 4 m}}`",
-    )
+    said_by: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("size", "width", "length", "depth", "sides"),
+            "it is endless; a plate is a flat box, `{box: {size: 4 0.1 4 m}}`",
+        ),
+        **dict.fromkeys(
+            ("rotation", "rotate", "angle", "tilt", "slope", "inclination"),
+            "it is tilted by its normal, by 20 deg about z: `normal: [-sin(20 deg), cos(20 deg), 0]`",
+        ),
+    }
 
     height: Length = field("How far along its normal it lies from `position`.", "0 m")
     position: Position = field("A point that `height` counts from.", "0 0 0 m")
