@@ -37,6 +37,8 @@ MANY = 20_000
 """Number of discs from which on each has the same light all over: so many are small. From half of that on the places of
 a disc come together, so that smoke that grows looks on as it did."""
 UP = np.array([0.0, 1.0, 0.0])
+BULB = 1.002
+"""Radius of a ball that shows a lamp, at most, relative to the lamp's."""
 STEEPEST = 0.8
 """Largest change of the light by a radius, relative to that in the middle: no edge of a disc is black."""
 
@@ -47,8 +49,8 @@ def lit(
     """Radiance (n, 3), over the discs' colors, in the middle of discs, and its change by a radius to the right and up.
 
     A place of a disc is as bright as a matte wall that faces the lamp, or all of the sky; less by what the shape's
-    discs hide of these, as they hide from a camera what is behind them, and by the ``shadows`` of solids in its middle.
-    ``axes``: of the view.
+    discs hide of these, as they hide from a camera what is behind them, and of lamps by the ``shadows`` of solids on
+    its middle. ``axes``: of the view.
     """
     small = min(max(2.0 - 2.0 * len(shape.centers) / MANY, 0.0), 1.0)
     offsets = (PLACES[: 5 if small > 0.0 else 1] * (small, small, 1.0)) @ axes
@@ -58,7 +60,7 @@ def lit(
     for towards, irradiance, ways in _lamps(places, lights):
         left = left_at(places, shape, towards)
         if shadows is not None:
-            left *= np.repeat(shadows(shape.centers, ways(shape.centers)), len(offsets))
+            left *= np.repeat(shadows(*_beyond(shape, ways(shape.centers))), len(offsets))
         given += irradiance / np.pi * left[:, None]
     for way in directions(AROUND) if skies else ():
         radiance = np.sum([_radiance(sky, float(way[1])) for sky in skies], axis=0) / AROUND
@@ -88,17 +90,27 @@ def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Floa
             yield towards / far if far > 0 else UP, np.array(light.intensity) / square[:, None], ways
 
 
+def _beyond(shape: Points, ways: Floats) -> tuple[Floats, Floats]:
+    """Places (n, 3) where ways (n, 4) leave their discs, and what is left of the ways.
+
+    So what cuts through a disc throws no shadow on it, and none is black whose middle is just under a surface.
+    """
+    inside = np.minimum(shape.radii, ways[:, 3])
+    rest = ways - inside[:, None] * (0.0, 0.0, 0.0, 1.0)
+    return shape.centers + inside[:, None] * ways[:, :3], rest
+
+
 def _to_sun(way: Floats, places: Floats) -> Floats:
     """The one way (4,) for each of places (n, 3)."""
     return np.tile(way, (len(places), 1))
 
 
 def _to_point(position: Floats, radius: float, places: Floats) -> Floats:
-    """Ways (n, 4) from places (n, 3) to a lamp, up to its surface."""
+    """Ways (n, 4) from places (n, 3) to a lamp, up to a ball that shows it."""
     away = position - places
     far = np.sqrt((away * away).sum(axis=1))
     unit = np.where(far[:, None] > 0, away / np.maximum(far, 1e-300)[:, None], UP)
-    return np.column_stack([unit, np.maximum(far - radius, 0.0)])
+    return np.column_stack([unit, np.maximum(far - BULB * radius, 0.0)])
 
 
 def _radiance(sky: Sky, height: float) -> Floats:
