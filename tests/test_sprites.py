@@ -119,6 +119,33 @@ def test_many_discs_have_the_light_of_few():
     assert one[0].mean() == pytest.approx(other[0].mean(), rel=0.02)
 
 
+@pytest.mark.parametrize("lamp", ["sun", "point"])
+def test_a_solid_throws_its_shadow_on_smoke(lamp):
+    """Where it stands in the light, not beyond the lamp, nor where it cuts through a disc from behind."""
+    lights = {"sun": Sun((1.0, 0.0, 0.0), (3.0,) * 3, 0.0), "point": PointLight((1.5, 0.0, 0.0), (6.0,) * 3, 0.1)}
+
+    def middle(*at, radius=0.15):
+        ball = Points("b", WHITE, np.array([at]), np.full(1, radius))
+        return seen_in(lights[lamp], shapes=[ball, smoke((0, 0, 0.05), radius=0.1)])[SIDE // 2, SIDE // 2, 0]
+
+    plain = middle(0.0, 0.9, 0.0)
+    assert plain > 0.1
+    assert middle(0.7, 0.0, 0.05) < 0.01 * plain
+    assert middle(-0.7, 0.0, 0.05) == plain
+    assert middle(0.0, 0.0, 0.0, radius=0.06) > 0.5 * plain  # it fades where it is cut
+    if lamp == "point":
+        assert middle(1.5, 0.0, 0.0, radius=0.1) == middle(2.5, 0.0, 0.05) == plain
+
+
+def test_the_light_of_smoke_that_grows_does_not_jump():
+    rng = np.random.default_rng(3)
+    sheet = np.column_stack([rng.uniform(-1, 1, (MANY, 2)), np.zeros(MANY)])
+    side = Sun((0.8, 0.0, 0.6), (1.0,) * 3, 0.0)
+    many, few = (lit(smoke(*sheet[:n], opacity=0.01, radius=0.05), (side,), np.eye(3)) for n in (MANY, MANY - 1))
+    for one, other in zip(many, few, strict=True):
+        np.testing.assert_allclose(one[: MANY - 1], other, atol=5e-3)
+
+
 def test_glowing_discs_take_no_light():
     glow = Surface(color=(0.0, 0.0, 0.0), emission=(0.4, 0.4, 0.4))
     discs = [smoke((0, 0, 0), (0.1, 0, 0.2), surface=glow)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,9 +12,12 @@ from sceneql.frame import PointLight, Sky, Sun
 from sceneql.pictures.framing import axes_towards
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from sceneql.frame import Floats, LightSource, Points
+
+    Shadows = Callable[[Floats, Floats], Floats]
+    """Shares (n,) that solids leave of light at places (n, 3), by ways (n, 4): unit vectors to a lamp and distances."""
 
 AROUND = 14
 """Number of directions, evenly over the sphere, from which the sky's light comes."""
@@ -30,24 +34,34 @@ PLACES = np.array([(0.0, 0.0, FRONT), (OUT, 0.0, FRONT), (-OUT, 0.0, FRONT), (0.
 """Those places, to the right, up and back."""
 
 MANY = 20_000
-"""Number of discs from which on each has the same light all over: so many are small."""
+"""Number of discs from which on each has the same light all over: so many are small. From half of that on the places of
+a disc come together, so that smoke that grows looks on as it did."""
+UP = np.array([0.0, 1.0, 0.0])
+BULB = 1.002
+"""Radius of a ball that shows a lamp, at most, relative to the lamp's."""
 STEEPEST = 0.8
 """Largest change of the light by a radius, relative to that in the middle: no edge of a disc is black."""
 
 
-def lit(shape: Points, lights: Sequence[LightSource], axes: Floats) -> tuple[Floats, Floats, Floats]:
+def lit(
+    shape: Points, lights: Sequence[LightSource], axes: Floats, shadows: Shadows | None = None
+) -> tuple[Floats, Floats, Floats]:
     """Radiance (n, 3), over the discs' colors, in the middle of discs, and its change by a radius to the right and up.
 
     A place of a disc is as bright as a matte wall that faces the lamp, or all of the sky; less by what the shape's
-    discs hide of these, as they hide from a camera what is behind them. Solids throw no shadow on discs. ``axes``: of
-    the view.
+    discs hide of these, as they hide from a camera what is behind them, and of lamps by the ``shadows`` of solids on
+    its middle. ``axes``: of the view.
     """
-    offsets = PLACES[: 1 if len(shape.centers) >= MANY else None] @ axes
+    small = min(max(2.0 - 2.0 * len(shape.centers) / MANY, 0.0), 1.0)
+    offsets = (PLACES[: 5 if small > 0.0 else 1] * (small, small, 1.0)) @ axes
     places = (shape.centers[:, None] + shape.radii[:, None, None] * offsets).reshape(-1, 3)
     given = np.zeros((len(places), 3))
     skies = [light for light in lights if isinstance(light, Sky)]
-    for towards, irradiance in _lamps(places, lights):
-        given += irradiance / np.pi * left_at(places, shape, towards)[:, None]
+    for towards, irradiance, ways in _lamps(places, lights):
+        left = left_at(places, shape, towards)
+        if shadows is not None:
+            left *= np.repeat(shadows(*_beyond(shape, ways(shape.centers))), len(offsets))
+        given += irradiance / np.pi * left[:, None]
     for way in directions(AROUND) if skies else ():
         radiance = np.sum([_radiance(sky, float(way[1])) for sky in skies], axis=0) / AROUND
         given += radiance * left_at(places, shape, way)[:, None]
@@ -60,18 +74,43 @@ def lit(shape: Points, lights: Sequence[LightSource], axes: Floats) -> tuple[Flo
     return middle, part * right, part * up
 
 
-def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Floats, Any]]:
-    """Direction (3,) towards each lamp from the middle of places (n, 3), and irradiance (3,), or (n, 3) at each."""
+def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Floats, Any, Callable[[Floats], Floats]]]:
+    """Direction (3,) to each lamp from the middle of places (n, 3); irradiance (3,), or (n, 3) at each; and its ways."""
     middle = places.mean(axis=0) if len(places) else np.zeros(3)
     for light in lights:
         if isinstance(light, Sun):
-            yield np.array(light.direction), np.array(light.irradiance)
+            way = np.array([*light.direction, np.inf])
+            yield way[:3], np.array(light.irradiance), partial(_to_sun, way)
         elif isinstance(light, PointLight):
             away = np.array(light.position) - places
             square = np.maximum((away * away).sum(axis=1), max(light.radius, 1e-6) ** 2)
             towards = np.array(light.position) - middle
             far = float(np.linalg.norm(towards))
-            yield towards / far if far > 0 else np.array([0.0, 1.0, 0.0]), np.array(light.intensity) / square[:, None]
+            ways = partial(_to_point, np.array(light.position), light.radius)
+            yield towards / far if far > 0 else UP, np.array(light.intensity) / square[:, None], ways
+
+
+def _beyond(shape: Points, ways: Floats) -> tuple[Floats, Floats]:
+    """Places (n, 3) where ways (n, 4) leave their discs, and what is left of the ways.
+
+    So what cuts through a disc throws no shadow on it, and none is black whose middle is just under a surface.
+    """
+    inside = np.minimum(shape.radii, ways[:, 3])
+    rest = ways - inside[:, None] * (0.0, 0.0, 0.0, 1.0)
+    return shape.centers + inside[:, None] * ways[:, :3], rest
+
+
+def _to_sun(way: Floats, places: Floats) -> Floats:
+    """The one way (4,) for each of places (n, 3)."""
+    return np.tile(way, (len(places), 1))
+
+
+def _to_point(position: Floats, radius: float, places: Floats) -> Floats:
+    """Ways (n, 4) from places (n, 3) to a lamp, up to a ball that shows it."""
+    away = position - places
+    far = np.sqrt((away * away).sum(axis=1))
+    unit = np.where(far[:, None] > 0, away / np.maximum(far, 1e-300)[:, None], UP)
+    return np.column_stack([unit, np.maximum(far - BULB * radius, 0.0)])
 
 
 def _radiance(sky: Sky, height: float) -> Floats:
