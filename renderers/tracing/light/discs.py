@@ -75,7 +75,7 @@ def lit(
 
 
 def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Floats, Any, Callable[[Floats], Floats]]]:
-    """Direction (3,) to each lamp from the middle of places (n, 3); irradiance (3,), or (n, 3) at each; and its ways."""
+    """Direction (3,) to each lamp from the middle of places (n, 3), irradiance (3,) or (n, 3), and its ways."""
     middle = places.mean(axis=0) if len(places) else np.zeros(3)
     for light in lights:
         if isinstance(light, Sun):
