@@ -22,7 +22,9 @@ from sceneql.compiler.unknown import (
     mover_of,
     part_meant,
     report_unknown,
+    several_meant,
     those_of,
+    warn_of_another,
     word_having,
     word_meant,
 )
@@ -121,6 +123,7 @@ class _Checker:
             mover=lambda name: mover_of(name, self.entries, self.family_of),
             unsure=cache(self.unsure),  # cached: it reads a whole part, which many may name
             parsed=parsed,
+            having=catalogue.having,
         )
 
     def unsure(self, name: str) -> bool:
@@ -217,7 +220,7 @@ class _Checker:
             if entry.word in self.templates:
                 hint: str | None = "it is a template: what is made of it stands under 'parts:'"
             else:
-                hint = word_meant(entry, family, self.catalogue, self.family_of)
+                hint = word_meant(entry, family, self.catalogue, self.family_of, self.script)
             self.found.error(
                 "unknown-word",
                 f"'{entry.word}' is no word of {family}",
@@ -324,6 +327,7 @@ class _Checker:
             if name in self.entries and self.family(name) in (mark.family, mark.also):
                 return Ref(name, node.span)
             if name not in self.entries and self.catalogue.load(mark.family, node.text) is not None:
+                warn_of_another(node, mark.family, entry.name, self.entries, self.family_of, self.found)
                 in_place = Entry(anonymous, node.text, None, node.span, node.span, entry.scope)
                 return self._in_place(in_place, mark.family)
             if name in OPTIONAL and name not in self.entries and "objects" in (mark.family, mark.also):
@@ -341,10 +345,7 @@ class _Checker:
         if mark.bodies and isinstance(node, SequenceNode):
             self.found.error("entry-shape", "a place is no body", node.span, help=beside_world(node.span.text))
             return None
-        together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
-        help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
-        if isinstance(node, SequenceNode) and len(node.items) == 1:
-            help = f"write `{node.items[0].span.text}`"
+        help = several_meant(node, mark, entry, self.catalogue) if isinstance(node, SequenceNode) else None
         if isinstance(node, MappingNode):
             help = word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)

@@ -20,7 +20,7 @@ from sceneql.compiler.annotations import example_of, first_field, is_fixed, mark
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
-from sceneql.quantities.diagnostic import Diagnostics, suggestion
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
 from sceneql.quantities.instead import instead
 
 TRUE = ("true", "yes", "on")
@@ -28,8 +28,57 @@ _NAME = r"[^\W\d][\w.]*"
 _NAMES = re.compile(rf"{_NAME}(?:\s*[-+&|*/,]\s*{_NAME})+")
 _MEASURED = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*[^\W\d].*")
 _NUMBERS = re.compile(r"((?:[-+]?[\d.]+(?:[eE][-+]?\d+)?\s+)*[-+]?[\d.]+(?:[eE][-+]?\d+)?)\s+[^\W\d]\S*")
+OF_FORM = (
+    "dimension-mismatch",
+    "missing-value",
+    "syntax",
+    "unit-needed",
+    "unknown-color",
+    "unknown-output",
+    "unknown-unit",
+    "wrong-count",
+    "wrong-shape",
+)
+"""Codes of errors of a value that may be meant for a field though it does not take it so."""
+SHOWN = 60
+"""Longest value that a message repeats behind the field that is meant."""
 NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
+
+
+def renamed(reader: Any, cls: type[BaseModel], name: str, node: Node) -> tuple[bool, str]:
+    """Whether a field of a record takes a value, and the help that offers the field in place of the one written."""
+    info = next(info for key, info in cls.model_fields.items() if kinds.written_name(key) == name)
+    wrong, text = _wrong(reader, node, info, name), node.span.text
+    fits = wrong is None
+    if fits and "\n" not in text and len(text) <= SHOWN:
+        return True, f"did you mean `{name}: {text}`?"
+    helps = [one.help for one in wrong or () if one.help is not None and _of_its_kind(one)]
+    if len(helps) == 1:
+        return False, f"did you mean '{name}'? For its value {helps[0]}"
+    example = "..." if fits else example_of(cls, name)
+    shown = "" if example == "..." else f", as in `{name}: {example}`"
+    return fits, f"did you mean '{name}'{shown}?"
+
+
+def _of_its_kind(wrong: Diagnostic) -> bool:
+    """Whether an error of a value tells that the field was meant, with another form of its value."""
+    return wrong.code in OF_FORM or (wrong.code == "unknown-name" and "is a part" in wrong.message)
+
+
+def _wrong(reader: Any, node: Node, info: Any, name: str) -> tuple[Diagnostic, ...] | None:
+    """The errors of a value as that of a field of any type; None where the field takes it."""
+    nothing = Diagnostics()
+    names = replace(reader.names, found=nothing)
+
+    def refer(node: Node, mark: kinds.Refers, anonymous: str) -> kinds.Ref | None:
+        return kinds.Ref(node.text, node.span) if isinstance(node, Scalar) and node.text in names.parts else None
+
+    trial = replace(reader, found=nothing, names=names, refer=refer, files=[])
+    with suppress(Unreadable):
+        trial.field(node, info, name)
+        return nothing.errors or None
+    return nothing.errors
 
 
 def first_of(name: str, node: Node) -> str | None:
@@ -82,7 +131,15 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         if len(plain) == 1:
             return f"it has no unit: write `{{{kinds.written_name(plain[0])}: {number[1]}}}`"
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
-    return f"write `{{{likely[0]}: {node.span.text}}}`" if len(likely) == 1 else None
+    if len(likely) != 1:
+        return None
+    text = node.span.text
+    info = next(info for key, info in cls.model_fields.items() if kinds.written_name(key) == likely[0])
+    extra: Any = info.json_schema_extra or {}
+    above = {"above", "at_least"} & extra.get("limits", {}).keys()
+    if text.startswith("-") and above and (why := instead("negative", likely[0])) is not None:
+        return f"write `{{{likely[0]}: {text[1:].strip()}}}`: {why}"
+    return f"write `{{{likely[0]}: {text}}}`"
 
 
 def _listing(cls: type[BaseModel], name: str) -> bool:
@@ -101,6 +158,17 @@ def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> 
     if len(found) != 1:
         return None
     return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
+
+
+def for_each(reader: Any, node: Node, cls: type[BaseModel], name: str, title: str) -> str | None:
+    """The help for values by the names of parts where a part has one for all that it joins."""
+    if not isinstance(node, MappingNode) or "between" not in cls.model_fields or not node.entries:
+        return None
+    first, value = next(iter(node.entries.items()))
+    if first not in reader.names.parts:
+        return None
+    inner = f"{{between: [{first}, OTHER], {name}: {value.span.text}}}"
+    return f"it is one for all that touch: write a part for each pair, `{first}_hits: {{{title}: {inner}}}`"
 
 
 def direction_alone(node: Node) -> str | None:

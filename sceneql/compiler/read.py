@@ -10,6 +10,7 @@ import re
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -86,7 +87,13 @@ class Reader:
             known = [kinds.written_name(name) for name in cls.model_fields]
             said_by = cls.said_by if issubclass(cls, kinds.Record) else {}
             family = cls.family if issubclass(cls, kinds.Kind) else ""
-            ok = report_unknown(node, known, title, self.found, said_by, family) and not node.partial
+            counter = node.entries.get("repeat") if "repeat" not in known else None
+            number = counter.entries.get("as") if isinstance(counter, MappingNode) else None
+            if isinstance(number, Scalar):  # the copies' number is not known, which the field's error tells
+                self.names.broken.add(number.text)
+            renamed = partial(likely.renamed, self, cls)
+            ok = report_unknown(node, known, title, self.found, said_by, family, renamed, self.names.having)
+            ok = ok and not node.partial
             mistaken = {meant_field(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
@@ -111,6 +118,8 @@ class Reader:
                         key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
                     }
                     better = likely.elsewhere(self, written[name], info, rest)
+                    if better is None:
+                        better = likely.for_each(self, written[name], cls, name, title)
                     if better is None and self.found.found[before].message.endswith(PLANAR):
                         better = "a number is missing: it has one for each of x, y and z"
                     if better is None and self.found.found[before].message.startswith(f"{name}{SINGLE}"):
@@ -290,6 +299,9 @@ class Reader:
             help = f"write `{what}: [{', '.join(names)}]`"
         if help is None and count == 1 and isinstance(node, Scalar):
             help = f"write `{' '.join(len(arms) * [node.text])}`, one for each"
+            if node.text.isidentifier():  # a name
+                bodies = any(isinstance(mark, kinds.Refers) and mark.bodies for arm in arms for mark in unwrap(arm)[1])
+                help = f"write `{what}: [{node.text}, {'world' if bodies else '...'}]`"
         return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
 
     def _copies(self, node: Node, annotation: Any) -> list[Node]:

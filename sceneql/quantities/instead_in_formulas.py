@@ -104,6 +104,11 @@ OF_FORMULAS = (
     ("name", "about", "an axis is a field: `rotation: {about: z, angle: 30 deg}`"),
     ("name", "water", "water has a density of `1000 kg/m^3`, and a viscosity of `1e-3 Pa*s`"),
     ("name", "air", "air has a density of `1.2 kg/m^3`, and a viscosity of `1.8e-5 Pa*s`"),
+    (
+        "unit",
+        "lm lumen lumens cd candela lx lux",
+        "a lamp has its power in W, as a bulb does: one of 800 lm is `60 W`, one of 1600 lm `100 W`",
+    ),
     ("unit name", "cp cps centipoise poise", "a poise is `0.1 Pa*s`, a hundredth of it `1e-3 Pa*s`"),
     ("name", "G", "write `6.6743e-11 m^3/(kg*s^2)`, or define it so: `define: {G: 6.6743e-11 m^3/(kg*s^2)}`"),
     ("sign", '"', "an inch is `inch`, a foot `ft`: `4 2 1 inch`"),

@@ -78,7 +78,7 @@ OF_PARTS = (
     ),
     (
         "field.objects",
-        "hollow shell wall_thickness inner_radius outer_radius",
+        "hollow shell wall_thickness thickness inner_radius outer_radius",
         "cut it out: `{difference: {of: [outer, inner]}}`: `sceneql words difference`",
     ),
     (
@@ -250,7 +250,14 @@ OF_PARTS = (
         "surfaces are exact and need no finer mesh; `union`, `difference`, `bend`, `twist` and `taper` make objects of"
         " objects",
     ),
-    ("field", "start", "it begins at 0 s"),
+    ("field.outputs", "start", "it begins at 0 s"),
+    (
+        "field.objects",
+        "$fn $fa $fs rings ring_count facets slices stacks tessellation resolution"
+        " detail widthsegments heightsegments radialsegments u_segments v_segments smooth_shading",
+        "leave it out: surfaces are exact and not made of triangles",
+    ),
+    ("field.objects", "center centered", "it is centered about its `position`: leave it out"),
     (
         "field.objects",
         "radius_top radius_bottom top_radius bottom_radius radiustop radiusbottom r1 r2",
@@ -347,7 +354,7 @@ OF_PARTS = (
         "pendulum double_pendulum",
         "its equation is a model, `sceneql words equations`; or a body hangs on a tie, `sceneql words hinge`",
     ),
-    ("entry", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
+    ("named", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
     (
         "list",
         "gravity",

@@ -72,6 +72,7 @@ _LISTS = (
     ("softening", "eps epsilon soften"),
     ("constant", "g gravitational_constant"),
     ("within", "source emitter nozzle"),
+    ("because", "source reason why comment note"),
     ("value", "temperature temp concentration impulse momentum equals equal is expected target eq"),
     ("below", "less_than at_most"),
     ("on", "of model models body bodies target membrane skin to"),
