@@ -356,6 +356,12 @@ def test_a_variant_that_diverges_by_its_solver_alone_leaves_the_picture_and_is_t
         assert "as 'honest', which differs in its solver alone" in one.message
         assert one.span is not None
         assert one.span.line == next(k for k, line in enumerate(text.splitlines(), 1) if "euler" in line)
+    honest, wrong = (Panel(graph.variant(name)) for name in ("honest", "wrong"))
+    for time, written in ((0.0, ""), (2.0, "leaves the picture from 0." if told else "")):
+        moment = replace(wrong.at(time), beside=(honest,))
+        moment.outline()
+        assert wrong.told(moment).startswith(written)
+        assert bool(wrong.told(moment)) == bool(written)
 
 
 @pytest.mark.parametrize("far", [1e308, math.inf, -math.inf, math.nan])
