@@ -167,3 +167,14 @@ def test_a_disc_that_is_nowhere_takes_no_light_from_the_others():
     burst = smoke((0, 0, 0), (0.1, 0, -0.6), (np.nan, 0, 0))
     sun = Sun((0.0, 0.0, 1.0), (3.0, 3.0, 3.0), 0.0)
     assert np.array_equal(seen_in(sun, shapes=[burst]), seen_in(sun, shapes=[sound]))
+
+
+def test_a_puff_that_drifts_away_changes_nothing_of_the_light_on_the_others():
+    rng = np.random.default_rng(5)
+    cloud = rng.uniform(-1.0, 1.0, (400, 3))
+    sun = Sun((0.8, 0.0, 0.6), (1.0,) * 3, 0.0)
+    alone = lit(smoke(*cloud, opacity=0.3, radius=0.1), (sun,), np.eye(3))
+    beside = lit(smoke(*cloud, (-90.0, 4.0, 7.0), opacity=0.3, radius=0.1), (sun,), np.eye(3))
+    for one, other in zip(alone, beside, strict=True):
+        np.testing.assert_allclose(one, other[:-1], atol=0.02)
+    assert beside[0][-1] == pytest.approx(1.0 / math.pi, rel=0.25)

@@ -28,6 +28,9 @@ SMALLEST = 0.75
 ORDERS = (4.0 / 7.0, 2.0 / 7.0, 1.0 / 7.0)
 """Weights of the transmittance, its root, and the root of that: light that is scattered again and again fades more
 slowly on its way (Wrenninge, Kulla and Lundqvist 2013, Oz: the great and volumetric)."""
+STRAYS, BESIDE, SAMPLED = 0.01, 0.5, 50_000
+"""Share of discs, at each side, that may lie outside of a map, so that a puff that drifts away makes it no coarser; how
+far it reaches beyond the others at least, relative to their extent; number of discs by which it is laid out."""
 OUT, FRONT = 0.6, 0.4
 """Distances from a disc's middle, across and towards the camera, at which its light is found [radii]."""
 PLACES = np.array([(0.0, 0.0, FRONT), (OUT, 0.0, FRONT), (-OUT, 0.0, FRONT), (0.0, OUT, FRONT), (0.0, -OUT, FRONT)])
@@ -75,7 +78,7 @@ def lit(
 
 
 def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Floats, Any, Callable[[Floats], Floats]]]:
-    """Direction (3,) to each lamp from the middle of places (n, 3); irradiance (3,), or (n, 3) at each; and its ways."""
+    """Direction (3,) to each lamp from the middle of places (n, 3), irradiance (3,) or (n, 3), and its ways."""
     middle = places.mean(axis=0) if len(places) else np.zeros(3)
     for light in lights:
         if isinstance(light, Sun):
@@ -129,7 +132,7 @@ def left_at(places: Floats, shape: Points, towards: Floats) -> Floats:
     reach = float(radii.max(initial=0.0))
     if not reach > 0 or not np.isfinite(discs).all():
         return np.ones(len(places))
-    low, high = discs[:, :2].min(axis=0) - reach, discs[:, :2].max(axis=0) + reach
+    low, high = _framed(discs[:, :2], reach)
     cell = max(float(np.median(radii)) / FINE, float((high - low).max()) / WIDEST)
     wide, tall = (int(side) + 2 for side in (high - low) / cell)
     both = np.concatenate([discs, asked])
@@ -138,9 +141,19 @@ def left_at(places: Floats, shape: Points, towards: Floats) -> Floats:
     left = np.ones(len(places))
     mapped = np.maximum(radii / cell, SMALLEST)
     thin_out(order, (both[:, :2] - low) / cell, mapped, opacity, np.ones((tall, wide)), left)
+    left[((asked[:, :2] < low) | (asked[:, :2] > high)).any(axis=1)] = 1.0
     root = np.sqrt(left)
     given: Floats = ORDERS[0] * left + ORDERS[1] * root + ORDERS[2] * np.sqrt(root)
     return given
+
+
+def _framed(discs: Floats, reach: float) -> tuple[Floats, Floats]:
+    """Low and high corner (2,) of a map of discs' middles (n, 2) of radii up to ``reach``, without a few strays."""
+    low, high = discs.min(axis=0), discs.max(axis=0)
+    some = discs[:: -(-len(discs) // SAMPLED)]
+    inner = np.quantile(some, (STRAYS, 1.0 - STRAYS), axis=0, method="lower")
+    beside = BESIDE * (inner[1] - inner[0]) + reach
+    return np.maximum(low - reach, inner[0] - beside), np.minimum(high + reach, inner[1] + beside)
 
 
 def seen_along(points: Floats, axes: Floats) -> Floats:
