@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from renderers.tracing.draw import draw
-from renderers.tracing.light.discs import MANY, ORDERS, left_at, lit
+from renderers.tracing.light.discs import MANY, ORDERS, left_around, left_at, lit
 from sceneql.frame import PointLight, Points, SeenFrame, Sky, Sun, Surface, View
 
 BLACK = Sky(zenith=(0, 0, 0), horizon=(0, 0, 0), ground=(0, 0, 0))
@@ -178,3 +178,24 @@ def test_a_puff_that_drifts_away_changes_nothing_of_the_light_on_the_others():
     for one, other in zip(alone, beside, strict=True):
         np.testing.assert_allclose(one, other[:-1], atol=0.02)
     assert beside[0][-1] == pytest.approx(1.0 / math.pi, rel=0.25)
+
+
+def test_the_light_of_a_lamp_in_the_midst_of_smoke_fades_on_all_sides_alike():
+    """By the mean over discs by chance, around a hollow, whose number before a place goes by its distance."""
+    rng, lamp = np.random.default_rng(11), np.array([0.13, -0.21, 0.34])
+
+    def ball(count):
+        points = rng.normal(size=(count, 3))
+        return points * rng.uniform(size=(count, 1)) ** (1 / 3) / np.linalg.norm(points, axis=1)[:, None]
+
+    cloud, asked = ball(8000), ball(8000)
+    cloud = cloud[np.linalg.norm(cloud, axis=1) > 0.25]
+    left = left_around(lamp + asked, smoke(*(lamp + cloud), opacity=0.2, radius=0.05), lamp)
+    away, q = np.linalg.norm(asked, axis=1), (np.arange(1000) + 0.5) / 1000
+    density, area = 8000 / (4 / 3 * math.pi), 2 * math.pi * 0.05**2 * q / 1000
+    fading = [density * (area * (1 - (1 - 0.2 * (1 - q * q) ** 2) ** power)).sum() for power in (1, 0.5, 0.25)]
+    for near in (0.4, 0.6, 0.8):
+        shell = (away > near) & (away < near + 0.2)
+        exact = sum(w * np.exp(-f * (near - 0.15)) for w, f in zip(ORDERS, fading, strict=True))
+        sides = [side * asked[:, k] > 0.5 * away for k in range(3) for side in (1, -1)]
+        np.testing.assert_allclose([left[shell & side].mean() for side in sides], exact, rtol=0.05)

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     Shadows = Callable[[Floats, Floats], Floats]
     """Shares (n,) that solids leave of light at places (n, 3), by ways (n, 4): unit vectors to a lamp and distances."""
+    Leave = Callable[[Floats, Points], Floats]
+    """Part (m,) of a lamp's light that a shape's discs leave at places (m, 3)."""
 
 AROUND = 14
 """Number of directions, evenly over the sphere, from which the sky's light comes."""
@@ -40,6 +42,9 @@ MANY = 20_000
 """Number of discs from which on each has the same light all over: so many are small. From half of that on the places of
 a disc come together, so that smoke that grows looks on as it did."""
 UP = np.array([0.0, 1.0, 0.0])
+ASLANT, CLOSE = 2.0**0.5, 0.5
+"""Largest distance of a disc from the side of a face's pyramid that it reaches, across the face, and least depth at
+which a disc is projected [radii]."""
 BULB = 1.002
 """Radius of a ball that shows a lamp, at most, relative to the lamp's."""
 STEEPEST = 0.8
@@ -60,8 +65,8 @@ def lit(
     places = (shape.centers[:, None] + shape.radii[:, None, None] * offsets).reshape(-1, 3)
     given = np.zeros((len(places), 3))
     skies = [light for light in lights if isinstance(light, Sky)]
-    for towards, irradiance, ways in _lamps(places, lights):
-        left = left_at(places, shape, towards)
+    for leave, irradiance, ways in _lamps(places, lights):
+        left = leave(places, shape)
         if shadows is not None:
             left *= np.repeat(shadows(*_beyond(shape, ways(shape.centers))), len(offsets))
         given += irradiance / np.pi * left[:, None]
@@ -77,20 +82,18 @@ def lit(
     return middle, part * right, part * up
 
 
-def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Floats, Any, Callable[[Floats], Floats]]]:
-    """Direction (3,) to each lamp from the middle of places (n, 3), irradiance (3,) or (n, 3), and its ways."""
-    middle = places.mean(axis=0) if len(places) else np.zeros(3)
+def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Leave, Any, Callable[[Floats], Floats]]]:
+    """What discs leave of each lamp, its irradiance (3,), or (n, 3) at each of places (n, 3), and its ways."""
     for light in lights:
         if isinstance(light, Sun):
             way = np.array([*light.direction, np.inf])
-            yield way[:3], np.array(light.irradiance), partial(_to_sun, way)
+            yield partial(left_at, towards=way[:3]), np.array(light.irradiance), partial(_to_sun, way)
         elif isinstance(light, PointLight):
-            away = np.array(light.position) - places
+            position = np.array(light.position)
+            away = position - places
             square = np.maximum((away * away).sum(axis=1), max(light.radius, 1e-6) ** 2)
-            towards = np.array(light.position) - middle
-            far = float(np.linalg.norm(towards))
-            ways = partial(_to_point, np.array(light.position), light.radius)
-            yield towards / far if far > 0 else UP, np.array(light.intensity) / square[:, None], ways
+            ways = partial(_to_point, position, light.radius)
+            yield partial(left_around, lamp=position), np.array(light.intensity) / square[:, None], ways
 
 
 def _beyond(shape: Points, ways: Floats) -> tuple[Floats, Floats]:
@@ -125,22 +128,56 @@ def _radiance(sky: Sky, height: float) -> Floats:
 
 def left_at(places: Floats, shape: Points, towards: Floats) -> Floats:
     """Part (m,) of the light from a direction (3,) that the shape's discs leave at places (m, 3)."""
+    axes = axes_towards(towards)
+    return _left(seen_along(shape.centers, axes), seen_along(places, axes), shape.radii, shape.opacity)
+
+
+def left_around(places: Floats, shape: Points, lamp: Floats) -> Floats:
+    """Part (m,) of the light of a lamp (3,) [m] that the shape's discs leave at places (m, 3).
+
+    On the faces of a cube around the lamp, of which one looks at the middle of the places. So the lamp may stand among
+    the discs; of those in which it stands the half before each face counts.
+    """
+    left = np.ones(len(places))
+    out = places.mean(axis=0) - lamp if len(places) else UP
+    axes = axes_towards(out if out.any() else UP)
+    discs, asked = seen_along(shape.centers - lamp, axes), seen_along(places - lamp, axes)
+    main = np.abs(asked).argmax(axis=1)
+    for face in range(6):
+        k, side = face // 2, 1.0 - 2.0 * (face % 2)
+        turned = [(k + 1) % 3, (k + 2) % 3, k]
+        mine = (main == k) & (side * asked[:, k] > 0.0)
+        x, y, z = discs[:, turned].T * ((1.0,), (1.0,), (side,))
+        met = (z > 0.0) & (np.maximum(np.abs(x), np.abs(y)) <= z + ASLANT * shape.radii)
+        if mine.any() and met.any():
+            seen, before = asked[mine][:, turned] * (1.0, 1.0, side), np.maximum(z, CLOSE * shape.radii)[met]
+            places_there = np.column_stack([seen[:, :2] / seen[:, 2:], -seen[:, 2]])
+            aside = np.sqrt(x * x + y * y + z * z)[met] / before  # off the middle a face shows more of a disc
+            discs_there = np.column_stack([x[met] / before, y[met] / before, -z[met]])
+            radii = shape.radii[met] / before * np.sqrt(np.maximum(aside, 1.0))
+            left[mine] = _left(discs_there, places_there, radii, shape.opacity, 1.0)
+    return left
+
+
+def _left(discs: Floats, asked: Floats, radii: Floats, opacity: float, most: float = np.inf) -> Floats:
+    """Part (m,) of light from where depths are largest that discs (n, 3) leave at places asked for (m, 3).
+
+    Both are across, along and in depth, with ``radii`` (n,) across; their map reaches to ``most`` on each side.
+    """
     from renderers.tracing.light.discs_kernels import thin_out
 
-    axes = axes_towards(towards)
-    discs, asked, radii = seen_along(shape.centers, axes), seen_along(places, axes), shape.radii
     reach = float(radii.max(initial=0.0))
     if not reach > 0 or not np.isfinite(discs).all():
-        return np.ones(len(places))
-    low, high = _framed(discs[:, :2], reach)
+        return np.ones(len(asked))
+    low, high = (np.clip(corner, -most, most) for corner in _framed(discs[:, :2], reach))
     cell = max(float(np.median(radii)) / FINE, float((high - low).max()) / WIDEST)
     wide, tall = (int(side) + 2 for side in (high - low) / cell)
-    both = np.concatenate([discs, asked])
+    both = np.ascontiguousarray(np.concatenate([discs, asked]))
     order = np.argsort(-both[:, 2], kind="stable")
-    opacity = shape.opacity * np.minimum(radii / cell / SMALLEST, 1.0) ** 2
-    left = np.ones(len(places))
+    covering = opacity * np.minimum(radii / cell / SMALLEST, 1.0) ** 2
+    left = np.ones(len(asked))
     mapped = np.maximum(radii / cell, SMALLEST)
-    thin_out(order, (both[:, :2] - low) / cell, mapped, opacity, np.ones((tall, wide)), left)
+    thin_out(order, (both[:, :2] - low) / cell, mapped, covering, np.ones((tall, wide)), left)
     left[((asked[:, :2] < low) | (asked[:, :2] > high)).any(axis=1)] = 1.0
     root = np.sqrt(left)
     given: Floats = ORDERS[0] * left + ORDERS[1] * root + ORDERS[2] * np.sqrt(root)
