@@ -41,7 +41,7 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     put,
     see,
     turning,
-    weighed,
+    weighed_by,
     write_row,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
@@ -56,14 +56,17 @@ factor_dense = lazy("sceneql.linear.dense_symmetric_kernels:factor", types.boole
 solve_dense = lazy("sceneql.linear.dense_symmetric_kernels:solve", types.void(A, N, A))
 
 MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, STARTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(10)
-MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, EASE_AT, HEAD = range(10, 21)
+MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, EASE_AT, TIE_AT, HEAD = range(10, 22)
 """Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where each
 begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes of
 what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels). Few rows have a
-matrix that is whole, its factors in place, and no plan. A mover that ties
-share: their number n and its own; of each tie its first row, how many it has, their floats at its side; then n x n
-places in a row of the first where the rows of the second begin, counted from that row's first value (-1: what stands
-there is not read)."""
+matrix that is whole, its factors in place, and no plan. A mover that ties share: their number n and its own; of each
+tie OF_TIE: its first row, how many it has, their floats at its side, and how many rows at its beginning are those of a
+BALL where all others leave the places alone (-1: others do not); then n x n places in a row of the first where the rows
+of the second begin, counted from that row's first value (-1: what stands there is not read)."""
+OF_TIE = 4
+MOST_ROWS = 6
+"""Most rows of a tie."""
 
 KEPT = 12
 """Floats of a row that drifts keep of where they began: J."""
@@ -98,6 +101,31 @@ def survey(t, y, floats, ints):
         write_row(floats, ints, row, a, b)
 
 
+@lean_inlined
+def add_block(values, begins, place, upright, floats, to, t, others, units, same):
+    """Add J of a tie, at floats[to:] and behind, times T of another to their block, or to that turned over.
+
+    ``place``: of its values in the rows that begin at ``begins``; ``others``: how many rows the other tie has;
+    ``units``: rows of both that alone know places (-1: any); of one with the ``same`` the half.
+    """
+    columns = others if upright else begins.size
+    for j in range(columns):
+        here = t[6 * j : 6 * j + 6]
+        x, y, z, u, v, w = here[0], here[1], here[2], here[3], here[4], here[5]
+        rows = begins.size if upright else others
+        if same:
+            rows = j + 1 if upright else j
+        for i in range(rows):
+            six = floats[to + ROW * i : to + ROW * i + 6]
+            total = six[3] * u + six[4] * v + six[5] * w
+            if units < 0 or (i < units and j < units):
+                total += six[0] * x + six[1] * y + six[2] * z
+            if upright:
+                values[begins[i] + place + j] += total
+            else:
+                values[begins[j] + place + i] += total
+
+
 @lean(types.void(A, I))
 def fill(floats, ints):
     """Write J T, at least the half of it that is read."""
@@ -105,26 +133,32 @@ def fill(floats, ints):
     for k in range(values.size):
         values[k] = 0.0
     at, starts = ints[SHARED_AT], ints[STARTS_AT]
+    # T is kept of one tie alone: the rows of a long chain do not fit into the caches, and memory is what bounds it.
+    t = floats[ints[TIE_AT] : ints[TIE_AT] + 6 * MOST_ROWS]
+    # Of a tie's own block the other half is read where its rows are eliminated in any order.
+    mixed = ints[FACTORS] > 0 and ints[ints[PLAN_AT] + layout.UNIT] == 1
     for _ in range(ints[SHARED]):
         count, mover = ints[at], ints[MOVED_AT] + MOVED * ints[at + 1]
-        table = at + 2 + 3 * count
+        table = at + 2 + OF_TIE * count
+        m = floats[mover : mover + MOVED]
         for other in range(count):
-            last, columns, own = ints[at + 2 + 3 * other], ints[at + 3 + 3 * other], ints[at + 4 + 3 * other] + AT_J
+            which = ints[at + 2 + OF_TIE * other : at + 2 + OF_TIE * (other + 1)]
+            last, columns, own, known = which[0], which[1], which[2] + AT_J, which[3]
             for j in range(columns):
-                # T is not kept: the rows of a long chain do not fit into the caches, and memory is what bounds it.
-                x, y, z, u, v, w = weighed(floats, mover, own + ROW * j)
-                for one in range(other + 1):
-                    first, rows, to = ints[at + 2 + 3 * one], ints[at + 3 + 3 * one], ints[at + 4 + 3 * one] + AT_J
-                    across, along = ints[table + count * one + other], ints[table + count * other + one]
-                    for i in range(j + 1 if one == other else rows):
-                        six = floats[to + ROW * i : to + ROW * i + 6]
-                        total = six[0] * x + six[1] * y + six[2] * z + six[3] * u
-                        total += six[4] * v
-                        total += six[5] * w
-                        if across >= 0:
-                            values[ints[starts + first + i] + across + j] += total
-                        if along >= 0 and (one != other or j > i):
-                            values[ints[starts + last + j] + along + i] += total
+                push, here = weighed_by(m, floats[own + ROW * j : own + ROW * j + 6]), t[6 * j : 6 * j + 6]
+                for c in range(6):
+                    here[c] = push[c]
+            for one in range(other + 1):
+                which = ints[at + 2 + OF_TIE * one : at + 2 + OF_TIE * (one + 1)]
+                first, rows, to, units = which[0], which[1], which[2] + AT_J, which[3]
+                across, along = ints[table + count * one + other], ints[table + count * other + one]
+                units = min(units, known) if units >= 0 and known >= 0 else -1
+                if across >= 0:
+                    begins = ints[starts + first : starts + first + rows]
+                    add_block(values, begins, across, True, floats, to, t, columns, units, one == other)
+                if along >= 0 and (one != other or mixed):
+                    begins = ints[starts + last : starts + last + columns]
+                    add_block(values, begins, along, False, floats, to, t, rows, units, one == other)
         at = table + count * count
 
 
@@ -182,6 +216,15 @@ def solve(floats, ints):
     solve_sparse(plan, factors, right, work)
 
 
+@lean_inlined
+def movers_of(ints, k):
+    """Where the floats of row k begin, and those of its two movers."""
+    row = ints[ROWS_AT] + ROW_INTS * k
+    which = ints[row : row + ROW_INTS]
+    at = ints[MOVED_AT]
+    return which[SCRATCH], at + MOVED * which[FIRST], at + MOVED * which[SECOND]
+
+
 @lean(types.void(A, I, N, N))
 def balance(floats, ints, target, size_at):
     """Forces of the rows, to AT_FORCE, by which J x + floats[target] = 0 for x the movers' AT_A, which they change.
@@ -192,21 +235,22 @@ def balance(floats, ints, target, size_at):
     last, found = math.inf, False
     little = LEFT * max(1.0, ints[ROWS] / LONG)
     for m in range(ints[MOVERS]):
-        put(floats, ints[MOVED_AT] + MOVED * m + AT_PUSHED, 0.0, 0.0, 0.0)
-        put(floats, ints[MOVED_AT] + MOVED * m + AT_PUSHED + 3, 0.0, 0.0, 0.0)
+        mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
+        for c in range(6):
+            mover[AT_PUSHED + c] = 0.0
     for corrections in range(MOST_CORRECTIONS if factor(floats, ints) else 0):
         worst = 0.0
         for k in range(ints[ROWS]):
-            row = ints[ROWS_AT] + ROW_INTS * k
-            to = ints[row + SCRATCH]
+            to, first, second = movers_of(ints, k)
+            own = floats[to : to + ROW]
+            one, two = floats[first + AT_A : first + AT_A + 6], floats[second + AT_A : second + AT_A + 6]
             left, size = floats[to + target], max(abs(floats[to + target]), SHARE * floats[to + size_at])
-            for side in range(2):
-                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_A
-                six, moved = floats[to + AT_J + 6 * side : to + AT_J + 6 * side + 6], floats[mover : mover + 6]
-                for c in range(6):
-                    part = six[c] * moved[c]
-                    left += part
-                    size += abs(part)
+            other, sizes = 0.0, 0.0
+            for c in range(6):
+                part, parts = own[AT_J + c] * one[c], own[AT_J + 6 + c] * two[c]
+                left, other = left + part, other + parts
+                size, sizes = size + abs(part), sizes + abs(parts)
+            left, size = left + other, size + sizes
             right[k] = -left
             if abs(left) > worst * size:
                 worst = abs(left) / size
@@ -215,23 +259,23 @@ def balance(floats, ints, target, size_at):
         last = worst
         solve(floats, ints)
         for m in range(ints[MOVERS]):
-            put(floats, ints[MOVED_AT] + MOVED * m + AT_IMPULSE, 0.0, 0.0, 0.0)
-            put(floats, ints[MOVED_AT] + MOVED * m + AT_IMPULSE + 3, 0.0, 0.0, 0.0)
-        for k in range(ints[ROWS]):
-            row = ints[ROWS_AT] + ROW_INTS * k
-            to = ints[row + SCRATCH]
-            floats[to + AT_FORCE] = floats[to + AT_FORCE] + right[k] if found else right[k]
-            for side in range(2):
-                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_IMPULSE
-                six, pushed = floats[to + AT_J + 6 * side : to + AT_J + 6 * side + 6], floats[mover : mover + 6]
-                for c in range(6):
-                    pushed[c] += six[c] * right[k]
-        for m in range(ints[MOVERS]):
-            mover = ints[MOVED_AT] + MOVED * m
-            push = weighed(floats, mover, mover + AT_IMPULSE)
+            mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
             for c in range(6):
-                floats[mover + AT_A + c] += push[c]
-                floats[mover + AT_PUSHED + c] += floats[mover + AT_IMPULSE + c]
+                mover[AT_IMPULSE + c] = 0.0
+        for k in range(ints[ROWS]):
+            to, first, second = movers_of(ints, k)
+            own, force = floats[to : to + ROW], right[k]
+            one, two = floats[first + AT_IMPULSE : first + AT_PUSHED], floats[second + AT_IMPULSE : second + AT_PUSHED]
+            own[AT_FORCE] = own[AT_FORCE] + force if found else force
+            for c in range(6):
+                one[c] += own[AT_J + c] * force
+                two[c] += own[AT_J + 6 + c] * force
+        for m in range(ints[MOVERS]):
+            mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
+            push = weighed_by(mover, mover[AT_IMPULSE:])
+            for c in range(6):
+                mover[AT_A + c] += push[c]
+                mover[AT_PUSHED + c] += mover[AT_IMPULSE + c]
         found = True
     if not found:
         for k in range(ints[ROWS]):
