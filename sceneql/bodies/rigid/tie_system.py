@@ -41,7 +41,8 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     import numpy as np
     from scipy.sparse import csr_array
 
-    from sceneql.bodies.rigid import tie_kernels as kernels
+    from sceneql.bodies.rigid import tie_matrix_kernels as matrix
+    from sceneql.bodies.rigid.tie_kernels import survey
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, ROW
     from sceneql.linear.multifrontal.planning import plan
 
@@ -105,19 +106,19 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         [starts[k] + along(k, k) for k in range(len(rows))],
         [] if planned is None else planned.numbers.tolist(),
     ]
-    begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
+    begins = np.cumsum([matrix.HEAD, *(len(some) for some in lists)]).tolist()
     spent = (0, 0) if planned is None else (planned.factors, planned.work + len(rows))
     sizes = (MOVED * len(movers), unit * unit * len(columns), *spent, len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
     head = [len(movers), len(rows), begins[0], begins[1], len(shared), *begins[2:6], len(lists[5])]
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
-    kept = assembly.floats(np.zeros(kernels.KEPT * len(rows) if free else 0))
-    ease = assembly.floats([kernels.EASE])
-    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept, ease, assembly.floats(np.zeros(6 * kernels.MOST_ROWS))]
+    kept = assembly.floats(np.zeros(matrix.KEPT * len(rows) if free else 0))
+    ease, of_tie = assembly.floats([matrix.EASE]), assembly.floats(np.zeros(6 * matrix.MOST_ROWS))
+    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept, ease, of_tie]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     _add_pivots(assembly, ties)
     numbers = assembly.numbers()
-    kernels.survey(0.0, assembly.start(), numbers, np.array(ints))
+    survey(0.0, assembly.start(), numbers, np.array(ints))
     if redundant(ties, numbers)[1] == 0:
         assembly.write(ease, [0.0])
     _must_agree(ties, numbers)
