@@ -115,7 +115,7 @@ def draw(
         over_rows(height, smooth)
     else:
         linear[:] = buffers.radiance
-    over(frame, buffers.records[0], linear)
+    over(frame, buffers.records[0], linear, scene, rows)
     put_back(buffers)
     return Picture(linear.reshape(height, width, 3), undecided, unsearched)
 

@@ -32,8 +32,8 @@ from the usual view counts as smaller."""
 LOWEST, HIGHEST, STEEP = 0.1, 0.95, 0.35
 """Least and largest sine of the elevation of such a view, above the ground; largest height of the unit normal of what
 is seen along it, since it stands upright."""
-HEADROOM = 0.86
-"""Largest fraction of the height between the margins that is filled: pictures are wider than most subjects."""
+HEADROOM = 0.91
+"""Largest fraction of the height between the margins that is filled: with the margins, 80 % of the picture's."""
 
 
 class Auto(Camera):
@@ -44,9 +44,9 @@ class Auto(Camera):
     as large as another by their solver alone. Panels of variants share one view, and overlays are left room.
 
     It holds still, so that what moves in the picture moves in the scene, as fast and as far. Where most of the picture
-    would be empty for long, as around a ball that has come to rest, it goes along slowly, within half of the film, at
-    the least with all that stands. What stays small on a long way has a warning: with a `window` the camera goes along
-    closely; to one that holds still, `window: 0 s`, a `trail` shows the way.
+    would be empty for long, as around a ball that has come to rest, it goes along slowly, within a quarter of the film,
+    at the least with all that stands. What stays small on a long way has a warning: with a `window` the camera goes
+    along closely; to one that holds still, `window: 0 s`, a `trail` shows the way.
     """
 
     yields: ClassVar[bool] = True
@@ -55,7 +55,7 @@ class Auto(Camera):
     margin: FixedScalar = field("Part of half the picture that is left free.", "0.12", at_least=0, below=1)
     window: FixedTime | None = field(
         "It moves softly and frames, at each instant, what moves within half of this time before and after; 0: it "
-        "holds still; by default it does, or goes along within half of the film, with what stands, where that pays.",
+        "holds still; by default it does, or goes along within a quarter of the film, with what stands, where it pays.",
         None,
         at_least=0,
     )

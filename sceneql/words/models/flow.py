@@ -27,6 +27,7 @@ from sceneql.grids.multigrid.linear_solvers import Linear
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import suggestion
 from sceneql.quantities.expression import Link, Type
 
 if TYPE_CHECKING:
@@ -259,7 +260,7 @@ class Flow(Model):
         known = (*sides, "rest", *solids)
         for name in [name for name, part in self.boundary.items() if name not in known and not part.chosen]:
             text = f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
-            yield Problem(text, ("boundary", name), at_key=True)
+            yield Problem(text, ("boundary", name), at_key=True, help=suggestion(name, known))
 
     def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann), and advection."""

@@ -21,8 +21,9 @@ class Sprites(Object):
 
     Brightest in its middle, by (1 - q^2)^2 of the distance q in parts of its radius. Discs that add, and those of a
     `glow`, shine by themselves, in their color as it is. Others that cover are lit as smoke: by lamps and sky, less
-    what the object's own discs hide of these, so that it is darker inside and away from the lamp. Discs throw no shadow
-    on other things, and none falls on them; no mirror shows them; where they cut through a surface they fade.
+    what the object's own discs hide of these, so that it is darker inside and away from the lamp, and of lamps less
+    what solids hide. Discs throw no shadow on other things; no mirror shows them; where they cut through a surface they
+    fade.
     """
 
     at: Points = field("Where they are: `dust.positions`.")
