@@ -37,7 +37,7 @@ from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure, whole, written
 from sceneql.language.tree import Sequence as SequenceNode
-from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
+from sceneql.quantities.diagnostic import STRONG, Diagnostics, nearest, suggestion
 from sceneql.quantities.expression import Type
 
 SETTINGS = tuple(Settings.model_fields)
@@ -123,7 +123,7 @@ class _Checker:
             mover=lambda name: mover_of(name, self.entries, self.family_of),
             unsure=cache(self.unsure),  # cached: it reads a whole part, which many may name
             parsed=parsed,
-            having=catalogue.having,
+            catalogue=catalogue,
         )
 
     def unsure(self, name: str) -> bool:
@@ -217,10 +217,7 @@ class _Checker:
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
             words = self.catalogue.choices(family)
-            if entry.word in self.templates:
-                hint: str | None = "it is a template: what is made of it stands under 'parts:'"
-            else:
-                hint = word_meant(entry, family, self.catalogue, self.family_of, self.script)
+            hint = word_meant(entry, family, self.catalogue, self.family_of, self.script)
             self.found.error(
                 "unknown-word",
                 f"'{entry.word}' is no word of {family}",
@@ -297,14 +294,16 @@ class _Checker:
 
     def meant(self, family: str, entry: Entry) -> type[Kind] | None:
         """The class of the word nearest to an unknown one, if the entry's fields suit it; else None."""
-        near, fields = nearest(entry.word, self.catalogue.choices(family)), entry.fields
+        words, fields = self.catalogue.choices(family), entry.fields
+        near = nearest(entry.word, words)
         cls = None if near is None else self.catalogue.load(family, near)
         if cls is None or not isinstance(fields, MappingNode):
             return None
         known = {written_name(name): info for name, info in cls.model_fields.items()}
         required = {name for name, info in known.items() if info.is_required()}
         fits = known.keys() >= fields.entries.keys() and (fields.partial or required <= fields.entries.keys())
-        return cls if fits else None
+        like = nearest(entry.word, words, STRONG) == near and any(nearest(one, known, STRONG) for one in fields.entries)
+        return cls if fits or like else None
 
     def refer(self, node: Node, mark: Refers, anonymous: str, entry: Entry) -> Ref | None:
         """The part that a field refers to, made of an entry written in place; None after an error."""

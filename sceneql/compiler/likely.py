@@ -21,7 +21,9 @@ from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
+from sceneql.quantities.dimension import MASS
 from sceneql.quantities.instead import instead
+from sceneql.quantities.units import unit_of
 
 TRUE = ("true", "yes", "on")
 _NAME = r"[^\W\d][\w.]*"
@@ -81,6 +83,13 @@ def _wrong(reader: Any, node: Node, info: Any, name: str) -> tuple[Diagnostic, .
     return nothing.errors
 
 
+def example_line(cls: type[BaseModel], name: str, description: str) -> str:
+    """What a missing field is, with an example."""
+    example = "..." if "`" in description else example_of(cls, name)
+    more = "" if example in ("...", "{}") else f" For example `{name}: {example}`."
+    return f"{name}: {description}{more}"
+
+
 def first_of(name: str, node: Node) -> str | None:
     """The help for several values of a field that has one: the first, with its unit."""
     if isinstance(node, Sequence):
@@ -100,9 +109,12 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
             return f"write `{found[0]}:` in a line of its own above it, and indent it below that"
         told = " or ".join(f"`{{{name}: {node.span.text}}}`" for name in found)
         return f"write {told}" if 1 <= len(found) <= 2 else None
+    if issubclass(cls, kinds.Record) and (meant := cls.meant_by(node.text)) is not None:
+        return meant
     if node.text.lower() in TRUE and not required:
         return "write `{}`: all of its fields have defaults"
-    if "value" in cls.model_fields and (held := instead("bare", node.text)) is not None:
+    ends = "bare" if "value" in cls.model_fields else "bare.wall" if "wall" in cls.model_fields else ""
+    if (held := instead(ends, node.text)) is not None:
         return held
     if "value" in cls.model_fields and not required and _takes(reader, node, cls, "value"):
         return f"write `{{value: {node.span.text}}}`"
@@ -171,6 +183,21 @@ def for_each(reader: Any, node: Node, cls: type[BaseModel], name: str, title: st
     return f"it is one for all that touch: write a part for each pair, `{first}_hits: {{{title}: {inner}}}`"
 
 
+def in_other_unit(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
+    """The help for a quantity of a wrong dimension: the one other field that takes it, or the unit that it has."""
+    found = [kinds.written_name(name) for name in _fitting(reader, node, others)]
+    if len(found) == 1:
+        return f"that is what `{found[0]}` takes: write `{found[0]}: {node.span.text}`"
+    numbers = _NUMBERS.fullmatch(node.span.text.strip("[]"))
+    marks = [mark for mark in marks_of(info) if isinstance(mark, kinds.Quantity | kinds.Symbols)]
+    wanted = next((mark.dimension for mark in marks if mark.dimension is not None), None)
+    if numbers is None or wanted is None or wanted.plain:
+        return None
+    if wanted == MASS and node.span.text.endswith("N"):
+        return f"a weight is a mass times gravity: write `{node.span.text}/(9.81 m/s^2)`"
+    return f"it is measured in {(unit := unit_of(wanted))}, as `{numbers[1]} {unit}`"
+
+
 def direction_alone(node: Node) -> str | None:
     """The help for a direction with a unit behind its numbers."""
     numbers = _NUMBERS.fullmatch(node.span.text)
@@ -203,6 +230,9 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
 
     ``parts``: whether the names are those of parts.
     """
+    sided = isinstance(item, type) and issubclass(item, BaseModel) and "near" in item.model_fields
+    if sided and isinstance(node, Scalar) and (every := instead("bare.boundary", node.text)) is not None:
+        return every
     items = node.items if isinstance(node, Sequence) else []
     texts = [one.span.text for one in items or [node]]
     if parts and all(text.isidentifier() for text in texts):

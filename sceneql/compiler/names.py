@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from collections.abc import Sequence as Sequenced
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 from sceneql.compiler.css_colors import NAMED
 from sceneql.kinds import Gives
@@ -28,6 +28,16 @@ WORDS = re.compile(WORD)
 SPEEDS = ("speed", "vel", "v", "absolute_velocity")
 DEEPEST = 40
 """Largest depth of defines that are read within one another; what a define needs is read before it."""
+
+
+class Vocabulary(Protocol):
+    """The words of all families, as the catalogue has them."""
+
+    def families_of(self, word: str) -> list[str]:
+        """The families that have a word of this name."""
+
+    def having(self, field: str) -> list[tuple[str, str]]:
+        """The (family, word) of all words with a field of this name."""
 
 
 class Parsed:
@@ -68,8 +78,8 @@ class Names:
     """Whether a part may have more outputs than are known, because its fields have errors."""
     mover: Callable[[str], str] = lambda name: ""
     """The model, or the body of it, that moves an object; empty where none does."""
-    having: Callable[[str], Sequenced[tuple[str, str]]] = lambda name: ()
-    """The (family, word) of all words that have a field of this name."""
+    catalogue: Vocabulary | None = None
+    """The words of all families, for messages."""
     parsed: Parsed = field(default_factory=lambda: Parsed())
     scope: Scope | None = None
     _bound: dict[str, Expr | None] = field(default_factory=dict)

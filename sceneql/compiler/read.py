@@ -92,7 +92,7 @@ class Reader:
             if isinstance(number, Scalar):  # the copies' number is not known, which the field's error tells
                 self.names.broken.add(number.text)
             renamed = partial(likely.renamed, self, cls)
-            ok = report_unknown(node, known, title, self.found, said_by, family, renamed, self.names.having)
+            ok = report_unknown(node, known, title, self.found, said_by, family, renamed, self.names.catalogue)
             ok = ok and not node.partial
             mistaken = {meant_field(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
@@ -101,9 +101,8 @@ class Reader:
                 if info.is_required():
                     ok = False
                 if info.is_required() and name not in mistaken and not (node is not None and unsure(node)):
-                    self.found.error(
-                        "missing-field", f"{title} needs '{name}'", span, help=f"{name}: {info.description}"
-                    )
+                    help = likely.example_line(cls, name, info.description or "")
+                    self.found.error("missing-field", f"{title} needs '{name}'", span, help=help)
                 continue
             owner = f"{self.owner}.{name}" if self.owner else ""
             reader, before = replace(self, owner=owner, symbols=symbols, solved=solved), len(self.found.found)
@@ -113,7 +112,7 @@ class Reader:
                 ok = False
                 told = [(one.code, one.help) for one in self.found.found[before:]]
                 pointing = any(mark.direction for mark in quantities(info))
-                if told == [("wrong-shape", None)] or (pointing and told == [("dimension-mismatch", None)]):
+                if told in ([("wrong-shape", None)], [("dimension-mismatch", None)]):
                     rest = {
                         key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
                     }
@@ -126,6 +125,8 @@ class Reader:
                         better = likely.first_of(name, written[name])
                     if better is None and pointing and told[0][0] == "dimension-mismatch":
                         better = likely.direction_alone(written[name])
+                    if better is None and told[0][0] == "dimension-mismatch":
+                        better = likely.in_other_unit(self, written[name], info, rest)
                     self.found.found[before] = replace(self.found.found[before], help=better)
         if not ok:
             raise Unreadable

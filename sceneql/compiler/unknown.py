@@ -9,7 +9,7 @@ from collections.abc import Sequence as Sequenced
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.css_colors import NAMED
-from sceneql.compiler.names import Names
+from sceneql.compiler.names import Names, Vocabulary
 from sceneql.kinds import Refers, written_name
 from sceneql.language.repeat import copy_meant
 from sceneql.language.replaced import word_of
@@ -25,7 +25,7 @@ MANY = 6
 """Largest number of words of which all that have a field are listed."""
 THINGS, SHORT = ("objects", "models", "cameras", "lights"), 2
 """Families whose fields are looked for among their own words alone, and the longest name that tells too little."""
-FEW = 3
+FEW = 4
 """Largest number of words with a field by which it is told what has that field."""
 
 _UNPARTED = re.compile(r"(\w+)(?:(:)|\s*=| )(.*)")
@@ -43,17 +43,18 @@ def report_unknown(
     said_by: Naming[str, str] | None = None,
     family: str = "",
     renamed: Renamed | None = None,
-    having: Callable[[str], Sequenced[tuple[str, str]]] = lambda name: (),
+    catalogue: Vocabulary | None = None,
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; returns whether there are none.
 
-    ``said_by``: help texts for names that are likely to be tried; ``family``: that of the word, if any; ``having``:
-    the (family, word) of all words with a field of a name.
+    ``said_by``: help texts for names that are likely to be tried; ``family``: that of the word, if any;
+    ``renamed``: offers a known field; ``catalogue``: to look for names among all words and their fields.
     """
     offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        help = (said_by or {}).get(name) or _together(name, unknown, node, known)
+        help = (said_by or {}).get(name) or instead(f"field.{title.partition('.')[0]}", name)
+        help = help or _together(name, unknown, node, known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
             help = f"write `{written[1]}: {written[3].strip()}`{space}"
@@ -61,7 +62,7 @@ def report_unknown(
         help = help or next((text for fits, text in offers if fits), None)
         help = help or instead(f"field.{family}", name) or instead("field", name)
         help = help or (offers[0][1] if offers else None)
-        help = help or _like(name, node.entries[name], known, offer, having(name), family)
+        help = help or _like(name, node.entries[name], known, offer, family, catalogue)
         if help is None and len(known) == 1:
             help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
         help = help or "it has " + ", ".join(known)
@@ -70,19 +71,25 @@ def report_unknown(
 
 
 def _like(
-    name: str, value: Node, known: Collection[str], offer: Renamed, having: Sequenced[tuple[str, str]], family: str
+    name: str, value: Node, known: Collection[str], offer: Renamed, family: str, catalogue: Vocabulary | None
 ) -> str | None:
-    """The help for a field by its letters: nearly a known one, one of other words, or like a known one by far.
+    """The help for a field by its letters: nearly a known one, a word, one of other words, or like a known one by far.
 
     What is like a known one only by far has to be a value that this takes: else it is most likely another thing.
     """
     if (near := nearest(name, known, STRONG)) is not None:
         return offer(near, value)[1]
+    if catalogue is not None and family and (under := catalogue.families_of(name)) and under[0] != family:
+        text = value.span.text if "\n" not in value.span.text else "{...}"
+        whole = f"{under[0]}: {{NAME: {{{name}: {text}}}}}"
+        return f"'{name}' is a word of `{under[0]}`: write `{whole}`: `sceneql words {name}`"
     fits, help = (False, "") if (far := nearest(name, known)) is None else offer(far, value)
+    having = [] if catalogue is None or fits or len(name) <= SHORT else catalogue.having(name)
     own = [word for of, word in having if of == family]
-    others = [(of, word) for of, word in having if of not in THINGS] if len(name) > SHORT else []
+    usual = any(of in THINGS for of, _ in having)  # too usual a name to tell what was meant
+    others = [] if usual or len(having) == 1 else having
     words = own or [word for _, word in others]
-    if not fits and words and len(words) <= FEW and (own or len(others) > 1):
+    if words and len(words) <= FEW:
         where = "" if own else f" under `{others[0][0]}`"
         these = ", ".join(f"`{word}`" for word in words)
         return f"it is a field of {these}{where}: `sceneql words {words[0]}`; here are {', '.join(known)}"
@@ -125,6 +132,11 @@ def word_meant(
     entry: Entry, family: str, catalogue: Catalogue, family_of: Naming[str, str], script: Script
 ) -> str | None:
     """The help for an entry with a word that is not in its family; ``family_of``: the families of all parts."""
+    templates = script.root.entries.get("templates")
+    if isinstance(templates, Mapping) and entry.word in templates.entries:
+        text = "" if entry.fields is None else entry.fields.span.text
+        inner = f"{{{entry.word}: {text}}}" if text and "\n" not in text else entry.word
+        return f"it is a template, of which parts are made: write `parts: {{{entry.name}: {inner}}}`"
     if (replaced := _field_of_replaced(entry, family, script, catalogue)) is not None:
         return replaced
     words, fields = catalogue.choices(family), entry.fields
@@ -270,6 +282,9 @@ def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, c
     words = catalogue.words(mark.family)
     if names.gives(name) and (readers := names.readers(name, choices)):
         return f"a part stands here, and none of its outputs: write `{readers[0]}`, which shows it"
+    row = re.findall(r"[^\W\d]\w*", name)
+    if mark.panel and len(row) > 1 and all(one in choices for one in row):
+        return f"a row is a list: write `[[{', '.join(row)}]]`"
     hint = instead("part", name) or suggestion(name, choices) or suggestion(name, words)
     if hint is None and mark.panel:
         hint = f"rows hold names of cameras and graphs, `[[{', '.join(choices[:2]) or 'front, top'}]]`"

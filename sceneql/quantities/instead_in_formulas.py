@@ -39,6 +39,17 @@ OF_FORMULAS = (
         "the time is `time`, in s: `time/(1 s)` is a plain number",
     ),
     ("function", "range linspace arange", REPEAT),
+    (
+        "function",
+        "laplacian laplace lap del2 nabla grad gradient div divergence curl diff ddx ddy dx dy partial",
+        "rates have no derivatives by place: what spreads has a `coefficient`, and what is carried a `drift`",
+    ),
+    (
+        "function",
+        "ddt dt derivative deriv diff integral integrate",
+        "there is none: velocities are outputs, `fall.velocity`, and states of an `equations` model have a `rate`",
+    ),
+    ("name", "required mandatory", "a field that has to be given is left empty: `fields: {height: }`"),
     ("function", "sqr square", "write `x^2`"),
     ("function", "frac fract", "write `mod(x, 1)`"),
     ("function", "cbrt", "write `x^(1/3)`"),

@@ -231,7 +231,7 @@ OF_PARTS = (
     ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
     ("field", "solver integrator", "write `solvers: {main: {rk4: {step: 1 ms}}}`: `sceneql words sections`"),
     ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
-    ("field", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
+    ("field.outputs", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
     ("field", "distance", "write where it stands, `position: 0 1 5 m`; without that it finds its place"),
     ("field", "min max low high corner corners", "write its `size`, and of its middle the `position`"),
     (

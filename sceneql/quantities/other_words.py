@@ -9,6 +9,18 @@ LIBRARIES = ("math", "Math", "np", "numpy", "random", "glm", "torch", "scipy")
 """What stands before the dot of a function or constant elsewhere: ``Math.sin``."""
 
 _LISTS = (
+    # choices, sides, sections of templates
+    ("smooth", "ease ease_in ease_out ease_in_out ease-in ease-out ease-in-out easeinout sine sinusoidal"),
+    ("cubic", "bezier spline catmullrom catmull_rom hermite"),
+    ("step", "constant discrete nearest stepped hold"),
+    ("top", "north up upper ceiling ymax y_max"),
+    ("bottom", "south down lower floor ground ymin y_min"),
+    ("right", "east xmax x_max outlet outflow"),
+    ("left", "west xmin x_min inlet inflow"),
+    ("back", "zmin z_min"),
+    ("front", "zmax z_max"),
+    ("rest", "all walls sides else other everywhere"),
+    ("fields", "params parameters param args arguments inputs variables vars props properties attributes"),
     # functions and constants
     ("random", "rand rnd rng uniform random_uniform rand01 random01 frand drand noise1d"),
     ("noise", "perlin simplex snoise"),
@@ -82,10 +94,15 @@ _LISTS = (
     ("components", "vector value force f direction torque"),
     ("linear", "k"),
     ("stretch", "stiffness k"),
-    ("from", "between start"),
+    ("from", "between start position pos location origin at place"),
+    ("lifetime", "life age lifespan ttl duration time"),
+    ("until", "end stop to"),
+    ("angle", "target_angle target_position position target setpoint"),
+    ("lag", "damping smoothing delay smooth smoothness"),
     ("vector", "direction to value"),
     ("keep", "length duration seconds"),
     ("seconds", "speed period duration"),
+    ("speed", "velocity target_velocity target_speed rpm angular_velocity omega rate"),
     ("speed", "c wave_speed slowmo slow_motion slowmotion time_scale timescale playback"),
     ("range", "ylim y_range limits vmin vmax clim"),
     ("colors", "cmap colormap color_map palette"),
@@ -97,6 +114,7 @@ _LISTS = (
     ("damping", "c drag friction viscosity"),
     ("spin", "angular_velocity angularvelocity angular_speed omega w rotation_speed"),
     ("rest", "length rest_length natural_length l0"),
+    ("between", "parent child body1 body2 body_a body_b bodya bodyb object1 object2 first second node1 node2"),
     ("between", "objects colliders from to ends nodes body bodies connect connects pair a b with against"),
     ("mass", "m weight"),
     ("modulus", "e young youngs_modulus young_modulus stiffness"),
