@@ -32,8 +32,8 @@ from the usual view counts as smaller."""
 LOWEST, HIGHEST, STEEP = 0.1, 0.95, 0.35
 """Least and largest sine of the elevation of such a view, above the ground; largest height of the unit normal of what
 is seen along it, since it stands upright."""
-HEADROOM = 0.91
-"""Largest fraction of the height between the margins that is filled: with the margins, 80 % of the picture's."""
+HEADROOM = 0.9
+"""Largest fraction of the height between the margins that is filled: under 80 % of the picture, of round things too."""
 
 
 class Auto(Camera):
