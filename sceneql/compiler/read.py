@@ -93,7 +93,9 @@ class Reader:
             if isinstance(number, Scalar):  # the copies' number is not known, which the field's error tells
                 self.names.broken.add(number.text)
             renamed = partial(likely.renamed, self, cls)
-            ok = report_unknown(node, known, title, self.found, said_by, family, renamed, self.names.catalogue)
+            ok = report_unknown(
+                node, known, title, self.found, said_by, family, renamed, self.names.catalogue, likely.table_of(cls)
+            )
             ok = ok and not node.partial
             mistaken = {meant_field(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
@@ -112,6 +114,9 @@ class Reader:
             except Unreadable:
                 ok = False
                 told = [(one.code, one.help) for one in self.found.found[before:]]
+                if len(told) == 1 and told[0][0] in ("unknown-name", "unknown-unit"):
+                    number_alone = likely.number_meant(written[name], info, name, *told[0]) or told[0][1]
+                    self.found.found[before] = replace(self.found.found[before], help=number_alone)
                 pointing = any(mark.direction for mark in quantities(info))
                 if told in ([("wrong-shape", None)], [("dimension-mismatch", None)]):
                     rest = {

@@ -14,6 +14,38 @@ _VARIED = (
 OF_SECTIONS = (
     # fields of single words and groups
     (
+        "field.rigid",
+        "type body_type kind",
+        "what stands still is `fixed: yes`, and what moves needs no more than `of`",
+    ),
+    (
+        "field.video field.images",
+        "from to begin start_time end_time t0 t1 range",
+        "a film shows the clock from 0 s to its end: `clock: {end: 3 s}`",
+    ),
+    (
+        "field.torus field.sphere field.cylinder",
+        "arc sweep sector theta phi start_angle end_angle angle half",
+        "it is whole: `intersection` or `difference` with a box cuts it, `{difference: {of: [ring, box]}}`",
+    ),
+    (
+        "field.outline",
+        "sides radius n corners regular",
+        "it has its corners by hand, a hexagon `points: [[1, 0], [0.5, 0.87], [-0.5, 0.87], [-1, 0], [-0.5, -0.87],"
+        " [0.5, -0.87]]`",
+    ),
+    (
+        "field.graph",
+        "xlim x_range xrange xmin xmax x_limits",
+        "the `range` is that of y; x goes as far as its values do",
+    ),
+    ("field.graph", "linewidth line_width width linestyle style marker grid", "lines have one look: leave it out"),
+    (
+        "field.wind",
+        "direction strength speed force power amount",
+        "its `velocity: 5 0 0 m/s` says how fast it is, and where to",
+    ),
+    (
         "field.point",
         "target angle cone penumbra direction spread look_at beam distance decay falloff attenuation",
         "a lamp shines all around, and less with the square of the distance: leave it out",
