@@ -21,7 +21,7 @@ from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
-from sceneql.quantities.dimension import MASS
+from sceneql.quantities.dimension import ANGLE, MASS
 from sceneql.quantities.instead import instead
 from sceneql.quantities.units import unit_of
 
@@ -183,15 +183,34 @@ def for_each(reader: Any, node: Node, cls: type[BaseModel], name: str, title: st
     return f"it is one for all that touch: write a part for each pair, `{first}_hits: {{{title}: {inner}}}`"
 
 
-def in_other_unit(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
+def plain_define(reader: Any, node: Node) -> str | None:
+    """The help for a formula of a wrong dimension with a define that is a number without a unit."""
+    if not isinstance(node, Scalar):
+        return None
+    defines = reader.names.defines
+    named = [one for one in re.findall(_NAME, node.text) if one in defines and isinstance(defines[one], Scalar)]
+    bare = [one for one in dict.fromkeys(named) if defines[one].kind in ("integer", "number")]
+    if not bare or len(named) == len(bare):
+        return None
+    text = f"{bare[0]}: {defines[bare[0]].text}"
+    return f"'{bare[0]}' is a plain number: give it its unit in `define`, where `{text}` stands"
+
+
+def in_other_unit(reader: Any, node: Node, info: Any, others: Mapping[str, Any], name: str) -> str | None:
     """The help for a quantity of a wrong dimension: the one other field that takes it, or the unit that it has."""
-    found = [kinds.written_name(name) for name in _fitting(reader, node, others)]
-    if len(found) == 1:
-        return f"that is what `{found[0]}` takes: write `{found[0]}: {node.span.text}`"
     numbers = _NUMBERS.fullmatch(node.span.text.strip("[]"))
     marks = [mark for mark in marks_of(info) if isinstance(mark, kinds.Quantity | kinds.Symbols)]
     wanted = next((mark.dimension for mark in marks if mark.dimension is not None), None)
-    if numbers is None or wanted is None or wanted.plain:
+    if numbers is not None and wanted is not None and wanted.kind == ANGLE.kind:
+        return f"it is an angle, as `{numbers[1]} deg`"
+    if wanted is not None and wanted.plain and node.span.text[-1:] in ("C", "F", "K"):
+        return None
+    if numbers is not None and wanted is not None and wanted.plain:
+        return f"it has no unit: write `{name}: {numbers[1]}`"
+    found = [kinds.written_name(name) for name in _fitting(reader, node, others)]
+    if len(found) == 1:
+        return f"that is what `{found[0]}` takes: write `{found[0]}: {node.span.text}`"
+    if numbers is None or wanted is None:
         return None
     if wanted == MASS and node.span.text.endswith("N"):
         return f"a weight is a mass times gravity: write `{node.span.text}/(9.81 m/s^2)`"

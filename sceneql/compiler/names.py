@@ -246,7 +246,8 @@ class Names:
         mover = self.mover(task)
         model, body = self.part_of(mover) if mover else ("", "")
         known = self.outputs_of(model) or {}
-        gives = f"{body}.{wanted[0]}".strip(".") in known
+        inner = f"{body}.{wanted[0]}".strip(".")
+        gives = inner in known or f"{inner}.position" in known
         return f"'{model}' moves it: write `{'.'.join((mover, *wanted))}`" if gives else None
 
     def _component(self, whole: Expr, parts: tuple[str, ...], size: int, span: Span) -> Expr | None:

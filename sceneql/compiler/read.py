@@ -26,8 +26,9 @@ from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.problems import Unreadable, validated
-from sceneql.compiler.texts import read_text
+from sceneql.compiler.texts import read_text, unescaped
 from sceneql.compiler.unknown import meant_field, report_unknown
+from sceneql.kinds.values import Verbatim
 from sceneql.language.repeat import numbered
 from sceneql.language.scope import Scope
 from sceneql.language.tree import Mapping as MappingNode
@@ -116,7 +117,8 @@ class Reader:
                     rest = {
                         key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
                     }
-                    better = likely.elsewhere(self, written[name], info, rest)
+                    ours = told[0][0] == "wrong-shape" or pointing
+                    better = likely.elsewhere(self, written[name], info, rest) if ours else None
                     if better is None:
                         better = likely.for_each(self, written[name], cls, name, title)
                     if better is None and self.found.found[before].message.endswith(PLANAR):
@@ -126,7 +128,9 @@ class Reader:
                     if better is None and pointing and told[0][0] == "dimension-mismatch":
                         better = likely.direction_alone(written[name])
                     if better is None and told[0][0] == "dimension-mismatch":
-                        better = likely.in_other_unit(self, written[name], info, rest)
+                        better = likely.plain_define(self, written[name]) or likely.in_other_unit(
+                            self, written[name], info, rest, name
+                        )
                     self.found.found[before] = replace(self.found.found[before], help=better)
         if not ok:
             raise Unreadable
@@ -169,6 +173,9 @@ class Reader:
                 return self._some(self.refer(node, mark, self.owner))
             if isinstance(mark, kinds.Interpolated):
                 return self._some(read_text(node, mark, what, self.names, self.found))
+            if isinstance(mark, Verbatim) and isinstance(node, Scalar) and (plain := unescaped(node)) is not None:
+                text = "in double quotes a backslash begins a sign of YAML's, and is none of the text"
+                raise self._fail("syntax", text, node.span, f"write single quotes: `{what}: {plain}`")
             if isinstance(mark, kinds.SceneFile):
                 path = self._some(read_path(node, self.folder, what, self.found))
                 self.files.append(path)

@@ -44,6 +44,7 @@ PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
 _MISSING = (
     (DENSITY, "(1000 kg/m^3)", "a density"),
+    (LENGTH**3 / MASS / TIME**2, "(6.674e-11 m^3/(kg*s^2))", "the constant of gravity"),
     (DENSITY * ENERGY / MASS / TEMPERATURE, "(4.2e6 J/(K*m^3))", "what a volume takes to be a kelvin warmer"),
 )
 """(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic

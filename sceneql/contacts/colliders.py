@@ -13,6 +13,7 @@ from sceneql.contacts.shapes import implicit
 from sceneql.doing import doing
 from sceneql.kinds import Collider, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.instead import instead
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -85,9 +86,10 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
                 before, after = _shifted(kind, -apart, assembly), _shifted(kind, apart, assembly)
                 poses = (assembly.floats([apart]), *before, *after)
     except (TypeError, ValueError) as error:
-        help = f"name under `between` what may touch, without '{ref.name}'"
+        name = ref.name if ref.span is None else ref.span.text
+        help = instead("collider", name) or f"name under `between` what may touch, without '{name}'"
         place = ref.span or assembly.line()
-        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", place, help)]) from None
+        raise ScriptError([Diagnostic("no-collider", f"'{name}': {error}", place, help)]) from None
     places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
     flat = int(here.flat and not is_moving(kind))
     return (*shape_kernels(here), *places, *poses, flat), here.data
@@ -125,9 +127,10 @@ def surface_of(
         with doing(f"looking at the surface of {ref.name}"):
             here = _collider(kind, assembly)
     except (TypeError, ValueError) as error:
-        help = f"name under `between` what may touch, without '{ref.name}'"
+        name = ref.name if ref.span is None else ref.span.text
+        help = instead("collider", name) or f"name under `between` what may touch, without '{name}'"
         at = ref.span or assembly.line()
-        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", at, help)]) from None
+        raise ScriptError([Diagnostic("no-collider", f"'{name}': {error}", at, help)]) from None
     values = [getattr(kind, name, None) for name in ("position", "rotation")]
     rests = (np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))
     x, q = (

@@ -13,6 +13,22 @@ _VARIED = (
 
 OF_SECTIONS = (
     # fields of single words and groups
+    (
+        "field.point",
+        "target angle cone penumbra direction spread look_at beam distance decay falloff attenuation",
+        "a lamp shines all around, and less with the square of the distance: leave it out",
+    ),
+    (
+        "field.shots",
+        "from to start end duration length time",
+        "a shot lasts `until: 1 s`, and begins where the one before it ends",
+    ),
+    (
+        "field.diffusion",
+        "density heat_capacity specific_heat capacity rho cp c conductivity k kappa lambda",
+        "of a solid only its diffusivity counts, the conductivity over density and heat capacity: `coefficient: 400"
+        " W/(m*K)/(8960 kg/m^3*385 J/(kg*K))`",
+    ),
     ("field.studies", "dt step k n h m", _VARIED),
     (
         "field.emit",
@@ -91,6 +107,7 @@ OF_SECTIONS = (
         "free neumann insulated adiabatic reflecting noflux no_flux no_slip noslip walls wall",
         "so it is where nothing is said: leave it out",
     ),
+    ("collider", "ground", "what masses touch is the `floor`: write `between: [ball, floor]`"),
     (
         "overlays",
         "timer clock time stopwatch counter timestamp",
