@@ -42,9 +42,10 @@ HEADROOM = 0.9
 class Auto(Camera):
     """A three-quarter view of all that is drawn, from the right front and above, that holds still over the whole film.
 
-    A scene that is flat along an axis is seen along it, one that is flat and tilted, or has a large map, from nearer to
-    the normal of that, one that is long and lies across. The few of many things that leave for good are let go, and variants that grow three times
-    as large as another by their solver alone. Panels of variants share one view, and overlays are left room.
+    A scene that is flat along an axis is seen along it, one that is flat and tilted, or has a large map, from
+    nearer to the normal of that, one that is long and lies across. The few of many things that leave for good are
+    let go, and variants that grow three times as large as another by their solver alone. Panels of variants share
+    one view, and overlays are left room.
 
     It holds still, so that what moves in the picture moves in the scene, as fast and as far. Where most of the picture
     would be empty for long, as around a ball that has come to rest, it goes along slowly, within a quarter of the film,
