@@ -7,6 +7,7 @@ from sceneql.failure import RunFailure
 from sceneql.pipeline import load, shapes_of, simulate
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.run.extremes import watched
+from sceneql.shapes.color import linear
 
 STREAM = '{left: {inflow: {velocity: "[1, 0]"}}, right: {outflow: {}}}'
 BOX = "size: 1 0.4 m, cell: 5 cm, density: 1 kg/m^3, viscosity: 0.1 Pa*s"
@@ -78,3 +79,22 @@ def test_a_field_of_two_names_is_watched_once(tmp_path):
     (tmp_path / "scene.yaml").write_text(f"models: {{heat: {{{heat}}}}}\n", encoding="utf-8")
     graph = load(tmp_path / "scene.yaml", pruned=False)
     assert len(watched(type(air.run)(graph, graph.islands[0]))) == 1
+
+
+def test_a_stream_that_is_even_but_for_rounding_has_the_range_of_the_run(tmp_path):
+    pole = "objects: {pole: {sphere: {radius: 0.1 m, position: 0.4 0.2 0 m}}, map: {field_map: {of: air.speed}}}\n"
+    air = f'models: {{air: {{flow: {{{BOX}, boundary: {STREAM}, initial: {{velocity: "[1 + 1e-12*x, 0]"}}}}}}}}\n'
+    (tmp_path / "scene.yaml").write_text(f"clock: {{end: 0.2 s}}\n{pole}{air}", encoding="utf-8")
+    graph = load(tmp_path / "scene.yaml")
+    moment = next(simulate(graph, [0.0]))
+    low, high = graph.tasks["map"].kind.scale(moment)
+    assert high - low > 0.1
+
+
+def test_a_map_without_colors_has_its_own_color(tmp_path):
+    pond = "models: {pond: {wave: {size: 1 1 m, cell: 0.1 m, speed: 1 m/s}}}\n"
+    water = "objects: {water: {field_map: {of: pond.height, colors: none, material: glossy, color: 0.1 0.2 0.5}}}\n"
+    (tmp_path / "scene.yaml").write_text(pond + water, encoding="utf-8")
+    moment = next(simulate(load(tmp_path / "scene.yaml"), [0.0]))
+    (mesh,) = shapes_of(["water"], moment).shapes
+    assert mesh.surface.color == pytest.approx(linear([0.1, 0.2, 0.5]))
