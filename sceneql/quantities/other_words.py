@@ -12,7 +12,7 @@ _LISTS = (
     ("title", "label name heading caption"),
     ("radius", "width thickness line_width linewidth stroke"),
     ("keep", "lifetime life"),
-    ("between", "materials shapes bodies"),
+    ("between", "materials shapes"),
     ("points", "balls centers centres spheres positions blobs"),
     ("circulation", "strength gamma"),
     ("core", "radius"),
