@@ -18,10 +18,9 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler import likely, limits, paint, values
+from sceneql.compiler import quantity_help as helped
 from sceneql.compiler.annotations import could_be, is_fixed, quantities, unwrap
-from sceneql.compiler.corners import by_corners
 from sceneql.compiler.formulas import Wanted, read_formula
-from sceneql.compiler.helps import quantities as helped
 from sceneql.compiler.likely import TRUE
 from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
@@ -317,7 +316,7 @@ class Reader:
     def _miscounted(self, node: Node, arms: tuple[Any, ...], what: str, count: int) -> Unreadable:
         marks = [mark for arm in arms for mark in unwrap(arm)[1] if isinstance(mark, kinds.Quantity)]
         vectors = [mark.shape[0] for mark in marks if mark.shape and mark.shape[0]]
-        help = by_corners(node, what, vectors[0]) if len(vectors) == 2 == len(arms) else None
+        help = helped.by_corners(node, what, vectors[0]) if len(vectors) == 2 == len(arms) else None
         names = re.split(r"\s*[-/&+>]+\s*", node.text) if isinstance(node, Scalar) else []
         if len(names) == len(arms) and all(name.isidentifier() for name in names):
             help = f"write `{what}: [{', '.join(names)}]`"

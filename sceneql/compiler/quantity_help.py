@@ -1,4 +1,4 @@
-"""Help for quantities of a wrong dimension or shape: another field, unit or output, or what a name lacks.
+"""Help for quantities of a wrong dimension or shape: another field, unit or output, corners of a box.
 
 ``reader`` is the `Reader` (`sceneql.compiler.read`) that met the value.
 """
@@ -22,6 +22,9 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import ANGLE, MASS, PLAIN, Dimension
 from sceneql.quantities.units import format_quantity, unit_of
 
+NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+MOST = 200
+"""Largest length of a value in which numbers are looked for."""
 ANSWERS = (*TRUE, "false", "no", "off")
 FRAMES = 30
 """Frames a second of a film that says nothing else."""
@@ -135,3 +138,23 @@ def direction_alone(node: Node) -> str | None:
     """The help for a direction with a unit behind its numbers."""
     numbers = _NUMBERS.fullmatch(node.span.text)
     return None if numbers is None else f"a direction has no unit, and its length does not matter: write `{numbers[1]}`"
+
+
+def by_corners(node: Node, field: str, length: int) -> str | None:
+    """The help for a field that takes a low and a high corner of ``length`` components each; None if unknown.
+
+    With twice as many numbers, these are the corners as they stand; with ``length`` numbers, they are the size of a box
+    about the origin.
+    """
+    text = node.span.source.text[node.span.start : node.span.end]
+    numbers = NUMBER.findall(text) if len(text) <= MOST else []
+    if len(numbers) == length:
+        halves = [abs(float(number)) / 2 for number in numbers]
+        corners = [-half for half in halves], halves
+    elif len(numbers) == 2 * length:
+        given = [float(number) for number in numbers]
+        corners = given[:length], given[length:]
+    else:
+        return None
+    low, high = (" ".join(f"{number:g}" for number in corner) for corner in corners)
+    return f"write `{field}: [{low}, {high}]`, its low and its high corner"
