@@ -29,15 +29,16 @@ FAR_APART = 1.0
 to rounding."""
 
 
-def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...]:
+def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int, often: float = OFTEN) -> tuple[int, ...]:
     """Integers of objects, to stand at index ``at`` of a contact's integers, followed by the data of their shapes.
 
+    ``often``: longest step [s] where one moves unevenly.
     Raises ScriptError for an object without a collider.
     """
     heads: list[int] = []
     tail: list[int] = []
     for ref in refs:
-        head, data = _surface(ref, assembly)
+        head, data = _surface(ref, assembly, often)
         heads += [*head, at + len(refs) * layout.OBJECT + len(tail)]
         tail += data
     return (*heads, *tail)
@@ -65,7 +66,7 @@ def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assemb
         raise ScriptError([Diagnostic("starts-inside", text, ref.span or assembly.line(), help)])
 
 
-def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def _surface(ref: Ref, assembly: Assembly, often: float) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Integers of an object without the last (the index of its data), and the data of its shape."""
     kind = cast(Object, assembly.object(ref))
     try:
@@ -77,7 +78,7 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
         else:
             even = _moves_evenly(kind, assembly)
             if not even:
-                assembly.step_at_most(OFTEN)
+                assembly.step_at_most(often)
             exact = None if even else noted.motion(here)
             if exact is not None:
                 poses = (assembly.floats([0.0]), *exact)
