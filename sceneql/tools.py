@@ -224,7 +224,7 @@ class Tools:
             kind = cast(Picture, panel.graph.tasks[self.name].kind).model_copy(update={"size": size})
             panel.picture = panel.tools._seen(kind, moment, panel=Part(scale, (label_box(size, self.panels, scale),)))
             panel.tools._frames += 1
-            label(panel.picture, name, panel.failure, scale)
+            label(panel.picture, name, panel.told(moment), scale)
         return panel.picture
 
     def _draw_over(

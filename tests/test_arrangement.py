@@ -23,6 +23,7 @@ from sceneql.pictures.lettering import Letterer
 from sceneql.pictures.plot import Axis, Curve, _head, draw_plot
 from sceneql.pipeline import Report, Tools, load, render, simulate
 from sceneql.report.explain import explain
+from sceneql.shapes.outlines import DIRECTIONS
 from sceneql.words.objects.arrow import Arrow
 from sceneql.words.overlays.labels import label_boxes
 
@@ -124,7 +125,7 @@ def test_what_a_camera_follows_stays_clear_of_overlays(tmp_path):
         found = tools._arrangement(output, moment, None, tools_file.WHOLE)
         view = eye.view(output.pixels, replace(moment, room=found.room))
         center = moment.read("fall", "position")
-        ball = outline(corners(center - 0.19, center + 0.19), view)
+        ball = outline(center + 0.2 * DIRECTIONS, view)
         shown = [kind for kind in found.overlays.values() if kind.show is None or moment.at(kind.show)]
         assert len(shown) > 1
         assert not any(meet(kind.box(kind.place, output.pixels, moment, 1.0), ball) for kind in shown)
@@ -133,7 +134,7 @@ def test_what_a_camera_follows_stays_clear_of_overlays(tmp_path):
         distances.append(np.linalg.norm(view.origin))
     assert heights[0] < 0.15
     assert heights[-1] > 0.4
-    assert distances == sorted(distances, reverse=True)
+    assert np.diff(distances).max() < 1e-12  # but for rounding, at rest
 
 
 def test_room_for_overlays_makes_nothing_smaller_than_margins_inside_of_it_would():
@@ -169,7 +170,8 @@ def test_an_overlay_keeps_its_place_over_the_film(tmp_path):
 
 @pytest.mark.parametrize("fails", ["", ", may_fail: yes"])
 def test_panels_of_variants_share_one_view(tmp_path, monkeypatch, fails):
-    (tmp_path / "scene.yaml").write_text(VARIANTS.format(fails=fails))
+    script = VARIANTS.format(fails=fails).replace("end: 2 s", "end: 8 s")  # what swings once alone is gone along with
+    (tmp_path / "scene.yaml").write_text(script)
     graph = load(tmp_path / "scene.yaml")
     views = []
 
@@ -354,6 +356,12 @@ def test_a_variant_that_diverges_by_its_solver_alone_leaves_the_picture_and_is_t
         assert "as 'honest', which differs in its solver alone" in one.message
         assert one.span is not None
         assert one.span.line == next(k for k, line in enumerate(text.splitlines(), 1) if "euler" in line)
+    honest, wrong = (Panel(graph.variant(name)) for name in ("honest", "wrong"))
+    for time, written in ((0.0, ""), (2.0, "leaves the picture from 0." if told else "")):
+        moment = replace(wrong.at(time), beside=(honest,))
+        moment.outline()
+        assert wrong.told(moment).startswith(written)
+        assert bool(wrong.told(moment)) == bool(written)
 
 
 @pytest.mark.parametrize("far", [1e308, math.inf, -math.inf, math.nan])

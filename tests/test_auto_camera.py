@@ -9,7 +9,7 @@ import pytest
 
 from moment import FakeMoment
 from sceneql.shapes.placement import rotation_matrix
-from sceneql.words.cameras.auto import FULL, HIGHEST, LOWEST, STEEP, THREE_QUARTER, Auto
+from sceneql.words.cameras.auto import FULL, HEADROOM, HIGHEST, LOWEST, STEEP, THREE_QUARTER, Auto
 
 SIZE = (640, 360)
 LARGE = 0.44
@@ -59,8 +59,8 @@ def test_a_tilted_ring_is_large_and_seen_from_above_the_ground(tilt, turn):
     assert LOWEST - 0.01 <= back[1] <= HIGHEST + 0.02
     assert abs(normal @ back) >= FULL - 0.02
     wide, high = shares(view, points)
-    assert min(wide / 0.88, high / 0.757) > LARGE
-    assert max(wide / 0.88, high / 0.757) == pytest.approx(1, abs=0.01)
+    assert min(wide / 0.88, high / (0.88 * HEADROOM)) > LARGE
+    assert max(wide / 0.88, high / (0.88 * HEADROOM)) == pytest.approx(1, abs=0.01)
 
 
 @pytest.mark.parametrize("turn", [20, 45, 70, 110, 160])

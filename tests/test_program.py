@@ -97,7 +97,7 @@ def test_render_sets_variants_and_names(tmp_path):
 
 def test_exit_codes_of_mistakes(tmp_path):
     (tmp_path / "bad.yaml").write_text("objects: {ball: {sphere: {radus: 1 m}}}\n")
-    assert "did you mean 'radius'?" in sceneql(tmp_path, "check", "bad.yaml", code=3)
+    assert "did you mean `radius: 1 m`?" in sceneql(tmp_path, "check", "bad.yaml", code=3)
     sceneql(tmp_path, "check", "none.yaml", code=3)
     sceneql(tmp_path, "frobnicate", code=2)
     assert "did you mean 'blobby'" in sceneql(tmp_path, "words", "bloby", code=2)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from renderers.tracing.draw import draw
-from renderers.tracing.light.discs import MANY, ORDERS, left_at, lit
+from renderers.tracing.light.discs import MANY, ORDERS, left_around, left_at, lit
 from sceneql.frame import PointLight, Points, SeenFrame, Sky, Sun, Surface, View
 
 BLACK = Sky(zenith=(0, 0, 0), horizon=(0, 0, 0), ground=(0, 0, 0))
@@ -137,6 +137,19 @@ def test_a_solid_throws_its_shadow_on_smoke(lamp):
         assert middle(1.5, 0.0, 0.0, radius=0.1) == middle(2.5, 0.0, 0.05) == plain
 
 
+def test_a_puff_that_goes_into_a_shadow_darkens_by_and_by():
+    """Whose edge is sharp: from no frame to the next it is dark all over."""
+    sun = Sun((0.0, 1.0, 0.0), (3.0,) * 3, 0.0)
+    roof = Points("b", WHITE, np.array([[0.5, 1.5, 0.0]]), np.full(1, 0.5))
+    rows = np.linspace(-0.3, 0.3, 31)  # a fifteenth of its radius a frame
+    seen = [
+        seen_in(sun, shapes=[roof, smoke((x, 0.0, 0.0), radius=0.3)])[SIDE // 2 - 20 : SIDE // 2 + 20].sum()
+        for x in rows
+    ]
+    assert seen[-1] < 0.2 * seen[0]
+    assert -np.diff(seen).min() < 0.3 * seen[0]
+
+
 def test_the_light_of_smoke_that_grows_does_not_jump():
     rng = np.random.default_rng(3)
     sheet = np.column_stack([rng.uniform(-1, 1, (MANY, 2)), np.zeros(MANY)])
@@ -167,3 +180,35 @@ def test_a_disc_that_is_nowhere_takes_no_light_from_the_others():
     burst = smoke((0, 0, 0), (0.1, 0, -0.6), (np.nan, 0, 0))
     sun = Sun((0.0, 0.0, 1.0), (3.0, 3.0, 3.0), 0.0)
     assert np.array_equal(seen_in(sun, shapes=[burst]), seen_in(sun, shapes=[sound]))
+
+
+def test_a_puff_that_drifts_away_changes_nothing_of_the_light_on_the_others():
+    rng = np.random.default_rng(5)
+    cloud = rng.uniform(-1.0, 1.0, (400, 3))
+    sun = Sun((0.8, 0.0, 0.6), (1.0,) * 3, 0.0)
+    alone = lit(smoke(*cloud, opacity=0.3, radius=0.1), (sun,), np.eye(3))
+    beside = lit(smoke(*cloud, (-90.0, 4.0, 7.0), opacity=0.3, radius=0.1), (sun,), np.eye(3))
+    for one, other in zip(alone, beside, strict=True):
+        np.testing.assert_allclose(one, other[:-1], atol=0.02)
+    assert beside[0][-1] == pytest.approx(1.0 / math.pi, rel=0.25)
+
+
+def test_the_light_of_a_lamp_in_the_midst_of_smoke_fades_on_all_sides_alike():
+    """By the mean over discs by chance, around a hollow, whose number before a place goes by its distance."""
+    rng, lamp = np.random.default_rng(11), np.array([0.13, -0.21, 0.34])
+
+    def ball(count):
+        points = rng.normal(size=(count, 3))
+        return points * rng.uniform(size=(count, 1)) ** (1 / 3) / np.linalg.norm(points, axis=1)[:, None]
+
+    cloud, asked = ball(8000), ball(8000)
+    cloud = cloud[np.linalg.norm(cloud, axis=1) > 0.25]
+    left = left_around(lamp + asked, smoke(*(lamp + cloud), opacity=0.2, radius=0.05), lamp)
+    away, q = np.linalg.norm(asked, axis=1), (np.arange(1000) + 0.5) / 1000
+    density, area = 8000 / (4 / 3 * math.pi), 2 * math.pi * 0.05**2 * q / 1000
+    fading = [density * (area * (1 - (1 - 0.2 * (1 - q * q) ** 2) ** power)).sum() for power in (1, 0.5, 0.25)]
+    for near in (0.4, 0.6, 0.8):
+        shell = (away > near) & (away < near + 0.2)
+        exact = sum(w * np.exp(-f * (near - 0.15)) for w, f in zip(ORDERS, fading, strict=True))
+        sides = [side * asked[:, k] > 0.5 * away for k in range(3) for side in (1, -1)]
+        np.testing.assert_allclose([left[shell & side].mean() for side in sides], exact, rtol=0.05)

@@ -81,7 +81,7 @@ def draw(
         busy, records, visibility, fine = of_layer
         with_waves(lambda w: w.refine(start, stop, busy, records, visibility, buffers.means, fine))
 
-    over_rows(height, gather)
+    over_rows(height, gather, "tracing rays")
     undecided, seconds, unsearched = map(sum, zip(*counts, strict=True))
     layers_seen = (1, 0) if seconds else (0,)  # layer 0 comes last: the stage of edges reads its planes
     if hard:
@@ -91,12 +91,9 @@ def draw(
     for layer in () if hard else layers_seen:
         _filter(refine, buffers, layer)
 
-    def layers_in(start: int, stop: int) -> int:
-        return layers if buffers.mirrored[start // TILE : -(-stop // TILE)].any() else 1
-
     def shade(start: int, stop: int) -> None:
-        layers = layers_in(start, stop)
-        light = buffers.records[:layers], buffers.fine[:layers], buffers.visibility[:layers]
+        seen = layers if buffers.mirrored[start // TILE : -(-stop // TILE)].any() else 1
+        light = buffers.records[:seen], buffers.fine[:seen], buffers.visibility[:seen]
         shade_rows(scene, start, stop, buffers.busy, *light, buffers.radiance)
 
     def lay_keys(start: int, stop: int) -> None:
@@ -116,7 +113,7 @@ def draw(
         with_waves(lambda w: w.smooth(start, stop, points, doubted, buffers.busy, buffers.planes, *light, linear))
 
     if samples > 1:
-        over_rows(height, smooth)
+        over_rows(height, smooth, "tracing rays at edges")
     else:
         linear[:] = buffers.radiance
     over(frame, buffers.records[0], linear, scene, rows)

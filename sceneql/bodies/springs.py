@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
@@ -14,6 +15,7 @@ from sceneql.bodies.filling.fill import chance_key, draws
 from sceneql.bodies.pins import Pin, guide, pinned, start_velocity
 from sceneql.kinds import Gives, Model, Moment, Problem, Quantity, Record, field, quantity_type
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import suggestion
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -43,14 +45,22 @@ class Tear(Record):
 
 def pin_problems(pins: Iterable[str] | Mapping[str, Pin], known: Sequence[str], count: int | None) -> Iterator[Problem]:
     """Problems: pins that are neither a known name nor the number of one of ``count`` masses (None: not known yet)."""
+    listed = () if isinstance(pins, Mapping) else tuple(pins)
+
+    def place(pin: str) -> tuple[int | str, ...]:
+        return ("pins", listed.index(pin)) if listed else ("pins", pin)
+
     for pin in pins:
         if isinstance(pins, Mapping) and pins[pin].where is not None:
             continue
         if pin not in known and not pin.isdecimal():
             text = f"no mass is called '{pin}'; a pin is one of {', '.join(sorted(known))}, or a number"
-            yield Problem(text, ("pins", pin), at_key=True)
+            near = suggestion("_".join(re.findall(r"[a-z]+", pin.lower())).replace("upper", "top"), known)
+            every = ", ".join(one for one in known if "_" in one) or ", ".join(known[-2:])
+            near = near or (f"write `pins: [{every}]`, or some of them" if len(known) > 1 else None)
+            yield Problem(text, place(pin), at_key=True, help=near)
         elif pin not in known and count is not None and float(pin) >= count:
-            yield Problem(f"pin {pin}: the {count} masses are counted from 0", ("pins", pin), at_key=True)
+            yield Problem(f"pin {pin}: the {count} masses are counted from 0", place(pin), at_key=True)
 
 
 class SpringModel(Model):

@@ -9,12 +9,14 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
-from sceneql.quantities.dimension import DENSITY, PRESSURE
+from sceneql.quantities.dimension import DENSITY, LENGTH, PRESSURE
 from sceneql.quantities.units import format_quantity
 
-_USUAL = {PRESSURE: "10 kPa", DENSITY: "1000 kg/m^3"}
+_USUAL = {PRESSURE: "10 kPa", DENSITY: "1000 kg/m^3", LENGTH: "0.1 m"}
 """Examples where 1 in SI is far from what things have."""
-_SHOWN = re.compile(r"`([^`]+)`")
+SPACE = ("x", "y", "z", "t")
+COMPONENTS = ("x", "y", "z")
+_SHOWN = re.compile(r"`([^`]*[\[{.\d\"][^`]*)`")
 
 
 def unwrap(annotation: Any) -> tuple[Any, tuple[Any, ...]]:
@@ -62,12 +64,22 @@ def could_be(annotation: Any, node: Node) -> bool:
 def example_of(cls: type[BaseModel], name: str) -> str:
     """An example of what may stand behind a field of a record, for messages: a quantity in its unit, or fields."""
     (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
+    extra: Any = info.json_schema_extra or {}
+    default = extra.get("default")
+    if isinstance(default, str) and default and any(character.isdigit() and character != "0" for character in default):
+        return default
+    if info.annotation is bool:
+        return "yes"
     dimensions = (mark.dimension for mark in quantities(info) if not mark.shape and mark.dimension is not None)
     if (one := next(dimensions, None)) is not None:
         return _USUAL.get(one, format_quantity(1.0, one))
+    if (vector := _vector(quantities(info))) is not None:
+        return vector
     refers = any(isinstance(mark, kinds.Refers) for mark in marks_of(info))
     if (shown := _SHOWN.search(info.description or "")) is not None and not refers:
-        return shown[1]
+        return f"{{{shown[1]}}}" if ": " in shown[1] and shown[1][0] not in "[{" else shown[1]
+    if any(isinstance(mark, kinds.Symbols) and mark.names == SPACE for mark in marks_of(info)):
+        return "x^2 + y^2 + z^2 - 1"
     formula = next((mark.dimension for mark in marks_of(info) if isinstance(mark, kinds.Symbols)), None)
     if formula is not None:
         return _USUAL.get(formula, format_quantity(1.0, formula))
@@ -76,6 +88,16 @@ def example_of(cls: type[BaseModel], name: str) -> str:
         return "..."
     needed = [kinds.written_name(key) for key, one in records[0].model_fields.items() if one.is_required()]
     return f"{{{', '.join(f'{key}: {example_of(records[0], key)}' for key in needed)}}}"
+
+
+def _vector(marks: list[kinds.Quantity]) -> str | None:
+    """An example of a vector: ``0 1 0 m``."""
+    size = next((mark.shape[0] for mark in marks if mark.shape is not None and len(mark.shape) == 1), None)
+    dimension = next((mark.dimension for mark in marks if mark.shape), None)
+    if size is None or dimension is None:
+        return None
+    number, _, unit = format_quantity(1.0, dimension).partition(" ")
+    return f"{' '.join('0' if size == len(COMPONENTS) and k != 1 else number for k in range(size))} {unit}".rstrip()
 
 
 def first_field(cls: type[BaseModel]) -> str:

@@ -16,7 +16,7 @@ from types import ModuleType
 from typing import Any
 
 from sceneql.compiler.defaults import check_defaults
-from sceneql.kinds import FAMILIES, Kind
+from sceneql.kinds import FAMILIES, Kind, written_name
 
 ROOT = Path(__file__).parent.parent
 LONGEST = 60
@@ -95,6 +95,12 @@ class Catalogue:
             for family in self.families
             if any(_is_word(folder / f"{word}.py") for _, folder in self._own_places(family))
         ]
+
+    def having(self, field: str) -> list[tuple[str, str]]:
+        """The (family, word) of all words with a field of a name; it imports the whole vocabulary, for messages."""
+        words = ((family, word) for family in self.families for word in self.words(family))
+        loaded = [((family, word), cls) for family, word in words if (cls := self.load(family, word)) is not None]
+        return [name for name, cls in loaded if field in map(written_name, cls.model_fields)]
 
     @cached_property
     def _installed(self) -> dict[str, Any]:

@@ -22,7 +22,9 @@ from sceneql.compiler.unknown import (
     mover_of,
     part_meant,
     report_unknown,
+    several_meant,
     those_of,
+    warn_of_another,
     word_having,
     word_meant,
 )
@@ -35,7 +37,7 @@ from sceneql.language.script import Script
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, unsure, whole, written
 from sceneql.language.tree import Sequence as SequenceNode
-from sceneql.quantities.diagnostic import Diagnostics, nearest, suggestion
+from sceneql.quantities.diagnostic import STRONG, Diagnostics, nearest, suggestion
 from sceneql.quantities.expression import Type
 
 SETTINGS = tuple(Settings.model_fields)
@@ -121,6 +123,7 @@ class _Checker:
             mover=lambda name: mover_of(name, self.entries, self.family_of),
             unsure=cache(self.unsure),  # cached: it reads a whole part, which many may name
             parsed=parsed,
+            catalogue=catalogue,
         )
 
     def unsure(self, name: str) -> bool:
@@ -160,7 +163,8 @@ class _Checker:
                     self.unused_defaults(word, fields, kinds)
             elif not kinds:
                 words = [each for family in self.catalogue.families for each in self.catalogue.words(family)]
-                help = suggestion(word, words) or "defaults are written by word, `{sphere: {radius: 1 m}}`"
+                help = "defaults are written by word, `{sphere: {radius: 1 m}}`"
+                help = suggestion(word, words) or help if isinstance(fields, MappingNode) else help
                 if word in self.templates:
                     help = "the defaults of a template stand in its own `fields:`"
                 self.found.error("unknown-word", f"'{word}' is no word", section.keys[word].span, help=help)
@@ -214,10 +218,7 @@ class _Checker:
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
             words = self.catalogue.choices(family)
-            if entry.word in self.templates:
-                hint: str | None = "it is a template: what is made of it stands under 'parts:'"
-            else:
-                hint = word_meant(entry, family, self.catalogue, self.family_of)
+            hint = word_meant(entry, family, self.catalogue, self.family_of, self.script)
             self.found.error(
                 "unknown-word",
                 f"'{entry.word}' is no word of {family}",
@@ -284,7 +285,7 @@ class _Checker:
             copies=lambda node, mark: self.copies(node, mark, entry),
         )
         try:
-            kind = reader.record(entry.fields, cls, entry.word_span, entry.word)
+            kind = reader.record(entry.fields, cls, entry.word_span, cls.__module__.rpartition(".")[2])
         except Unreadable:
             return
         if known is None:  # read only to report what is wrong in its fields
@@ -294,14 +295,16 @@ class _Checker:
 
     def meant(self, family: str, entry: Entry) -> type[Kind] | None:
         """The class of the word nearest to an unknown one, if the entry's fields suit it; else None."""
-        near, fields = nearest(entry.word, self.catalogue.choices(family)), entry.fields
+        words, fields = self.catalogue.choices(family), entry.fields
+        near = nearest(entry.word, words)
         cls = None if near is None else self.catalogue.load(family, near)
         if cls is None or not isinstance(fields, MappingNode):
             return None
         known = {written_name(name): info for name, info in cls.model_fields.items()}
         required = {name for name, info in known.items() if info.is_required()}
         fits = known.keys() >= fields.entries.keys() and (fields.partial or required <= fields.entries.keys())
-        return cls if fits else None
+        like = nearest(entry.word, words, STRONG) == near and any(nearest(one, known, STRONG) for one in fields.entries)
+        return cls if fits or like else None
 
     def refer(self, node: Node, mark: Refers, anonymous: str, entry: Entry) -> Ref | None:
         """The part that a field refers to, made of an entry written in place; None after an error."""
@@ -324,6 +327,7 @@ class _Checker:
             if name in self.entries and self.family(name) in (mark.family, mark.also):
                 return Ref(name, node.span)
             if name not in self.entries and self.catalogue.load(mark.family, node.text) is not None:
+                warn_of_another(node, mark.family, entry.name, self.entries, self.family_of, self.found)
                 in_place = Entry(anonymous, node.text, None, node.span, node.span, entry.scope)
                 return self._in_place(in_place, mark.family)
             if name in OPTIONAL and name not in self.entries and "objects" in (mark.family, mark.also):
@@ -341,10 +345,7 @@ class _Checker:
         if mark.bodies and isinstance(node, SequenceNode):
             self.found.error("entry-shape", "a place is no body", node.span, help=beside_world(node.span.text))
             return None
-        together = isinstance(node, SequenceNode) and "objects" in (mark.family, mark.also)
-        help = f"several together are one: write `{{union: {{of: {node.span.text}}}}}`" if together else None
-        if isinstance(node, SequenceNode) and len(node.items) == 1:
-            help = f"write `{node.items[0].span.text}`"
+        help = several_meant(node, mark, entry, self.catalogue) if isinstance(node, SequenceNode) else None
         if isinstance(node, MappingNode):
             help = word_having(node, mark.family, self.catalogue)
         self.found.error("entry-shape", message, node.span, help=help)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 from sceneql.compiler.css_colors import NAMED
 from sceneql.kinds import Gives
@@ -24,8 +25,20 @@ from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import continues_unit, in_words, unit_hint
 
 WORDS = re.compile(WORD)
+PICTURES = ("jpg", "jpeg", "png", "hdr", "exr", "tif", "tiff", "webp", "gif")
+SPEEDS = ("speed", "vel", "v", "absolute_velocity")
 DEEPEST = 40
 """Largest depth of defines that are read within one another; what a define needs is read before it."""
+
+
+class Vocabulary(Protocol):
+    """The words of all families, as the catalogue has them."""
+
+    def families_of(self, word: str) -> list[str]:
+        """The families that have a word of this name."""
+
+    def having(self, field: str) -> list[tuple[str, str]]:
+        """The (family, word) of all words with a field of this name."""
 
 
 class Parsed:
@@ -66,6 +79,8 @@ class Names:
     """Whether a part may have more outputs than are known, because its fields have errors."""
     mover: Callable[[str], str] = lambda name: ""
     """The model, or the body of it, that moves an object; empty where none does."""
+    catalogue: Vocabulary | None = None
+    """The words of all families, for messages."""
     parsed: Parsed = field(default_factory=lambda: Parsed())
     scope: Scope | None = None
     _bound: dict[str, Expr | None] = field(default_factory=dict)
@@ -232,7 +247,8 @@ class Names:
         mover = self.mover(task)
         model, body = self.part_of(mover) if mover else ("", "")
         known = self.outputs_of(model) or {}
-        gives = f"{body}.{wanted[0]}".strip(".") in known
+        inner = f"{body}.{wanted[0]}".strip(".")
+        gives = inner in known or f"{inner}.position" in known
         return f"'{model}' moves it: write `{'.'.join((mover, *wanted))}`" if gives else None
 
     def _component(self, whole: Expr, parts: tuple[str, ...], size: int, span: Span) -> Expr | None:
@@ -281,6 +297,8 @@ class Names:
         """The help for a dotted name of an unknown part: the nearest part, or the part without its section."""
         if parts[0] == "define":
             return f"what is defined is named by itself: write `{'.'.join(parts[1:])}`"
+        if parts[-1].lower() in PICTURES:
+            return "no picture is read here: write a color, `skyblue`"
         if parts[1] in known:
             return f"a part is named without its section: write `{'.'.join(parts[1:])}`"
         part = nearest(parts[0], known)
@@ -308,6 +326,9 @@ def _place(part: str, wanted: str, outputs: Collection[str]) -> str | None:
     """The help for a coordinate, or for the one place of a part with several bodies: `ball.y`, `fall.position`."""
     if wanted in ("x", "y", "z") and "position" in outputs:
         return f"write `{part}.position.{wanted}`"
+    *of, last = wanted.split(".")
+    if last in SPEEDS and (velocity := ".".join((*of, "velocity"))) in outputs:
+        return f"write `length({part}.{velocity})`, or a component, `{part}.{velocity}.x`"
     one = next((name for name in outputs if name.endswith(f".{wanted}")), None)
     many = f", or all of them, `{part}.{wanted}s`" if f"{wanted}s" in outputs else ""
     return None if one is None else f"it has bodies by name: write `{part}.{one}`{many}"

@@ -10,6 +10,7 @@ import re
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -25,8 +26,9 @@ from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.problems import Unreadable, validated
-from sceneql.compiler.texts import read_text
+from sceneql.compiler.texts import read_text, unescaped
 from sceneql.compiler.unknown import meant_field, report_unknown
+from sceneql.kinds.values import Verbatim
 from sceneql.language.repeat import numbered
 from sceneql.language.scope import Scope
 from sceneql.language.tree import Mapping as MappingNode
@@ -86,7 +88,15 @@ class Reader:
             known = [kinds.written_name(name) for name in cls.model_fields]
             said_by = cls.said_by if issubclass(cls, kinds.Record) else {}
             family = cls.family if issubclass(cls, kinds.Kind) else ""
-            ok = report_unknown(node, known, title, self.found, said_by, family) and not node.partial
+            counter = node.entries.get("repeat") if "repeat" not in known else None
+            number = counter.entries.get("as") if isinstance(counter, MappingNode) else None
+            if isinstance(number, Scalar):  # the copies' number is not known, which the field's error tells
+                self.names.broken.add(number.text)
+            renamed = partial(likely.renamed, self, cls)
+            ok = report_unknown(
+                node, known, title, self.found, said_by, family, renamed, self.names.catalogue, likely.table_of(cls)
+            )
+            ok = ok and not node.partial
             mistaken = {meant_field(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
@@ -94,9 +104,8 @@ class Reader:
                 if info.is_required():
                     ok = False
                 if info.is_required() and name not in mistaken and not (node is not None and unsure(node)):
-                    self.found.error(
-                        "missing-field", f"{title} needs '{name}'", span, help=f"{name}: {info.description}"
-                    )
+                    help = likely.example_line(cls, name, info.description or "")
+                    self.found.error("missing-field", f"{title} needs '{name}'", span, help=help)
                 continue
             owner = f"{self.owner}.{name}" if self.owner else ""
             reader, before = replace(self, owner=owner, symbols=symbols, solved=solved), len(self.found.found)
@@ -105,18 +114,28 @@ class Reader:
             except Unreadable:
                 ok = False
                 told = [(one.code, one.help) for one in self.found.found[before:]]
+                if len(told) == 1 and told[0][0] in ("unknown-name", "unknown-unit"):
+                    number_alone = likely.number_meant(written[name], info, name, *told[0]) or told[0][1]
+                    self.found.found[before] = replace(self.found.found[before], help=number_alone)
                 pointing = any(mark.direction for mark in quantities(info))
-                if told == [("wrong-shape", None)] or (pointing and told == [("dimension-mismatch", None)]):
+                if told in ([("wrong-shape", None)], [("dimension-mismatch", None)]):
                     rest = {
                         key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
                     }
-                    better = likely.elsewhere(self, written[name], info, rest)
+                    ours = told[0][0] == "wrong-shape" or pointing
+                    better = likely.elsewhere(self, written[name], info, rest) if ours else None
+                    if better is None:
+                        better = likely.for_each(self, written[name], cls, name, title)
                     if better is None and self.found.found[before].message.endswith(PLANAR):
                         better = "a number is missing: it has one for each of x, y and z"
                     if better is None and self.found.found[before].message.startswith(f"{name}{SINGLE}"):
                         better = likely.first_of(name, written[name])
                     if better is None and pointing and told[0][0] == "dimension-mismatch":
                         better = likely.direction_alone(written[name])
+                    if better is None and told[0][0] == "dimension-mismatch":
+                        better = likely.plain_define(self, written[name]) or likely.in_other_unit(
+                            self, written[name], info, rest, name
+                        )
                     self.found.found[before] = replace(self.found.found[before], help=better)
         if not ok:
             raise Unreadable
@@ -159,6 +178,9 @@ class Reader:
                 return self._some(self.refer(node, mark, self.owner))
             if isinstance(mark, kinds.Interpolated):
                 return self._some(read_text(node, mark, what, self.names, self.found))
+            if isinstance(mark, Verbatim) and isinstance(node, Scalar) and (plain := unescaped(node)) is not None:
+                text = "in double quotes a backslash begins a sign of YAML's, and is none of the text"
+                raise self._fail("syntax", text, node.span, f"write single quotes: `{what}: {plain}`")
             if isinstance(mark, kinds.SceneFile):
                 path = self._some(read_path(node, self.folder, what, self.found))
                 self.files.append(path)
@@ -290,6 +312,9 @@ class Reader:
             help = f"write `{what}: [{', '.join(names)}]`"
         if help is None and count == 1 and isinstance(node, Scalar):
             help = f"write `{' '.join(len(arms) * [node.text])}`, one for each"
+            if node.text.isidentifier():  # a name
+                bodies = any(isinstance(mark, kinds.Refers) and mark.bodies for arm in arms for mark in unwrap(arm)[1])
+                help = f"write `{what}: [{node.text}, {'world' if bodies else '...'}]`"
         return self._fail("wrong-count", f"{what} takes {len(arms)} values, not {count}", node.span, help)
 
     def _copies(self, node: Node, annotation: Any) -> list[Node]:

@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection
 from collections.abc import Mapping as Naming
+from collections.abc import Sequence as Sequenced
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.css_colors import NAMED
-from sceneql.compiler.names import Names
+from sceneql.compiler.names import Names, Vocabulary
 from sceneql.kinds import Refers, written_name
 from sceneql.language.repeat import copy_meant
+from sceneql.language.replaced import word_of
 from sceneql.language.scope import Entry
-from sceneql.language.tree import Mapping, Node, Scalar
-from sceneql.quantities.diagnostic import Diagnostics, nearest, same_as, suggestion
+from sceneql.language.script import Script
+from sceneql.language.tree import Mapping, Node, Scalar, Sequence
+from sceneql.quantities.diagnostic import STRONG, Diagnostics, all_same_as, nearest, same_as, suggestion
 from sceneql.quantities.instead import instead
 
 DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere", "contacts": "collision"}
 """The word of a family that is shown where several have a field."""
 MANY = 6
 """Largest number of words of which all that have a field are listed."""
+THINGS, SHORT = ("objects", "models", "cameras", "lights"), 2
+"""Families whose fields are looked for among their own words alone, and the longest name that tells too little."""
+FEW = 4
+"""Largest number of words with a field by which it is told what has that field."""
 
 _UNPARTED = re.compile(r"(\w+)(?:(:)|\s*=| )(.*)")
+
+
+Renamed = Callable[[str, Node], tuple[bool, str]]
+"""For a known field and a value: whether the field takes it, and the help that offers the field."""
 
 
 def report_unknown(
@@ -31,24 +42,63 @@ def report_unknown(
     found: Diagnostics,
     said_by: Naming[str, str] | None = None,
     family: str = "",
+    renamed: Renamed | None = None,
+    catalogue: Vocabulary | None = None,
+    table: str = "",
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; returns whether there are none.
 
-    ``said_by``: help texts for names that are likely to be tried; ``family``: that of the word, if any.
+    ``said_by``: help texts for names that are likely to be tried; ``family``: that of the word, if any;
+    ``renamed``: offers a known field; ``catalogue``: to look for names among all words and their fields;
+    ``table``: the field, if it has to be given, that holds entries by names of the script.
     """
+    offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        help = (said_by or {}).get(name) or _together(name, unknown, node, known)
-        help = help or (suggestion(name, known) if same_as(name, known) else None)
-        help = help or instead(f"field.{family}", name) or instead("field", name) or suggestion(name, known)
+        help = (said_by or {}).get(name) or instead(f"field.{title.partition('.')[0]}", name)
+        help = help or _together(name, unknown, node, known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
             help = f"write `{written[1]}: {written[3].strip()}`{space}"
+        offers = [] if help else [offer(one, node.entries[name]) for one in all_same_as(name, known)]
+        help = help or next((text for fits, text in offers if fits), None)
+        help = help or instead(f"field.{family}", name) or instead("field", name)
+        help = help or (offers[0][1] if offers else None)
+        help = help or _like(name, node.entries[name], known, offer, family, catalogue)
         if help is None and len(known) == 1:
             help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
+        if help is None and table and table not in node.entries:
+            inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown)
+            help = f"names of your own stand in `{table}`: write `{table}: {{{inner}}}`"
         help = help or "it has " + ", ".join(known)
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
     return not unknown
+
+
+def _like(
+    name: str, value: Node, known: Collection[str], offer: Renamed, family: str, catalogue: Vocabulary | None
+) -> str | None:
+    """The help for a field by its letters: nearly a known one, a word, one of other words, or like a known one by far.
+
+    What is like a known one only by far has to be a value that this takes: else it is most likely another thing.
+    """
+    if (near := nearest(name, known, STRONG)) is not None:
+        return offer(near, value)[1]
+    if catalogue is not None and family and (under := catalogue.families_of(name)) and under[0] != family:
+        text = value.span.text if "\n" not in value.span.text else "{...}"
+        whole = f"{under[0]}: {{NAME: {{{name}: {text}}}}}"
+        return f"'{name}' is a word of `{under[0]}`: write `{whole}`: `sceneql words {name}`"
+    fits, help = (False, "") if (far := nearest(name, known)) is None else offer(far, value)
+    having = [] if catalogue is None or fits or len(name) <= SHORT else catalogue.having(name)
+    own = [word for of, word in having if of == family in THINGS]
+    usual = any(of in THINGS for of, _ in having)  # too usual a name to tell what was meant
+    others = [] if usual or len(having) == 1 else having
+    words = own or [word for _, word in others]
+    if words and len(words) <= FEW:
+        where = "" if own else f" under `{others[0][0]}`"
+        these = ", ".join(f"`{word}`" for word in words)
+        return f"it is a field of {these}{where}: `sceneql words {words[0]}`; here are {', '.join(known)}"
+    return help if fits else None
 
 
 def meant_field(name: str, known: Collection[str]) -> str | None:
@@ -57,7 +107,7 @@ def meant_field(name: str, known: Collection[str]) -> str | None:
     return written[1] if written is not None and written[1] in known else nearest(name, known)
 
 
-def _together(name: str, unknown: Sequence[str], node: Mapping, known: Collection[str]) -> str | None:
+def _together(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
     """The help for fields that are one here: ``from: a, to: b``, and items of a list without brackets."""
     ours = same_as(name, known)
     same = [other for other in unknown if same_as(other, known) == ours]
@@ -83,8 +133,17 @@ def _empty(node: Node) -> bool:
     return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
 
 
-def word_meant(entry: Entry, family: str, catalogue: Catalogue, family_of: Naming[str, str]) -> str | None:
+def word_meant(
+    entry: Entry, family: str, catalogue: Catalogue, family_of: Naming[str, str], script: Script
+) -> str | None:
     """The help for an entry with a word that is not in its family; ``family_of``: the families of all parts."""
+    templates = script.root.entries.get("templates")
+    if isinstance(templates, Mapping) and entry.word in templates.entries:
+        text = "" if entry.fields is None else entry.fields.span.text
+        inner = f"{{{entry.word}: {text}}}" if text and "\n" not in text else entry.word
+        return f"it is a template, of which parts are made: write `parts: {{{entry.name}: {inner}}}`"
+    if (replaced := _field_of_replaced(entry, family, script, catalogue)) is not None:
+        return replaced
     words, fields = catalogue.choices(family), entry.fields
     inner = next(iter(fields.entries)) if isinstance(fields, Mapping) and len(fields.entries) == 1 else ""
     if fields is not None and entry.name == entry.word and catalogue.load(family, inner) is not None:
@@ -108,10 +167,31 @@ def word_meant(entry: Entry, family: str, catalogue: Catalogue, family_of: Namin
         return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
     having = [] if fields is None else _having([entry.word], family, catalogue)
     if fields is not None and having:
-        near = nearest(entry.name, having) or having[0]
+        usual = next((word for word in DEFAULT.values() if word in having), having[0])
+        word = nearest(entry.name, having, STRONG) or usual
         of = f" of {', '.join(sorted(having))}" if len(having) <= MANY else ""
-        return f"it is a field{of}: write `{{{near}: {{{entry.word}: {fields.span.text}}}}}`"
-    return instead(family, entry.word) or suggestion(entry.word, words)
+        return f"it is a field{of}: write `{{{word}: {{{entry.word}: {fields.span.text}}}}}`"
+    if (other := instead(family, entry.word)) is not None:
+        return other
+    near, given = nearest(entry.word, words), list(fields.entries) if isinstance(fields, Mapping) else []
+    cls = None if near is None else catalogue.load(family, near)
+    known = [] if cls is None else [written_name(name) for name in cls.model_fields]
+    if near is not None and (not given or any(nearest(name, known, STRONG) for name in given)):
+        return f"did you mean '{near}'?"
+    having = _having(given, family, catalogue) if given else []
+    return f"words with such fields are {', '.join(having[:MANY])}" if having else None
+
+
+def _field_of_replaced(entry: Entry, family: str, script: Script, catalogue: Catalogue) -> str | None:
+    """The help for a part that a variant replaces by a field of its word."""
+    table = script.base.entries.get(family)
+    own = word_of(table.entries.get(entry.name)) if isinstance(table, Mapping) and script.variant else ""
+    cls = catalogue.load(family, own) if own else None
+    if cls is None or entry.fields is None or entry.word not in map(written_name, cls.model_fields):
+        return None
+    field = f"{entry.word}: {entry.fields.span.text}"
+    by_path = f"write `{script.variant}: {{{entry.name}.{field}}}`, which changes this field alone"
+    return f"it is a field of '{own}', which '{entry.name}' is: {by_path}"
 
 
 def mover_of(name: str, entries: Naming[str, Entry], family_of: Naming[str, str]) -> str:
@@ -147,9 +227,36 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
     )
 
 
-def those_of(family: str, names: Sequence[str]) -> str:
+def those_of(family: str, names: Sequenced[str]) -> str:
     """The help where a part of a wrong family is named."""
     return f"those of {family} are {', '.join(names[:8])}" if names else f"write one under `{family}:`"
+
+
+def several_meant(node: Sequence, mark: Refers, entry: Entry, catalogue: Catalogue) -> str | None:
+    """The help for a list where an entry refers to one part."""
+    kinds = [catalogue.load(family, entry.word) for family in catalogue.families_of(entry.word)]
+    names = [item.span.text for item in node.items]
+    if len(names) == 1:
+        return f"write `{names[0]}`"
+    if "objects" not in (mark.family, mark.also):
+        return None
+    if any(cls is not None and "bodies" in cls.model_fields for cls in kinds) and all(
+        name.isidentifier() for name in names
+    ):
+        return f"each is a body of its own: write `bodies: {{{', '.join(f'{one}: {{of: {one}}}' for one in names)}}}`"
+    return f"several together are one: write `{{union: {{of: {node.span.text}}}}}`"
+
+
+def warn_of_another(
+    node: Scalar, family: str, user: str, entries: Naming[str, Entry], family_of: Naming[str, str], found: Diagnostics
+) -> None:
+    """Warn of a word in a model, ``user``, that makes another part, where there is a part by that word to be meant."""
+    if family_of.get(user) != "models":
+        return
+    same = [name for name, entry in entries.items() if entry.word == node.text and family_of[name] == family]
+    if same and "." not in same[0]:
+        text = f"'{node.text}' is a word here, and makes another one, with its defaults"
+        found.warning("second-part", text, node.span, help=f"to name the one that is there write `{same[0]}`")
 
 
 def beside_world(place: str) -> str:
@@ -159,7 +266,7 @@ def beside_world(place: str) -> str:
     return f"write `world`, and the place in another field of the tie, `to: {plain}` of a rod, `at` of others"
 
 
-def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, catalogue: Catalogue) -> str | None:
+def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, catalogue: Catalogue) -> str | None:
     """The help for a name of no part of the mark's families; ``choices``: the names of their parts."""
     if (copy := copy_meant(name, {*choices, *names.parts})) is not None:
         return copy
@@ -180,6 +287,9 @@ def part_meant(name: str, mark: Refers, choices: Sequence[str], names: Names, ca
     words = catalogue.words(mark.family)
     if names.gives(name) and (readers := names.readers(name, choices)):
         return f"a part stands here, and none of its outputs: write `{readers[0]}`, which shows it"
+    row = re.findall(r"[^\W\d]\w*", name)
+    if mark.panel and len(row) > 1 and all(one in choices for one in row):
+        return f"a row is a list: write `[[{', '.join(row)}]]`"
     hint = instead("part", name) or suggestion(name, choices) or suggestion(name, words)
     if hint is None and mark.panel:
         hint = f"rows hold names of cameras and graphs, `[[{', '.join(choices[:2]) or 'front, top'}]]`"

@@ -32,7 +32,7 @@ from sceneql.quantities.dimension import (
 )
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Keys, Link, Number, Shape, Symbol, Type, Vector, walk
-from sceneql.quantities.instead import time_meant
+from sceneql.quantities.instead import of_unit, power_of_ten, unit_meant
 from sceneql.quantities.literal import vector_meant
 from sceneql.quantities.parser import parse_value
 from sceneql.quantities.spaced import apart
@@ -44,12 +44,12 @@ PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
 _MISSING = (
     (DENSITY, "(1000 kg/m^3)", "a density"),
+    (LENGTH**3 / MASS / TIME**2, "(6.674e-11 m^3/(kg*s^2))", "the constant of gravity"),
     (DENSITY * ENERGY / MASS / TEMPERATURE, "(4.2e6 J/(K*m^3))", "what a volume takes to be a kelvin warmer"),
 )
 """(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
 viscosity to dynamic, conductivity to diffusivity."""
 _EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
-_TENS = re.compile(r"(?<![\w.])(\d+\.?\d*)\s*[x×·⋅*]\s*10\s*(?:\^|\*\*)\s*\(?([-+−]?\d+)")
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
 
@@ -64,7 +64,7 @@ def read_value(node: Node, quantity: Quantity, what: str, names: Names, found: D
 def _checked(expr: Expr | None, node: Node, quantity: Quantity, what: str, found: Diagnostics) -> Value | None:
     if expr is None or not fits(expr, quantity, what, node.span, found):
         return None
-    if not quantity.over_time and not momentary(expr, node.span, found):
+    if not (quantity.over_time or momentary(expr, node.span, found)):
         return None
     return Value(_scaled(expr) if quantity.direction else expr, node.span)
 
@@ -92,14 +92,13 @@ def read_expr(
         case Scalar():
             return scalar_expr(node, names, found)
         case Sequence():
-            inner = shape[1:] if shape is not None and len(shape) > 1 else ()
+            inner = () if shape is None else shape[1:]
             items = [read_expr(item, inner, dimension, what, names, found) for item in node.items]
             if any(item is None for item in items):
                 return None
-            known = [item for item in items if item is not None]
-            if not known:
+            if not (known := [item for item in items if item is not None]):
                 return Vector((), Type((0, *inner), dimension), node.span)
-            return _vector(known, what, node.span, found)
+            return _vector(known, what, node.span, found, dimension)
         case MappingNode():
             if "keys" in node.entries:
                 return _keys(node, shape, dimension, what, names, found)
@@ -108,6 +107,7 @@ def read_expr(
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
             help = timed(node) or (f"write `[{', '.join(texts)}]`" if listed else None)
+            help = f"a name has one value: write `{node.span.text[1:-1]}`, each by itself" if what == "define" else help
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None
 
@@ -126,8 +126,7 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
         expr = names.parsed.tree(node, text, names.lookup, found)
     except ScriptError as error:
         found.extend(error.diagnostics)
-    if expr is None and len(found.found) > before and (ten := _TENS.search(text)) is not None:
-        help = f"write `{ten[1]}e{ten[2]}`, with the unit behind it"
+    if expr is None and len(found.found) > before and (help := power_of_ten(text)) is not None:
         found.found[before] = replace(found.found[before], help=help)
     return expr
 
@@ -138,9 +137,12 @@ def parsed_text(node: Scalar) -> str:
     return raw if " ".join(raw.split()) == " ".join(node.text.split()) else node.text
 
 
-def _vector(items: list[Expr], what: str, span: Span, found: Diagnostics) -> Expr | None:
+def _vector(
+    items: list[Expr], what: str, span: Span, found: Diagnostics, wanted: Dimension | None = None
+) -> Expr | None:
     inner = items[0].type.shape
-    dimension = common(i.type.dimension for i in items if not _zero(i)) or PLAIN
+    given = [i.type.dimension for i in items if not _zero(i)]
+    dimension = (wanted if wanted is not None and not wanted.plain and wanted in given else common(given)) or PLAIN
     for item in items:
         other = item.type.dimension
         if item.type.shape != inner:
@@ -149,7 +151,8 @@ def _vector(items: list[Expr], what: str, span: Span, found: Diagnostics) -> Exp
         if other is not None and other != dimension and not _zero(item):
             texts = ", ".join("" if one.span is None else one.span.text for one in items)
             vector, rate = vector_meant(texts), dimension / other in (TIME, FREQUENCY)
-            help = "times the `time` a velocity is a length: `1 m/s*time`" if rate else vector and f"write `{vector}`"
+            help = remedy(item, dimension) or (vector and f"write `{vector}`")
+            help = "times the `time` a velocity is a length: `1 m/s*time`" if rate else help
             found.error(
                 "dimension-mismatch",
                 f"the components of {what} differ: {describe(dimension)} and {describe(other)}",
@@ -230,7 +233,7 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
             "dimension-mismatch",
             f"{what} is {in_words(quantity.dimension)}, but this is {in_words(has)}",
             span,
-            help=time_meant(span.text) or _counted(expr, quantity.dimension) or remedy(expr, quantity.dimension),
+            help=_counted(expr, quantity.dimension) or remedy(expr, quantity.dimension),
             notes=origin(expr, span),
         )
         return False
@@ -306,8 +309,9 @@ def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
 
 def remedy(expr: Expr, wanted: Dimension | None) -> str | None:
     """The help where a quantity lacks a factor, or has a unit with a prefix where two units were meant."""
-    if wanted == TEMPERATURE and expr.span is not None and expr.span.text[-1:] in ("C", "F"):
-        return f"write `{expr.span.text[:-1].strip()} °{expr.span.text[-1]}`"
+    here = "" if expr.span is None else expr.span.text
+    if (other := unit_meant(here, expr.type.dimension, wanted)) is not None:
+        return other
     text = None if expr.span is None or isinstance(expr, Link) else apart(expr.span.text)
     if text is not None and expr.span is not None:
         try:
@@ -317,7 +321,7 @@ def remedy(expr: Expr, wanted: Dimension | None) -> str | None:
         one = meant.items[0] if isinstance(meant, Vector) else meant
         if isinstance(one, Number) and suits(one.type.dimension, wanted):
             return f"two units have a sign between them: write `{text}`"
-    return _product(expr, wanted) or _factor(expr, wanted)
+    return _product(expr, wanted) or _factor(expr, wanted) or of_unit(here)
 
 
 def _product(expr: Expr, wanted: Dimension | None) -> str | None:

@@ -14,7 +14,7 @@ from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Record, Symb
 from sceneql.kinds.probed import Probed
 from sceneql.kinds.stable_step import StaticScene
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, ScriptError, suggestion
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Link, Symbol, walk
@@ -299,7 +299,8 @@ class Medium(Model):
             for name, part in boundary.items()
             if name not in known and not part.chosen
         ):
-            yield Problem(f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`")
+            text = f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
+            yield Problem(text, ("boundary", name), at_key=True, help=suggestion(name, known))
 
     def sums_up(self, output: str) -> bool:
         """Whether an output is a field's total inflow, an integral over time."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, ClassVar
 
@@ -51,6 +52,9 @@ class Gallery(Record):
     time: FixedTime = field("The instant of the poster.", "1 s", at_least=0)
 
 
+_COMPARED = re.compile(r"([^<>=!]+)(<=?|>=?|={1,2}|≈|~=)([^<>=]+)")
+
+
 class Expect(Record):
     """A number that the scene must give, and the source of that number."""
 
@@ -66,6 +70,17 @@ class Expect(Record):
     below: Expected | None = field("In place of a value: what it must stay below.", None)
     because: str = field("Why: exact, independent source, conservation, ...")
     variant: str | None = field("The variant that it holds for; by default the script as it stands.", None)
+
+    @classmethod
+    def meant_by(cls, text: str) -> str | None:
+        """The fields of a comparison: ``a < b``, ``a == b``."""
+        found = _COMPARED.fullmatch(text.strip())
+        if found is None:
+            return None
+        of, sign, value = (found[k].strip() for k in (1, 2, 3))
+        of, value = (value, of) if ">" in sign else (of, value)
+        field = "value" if "=" in sign and sign[0] not in "<>" else "below"
+        return f"write `{{of: {of}, {field}: {value}, because: WHY}}`"
 
     def problems(self) -> Iterator[Problem]:
         """An expectation that is compared with nothing, or with two things."""
@@ -94,7 +109,9 @@ class Study(Record):
     `, linear`; other values are a list. Every value of one path is combined with every one of the others.
     """
 
-    sweep: dict[str, Any] = field("By dotted path, as in variants, the values that are tried: a range, or a list.")
+    sweep: dict[str, Any] = field(
+        "By dotted path, as in variants, the values that are tried: `{define.k: [1 N/m, 2 N/m]}`, or a range."
+    )
     of: Expected = field("What is compared, such as `final(swing.bob.position)`.")
     exact: Expected | None = field("What it should be, where that is known.", None)
     reference: dict[str, Any] | None = field(

@@ -174,6 +174,11 @@ class Record(BaseModel):
                 filled[name] = value
         return filled
 
+    @classmethod
+    def meant_by(cls, text: str) -> str | None:
+        """The help for a text in place of the fields, where it tells what they would be."""
+        return None
+
     def problems(self) -> Iterable[Problem]:
         """Errors in combinations of its fields; each becomes an error of the script."""
         return ()

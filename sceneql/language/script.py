@@ -21,6 +21,7 @@ from sceneql.language.patch import (
     variant,
     variant_names,
 )
+from sceneql.language.replaced import report_replaced
 from sceneql.language.reuse import reused
 from sceneql.language.scope import Broken, Entry, Expanded, Given, Scope
 from sceneql.language.sections import NAMED, join, with_known_keys
@@ -56,12 +57,14 @@ class Script:
     ``sections`` holds the entries of each family in the order written, ``settings`` the other top-level values as
     nodes, ``defaults`` the fields by word (already filled into the entries), ``gives`` and ``groups`` what instances
     give and which parts stand for one written name, ``broken`` the names of entries that cannot be read, ``unmade``
-    what is only checked (see `Expanded`). ``hash`` is the SHA-256 of all texts and patches.
+    what is only checked (see `Expanded`), ``base`` the tree without its patches.
+    ``hash`` is the SHA-256 of all texts and patches.
     """
 
     name: str
     sources: tuple[Source, ...]
     root: Mapping
+    base: Mapping
     sections: dict[str, dict[str, Entry]]
     settings: dict[str, Node]
     defaults: dict[str, Node]
@@ -117,6 +120,7 @@ class Composed:
         report_unnamed(self.root, found)
         wrong: dict[str, Diagnostics] = {}
         for name in self.variants:
+            report_replaced(self.root, name, self.families, found)
             if name != chosen:
                 wrong[name] = Diagnostics()
                 for patches in _each(self.root, name, wrong[name]):
@@ -144,6 +148,7 @@ class Composed:
             name=self.name,
             sources=tuple(tree.source for tree in self.trees),
             root=patched,
+            base=root,
             sections=_in_order(expanded, patched),
             settings={k: n for k, n in patched.entries.items() if k not in self.families and k not in _REWRITTEN},
             defaults=dict(defaults.entries) if isinstance(defaults, Mapping) else {},

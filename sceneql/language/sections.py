@@ -16,6 +16,10 @@ NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect"
 
 NOTHING: Final = ("none", "no", "false", "off")
 """Words of what is not to be there."""
+TYPES: Final = ("type", "kind", "shape", "geometry", "primitive")
+"""Keys by which other programs tell the word of a part."""
+SHOWN: Final = 80
+"""Longest text of fields that a message repeats."""
 _ENTRY = "an entry is `name: word` or `name: {word: {fields}}`"
 
 
@@ -43,7 +47,7 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
         if node.kind == "text":
             return Written(node, None, None)
         message = f"{what} has no word" if empty(node) else f"{what} is the {node.kind} {node.text}, not a part"
-        found.error("entry-shape", message, node.span, help=instead("entry", name) or _ENTRY)
+        found.error("entry-shape", message, node.span, help=instead("named", name) or _ENTRY)
         return None
     if isinstance(node, Sequence):
         help = margin if name in sections else instead("list", name) or _ENTRY
@@ -68,17 +72,36 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
                 f"if '{name}' is the word, a name stands before it: `NAME: {{{name}: {both}}}`; if it is the name, a "
                 f"word stands around the fields: `{name}: {{WORD: {both}}}`: `sceneql words` lists them"
             )
-        beside = (instead("beside", word) for word in words)
-        if (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:
+        holding = [word for word in words if isinstance(node.entries[word], Mapping)]
+        main = holding[0] if len(holding) == 1 or (holding and holding[0] == words[0]) else ""
+        main = words[0] if not main and empty(node.entries[words[0]]) else main
+        beside = (instead("beside", word) for word in words if word != main)
+        typed = next((key for key in TYPES if key in words and isinstance(node.entries[key], Scalar)), None)
+        if typed is not None:
+            word = node.entries[typed].span.text
+            inner = ", ".join(f"{key}: {node.entries[key].span.text}" for key in words if key != typed)
+            help = (
+                f"the word stands around its fields: write `{{{word}: {{{inner if len(inner) <= SHOWN else '...'}}}}}`"
+            )
+        elif (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:
             help = other
-        elif empty(node.entries[words[0]]):
-            help = f"the fields of a word are indented below it: {{{words[0]}: {{{words[1]}: ..., ...}}}}"
-        elif isinstance(node.entries[words[0]], Mapping):
-            help = f"if '{words[1]}' is a field, it stands inside: {{{words[0]}: {{{words[1]}: ..., ...}}}}"
+        elif main:
+            help = f"fields stand inside the braces of the word: write `{_put_inside(main, words, node)}`"
         found.error("entry-shape", message, second.span, help=help, notes=[Note("the first stands here", first.span)])
         return None
     fields = node.entries[words[0]]
     return Written(node.keys[words[0]], None if empty(fields) else fields, node.entries.get("repeat"))
+
+
+def _put_inside(main: str, words: Collection[str], node: Mapping) -> str:
+    """The entry with the fields beside its word among those of the word: ``{cloth: {size: 1 1 m, color: red}}``."""
+    inner = node.entries[main]
+    fields = dict(inner.entries) if isinstance(inner, Mapping) else {}
+    own = ", ".join(f"{name}: {one.span.text}" for name, one in fields.items())
+    own = own if fields and "\n" not in own and len(own) <= SHOWN else "..."
+    more = [(name, node.entries[name].span.text) for name in words if name != main]
+    told = ", ".join(f"{name}: {text if chr(10) not in text and len(text) <= SHOWN else '...'}" for name, text in more)
+    return f"{{{main}: {{{own if fields else ''}{', ' if fields else ''}{told}}}}}"
 
 
 def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Broken, found: Diagnostics) -> Mapping:

@@ -123,10 +123,11 @@ def engage(system: System, stepper: Stepper, driver: Driver) -> Engaged:
         prepared = Prepared(method.settings, method.numbers, max(1, method.work) * len(system.y))
     else:
         prepared = function(needs.prepare)(system, stepper)
+    last = method.last_stage if prepared.last_stage is None else prepared.last_stage
     told = (
         (kernels.ADAPTIVE, control.adaptive),
         (kernels.ORDER, method.order),
-        (kernels.LAST_STAGE, -1 if local and between else method.last_stage),
+        (kernels.LAST_STAGE, -1 if local and between else last),
         (kernels.CONTROLS, control.self_controlled),
         (kernels.HALVES, control.halves),
         # Newton's method keeps surfaces from passing each other by itself, up to the state of its last stage.

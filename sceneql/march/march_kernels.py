@@ -257,6 +257,9 @@ def march(
     after_step = pointers.after_step_at(functions[pointers.AT_AFTER_STEP])
     settle = pointers.settle_at(functions[pointers.AT_SETTLE])
     n, part = y0.size, 1.0
+    alone = counts[LOCAL] == 0 and counts[ACTS] == 0
+    # Where nothing asks for the rate before a step's end is settled, it is evaluated once, after that.
+    later = alone and leaving.size == 0 and counts[SETTLES] > 0 and counts[LAST_STAGE] < 0
     while clock[T1] < target:
         if counts[LEFT] <= 0:
             return PAUSED
@@ -305,7 +308,7 @@ def march(
             return status
         if counts[LAST_STAGE] >= 0:
             copy(work[counts[LAST_STAGE] * n :], rate1)
-        elif (counts[LOCAL] == 0 and counts[ACTS] == 0) or leaving.size > 0 or (counts[HELD] > 0 and counts[ORDER] > 1):
+        elif (alone and not later) or leaving.size > 0 or (counts[HELD] > 0 and counts[ORDER] > 1):
             # (Resting contacts of a first-order method may use the load at the step's start.)
             rate(t1, y1, rate1, floats, ints)
         if leaving.size > 0:
@@ -377,7 +380,7 @@ def march(
                 rate(t1, y1, rate1, floats, ints)
         if counts[SETTLES] > 0:
             floats[channels.SETTLED] = counts[LOCAL] == 0 and counts[ALTERED] == 0 and counts[PENDING] < 0
-            if settle(t0, t1, y0, rate0, y1, floats, ints):
+            if settle(t0, t1, y0, rate0, y1, floats, ints) or later:
                 rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1

@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sceneql.frame import Floats
 
-WINDOW = 0.5
+WINDOW = 0.25
 """Length of the window of a camera that follows by itself, relative to the film: it moves less than what it shows."""
-LARGER, FILLED, PART = 1.3, 1 / 3, 0.25
+LARGER, FILLED, PART = 1.2, 1 / 3, 0.25
 """Such a camera is better than a still one where it shows what is there now so many times larger, and at least so large
 relative to the picture, in such a part of the film: what stays a dot had better be seen on its whole way."""
-NEARER = 4.0
+STEEP, MUCH_LARGER = 0.9, 1.3
+"""Sine of the elevation of a camera from which on it must show that much larger: from above nothing tells that it moves
+itself, as what lies under things does from the side."""
+NEARER = 5.0
 """Largest ratio of the distance of a still camera to that of one that follows: what moves keeps its surroundings."""
 
 
@@ -102,17 +105,22 @@ class Follower:
         middles = np.array([(one.min() + one.max()) / 2 for one in points])
         depths = self.path(self.times) @ self.back - middles
         alone = np.array([self._fitted(some)[0] for some in now]) @ self.back - middles
-        better = ((still @ self.back - middles) >= LARGER * depths) & (alone >= FILLED * depths)
+        larger = MUCH_LARGER if self.back[1] > STEEP else LARGER
+        better = ((still @ self.back - middles) >= larger * depths) & (alone >= FILLED * depths)
         return float(better.mean()) >= PART
 
 
 def with_feet(rows: Floats, level: float) -> Floats:
-    """Rows (n, 1 + 3) of what moves, and what lies under it at the lowest height [m] of the film.
+    """Rows (n, 1 + 3) of what moves, and what lies under its middle at the lowest height [m] of the film.
 
-    So a camera that follows shows how high things are, and what happens between two instants of a fall.
+    So a camera that follows shows how high things are, and what happens between two instants of a fall. It is one point
+    an instant: the ground under all of a wide cloth, in front of that, would keep the camera away.
     """
     import numpy as np
 
-    feet = rows.copy()
-    feet[:, 2] = level
+    feet = []
+    for time in np.unique(rows[:, 0]):
+        points = rows[rows[:, 0] == time]
+        feet.append((points.min(axis=0) + points.max(axis=0)) / 2)
+        feet[-1][2] = level
     return np.concatenate([rows, feet])

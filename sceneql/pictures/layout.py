@@ -75,18 +75,17 @@ def page(size: tuple[int, int]) -> NDArray[uint8]:
     return np.full((size[1], size[0], 3), LIGHT.paper, dtype=np.uint8)
 
 
-def label(pixels: NDArray[uint8], name: str, failure: RunFailure | None, scale: float) -> None:
-    """Write a variant's name and its failure on its panel (h, w, 3); the picture is ``scale`` times as high."""
+def label(pixels: NDArray[uint8], name: str, told: str, scale: float) -> None:
+    """Write a variant's name and what is told of it on its panel (h, w, 3); the picture is ``scale`` times as high."""
     from sceneql.pictures.lettering import Letterer
 
     letters = Letterer(pixels, NAME * scale, scale=scale)
     room = letters.em // 2
     letters.line((room, room), name, 0.8)
     letters.done()
-    if failure is not None:
+    if told:
         letters = Letterer(pixels, TOLD * scale, scale=scale)
-        told = letters.fitted(f"failed at {failure.time:.3g} s: {failure.message}", letters.width - 3 * letters.em)
-        letters.line((room, letters.height), told, 0.9, WARNING)
+        letters.line((room, letters.height), letters.fitted(told, letters.width - 3 * letters.em), 0.9, WARNING)
         letters.done()
 
 
@@ -145,6 +144,15 @@ class Panel:
         import numpy as np
 
         return self._whole.moving(window) if self.boxes() else np.zeros((0, 4))
+
+    def told(self, moment: Instant) -> str:
+        """What is written on the panel: its failure, or that it has left the picture that the others share."""
+        if self.failure is not None:
+            return f"failed at {self.failure.time:.3g} s: {self.failure.message}"
+        gone = [one for one in moment.run.diverged if one.graph is self.graph and moment.now >= one.time]
+        return "".join(
+            f"leaves the picture from {one.time:.3g} s on: {one.ratio:.2g} times as large" for one in gone[:1]
+        )
 
     def at(self, time: float) -> Instant:
         """Moment at ``time`` [s], or the last before a failure. Raises RunFailure unless the script allows failures."""

@@ -178,10 +178,14 @@ def _place(diagnostic: Diagnostic) -> tuple[str, int]:
 
 def same_as(name: str, choices: Collection[str]) -> str | None:
     """The choice that a name is, but for capitals, or that another program calls so (``pos``), if any."""
+    return next(iter(all_same_as(name, choices)), None)
+
+
+def all_same_as(name: str, choices: Collection[str]) -> list[str]:
+    """As `same_as`, all of them, the likeliest first."""
     name = of_library(name)
     close = [choice for choice in choices if choice.lower() == name.lower()]
-    close = close or [ours for ours in OURS.get(name.lower(), ()) if ours in choices]
-    return close[0] if close else None
+    return close or [ours for ours in OURS.get(name.lower(), ()) if ours in choices]
 
 
 def of_library(name: str) -> str:
@@ -190,8 +194,15 @@ def of_library(name: str) -> str:
     return inside if inside and library in LIBRARIES else name
 
 
-def nearest(name: str, choices: Iterable[str]) -> str | None:
-    """The choice that is most like the name, means the same (``pos``) or is abbreviated by it (``fov``), if any."""
+STRONG = 0.8
+"""Least likeness of names that are most likely the same but for a slip of the hand; below it they may be two things."""
+
+
+def nearest(name: str, choices: Iterable[str], least: float = 0.6) -> str | None:
+    """The choice that is most like the name, means the same (``pos``) or is abbreviated by it (``fov``), if any.
+
+    ``least``: least likeness of the letters, from 0 to 1.
+    """
     from difflib import get_close_matches
 
     if len(name) > LONGEST_WORD:
@@ -202,17 +213,17 @@ def nearest(name: str, choices: Iterable[str]) -> str | None:
     if "(" in name:  # new THREE.SphereGeometry(1, 32, 32)
         name = re.split(r"[\s.]", name.partition("(")[0])[-1]
     name = of_library(name)
-    close = get_close_matches(name, choices, n=1, cutoff=0.8)
+    close = get_close_matches(name, choices, n=1, cutoff=STRONG)
     pieces = [] if "." in name else _PIECE.findall(name)
     if not close and len(pieces) > 1:  # AmbientLight, primitive_cube_add
         close = [same for piece in pieces if (same := same_as(piece, choices)) is not None][:1]
-    close = close or get_close_matches(name, choices, n=1, cutoff=0.6)
+    close = close or get_close_matches(name, choices, n=1, cutoff=least)
     if not close and len(name) > 1:
         close = [choice for choice in choices if name == "".join(part[:1] for part in choice.split("_"))]
     return close[0] if close else None
 
 
-def suggestion(name: str, choices: Iterable[str]) -> str | None:
-    """``did you mean 'radius'?`` for the nearest of the choices, or None."""
-    close = nearest(name, choices)
+def suggestion(name: str, choices: Iterable[str], least: float = 0.6) -> str | None:
+    """``did you mean 'radius'?`` for the nearest of the choices, or None; ``least`` as of `nearest`."""
+    close = nearest(name, choices, least)
     return None if close is None else f"did you mean '{close}'?"

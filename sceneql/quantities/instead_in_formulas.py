@@ -39,6 +39,18 @@ OF_FORMULAS = (
         "the time is `time`, in s: `time/(1 s)` is a plain number",
     ),
     ("function", "range linspace arange", REPEAT),
+    (
+        "function",
+        "laplacian laplace lap del2 nabla grad gradient div divergence curl diff ddx ddy dx dy partial",
+        "it is there without it: what spreads has its `coefficient: 2e-5`, and what is carried a `drift`; a rate is the"
+        " rest",
+    ),
+    (
+        "function",
+        "ddt dt derivative deriv diff integral integrate",
+        "there is none: velocities are outputs, `fall.velocity`, and states of an `equations` model have a `rate`",
+    ),
+    ("name", "required mandatory", "a field that has to be given is left empty: `fields: {height: }`"),
     ("function", "sqr square", "write `x^2`"),
     ("function", "frac fract", "write `mod(x, 1)`"),
     ("function", "cbrt", "write `x^(1/3)`"),
@@ -85,6 +97,7 @@ OF_FORMULAS = (
         "a name stands by itself, `radius: r`; only the number of a copy by `repeat` stands in braces, in a name,"
         ' `"ball.{i}.position"`: `sceneql words repeat`',
     ),
+    ("unit", "lines contours levels copies segments stars samples", "a number of them has no unit: write it alone"),
     ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
     (
         "unit",
@@ -104,6 +117,12 @@ OF_FORMULAS = (
     ("name", "about", "an axis is a field: `rotation: {about: z, angle: 30 deg}`"),
     ("name", "water", "water has a density of `1000 kg/m^3`, and a viscosity of `1e-3 Pa*s`"),
     ("name", "air", "air has a density of `1.2 kg/m^3`, and a viscosity of `1.8e-5 Pa*s`"),
+    (
+        "unit",
+        "lm lumen lumens cd candela lx lux",
+        "a lamp has its power in W, as a bulb does: one of 800 lm is `60 W`, one of 1600 lm `100 W`",
+    ),
+    ("unit", "e electron electrons elementary_charge", "the charge of a proton is `1.602e-19 C`"),
     ("unit name", "cp cps centipoise poise", "a poise is `0.1 Pa*s`, a hundredth of it `1e-3 Pa*s`"),
     ("name", "G", "write `6.6743e-11 m^3/(kg*s^2)`, or define it so: `define: {G: 6.6743e-11 m^3/(kg*s^2)}`"),
     ("sign", '"', "an inch is `inch`, a foot `ft`: `4 2 1 inch`"),

@@ -1,4 +1,4 @@
-"""Sentences on sections: what to write instead of those of other programs.
+"""Sentences on sections, and on the fields of single words and groups: what to write instead of other programs'.
 
 For messages alone.
 """
@@ -7,8 +7,150 @@ from __future__ import annotations
 
 from sceneql.quantities.instead_in_formulas import IF, REPEAT
 
+_VARIED = (
+    "what is varied stands under `sweep`, by its path: `sweep: {define.dt: [1 ms, 2 ms]}`: `sceneql words studies`"
+)
+
 OF_SECTIONS = (
-    ("section", "args arguments inputs", "what an instance may be given stands under `fields: {radius: 1 m}`"),
+    # fields of single words and groups
+    (
+        "field.rigid",
+        "type body_type kind",
+        "what stands still is `fixed: yes`, and what moves needs no more than `of`",
+    ),
+    (
+        "field.video field.images",
+        "from to begin start_time end_time t0 t1 range",
+        "a film shows the clock from 0 s to its end: `clock: {end: 3 s}`",
+    ),
+    (
+        "field.torus field.sphere field.cylinder",
+        "arc sweep sector theta phi start_angle end_angle angle half",
+        "it is whole: `intersection` or `difference` with a box cuts it, `{difference: {of: [ring, box]}}`",
+    ),
+    (
+        "field.outline",
+        "sides radius n corners regular",
+        "it has its corners by hand, a hexagon `points: [[1, 0], [0.5, 0.87], [-0.5, 0.87], [-1, 0], [-0.5, -0.87],"
+        " [0.5, -0.87]]`",
+    ),
+    (
+        "field.graph",
+        "xlim x_range xrange xmin xmax x_limits",
+        "the `range` is that of y; x goes as far as its values do",
+    ),
+    ("field.graph", "linewidth line_width width linestyle style marker grid", "lines have one look: leave it out"),
+    (
+        "field.wind",
+        "direction strength speed force power amount",
+        "its `velocity: 5 0 0 m/s` says how fast it is, and where to",
+    ),
+    (
+        "field.point",
+        "target angle cone penumbra direction spread look_at beam distance decay falloff attenuation",
+        "a lamp shines all around, and less with the square of the distance: leave it out",
+    ),
+    (
+        "field.shots",
+        "from to start end duration length time",
+        "a shot lasts `until: 1 s`, and begins where the one before it ends",
+    ),
+    (
+        "field.diffusion",
+        "density heat_capacity specific_heat capacity rho cp c conductivity k kappa lambda",
+        "of a solid only its diffusivity counts, the conductivity over density and heat capacity: `coefficient: 400"
+        " W/(m*K)/(8960 kg/m^3*385 J/(kg*K))`",
+    ),
+    ("field.studies", "dt step k n h m", _VARIED),
+    (
+        "field.emit",
+        "direction angle dir toward towards",
+        "what is born flies by its `velocity: 0 3 0 m/s`, and by `spread: 10 deg` around that",
+    ),
+    (
+        "field.perspective",
+        "offset camera_offset",
+        "its place as seen from what it follows is `from: 0 1 4 m`",
+    ),
+    (
+        "field.perspective field.orthographic field.turntable",
+        "path waypoints points trajectory curve dolly",
+        "a camera moves by its position: `position: {keys: {0 s: 0 1 4 m, 4 s: 3 1 4 m}}`: `sceneql words keys`",
+    ),
+    (
+        "field.caption field.formula field.legend field.labels",
+        "x y left top right bottom offset margin",
+        "it stands at a side, `place: top left`; a caption also at a place of the scene, `at: 0 1 0 m`",
+    ),
+    (
+        "field.caption field.formula field.legend field.labels field.graph",
+        "fontsize font_size textsize text_size letter_size px",
+        "letters are as high as a part of the picture: `size: 0.05`",
+    ),
+    (
+        "field.caption",
+        "color colour fill",
+        "letters are white or black by what is behind them; `dark: yes` says which",
+    ),
+    (
+        "field.wave",
+        "tension density stiffness modulus mass",
+        "waves have the `speed` sqrt(tension/density): `speed: 1 m/s`",
+    ),
+    (
+        "field.wave",
+        "frequency wavelength amplitude omega period",
+        "what swings at the start is `initial: 0.1*sin(2*pi*x/0.5)`, and `source: 5*sin(2*pi*3*t)` goes on swinging",
+    ),
+    (
+        "field.layout",
+        "rows row grid cols panels cameras",
+        "a layout is a list of rows of names, `layout: [[front, height], [top]]`: `sceneql words layout`",
+    ),
+    (
+        "field.objects",
+        "motion movement",
+        "an object moves by keys, by a formula, `position: [1 m/s*time, 0 m, 0 m]`, or by a model, `models: {fall:"
+        " {particles: {of: NAME}}}`",
+    ),
+    (
+        "field.boundary",
+        "type kind bc condition",
+        "what it has says so: `{value: 0}`, `{flux: 5}`, of a flow `{wall: {}}`, `{outflow: {}}`: nothing more is said",
+    ),
+    (
+        "bare.wall",
+        "no_slip noslip no-slip stick wall solid closed fixed",
+        "so it is where nothing is said: leave it out",
+    ),
+    ("bare.wall", "slip free_slip freeslip free-slip free symmetry frictionless", "write `{wall: {slip: free}}`"),
+    ("bare.wall", "open outlet out exit", "write `{outflow: {}}`"),
+    ("bare.wall", "inlet in source", 'write `{inflow: {velocity: "[1, 0]"}}`'),
+    (
+        "bare.wall bare bare.boundary",
+        "periodic cyclic wrap wraparound",
+        "write `{left: {periodic: yes}}`, which is right too",
+    ),
+    ("bare", "open absorbing outgoing radiating", "write `{open: yes}`"),
+    ("bare.boundary", "fixed clamped dirichlet held closed zero", "all sides are `rest`: write `{rest: {value: 0}}`"),
+    ("bare.boundary", "open absorbing outgoing radiating outflow", "all sides are `rest`: write `{rest: {open: yes}}`"),
+    (
+        "bare.boundary",
+        "free neumann insulated adiabatic reflecting noflux no_flux no_slip noslip walls wall",
+        "so it is where nothing is said: leave it out",
+    ),
+    ("collider", "ground", "what masses touch is the `floor`: write `between: [ball, floor]`"),
+    (
+        "overlays",
+        "timer clock time stopwatch counter timestamp",
+        'a caption tells the time: `{caption: {text: "t = {time:.1f s}"}}`',
+    ),
+    (
+        "overlays",
+        "axes axis grid ruler scale_bar scalebar compass gizmo",
+        "there is none: arrows and tubes among the `objects` show axes, `{arrow: {vector: 1 0 0 m}}`",
+    ),
+    # sections
     ("section", "seed", "write `clock: {seed: 5}`"),
     (
         "section",

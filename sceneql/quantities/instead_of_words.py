@@ -78,7 +78,7 @@ OF_PARTS = (
     ),
     (
         "field.objects",
-        "hollow shell wall_thickness inner_radius outer_radius",
+        "hollow shell wall_thickness thickness inner_radius outer_radius",
         "cut it out: `{difference: {of: [outer, inner]}}`: `sceneql words difference`",
     ),
     (
@@ -231,7 +231,7 @@ OF_PARTS = (
     ("field", "gravity", "write `forces: [gravity]`: `sceneql words gravity`"),
     ("field", "solver integrator", "write `solvers: {main: {rk4: {step: 1 ms}}}`: `sceneql words sections`"),
     ("field", "timestep time_step dt step", "a solver has the step: `solvers: {main: {rk4: {step: 1 ms}}}`"),
-    ("field", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
+    ("field.outputs", "file filename path", "the file is named where it is made: `sceneql render SCENE -o FILE`"),
     ("field", "distance", "write where it stands, `position: 0 1 5 m`; without that it finds its place"),
     ("field", "min max low high corner corners", "write its `size`, and of its middle the `position`"),
     (
@@ -250,7 +250,14 @@ OF_PARTS = (
         "surfaces are exact and need no finer mesh; `union`, `difference`, `bend`, `twist` and `taper` make objects of"
         " objects",
     ),
-    ("field", "start", "it begins at 0 s"),
+    ("field.outputs", "start", "it begins at 0 s"),
+    (
+        "field.objects",
+        "$fn $fa $fs rings ring_count facets slices stacks tessellation resolution"
+        " detail widthsegments heightsegments radialsegments u_segments v_segments smooth_shading",
+        "leave it out: surfaces are exact and not made of triangles",
+    ),
+    ("field.objects", "center centered", "it is centered about its `position`: leave it out"),
     (
         "field.objects",
         "radius_top radius_bottom top_radius bottom_radius radiustop radiusbottom r1 r2",
@@ -347,7 +354,7 @@ OF_PARTS = (
         "pendulum double_pendulum",
         "its equation is a model, `sceneql words equations`; or a body hangs on a tie, `sceneql words hinge`",
     ),
-    ("entry", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
+    ("named", "gravity", "write `gravity: {gravity: {strength: 9.81 m/s^2}}`, or only `forces: [gravity]`"),
     (
         "list",
         "gravity",

@@ -8,6 +8,8 @@ from collections.abc import Callable, Mapping
 from sceneql.quantities.expression import Call, Expr, Number, Symbol
 
 Range = tuple[float, float]
+MOST = 100.0
+"""Largest power that is bounded."""
 ANY: Range = (-math.inf, math.inf)
 
 
@@ -53,10 +55,18 @@ def _div(a: Range, b: Range) -> Range:
 
 
 def _pow(a: Range, b: Range) -> Range:
-    if b != (2.0, 2.0):
+    power = b[0]
+    if b[0] != b[1] or not power.is_integer() or not 1.0 <= power <= MOST:
         return ANY
-    low, high = _abs(a)
-    return low * low, high * high
+    low, high = a if power % 2 else _abs(a)
+    return _power(low, int(power)), _power(high, int(power))
+
+
+def _power(number: float, power: int) -> float:
+    try:
+        return number**power
+    except OverflowError:
+        return math.copysign(math.inf, number if power % 2 else 1.0)
 
 
 def _abs(a: Range) -> Range:

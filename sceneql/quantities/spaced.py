@@ -86,3 +86,33 @@ def apart(text: str) -> str | None:
             return f"{text[: found.start()]}{found[1]}*{text[found.start(2) :]}"
         found = re.compile(r"(?<![\w.])([^\W\d_])([^\W\d_]{1,3})(?![\w.])").search(text, found.end())
     return None
+
+
+def less(text: str, other: str) -> str:
+    """The difference of two formulas as a text: ``x^2 - 1``, ``x^2 - (y + 1)``."""
+    text, other = text.strip(), other.strip()
+    if other in ("0", "0.0"):
+        return text
+    text = f"({text})" if re.search(r"[<>=?]", text) else text
+    return f"{text} - ({other})" if re.search(r"[-+<>=?]", other) else f"{text} - {other}"
+
+
+def meant_by_equals(text: str) -> str | None:
+    """The help for an equation in place of a formula: the value alone, or the formula whose zeros it has."""
+    sides = text.split("=")
+    if len(sides) != 2 or not all(one.strip() for one in sides) or sides[0][-1] in "<>!":
+        return None
+    name, value = (one.strip() for one in sides)
+    if name not in ("x", "y", "z") and re.fullmatch(r"[^\W\d][\w.']*(?:/d\w+)?|\w+\([\w, ]*\)", name):
+        return f"a value stands alone behind the colon of its field: write `{value}`; `==` compares"
+    return f"a surface is where its formula is 0, and inside it is below: write `{less(name, value)}`; `==` compares"
+
+
+def without_dots(text: str) -> str | None:
+    """The help for operators with a dot, which in other programs work by element: ``x.^2``."""
+    plain = re.sub(r"\.(?=[*/^])", "", text)
+    return (
+        f"operators have no dot: write `{plain.strip()}`"
+        if plain != text and "." not in re.sub(r"\d\.\d*|\w\.\w", "", plain)
+        else None
+    )

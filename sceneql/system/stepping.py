@@ -34,6 +34,8 @@ class Prepared:
     scales: tuple[int, int] = (0, 0)
     """Offset and number of the error scales in the settings (largest magnitudes that entries have had); another method
     that takes over goes on with them."""
+    last_stage: int | None = None
+    """As in `Method`, where it depends on the island."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,13 +36,14 @@ class TieRow:
     """A scalar constraint between two movers a and b, with constant vectors in the axes of one of them.
 
     `point`: n_b . (x_a + r_a - x_b - r_b) = 0 with vectors r_a, r_b, n_b; `angle`: u_a . w_b = constant with vectors
-    u_a, w_b; `distance`: |x_a + r_a - x_b - r_b| = constant with vectors r_a, r_b; `gear`: the rotation angles of both
+    u_a, w_b; `ball`: x_a + r_a = x_b + r_b with vectors r_a, r_b, in three rows, of which two are `written` with the
+    first; `distance`: |x_a + r_a - x_b - r_b| = constant with vectors r_a, r_b; `gear`: the rotation angles of both
     about axes of the world, times the constants, sum to full turns; the vectors are, for each mover, the axis, a
     direction across it at the start, and that direction in its own axes. r are relative to the movers' positions [m].
     """
 
-    kind: Literal["point", "angle", "distance", "gear"]
-    vectors: tuple[Triple, ...]
+    kind: Literal["point", "angle", "distance", "gear", "ball", "written"]
+    vectors: tuple[Triple, ...] = ()
     constants: tuple[float, ...] = ()
 
 

@@ -6,7 +6,6 @@
     rods     two rods on hinges to 2 and 10 s: angles and rates, gaps of the hinges
     chain    10, 100 and 1000 links on hinges: ms a step
     windows  four-bar chains of 1 and 40 windows, 10 s through the places where all links lie in line: energy
-    mass     mass and inertia of solids beside closed forms
 
 A script is loaded and run as a film's is, after a short run of it that compiles. ms are of processor time, of the run
 up to the last instant, the median of some runs where it is short. Of the peers, MuJoCo and Exudyn (pip install mujoco
@@ -118,6 +117,7 @@ def free() -> None:
     """Cases A and B."""
     words = [f"dop853: {{tolerance: {tolerance}}}" for tolerance in ("1e-9", "1e-11", "1e-12", "1e-13", "1e-14")]
     words += ["gauss_radau15", "rk4: {step: 10 ms}", "rk4: {step: 1 ms}", "verlet: {step: 1 ms}", "verlet: {step: 1 s}"]
+    words += ["verlet: {step: 20 s}"]
     for name, (spin, end, exact) in CASES.items():
         print(f"free body, case {name}, {end:g} s")
         tell("", "angle [rad]", "L", "ms", "kernel", "steps")
@@ -347,67 +347,9 @@ def windows() -> None:
             tell(f"{count}: {word}", f"{abs(energy - start):.1e}", f"{start:.3g}", *columns)
 
 
-def mass() -> None:
-    """Solids by their words; closed forms for a density of 1000 kg/m^3."""
-
-    def ball(r: float) -> tuple[float, list[float]]:
-        m = 4000 / 3 * math.pi * r**3
-        return m, [0.4 * m * r * r] * 3
-
-    def column(r: float, h: float) -> tuple[float, list[float]]:
-        m = 1000 * math.pi * r * r * h
-        across = m * (3 * r * r + h * h) / 12
-        return m, [across, 0.5 * m * r * r, across]
-
-    def block(a: float, b: float, c: float) -> tuple[float, list[float]]:
-        m = 1000 * a * b * c
-        return m, [m * (b * b + c * c) / 12, m * (a * a + c * c) / 12, m * (a * a + b * b) / 12]
-
-    def ring(big: float, r: float) -> tuple[float, list[float]]:
-        m = 2000 * math.pi**2 * big * r * r
-        across = m * (big**2 / 2 + 5 * r * r / 8)
-        return m, [across, m * (big**2 + 3 * r * r / 4), across]
-
-    def less(one: tuple[float, list[float]], other: tuple[float, list[float]]) -> tuple[float, list[float]]:
-        return one[0] - other[0], list(np.subtract(one[1], other[1]))
-
-    def drilled(s: float) -> tuple[float, list[float]]:
-        return less(block(s, 0.6 * s, 0.8 * s), column(0.2 * s, 0.6 * s))
-
-    solids: dict[str, tuple[str, Callable[[float], tuple[float, list[float]]]]] = {
-        "sphere": ("{sphere: {radius: 0.5*s}}", lambda s: ball(0.5 * s)),
-        "box": ("{box: {size: [s, 0.6*s, 0.8*s]}}", lambda s: block(s, 0.6 * s, 0.8 * s)),
-        "cylinder": ("{cylinder: {radius: 0.2*s, height: 0.9*s}}", lambda s: column(0.2 * s, 0.9 * s)),
-        "torus": ("{torus: {radius: 0.5*s, tube: 0.15*s}}", lambda s: ring(0.5 * s, 0.15 * s)),
-        "torus by its field": (
-            "{implicit: {field: '(sqrt(x^2 + z^2) - S/2)^2 + y^2 - (0.15*S)^2'}}",
-            lambda s: ring(0.5 * s, 0.15 * s),
-        ),
-        "box less cylinder": (
-            "{difference: {of: [{box: {size: [s, 0.6*s, 0.8*s]}}, {cylinder: {radius: 0.2*s, height: s}}]}}",
-            drilled,
-        ),
-    }
-    print("mass and inertia: errors in parts of the largest, ms to build the run")
-    tell("", "mass", "inertia", "ms")
-    for name, (word, exact) in solids.items():
-        for size in (1.01, 1.0):  # the first compiles; a solid of equal form and size is measured once
-            script = (
-                f"define: {{s: {size} m}}\nclock: {{end: 1 s}}\nobjects: {{it: {word.replace('S', str(size))}}}\n"
-                "models: {body: {rigid: {of: it, density: 1000 kg/m^3, velocity: 1 0 0 m/s}}}\n"
-            )
-            started = time.perf_counter()
-            moment = build(script).at(0.0)
-            spent = time.perf_counter() - started
-        weight, moments = exact(size)
-        found = np.asarray(moment.read("body", "inertia"))
-        off = np.abs(found - np.diag(moments)).max() / max(moments)
-        tell(name, f"{abs(moment.read('body', 'momentum')[0] / weight - 1):.0e}", f"{off:.0e}", f"{1e3 * spent:.1f}")
-
-
 def main(wanted: list[str]) -> None:
     """Print the tables."""
-    parts = {"free": free, "rods": rods, "chain": chain, "windows": windows, "mass": mass}
+    parts = {"free": free, "rods": rods, "chain": chain, "windows": windows}
     for name in wanted or parts:
         parts[name]()
 

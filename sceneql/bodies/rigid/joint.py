@@ -88,7 +88,7 @@ class Joint(Tie):
         scratch, holds = assembly.floats(np.zeros(ROW * len(rows))), assembly.floats([1.0])
         motion, drive = self.assemble_motion(first, second, holds, assembly)
         assembly.tie(Tied((first.mover, second.mover), tuple(rows), scratch, holds, drive, name, assembly.line()))
-        arm = assembly.floats(rows[0].vectors[0] if rows[0].kind in ("point", "distance") else (0.0, 0.0, 0.0))
+        arm = assembly.floats(rows[0].vectors[0] if rows[0].kind in ("point", "distance", "ball") else (0.0, 0.0, 0.0))
         assembly.remember(scratch, len(rows), holds, arm, *integers(first.mover), *integers(second.mover))
         assembly.remember(*motion)
         if self.breaks is not None:
@@ -213,10 +213,7 @@ def across(axis: Any) -> tuple[Floats, Floats]:
 
 def together(first: Side, second: Side, point: Any) -> list[TieRow]:
     """Three rows: a common point of both bodies stays common."""
-    import numpy as np
-
-    ends = first.place(point), second.place(point)
-    return [TieRow("point", (*ends, second.direction(axis))) for axis in np.eye(3)]
+    return [TieRow("ball", (first.place(point), second.place(point))), TieRow("written"), TieRow("written")]
 
 
 def parallel(first: Side, second: Side) -> list[TieRow]:

@@ -5,8 +5,8 @@ With the velocities closed behind the step (tie_kernels.settle) this is RATTLE (
 24-34), symplectic and reversible in time where forces depend on the places alone.
 """
 
-from sceneql.bodies.rigid.tie_kernels import (
-    CLOSED,
+from sceneql.bodies.rigid.tie_kernels import CLOSED, survey
+from sceneql.bodies.rigid.tie_matrix_kernels import (
     KEPT,
     KEPT_AT,
     MOVED_AT,
@@ -16,7 +16,6 @@ from sceneql.bodies.rigid.tie_kernels import (
     ROWS_AT,
     factor,
     solve,
-    survey,
 )
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_C,

@@ -11,6 +11,16 @@ import math
 
 from numba import types
 
+from sceneql.bodies.rigid.tie_matrix_kernels import (
+    MOVED_AT,
+    MOVERS,
+    MOVERS_AT,
+    RIGHT_AT,
+    ROWS,
+    ROWS_AT,
+    factor,
+    solve,
+)
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_BIAS,
@@ -38,38 +48,14 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     SECOND,
     VELOCITY,
     press,
-    put,
     see,
     turning,
-    weighed,
+    weighed_by,
     write_row,
 )
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.compiled.numba.lazy_kernels import lazy
-from sceneql.linear.multifrontal import layout
 from sceneql.system.signatures_kernels import AFTER_STEP, TERM, A, F, I, N
 
-# Compiled at the first system of many rows, or of few.
-factor_sparse = lazy("sceneql.linear.multifrontal.symmetric_kernels:factor_symmetric", types.boolean(I, A, A, A))
-solve_sparse = lazy("sceneql.linear.multifrontal.solve_kernels:solve_symmetric", types.void(I, A, A, A))
-factor_dense = lazy("sceneql.linear.dense_symmetric_kernels:factor", types.boolean(A, N, F))
-solve_dense = lazy("sceneql.linear.dense_symmetric_kernels:solve", types.void(A, N, A))
-
-MOVERS, ROWS, MOVERS_AT, ROWS_AT, SHARED, SHARED_AT, STARTS_AT, DIAGONAL_AT, PLAN_AT, PLAN = range(10)
-MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_AT, EASE_AT, HEAD = range(10, 21)
-"""Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where each
-begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes of
-what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels). Few rows have a
-matrix that is whole, its factors in place, and no plan. A mover that ties
-share: their number n and its own; of each tie its first row, how many it has, their floats at its side; then n x n
-places in a row of the first where the rows of the second begin, counted from that row's first value (-1: what stands
-there is not read)."""
-
-KEPT = 12
-"""Floats of a row that drifts keep of where they began: J."""
-EASE, LITTLE, DEPENDENT = 1e-9, 1e-13, 1e-12
-"""Part of the diagonal that is added to it, at floats[ints[EASE_AT]]: none where no row follows from others at the
-start, so that light bodies may hold heavy ones, but LITTLE where a pivot is not above that part of its diagonal."""
 COARSE = 1e-10
 """Part of an acceleration that sums of large forces may round off."""
 LEFT, LONG = 1e-13, 1000
@@ -98,88 +84,13 @@ def survey(t, y, floats, ints):
         write_row(floats, ints, row, a, b)
 
 
-@lean(types.void(A, I))
-def fill(floats, ints):
-    """Write J T, at least the half of it that is read."""
-    values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
-    for k in range(values.size):
-        values[k] = 0.0
-    at, starts = ints[SHARED_AT], ints[STARTS_AT]
-    for _ in range(ints[SHARED]):
-        count, mover = ints[at], ints[MOVED_AT] + MOVED * ints[at + 1]
-        table = at + 2 + 3 * count
-        for other in range(count):
-            last, columns, own = ints[at + 2 + 3 * other], ints[at + 3 + 3 * other], ints[at + 4 + 3 * other] + AT_J
-            for j in range(columns):
-                # T is not kept: the rows of a long chain do not fit into the caches, and memory is what bounds it.
-                x, y, z, u, v, w = weighed(floats, mover, own + ROW * j)
-                for one in range(other + 1):
-                    first, rows, to = ints[at + 2 + 3 * one], ints[at + 3 + 3 * one], ints[at + 4 + 3 * one] + AT_J
-                    across, along = ints[table + count * one + other], ints[table + count * other + one]
-                    for i in range(j + 1 if one == other else rows):
-                        six = floats[to + ROW * i : to + ROW * i + 6]
-                        total = six[0] * x + six[1] * y + six[2] * z + six[3] * u
-                        total += six[4] * v
-                        total += six[5] * w
-                        if across >= 0:
-                            values[ints[starts + first + i] + across + j] += total
-                        if along >= 0 and (one != other or j > i):
-                            values[ints[starts + last + j] + along + i] += total
-        at = table + count * count
-
-
 @lean_inlined
-def depends(values, factors, ints, plan):
-    """Whether a pivot of sparse factors is not above the part DEPENDENT of its diagonal."""
-    for s in range(plan[1]):
-        t = layout.HEAD + layout.FIELDS * s
-        first, width, height, panel = plan[t], plan[t + 1], plan[t + 2], plan[t + 5]
-        for k in range(width):
-            diagonal = values[ints[ints[DIAGONAL_AT] + plan[plan[2] + first + k]]]
-            inverse = factors[panel + k * (height + 1)]
-            if not 0.0 < inverse < 1.0 / (DEPENDENT * diagonal):
-                return True
-    return False
-
-
-@lean(types.boolean(A, I, F))
-def factor_with(floats, ints, part):
-    """Factor J T with a part of its diagonal added; False where that cannot be, or without it where rows depend."""
-    fill(floats, ints)
-    values = floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]]
-    for k in range(ints[ROWS]):
-        place = ints[ints[DIAGONAL_AT] + k]
-        # A row that no mass can meet, as of two parts that are led, has no force.
-        values[place] = values[place] * (1.0 + part) if values[place] > 0.0 else 1.0
-    if ints[FACTORS] == 0:
-        return factor_dense(values, ints[ROWS], DEPENDENT if part == 0.0 else 0.0)
-    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
-    factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
-    work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
-    return factor_sparse(plan, values, factors, work) and (part > 0.0 or not depends(values, factors, ints, plan))
-
-
-@lean(types.boolean(A, I))
-def factor(floats, ints):
-    """Factor J T; False where that cannot be.
-
-    Where rows depend on others EASE of the diagonal is added, and LITTLE where they have only come to do so.
-    """
-    part = floats[ints[EASE_AT]]
-    return factor_with(floats, ints, part) or (part == 0.0 and factor_with(floats, ints, LITTLE))
-
-
-@lean(types.void(A, I))
-def solve(floats, ints):
-    """Solve with the factors, in place."""
-    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
-    if ints[FACTORS] == 0:
-        solve_dense(floats[ints[VALUES_AT] : ints[VALUES_AT] + ints[VALUES]], ints[ROWS], right)
-        return
-    plan = ints[ints[PLAN_AT] : ints[PLAN_AT] + ints[PLAN]]
-    factors = floats[ints[FACTORS_AT] : ints[FACTORS_AT] + ints[FACTORS]]
-    work = floats[ints[WORK_AT] : ints[WORK_AT] + ints[WORK]]
-    solve_sparse(plan, factors, right, work)
+def movers_of(ints, k):
+    """Where the floats of row k begin, and those of its two movers."""
+    row = ints[ROWS_AT] + ROW_INTS * k
+    which = ints[row : row + ROW_INTS]
+    at = ints[MOVED_AT]
+    return which[SCRATCH], at + MOVED * which[FIRST], at + MOVED * which[SECOND]
 
 
 @lean(types.void(A, I, N, N))
@@ -192,21 +103,22 @@ def balance(floats, ints, target, size_at):
     last, found = math.inf, False
     little = LEFT * max(1.0, ints[ROWS] / LONG)
     for m in range(ints[MOVERS]):
-        put(floats, ints[MOVED_AT] + MOVED * m + AT_PUSHED, 0.0, 0.0, 0.0)
-        put(floats, ints[MOVED_AT] + MOVED * m + AT_PUSHED + 3, 0.0, 0.0, 0.0)
+        mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
+        for c in range(6):
+            mover[AT_PUSHED + c] = 0.0
     for corrections in range(MOST_CORRECTIONS if factor(floats, ints) else 0):
         worst = 0.0
         for k in range(ints[ROWS]):
-            row = ints[ROWS_AT] + ROW_INTS * k
-            to = ints[row + SCRATCH]
+            to, first, second = movers_of(ints, k)
+            own = floats[to : to + ROW]
+            one, two = floats[first + AT_A : first + AT_A + 6], floats[second + AT_A : second + AT_A + 6]
             left, size = floats[to + target], max(abs(floats[to + target]), SHARE * floats[to + size_at])
-            for side in range(2):
-                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_A
-                six, moved = floats[to + AT_J + 6 * side : to + AT_J + 6 * side + 6], floats[mover : mover + 6]
-                for c in range(6):
-                    part = six[c] * moved[c]
-                    left += part
-                    size += abs(part)
+            other, sizes = 0.0, 0.0
+            for c in range(6):
+                part, parts = own[AT_J + c] * one[c], own[AT_J + 6 + c] * two[c]
+                left, other = left + part, other + parts
+                size, sizes = size + abs(part), sizes + abs(parts)
+            left, size = left + other, size + sizes
             right[k] = -left
             if abs(left) > worst * size:
                 worst = abs(left) / size
@@ -215,23 +127,23 @@ def balance(floats, ints, target, size_at):
         last = worst
         solve(floats, ints)
         for m in range(ints[MOVERS]):
-            put(floats, ints[MOVED_AT] + MOVED * m + AT_IMPULSE, 0.0, 0.0, 0.0)
-            put(floats, ints[MOVED_AT] + MOVED * m + AT_IMPULSE + 3, 0.0, 0.0, 0.0)
-        for k in range(ints[ROWS]):
-            row = ints[ROWS_AT] + ROW_INTS * k
-            to = ints[row + SCRATCH]
-            floats[to + AT_FORCE] = floats[to + AT_FORCE] + right[k] if found else right[k]
-            for side in range(2):
-                mover = ints[MOVED_AT] + MOVED * ints[row + FIRST + side] + AT_IMPULSE
-                six, pushed = floats[to + AT_J + 6 * side : to + AT_J + 6 * side + 6], floats[mover : mover + 6]
-                for c in range(6):
-                    pushed[c] += six[c] * right[k]
-        for m in range(ints[MOVERS]):
-            mover = ints[MOVED_AT] + MOVED * m
-            push = weighed(floats, mover, mover + AT_IMPULSE)
+            mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
             for c in range(6):
-                floats[mover + AT_A + c] += push[c]
-                floats[mover + AT_PUSHED + c] += floats[mover + AT_IMPULSE + c]
+                mover[AT_IMPULSE + c] = 0.0
+        for k in range(ints[ROWS]):
+            to, first, second = movers_of(ints, k)
+            own, force = floats[to : to + ROW], right[k]
+            one, two = floats[first + AT_IMPULSE : first + AT_PUSHED], floats[second + AT_IMPULSE : second + AT_PUSHED]
+            own[AT_FORCE] = own[AT_FORCE] + force if found else force
+            for c in range(6):
+                one[c] += own[AT_J + c] * force
+                two[c] += own[AT_J + 6 + c] * force
+        for m in range(ints[MOVERS]):
+            mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
+            push = weighed_by(mover, mover[AT_IMPULSE:])
+            for c in range(6):
+                mover[AT_A + c] += push[c]
+                mover[AT_PUSHED + c] += mover[AT_IMPULSE + c]
         found = True
     if not found:
         for k in range(ints[ROWS]):

@@ -18,9 +18,10 @@ from sceneql.bodies.rigid.rigid_kernels import times_symmetric
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.system.signatures_kernels import A, I, N
 
-POINT, ANGLE, DISTANCE, GEAR = range(4)
+POINT, ANGLE, DISTANCE, GEAR, BALL, WRITTEN = range(6)
 """Kinds of rows; their numbers: r_a, r_b, n; u, w, c; r_a, r_b, c; of a axis, direction across it at the start, that
-direction in its axes, the same of b, c_a, c_b."""
+direction in its axes, the same of b, c_a, c_b; r_a, r_b. WRITTEN are the second and third of a BALL."""
+MOST_NUMBERS = 20
 
 POSITION, VELOCITY, INVERSE, ROTATION, MOMENTUM, INERTIA = range(6)
 PLACE, TURN, SPEED, SPIN, PUSH, TWIST, MOVER = range(6, 13)
@@ -62,9 +63,15 @@ def turned(floats, at, x, y, z):
 @lean_inlined
 def weighed(floats, mover, j):
     """The accelerations of a mover by the force floats[j:] and the torque behind it, (6,)."""
-    inverse = floats[mover + AT_MASS]
-    x, y, z = turned(floats, mover + AT_INVERSE, floats[j + 3], floats[j + 4], floats[j + 5])
-    return inverse * floats[j], inverse * floats[j + 1], inverse * floats[j + 2], x, y, z
+    return weighed_by(floats[mover : mover + MOVED], floats[j : j + 6])
+
+
+@lean_inlined
+def weighed_by(m, six):
+    """The accelerations of a mover by a force and the torque behind it, (6,)."""
+    inverse = m[AT_MASS]
+    x, y, z = turned(m, AT_INVERSE, six[3], six[4], six[5])
+    return inverse * six[0], inverse * six[1], inverse * six[2], x, y, z
 
 
 @lean_inlined
@@ -74,77 +81,78 @@ def put(floats, at, x, y, z):
 
 
 @lean_inlined
-def write_turn(source, q, floats, to):
-    """Write the rotation matrix of the quaternion at source[q:], of any length but 0, to floats[to:]."""
-    a, b, c, d = source[q], source[q + 1], source[q + 2], source[q + 3]
+def write_turn(source, q, m):
+    """Write the rotation matrix of the quaternion at source[q:], of any length but 0, to a mover's floats."""
+    four = source[q : q + 4]
+    a, b, c, d = four[0], four[1], four[2], four[3]
     s = 2.0 / (a * a + b * b + c * c + d * d)
-    put(floats, to, 1.0 - s * (c * c + d * d), s * (b * c - a * d), s * (b * d + a * c))
-    put(floats, to + 3, s * (b * c + a * d), 1.0 - s * (b * b + d * d), s * (c * d - a * b))
-    put(floats, to + 6, s * (b * d - a * c), s * (c * d + a * b), 1.0 - s * (b * b + c * c))
+    put(m, AT_R, 1.0 - s * (c * c + d * d), s * (b * c - a * d), s * (b * d + a * c))
+    put(m, AT_R + 3, s * (b * c + a * d), 1.0 - s * (b * b + d * d), s * (c * d - a * b))
+    put(m, AT_R + 6, s * (b * d - a * c), s * (c * d + a * b), 1.0 - s * (b * b + c * c))
 
 
 @lean_inlined
-def write_inverse(floats, to, inertia):
-    """Write the inverse inertia at floats[inertia:], in a mover's axes, in the world's: R G R^T."""
-    r, own = to + AT_R, to + AT_INVERSE
-    ax, ay, az = times_symmetric(floats, inertia, floats[r], floats[r + 1], floats[r + 2])
-    bx, by, bz = times_symmetric(floats, inertia, floats[r + 3], floats[r + 4], floats[r + 5])
-    cx, cy, cz = times_symmetric(floats, inertia, floats[r + 6], floats[r + 7], floats[r + 8])
-    xx, yx, zx = turned(floats, r, ax, ay, az)
-    _, yy, zy = turned(floats, r, bx, by, bz)
-    _, _, zz = turned(floats, r, cx, cy, cz)
-    put(floats, own, xx, yx, zx)
-    put(floats, own + 3, yx, yy, zy)
-    put(floats, own + 6, zx, zy, zz)
+def write_inverse(m, own):
+    """Write an inverse inertia (6,) in a mover's axes to the mover's floats, in the world's: R G R^T."""
+    r = AT_R
+    ax, ay, az = times_symmetric(own, 0, m[r], m[r + 1], m[r + 2])
+    bx, by, bz = times_symmetric(own, 0, m[r + 3], m[r + 4], m[r + 5])
+    cx, cy, cz = times_symmetric(own, 0, m[r + 6], m[r + 7], m[r + 8])
+    xx, yx, zx = turned(m, r, ax, ay, az)
+    _, yy, zy = turned(m, r, bx, by, bz)
+    _, _, zz = turned(m, r, cx, cy, cz)
+    put(m, AT_INVERSE, xx, yx, zx)
+    put(m, AT_INVERSE + 3, yx, yy, zy)
+    put(m, AT_INVERSE + 6, zx, zy, zz)
 
 
 @lean(types.void(A, A, N, I, N))
 def see(y, floats, to, ints, at):
     """Write the place and the motion of the mover of ints[at:] to floats[to:]."""
+    # Slices, here and below, since an index into one need not be asked whether it counts from the end.
+    m, which = floats[to : to + MOVED], ints[at : at + MOVER]
     for k in range(MOVED):
-        floats[to + k] = 0.0
-    x, led = ints[at + POSITION], ints[at + PLACE]
+        m[k] = 0.0
+    x, q, led = which[POSITION], which[ROTATION], which[PLACE]
     if x >= 0:
-        v = ints[at + VELOCITY]
-        put(floats, to + AT_X, y[x], y[x + 1], y[x + 2])
-        put(floats, to + AT_V, y[v], y[v + 1], y[v + 2])
-        floats[to + AT_MASS] = floats[ints[at + INVERSE]]
+        place, velocity = y[x : x + 3], y[which[VELOCITY] : which[VELOCITY] + 3]
+        put(m, AT_X, place[0], place[1], place[2])
+        put(m, AT_V, velocity[0], velocity[1], velocity[2])
+        m[AT_MASS] = floats[which[INVERSE]]
+        if q >= 0:
+            momentum = y[which[MOMENTUM] : which[MOMENTUM] + 3]
+            write_turn(y, q, m)
+            write_inverse(m, floats[which[INERTIA] : which[INERTIA] + 6])
+            put(m, AT_W, *turned(m, AT_INVERSE, momentum[0], momentum[1], momentum[2]))
+            return
     elif led >= 0:
-        v, w = ints[at + SPEED], ints[at + SPIN]
-        put(floats, to + AT_X, floats[led], floats[led + 1], floats[led + 2])
-        put(floats, to + AT_V, floats[v], floats[v + 1], floats[v + 2])
-        put(floats, to + AT_W, floats[w], floats[w + 1], floats[w + 2])
-    q, turn = ints[at + ROTATION], ints[at + TURN]
-    if x >= 0 and q >= 0:
-        write_turn(y, q, floats, to + AT_R)
-    elif led >= 0:
-        write_turn(floats, turn, floats, to + AT_R)
-    else:
-        floats[to + AT_R] = floats[to + AT_R + 4] = floats[to + AT_R + 8] = 1.0
-    if x >= 0 and q >= 0:
-        momentum = ints[at + MOMENTUM]
-        write_inverse(floats, to, ints[at + INERTIA])
-        w = turned(floats, to + AT_INVERSE, y[momentum], y[momentum + 1], y[momentum + 2])
-        put(floats, to + AT_W, *w)
+        v, w = which[SPEED], which[SPIN]
+        put(m, AT_X, floats[led], floats[led + 1], floats[led + 2])
+        put(m, AT_V, floats[v], floats[v + 1], floats[v + 2])
+        put(m, AT_W, floats[w], floats[w + 1], floats[w + 2])
+        write_turn(floats, which[TURN], m)
+        return
+    m[AT_R] = m[AT_R + 4] = m[AT_R + 8] = 1.0
 
 
 @lean(types.void(A, A, A, N, I, N))
 def press(y, rate, floats, to, ints, at):
     """Write the accelerations of the mover of ints[at:], by the forces in `rate`, behind what `see` wrote."""
-    x, led, q = ints[at + POSITION], ints[at + PLACE], ints[at + ROTATION]
+    m, which = floats[to : to + MOVED], ints[at : at + MOVER]
+    x, led, q = which[POSITION], which[PLACE], which[ROTATION]
     if x >= 0:
-        v, inverse = ints[at + VELOCITY], floats[to + AT_MASS]
-        put(floats, to + AT_A, inverse * rate[v], inverse * rate[v + 1], inverse * rate[v + 2])
+        force, inverse = rate[which[VELOCITY] : which[VELOCITY] + 3], m[AT_MASS]
+        put(m, AT_A, inverse * force[0], inverse * force[1], inverse * force[2])
         if q >= 0:
-            k, w = ints[at + MOMENTUM], to + AT_W
+            k = which[MOMENTUM]
+            momentum, torque = y[k : k + 3], rate[k : k + 3]
             # dL/dt = torque, and L = I w: I w' = torque - w x L.
-            gx, gy, gz = cross(floats[w], floats[w + 1], floats[w + 2], y[k], y[k + 1], y[k + 2])
-            turn = turned(floats, to + AT_INVERSE, rate[k] - gx, rate[k + 1] - gy, rate[k + 2] - gz)
-            put(floats, to + AT_TWIST, *turn)
+            gx, gy, gz = cross(m[AT_W], m[AT_W + 1], m[AT_W + 2], momentum[0], momentum[1], momentum[2])
+            put(m, AT_TWIST, *turned(m, AT_INVERSE, torque[0] - gx, torque[1] - gy, torque[2] - gz))
     elif led >= 0:
-        a, b = ints[at + PUSH], ints[at + TWIST]
-        put(floats, to + AT_A, floats[a], floats[a + 1], floats[a + 2])
-        put(floats, to + AT_TWIST, floats[b], floats[b + 1], floats[b + 2])
+        a, b = which[PUSH], which[TWIST]
+        put(m, AT_A, floats[a], floats[a + 1], floats[a + 2])
+        put(m, AT_TWIST, floats[b], floats[b + 1], floats[b + 2])
 
 
 @lean_inlined
@@ -173,90 +181,140 @@ def turning(y, floats, mover, momentum):
 
 
 @lean_inlined
-def arm(floats, mover, at):
-    """A place r at floats[at:], in a mover's axes, in the world's; and w x r and w x (w x r) of the mover's spin."""
-    rx, ry, rz = turned(floats, mover + AT_R, floats[at], floats[at + 1], floats[at + 2])
-    wx, wy, wz = floats[mover + AT_W], floats[mover + AT_W + 1], floats[mover + AT_W + 2]
+def arm(m, own, at):
+    """A place r at own[at:], in a mover's axes, in the world's; and w x r and w x (w x r) of the mover's spin."""
+    rx, ry, rz = turned(m, AT_R, own[at], own[at + 1], own[at + 2])
+    wx, wy, wz = m[AT_W], m[AT_W + 1], m[AT_W + 2]
     sx, sy, sz = cross(wx, wy, wz, rx, ry, rz)
     cx, cy, cz = cross(wx, wy, wz, sx, sy, sz)
     return rx, ry, rz, sx, sy, sz, cx, cy, cz
 
 
+@lean(types.void(A, A, A, A))
+def write_gear(a, b, own, row):
+    """Write the row of a GEAR between two movers."""
+    for k in range(12):
+        row[AT_J + k] = 0.0
+    total = speed = 0.0
+    size = abs(own[18]) + abs(own[19])
+    for side in range(2):
+        m, at, part = (b, 9, own[19]) if side == 1 else (a, 0, own[18])
+        nx, ny, nz = own[at], own[at + 1], own[at + 2]
+        ex, ey, ez = own[at + 3], own[at + 4], own[at + 5]
+        ux, uy, uz = turned(m, AT_R, own[at + 6], own[at + 7], own[at + 8])
+        sx, sy, sz = cross(ex, ey, ez, ux, uy, uz)
+        total += part * math.atan2(nx * sx + ny * sy + nz * sz, ex * ux + ey * uy + ez * uz)
+        part /= size
+        speed += part * (nx * m[AT_W] + ny * m[AT_W + 1] + nz * m[AT_W + 2])
+        put(row, AT_J + 6 * side + 3, part * nx, part * ny, part * nz)
+    total -= 2.0 * math.pi * math.floor(total / (2.0 * math.pi) + 0.5)
+    row[AT_C] = total / size
+    row[AT_SPEED], row[AT_BIAS], row[AT_SIZE] = speed, 0.0, 1.0
+
+
+@lean_inlined
+def write_angle(a, b, own, row):
+    """Write the row of an ANGLE between two movers."""
+    ux, uy, uz, px, py, pz, ex, ey, ez = arm(a, own, 0)
+    wx, wy, wz, qx, qy, qz, fx, fy, fz = arm(b, own, 3)
+    jx, jy, jz = cross(ux, uy, uz, wx, wy, wz)
+    put(row, AT_J, 0.0, 0.0, 0.0)
+    put(row, AT_J + 3, jx, jy, jz)
+    put(row, AT_J + 6, 0.0, 0.0, 0.0)
+    put(row, AT_J + 9, -jx, -jy, -jz)
+    row[AT_C] = ux * wx + uy * wy + uz * wz - own[6]
+    dx, dy, dz = a[AT_W] - b[AT_W], a[AT_W + 1] - b[AT_W + 1], a[AT_W + 2] - b[AT_W + 2]
+    row[AT_SPEED] = jx * dx + jy * dy + jz * dz
+    bias = ex * wx + ey * wy + ez * wz + ux * fx + uy * fy + uz * fz
+    row[AT_BIAS] = bias + 2.0 * (px * qx + py * qy + pz * qz)
+    row[AT_SIZE] = 1.0
+
+
+@lean_inlined
+def write_ball(rows, b, size, rx, ry, rz, sx, sy, sz, gap, speed, bend):
+    """Write the three rows of a BALL: arms of its place at a, and of that at b; gap, its rate, and w x (w x r) of both.
+
+    The components are those in b's axes, so that forces at an open joint, too, keep the angular momentum.
+    """
+    dx, dy, dz = gap
+    vx, vy, vz = speed
+    ex, ey, ez = bend
+    wx, wy, wz = b[AT_W], b[AT_W + 1], b[AT_W + 2]
+    px, py, pz = cross(wx, wy, wz, dx, dy, dz)
+    qx, qy, qz = px - 2.0 * vx, py - 2.0 * vy, pz - 2.0 * vz
+    vx, vy, vz = vx - px, vy - py, vz - pz
+    px, py, pz = cross(wx, wy, wz, qx, qy, qz)
+    ex, ey, ez = ex + px, ey + py, ez + pz
+    sx, sy, sz = sx + dx, sy + dy, sz + dz
+    for k in range(3):
+        row = rows[ROW * k : ROW * (k + 1)]
+        nx, ny, nz = b[AT_R + k], b[AT_R + 3 + k], b[AT_R + 6 + k]
+        gx, gy, gz = cross(sx, sy, sz, nx, ny, nz)
+        put(row, AT_J, nx, ny, nz)
+        put(row, AT_J + 3, *cross(rx, ry, rz, nx, ny, nz))
+        put(row, AT_J + 6, -nx, -ny, -nz)
+        put(row, AT_J + 9, -gx, -gy, -gz)
+        row[AT_BIAS] = nx * ex + ny * ey + nz * ez
+        row[AT_C] = nx * dx + ny * dy + nz * dz
+        row[AT_SPEED] = nx * vx + ny * vy + nz * vz
+        row[AT_SIZE] = size
+
+
 @lean(types.void(A, I, N, N, N))
 def write_row(floats, ints, at, a, b):
     """Write the row of ints[at:] between the movers whose floats begin at a and b."""
-    kind, own, to = ints[at + KIND], ints[at + NUMBERS], ints[at + SCRATCH]
-    if floats[ints[at + HOLDS]] == 0.0:
-        for k in range(ROW):
-            floats[to + k] = 0.0
-        floats[to + AT_SIZE] = 1.0
+    which = ints[at : at + ROW_INTS]
+    kind, to = which[KIND], which[SCRATCH]
+    if kind == WRITTEN:
         return
-    ax, ay, az = floats[a + AT_W], floats[a + AT_W + 1], floats[a + AT_W + 2]
-    bx, by, bz = floats[b + AT_W], floats[b + AT_W + 1], floats[b + AT_W + 2]
+    rows = floats[to : to + (3 * ROW if kind == BALL else ROW)]
+    if floats[which[HOLDS]] == 0.0:
+        for k in range(rows.size):
+            rows[k] = 0.0
+        for k in range(0, rows.size, ROW):
+            rows[k + AT_SIZE] = 1.0
+        return
+    one, two, own = floats[a : a + MOVED], floats[b : b + MOVED], floats[which[NUMBERS] : which[NUMBERS] + MOST_NUMBERS]
     if kind == GEAR:
-        for k in range(12):
-            floats[to + AT_J + k] = 0.0
-        total = speed = 0.0
-        size = abs(floats[own + 18]) + abs(floats[own + 19])
-        for side in range(2):
-            mover, at_side, part = (b, own + 9, floats[own + 19]) if side == 1 else (a, own, floats[own + 18])
-            nx, ny, nz = floats[at_side], floats[at_side + 1], floats[at_side + 2]
-            ex, ey, ez = floats[at_side + 3], floats[at_side + 4], floats[at_side + 5]
-            ux, uy, uz = turned(floats, mover + AT_R, floats[at_side + 6], floats[at_side + 7], floats[at_side + 8])
-            sx, sy, sz = cross(ex, ey, ez, ux, uy, uz)
-            total += part * math.atan2(nx * sx + ny * sy + nz * sz, ex * ux + ey * uy + ez * uz)
-            part /= size
-            speed += part * (nx * floats[mover + AT_W] + ny * floats[mover + AT_W + 1] + nz * floats[mover + AT_W + 2])
-            put(floats, to + AT_J + 6 * side + 3, part * nx, part * ny, part * nz)
-        total -= 2.0 * math.pi * math.floor(total / (2.0 * math.pi) + 0.5)
-        floats[to + AT_C] = total / size
-        floats[to + AT_SPEED], floats[to + AT_BIAS], floats[to + AT_SIZE] = speed, 0.0, 1.0
+        write_gear(one, two, own, rows)
         return
     if kind == ANGLE:
-        ux, uy, uz, px, py, pz, ex, ey, ez = arm(floats, a, own)
-        wx, wy, wz, qx, qy, qz, fx, fy, fz = arm(floats, b, own + 3)
-        jx, jy, jz = cross(ux, uy, uz, wx, wy, wz)
-        for k in range(12):
-            floats[to + AT_J + k] = 0.0
-        put(floats, to + AT_J + 3, jx, jy, jz)
-        put(floats, to + AT_J + 9, -jx, -jy, -jz)
-        floats[to + AT_C] = ux * wx + uy * wy + uz * wz - floats[own + 6]
-        floats[to + AT_SPEED] = jx * (ax - bx) + jy * (ay - by) + jz * (az - bz)
-        bias = ex * wx + ey * wy + ez * wz + ux * fx + uy * fy + uz * fz
-        floats[to + AT_BIAS] = bias + 2.0 * (px * qx + py * qy + pz * qz)
-        floats[to + AT_SIZE] = 1.0
+        write_angle(one, two, own, rows)
         return
-    rx, ry, rz, px, py, pz, ex, ey, ez = arm(floats, a, own)
-    sx, sy, sz, qx, qy, qz, fx, fy, fz = arm(floats, b, own + 3)
-    dx = floats[a + AT_X] + rx - floats[b + AT_X] - sx
-    dy = floats[a + AT_X + 1] + ry - floats[b + AT_X + 1] - sy
-    dz = floats[a + AT_X + 2] + rz - floats[b + AT_X + 2] - sz
-    vx = floats[a + AT_V] + px - floats[b + AT_V] - qx
-    vy = floats[a + AT_V + 1] + py - floats[b + AT_V + 1] - qy
-    vz = floats[a + AT_V + 2] + pz - floats[b + AT_V + 2] - qz
+    rx, ry, rz, px, py, pz, ex, ey, ez = arm(one, own, 0)
+    sx, sy, sz, qx, qy, qz, fx, fy, fz = arm(two, own, 3)
+    dx = one[AT_X] + rx - two[AT_X] - sx
+    dy = one[AT_X + 1] + ry - two[AT_X + 1] - sy
+    dz = one[AT_X + 2] + rz - two[AT_X + 2] - sz
+    vx = one[AT_V] + px - two[AT_V] - qx
+    vy = one[AT_V + 1] + py - two[AT_V + 1] - qy
+    vz = one[AT_V + 2] + pz - two[AT_V + 2] - qz
     ex, ey, ez = ex - fx, ey - fy, ez - fz
     size = abs(rx) + abs(ry) + abs(rz) + abs(sx) + abs(sy) + abs(sz)
     for k in range(3):
-        size += abs(floats[a + AT_X + k]) + abs(floats[b + AT_X + k])
-    floats[to + AT_SIZE] = size
+        size += abs(one[AT_X + k]) + abs(two[AT_X + k])
+    if kind == BALL:
+        write_ball(rows, two, size, rx, ry, rz, sx, sy, sz, (dx, dy, dz), (vx, vy, vz), (ex, ey, ez))
+        return
+    rows[AT_SIZE] = size
     if kind == DISTANCE:
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
         inverse = 1.0 / length if length > 0.0 else 0.0
         nx, ny, nz = dx * inverse, dy * inverse, dz * inverse
         along = nx * vx + ny * vy + nz * vz
-        floats[to + AT_C] = length - floats[own + 6]
-        floats[to + AT_SPEED] = along
+        rows[AT_C] = length - own[6]
+        rows[AT_SPEED] = along
         across = (vx * vx + vy * vy + vz * vz - along * along) * inverse
-        floats[to + AT_BIAS] = nx * ex + ny * ey + nz * ez + across
+        rows[AT_BIAS] = nx * ex + ny * ey + nz * ez + across
         gx, gy, gz = cross(sx, sy, sz, nx, ny, nz)
     else:
-        nx, ny, nz, mx, my, mz, gx, gy, gz = arm(floats, b, own + 6)
-        floats[to + AT_C] = nx * dx + ny * dy + nz * dz
-        floats[to + AT_SPEED] = nx * vx + ny * vy + nz * vz + mx * dx + my * dy + mz * dz
+        nx, ny, nz, mx, my, mz, gx, gy, gz = arm(two, own, 6)
+        rows[AT_C] = nx * dx + ny * dy + nz * dz
+        rows[AT_SPEED] = nx * vx + ny * vy + nz * vz + mx * dx + my * dy + mz * dz
         bias = nx * ex + ny * ey + nz * ez + gx * dx + gy * dy + gz * dz
-        floats[to + AT_BIAS] = bias + 2.0 * (mx * vx + my * vy + mz * vz)
+        rows[AT_BIAS] = bias + 2.0 * (mx * vx + my * vy + mz * vz)
         gx, gy, gz = cross(sx + dx, sy + dy, sz + dz, nx, ny, nz)
-    put(floats, to + AT_J, nx, ny, nz)
-    put(floats, to + AT_J + 3, *cross(rx, ry, rz, nx, ny, nz))
-    put(floats, to + AT_J + 6, -nx, -ny, -nz)
-    put(floats, to + AT_J + 9, -gx, -gy, -gz)
+    put(rows, AT_J, nx, ny, nz)
+    put(rows, AT_J + 3, *cross(rx, ry, rz, nx, ny, nz))
+    put(rows, AT_J + 6, -nx, -ny, -nz)
+    put(rows, AT_J + 9, -gx, -gy, -gz)

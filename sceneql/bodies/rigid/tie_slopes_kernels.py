@@ -13,7 +13,7 @@ exact in velocities and momenta, in which they are quadratic.
 
 import math
 
-from sceneql.bodies.rigid.tie_kernels import (
+from sceneql.bodies.rigid.tie_matrix_kernels import (
     EASE_AT,
     MOVED_AT,
     MOVERS_AT,

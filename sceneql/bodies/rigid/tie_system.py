@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly, Mover, Slopes, Tied
 
 KERNELS = "sceneql.bodies.rigid.tie_kernels"
-KINDS = ("point", "angle", "distance", "gear")
+KINDS = ("point", "angle", "distance", "gear", "ball", "written")
 
 IMPLIED, ROUNDING = 1e-10, 1e-13
 """Pivot of a normalized row, the square of its part independent of the rows before, below which the row counts as
@@ -41,7 +41,8 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     import numpy as np
     from scipy.sparse import csr_array
 
-    from sceneql.bodies.rigid import tie_kernels as kernels
+    from sceneql.bodies.rigid import tie_matrix_kernels as matrix
+    from sceneql.bodies.rigid.tie_kernels import survey
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, ROW
     from sceneql.linear.multifrontal.planning import plan
 
@@ -50,18 +51,18 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     sides = []
     for tie in ties:
         pair = tuple(movers.setdefault(integers(mover), len(movers)) for mover in tie.movers)
-        sides.append((pair, len(rows), len(tie.rows), tie.scratch_at))
+        sides.append((pair, len(rows), len(tie.rows), tie.scratch_at, _units(tie)))
         for k, row in enumerate(tie.rows):
             numbers = [*chain(*row.vectors), *row.constants]
             numbers_at = assembly.floats([*numbers, *(0.0 for _ in range(len(numbers), LEAST))])
             kind = KINDS.index(row.kind)
             rows.append((kind, *pair, numbers_at, tie.scratch_at + ROW * k, tie.holds_at))
     solved = [which[0] >= 0 for which in movers]
-    of_mover: dict[int, list[tuple[int, int, int]]] = {}
-    for pair, first, count, scratch in sides:
+    of_mover: dict[int, list[tuple[int, int, int, int]]] = {}
+    for pair, first, count, scratch, units in sides:
         for side, mover in enumerate(pair):
             if solved[mover]:
-                of_mover.setdefault(mover, []).append((first, count, scratch + 6 * side))
+                of_mover.setdefault(mover, []).append((first, count, scratch + 6 * side, units))
     # If all ties have equally many rows, the matrix is stored in blocks, whose plan takes far fewer integers.
     counts, few = {len(tie.rows) for tie in ties}, len(rows) <= WHOLE
     unit = counts.pop() if len(counts) == 1 and not few else 1
@@ -85,15 +86,16 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         return unit * unit * int(np.searchsorted(columns[first:end], column // unit)) + column % unit
 
     planned = None if few else plan(pattern, unit=unit)
-    unread = set() if planned is None or unit == 1 else _unread(planned.numbers)
+    unread = set() if planned is None else _unread(planned.numbers)
 
-    def place(one: int, other: int) -> int:
+    def place(one: int, rows: int, other: int, columns: int) -> int:
         """Offset of the values of two ties from the first value of a row of the first; -1: they are not read."""
         found = along(one, other)
-        return -1 if (few and one > other) or starts[one] + found in unread else found
+        block = [starts[one]] if unit > 1 else [starts[one + i] + j for i in range(rows) for j in range(columns)]
+        return -1 if (few and one > other) or unread.issuperset(at + found for at in block) else found
 
     shared = [
-        [*(len(some), mover, *chain(*some)), *(place(one[0], other[0]) for one in some for other in some)]
+        [*(len(some), mover, *chain(*some)), *(place(*one[:2], *other[:2]) for one in some for other in some)]
         for mover, some in of_mover.items()
     ]
     lists: list[Sequence[int]] = [
@@ -104,19 +106,19 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
         [starts[k] + along(k, k) for k in range(len(rows))],
         [] if planned is None else planned.numbers.tolist(),
     ]
-    begins = np.cumsum([kernels.HEAD, *(len(some) for some in lists)]).tolist()
+    begins = np.cumsum([matrix.HEAD, *(len(some) for some in lists)]).tolist()
     spent = (0, 0) if planned is None else (planned.factors, planned.work + len(rows))
     sizes = (MOVED * len(movers), unit * unit * len(columns), *spent, len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
     head = [len(movers), len(rows), begins[0], begins[1], len(shared), *begins[2:6], len(lists[5])]
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
-    kept = assembly.floats(np.zeros(kernels.KEPT * len(rows) if free else 0))
-    ease = assembly.floats([kernels.EASE])
-    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept, ease]
+    kept = assembly.floats(np.zeros(matrix.KEPT * len(rows) if free else 0))
+    ease, of_tie = assembly.floats([matrix.EASE]), assembly.floats(np.zeros(6 * matrix.MOST_ROWS))
+    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept, ease, of_tie]
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     _add_pivots(assembly, ties)
     numbers = assembly.numbers()
-    kernels.survey(0.0, assembly.start(), numbers, np.array(ints))
+    survey(0.0, assembly.start(), numbers, np.array(ints))
     if redundant(ties, numbers)[1] == 0:
         assembly.write(ease, [0.0])
     _must_agree(ties, numbers)
@@ -132,6 +134,13 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
     if free:  # a prescribed motion is known at the end of a step only
         assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
+
+
+def _units(tie: Tied) -> int:
+    """How many rows at a tie's beginning are those of a `ball`, where all others are of angles; else -1."""
+    kinds = [row.kind for row in tie.rows]
+    units = 3 if kinds[0] == "ball" else 0
+    return units if all(kind in ("angle", "gear") for kind in kinds[units:]) else -1
 
 
 def _unread(planned: NDArray[int64]) -> set[int]:
@@ -183,7 +192,7 @@ def _add_pivots(assembly: Assembly, ties: Sequence[Tied]) -> None:
     held = Counter(integers(mover) for tie in ties for mover in tie.movers)
     for tie in ties:
         mine, other = sorted(tie.movers, key=lambda mover: mover is None)
-        ball = [row.kind for row in tie.rows] == 3 * ["point"]
+        ball = [row.kind for row in tie.rows] == ["ball", "written", "written"]
         if other is not None or not ball or not isinstance(mine, Place) or held[integers(mine)] > 1:
             continue
         turning, k, numbers = mine.bodies.turning, mine.body, assembly.numbers()

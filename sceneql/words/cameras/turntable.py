@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds import Angle, Camera, DrawnRef, FixedScalar, FixedTime, Length, Moment, Position, Problem, field
 from sceneql.pictures import framing
@@ -24,6 +24,11 @@ class Turntable(Camera):
 
     For example `round: {turntable: {around: ball, seconds: 12 s}}`.
     """
+
+    said_by: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("speed", "rpm", "spin", "angular_speed", "angular_velocity", "rate", "omega"),
+        "it has the time of a turn: for 30 deg/s write `seconds: 12 s`, for 10 rpm `seconds: 6 s`",
+    )
 
     around: DrawnRef | None = field("The part it goes around; by default what it fits.", None)
     fit: tuple[DrawnRef, ...] | None = field(

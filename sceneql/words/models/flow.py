@@ -27,6 +27,7 @@ from sceneql.grids.multigrid.linear_solvers import Linear
 from sceneql.kinds import Formula, Gives, Model, Problem, Quantity, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
+from sceneql.quantities.diagnostic import suggestion
 from sceneql.quantities.expression import Link, Type
 
 if TYPE_CHECKING:
@@ -102,7 +103,9 @@ class Flow(Model):
         {},
     )
     around: tuple[kinds.ObjectRef, ...] = field(
-        "Solids in the flow, which may move by keys or formulas; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
+        "Solids in the flow, which may move by keys or formulas; a flow `air` around `cyl` gives `air.cyl.force` and "
+        "`air.cyl.torque`.",
+        (),
     )
     edges: Literal["cut_cell", "staircase"] = field(
         "How cells meet these solids: cut by them, or whole where their centers lie outside.", "cut_cell"
@@ -257,7 +260,7 @@ class Flow(Model):
         known = (*sides, "rest", *solids)
         for name in [name for name, part in self.boundary.items() if name not in known and not part.chosen]:
             text = f"the boundary has no side '{name}': it has {', '.join(known)}; or say `where` or `near`"
-            yield Problem(text, ("boundary", name), at_key=True)
+            yield Problem(text, ("boundary", name), at_key=True, help=suggestion(name, known))
 
     def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """What limits explicit steps: viscosity, by at most 4 nu sum of 1/spacing^2 (von Neumann), and advection."""
@@ -326,6 +329,12 @@ class Flow(Model):
     def shows(self, name: str) -> Value | None:
         """Its speed."""
         return Value(Link(name, "speed", Type((None,), dim.VELOCITY)))
+
+    def drawn_by(self, name: str) -> tuple[str, Value] | None:
+        """A deep flow by its streamlines: a map on its box would show its walls alone, and hide what is inside."""
+        if self.flat if self.size is None else len(self.size) == 2:
+            return super().drawn_by(name)
+        return "streamlines", Value(Link(name, "velocity", Type((None, 3), dim.VELOCITY)))
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells,), (cells, 3), (3,) or float."""

@@ -28,7 +28,7 @@ from sceneql.kinds import Damping, FixedMass, Gives, Problem, Ref, Stiffness, fi
 from sceneql.kinds.stable_step import Oscillation, StaticMass, StaticScene
 from sceneql.language.repeat import copy_meant
 from sceneql.quantities import dimension as dim
-from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.diagnostic import STRONG, Diagnostic, ScriptError, suggestion
 from sceneql.quantities.expression import Type
 
 if TYPE_CHECKING:
@@ -58,6 +58,12 @@ SPRING_OUTPUTS = {
         quantity_type(dim.FORCE), "Force of its stretch, > 0 when it pulls (without damping).", computed=True
     ),
 }
+
+
+BETWEEN = (
+    "springs hold masses of this model: write `masses: {{{name}: {{position: 0 1 0 m, mass: 1 kg}}}}`, and an object"
+    " follows a mass by its `position: MODEL.{name}`"
+)
 
 
 class MassSpring(SpringModel):
@@ -93,7 +99,7 @@ class MassSpring(SpringModel):
         for k, spring in enumerate(self.springs):
             for end, name in enumerate(spring.between):
                 if name not in known:
-                    help = copy_meant(name, known)
+                    help = copy_meant(name, known) or suggestion(name, known, STRONG) or BETWEEN.format(name=name)
                     yield Problem(f"no mass is called '{name}'; {named}", ("springs", k, "between", end), help=help)
         given = [name for name in ("masses", *PLACES) if getattr(self, name) is not None]
         if len(given) != 1:

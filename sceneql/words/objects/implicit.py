@@ -11,11 +11,25 @@ from pydantic import field_validator
 
 from sceneql.formulas.balanced import balanced
 from sceneql.formulas.point_formula import in_coordinates, written_out
-from sceneql.kinds import Axis, FieldBuilder, FixedLength, FixedScalar, Formula, Moment, Problem, Record, Symbols
+from sceneql.kinds import (
+    Axis,
+    Clock,
+    Doubt,
+    FieldBuilder,
+    FixedLength,
+    FixedScalar,
+    Formula,
+    Moment,
+    Problem,
+    Record,
+    Symbols,
+)
 from sceneql.kinds import field as described
 from sceneql.quantities.dimension import PLAIN
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Call, Expr, Number, Symbol
+from sceneql.quantities.intervals import range_of
+from sceneql.quantities.spaced import less as less_text
 from sceneql.shapes.placement import inverse
 from sceneql.shapes.solid import Solid, block, length, less, traced, triple
 
@@ -99,6 +113,20 @@ def _on_a_ball(count: int) -> Iterator[tuple[float, float, float]]:
         yield aside * cos(turn), aside * sin(turn), z
 
 
+def _compared(expr: Expr) -> str | None:
+    """The formula below 0 where a comparison holds, or several joined by products or `max`; None of another formula."""
+    if not isinstance(expr, Call) or any(arg.span is None for arg in expr.args):
+        return None
+    if expr.op in ("mul", "max", "add"):
+        each = [_compared(arg) for arg in expr.args]
+        known = [one for one in each if one is not None]
+        return f"{'max' if expr.op == 'mul' else 'min'}({', '.join(known)})" if len(known) == len(each) else None
+    first, *others = (arg.span.text for arg in expr.args if arg.span is not None)
+    if expr.op not in ("lt", "le", "gt", "ge", "eq") or len(others) != 1:
+        return None
+    return less_text(others[0], first) if expr.op in ("gt", "ge") else less_text(first, others[0])
+
+
 class Implicit(Solid):
     """The solid {field < level} within its bounds, or the surface {field = level}.
 
@@ -127,6 +155,25 @@ class Implicit(Solid):
     def _is_scalar(cls, given: Formula) -> Formula:
         in_coordinates(given.expr)
         return given
+
+    def problems(self) -> Iterator[Problem]:
+        """A comparison, which is 1 or 0 and has no surface."""
+        if (meant := _compared(self.field.expr)) is not None:
+            text = "a comparison is 1 or 0, and no formula of a surface, which is below the level inside"
+            yield Problem(text, ("field",), code="no-surface", help=f"write `{meant}`")
+
+    def doubts(self, clock: Clock) -> Iterator[Doubt]:
+        """A formula that certainly does not come down to the level within its bounds."""
+        yield from super().doubts(clock)
+        sides = dict(zip("xyz", zip(*self.bounds.corners, strict=True), strict=True))
+        low, high = range_of(self.field.expr, sides)
+        if low > self.level or (self.mode == "surface" and high < self.level):
+            found = f"at least {low:.4g}" if low > self.level else f"at most {high:.4g}"
+            text = (
+                f"it is empty: within its bounds the formula is {found}, and its surface is where it is {self.level:g}"
+            )
+            help = "inside the formula is below the level: turn its sign round, subtract more, or set `level`"
+            yield Doubt("empty-surface", text, self.field.span, help)
 
     def cut_by_default(self) -> str:
         """The ball about the origin, where no bounds are given and the solid or surface goes on there at the start."""

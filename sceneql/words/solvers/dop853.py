@@ -64,6 +64,9 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     rows = (*DORMAND_PRINCE_8.a, DORMAND_PRINCE_8.b, *EXTRA)
     places = (*DORMAND_PRINCE_8.c, 1.0, *(sum(row) for row in EXTRA))
     bends = (weight for row in BEND for weight in row)
+    acts = system.structure
+    # Where nothing but the removal of errors acts behind steps, the march evaluates the rate at their ends after it.
+    late = bool(acts.settling) and not (acts.after or acts.local or system.pairs)
     plan, scales = error_scales(system) if stepper.control.by_scale else (np.zeros(0, np.int64), np.zeros(0))
     settings = (
         stepper.control.tolerance,
@@ -78,8 +81,9 @@ def prepare(system: System, stepper: Stepper) -> Prepared:
     )
     return Prepared(
         settings,
-        (int(stepper.control.adaptive), int(system.pairs > 0), len(plan), *plan),
+        (int(stepper.control.adaptive), int(system.pairs > 0), int(late), len(plan), *plan),
         (21 + 3 * stepper.control.by_scale) * len(system.y),
         alone=alone(plan) if len(plan) else None,
         scales=(len(settings) - len(scales) - 1, len(scales)),
+        last_stage=-1 if late else None,
     )

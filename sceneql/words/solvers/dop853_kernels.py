@@ -1,12 +1,13 @@
 # mypy: ignore-errors
 """One step of Dormand and Prince's method of order 8, and its dense output.
 
-``numbers`` = (1 if the error is wanted, 1 if every step is extended, length of the plan of error_scales_kernels.py,
-which is 0 where an absolute tolerance is given), then that plan. ``settings`` = (relative tolerance, absolute
-tolerance, rows of a below the diagonal for all 16 stages, where row 12 is b, c (16), weights of the fifth-order error
-(12), of the third-order one (12), of the interpolant's last four coefficients (4, 16)), then the scales and the time of
-their last step. ``work``: 16 stages, of which the first is not used (it is ``rate0``) and the thirteenth is the rate at
-the end; scratch; those four coefficients; with scales 3 arrays more.
+``numbers`` = (1 if the error is wanted, 1 if every step is extended, 1 if the rate at the end is left to the
+extension, length of the plan of error_scales_kernels.py, which is 0 where an absolute tolerance is given), then that
+plan. ``settings`` = (relative tolerance, absolute tolerance, rows of a below the diagonal for all 16 stages, where row
+12 is b, c (16), weights of the fifth-order error (12), of the third-order one (12), of the interpolant's last four
+coefficients (4, 16)), then the scales and the time of their last step. ``work``: 16 stages, of which the first is not
+used (it is ``rate0``) and the thirteenth is the rate at the end; scratch; those four coefficients; with scales 3 arrays
+more.
 """
 
 import math
@@ -16,7 +17,7 @@ from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
 from sceneql.stepping.runge_kutta_kernels import ABSOLUTE, RELATIVE, add_stages, weigh_explicitly
 from sceneql.system.signatures_kernels import DENSE, STEP
 
-CONTROLLED, EXTENDED, SCALED, HEAD = range(4)
+CONTROLLED, EXTENDED, LATE, SCALED, HEAD = range(5)
 STAGES = 12
 LAST = 16
 ROWS = 2
@@ -37,10 +38,10 @@ def stage(i, rate, t, h, y0, rate0, state, work, settings, floats, ints):
 
 @lean(STEP)
 def extend(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
-    """The three further stages of dense output, and its coefficients from them."""
+    """The three further stages of dense output, and its coefficients from them; before these the rate at the end."""
     rate = rate_at(functions[AT_RATE])
     n = y0.size
-    for i in range(STAGES + 1, LAST):
+    for i in range(STAGES + 1 - numbers[LATE], LAST):
         stage(i, rate, t, h, y0, rate0, work[LAST * n : (LAST + 1) * n], work, settings, floats, ints)
     for row in range(4):
         at = BENDS + row * LAST
@@ -60,8 +61,10 @@ def step(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints):
     """y1 after a step of length h, and the error of Hairer, Norsett & Wanner (1993, II.10, eq. 10.17)."""
     rate = rate_at(functions[AT_RATE])
     n = y0.size
-    for i in range(1, STAGES + 1):
+    for i in range(1, STAGES + 1 - numbers[LATE]):
         stage(i, rate, t, h, y0, rate0, y1, work, settings, floats, ints)
+    if numbers[LATE] != 0:
+        add_stages(settings, ROWS + STAGES * (STAGES - 1) // 2, STAGES, h, y0, rate0, work, y1)
     if numbers[EXTENDED] != 0:
         extend(functions, t, h, y0, rate0, y1, work, settings, numbers, floats, ints)
     if numbers[CONTROLLED] == 0:
