@@ -164,5 +164,5 @@ def test_paths_of_light_followed_by_one_call_end_as_wave_by_wave(monkeypatch):
         scene = frame(*shapes, stage.floor(), lights=(SKY, sun((0.5, 0.8, 0.4), angle=0.05)), seen=seen)
         at_once = Trace(samples=4).draw(scene).linear
         with monkeypatch.context() as patch:
-            patch.setattr(waves, "ways_follower", lambda _: None)
+            patch.setattr(waves, "ways_follower", lambda *_: None)
             assert np.array_equal(at_once, Trace(samples=4).draw(scene).linear)

@@ -96,7 +96,8 @@ class Waves:
             np.empty(count, np.int64),
         )
         self.ways_met, self.ways_skins = np.empty((count, 5)), np.empty((count, 6))
-        self.follow = ways_follower(self)
+        own = self.ways, self.live, self.ways_hit, self.ways_met, self.ways_skins
+        self.follow = ways_follower(scene, packets, self.lanes, self.scratch, self.asked, *own)
         self.marks, self.same = (
             np.empty((TILE, -(-width // LANES) * LANES), np.float32),
             np.empty(LANES, np.float32),
@@ -276,7 +277,7 @@ class Waves:
             if together:
                 self.awaited.append((work, start, end))
             elif head[layout.WAYS] > before:
-                self._light_ways(before)
+                self.light_ways(before)
                 head[layout.MODE], head[layout.NEXT] = layout.ENDING, before
                 work(start, end)
                 head[layout.WAYS] = before
@@ -286,7 +287,7 @@ class Waves:
         """Follow the light paths that calls of ``_ask`` have begun together, and run what awaits them."""
         head = self.asked[0]
         if head[layout.WAYS] > 0:
-            self._light_ways(0)
+            self.light_ways(0)
             head[layout.MODE], head[layout.NEXT] = layout.ENDING, 0
             for work, start, end in self.awaited:
                 work(start, end)
@@ -304,7 +305,7 @@ class Waves:
         work(start, end)
         return end
 
-    def _light_ways(self, first: int) -> None:
+    def light_ways(self, first: int) -> None:
         """Follow the light paths from the ``first`` on to their ends, in waves; the last few one by one."""
         if self.follow is not None:
             self.follow(first)
@@ -313,7 +314,7 @@ class Waves:
         last = int(asked[0, layout.WAYS])
         count = last - first
         live[:count] = np.arange(first, last)
-        few = few_of(self)
+        few = few_of(self.lanes, asked)
         while True:
             count, some = look_about(scene, self.scratch, ways, live, count, hits, self.ways_met)
             if count < few:

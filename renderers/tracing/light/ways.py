@@ -12,53 +12,45 @@ from sceneql.compiled.kernels import address
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from renderers.tracing.waves import Waves
+    from renderers.tracing.scene_kernels import Scene
+    from renderers.tracing.solids.bundles import Packets
+    from sceneql.frame import Floats
 
 FEW = 4
 """Number of light paths below which each is followed singly, because a wave costs more than it saves. This does not
 apply if packets intersect the whole scene: a single ray then costs as much as a wave."""
 
 
-def few_of(waves: Waves) -> int:
+def few_of(lanes: Floats | None, asked: Floats) -> int:
     """FEW, where that applies."""
-    return 1 if waves.lanes is None and waves.asked[0, layout.ALONE] else FEW
+    return 1 if lanes is None and asked[0, layout.ALONE] else FEW
 
 
-def _nothing(kind: Any) -> Any:
-    """What stands for an array, or a number, of a numba type where there are no packets."""
-    return np.empty((0,) * kind.ndim, dtype=str(kind.dtype)) if hasattr(kind, "ndim") else 0
+def ways_follower(
+    scene: Scene, packets: Packets | None, lanes: Floats | None, scratch: Floats, asked: Floats, *own: Any
+) -> Callable[[int], None] | None:
+    """``follow_ways`` or ``follow_plain`` from a way on; None where there are no waves of them, or several solids.
 
-
-def ways_follower(waves: Waves) -> Callable[[int], None] | None:
-    """``ways_kernels.follow_ways`` from a way on; None where there are no waves of them, or several solids."""
-    packets = waves.packets
-    if len(waves.ways) == 1 or (packets is not None and len(packets.solids) != 1):
+    ``own``: the ways and their working memory, as that takes them.
+    """
+    ways, *memory, skins = own
+    few = few_of(lanes, asked)
+    if len(ways) == 1 or (packets is not None and len(packets.solids) != 1):
         return None
-    from renderers.tracing.light import ways_kernels as kernels
-    from renderers.tracing.solids.bundles_kernels import SOLID, meet_asked
-    from renderers.tracing.solids.skins_kernels import MEMORY, skin_hits
-
-    meet = skin = plain = 0
     if packets is None:
-        solid, memory = (tuple(_nothing(kind) for kind in kinds) for kinds in (SOLID, MEMORY))
-    else:
-        solid, memory = packets.of_rays(waves.asked)[0], packets.of_skins
-        meet, skin = address(meet_asked, kernels.MEET), address(skin_hits, kernels.SKIN)
-    lanes = np.empty(0) if waves.lanes is None else waves.lanes
-    if waves.lanes is not None:
-        plain = address(waves.meet_plain, kernels.PLAIN)
-    own = waves.live, waves.ways_hit, waves.ways_met, waves.ways_skins, lanes
-    return lambda first: kernels.follow_ways(
-        waves.scene,
-        waves.scratch,
-        waves.asked,
-        waves.ways,
-        first,
-        few_of(waves),
-        *own,
-        plain,
-        skin,
-        meet,
-        memory,
-        solid,
-    )
+        from renderers.tracing.light.plain_ways_kernels import follow_plain
+
+        return lambda first: follow_plain(scene, scratch, asked, ways, first, few, *memory, lanes)
+    from renderers.tracing.light.ways_kernels import MEET, PLAIN, SKIN, follow_ways
+    from renderers.tracing.solids.bundles_kernels import meet_asked
+    from renderers.tracing.solids.skins_kernels import skin_hits
+
+    plain = 0
+    if lanes is not None:
+        from renderers.tracing.solids.plain_lanes_kernels import meet_plain
+
+        plain = address(meet_plain, PLAIN)
+    addresses = plain, address(skin_hits, SKIN), address(meet_asked, MEET)
+    more = *memory, skins, np.empty(0) if lanes is None else lanes, *addresses
+    of_packets = packets.of_skins, packets.of_rays(asked)[0]
+    return lambda first: follow_ways(scene, scratch, asked, ways, first, few, *more, *of_packets)
