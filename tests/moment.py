@@ -75,6 +75,9 @@ class FakeMoment:
     def around(self) -> tuple[Any, Any] | None:
         return None
 
+    def boxes(self) -> Any:
+        return np.array([self.box], dtype=float)
+
     def outline(self) -> Any:
         return np.array(list(product(*zip(*self.box, strict=True))), dtype=float)
 

@@ -145,3 +145,13 @@ def test_dye_beside_a_solid_that_moves_stays_what_it_is(tmp_path, solver):
     assert np.abs(air.read("concentration", "even") - 1.0).max() < 5e-3
     assert air.read("mass", "half") - air.read("inflow", "half") == pytest.approx(half, rel=1e-12)
     assert abs(air.read("inflow", "half")) < 3e-3 * half
+
+
+def test_steps_are_as_long_as_a_solid_that_moves_unevenly_lets_them_be(tmp_path):
+    """A quarter of a cell each, along all axes: of its middle, and of the corners of one that turns in its place."""
+    swings = "[0.5 m + 0.1 m*sin(2*time/(1 s)), 0.5 m, 0 m]"
+    turns = "0.5 0.5 0 m, rotation: {about: z, angle: 60 deg*sin(2*time/(1 s))}"
+    for place, cells in ((swings, 0.2 * 16), (turns, 2.0 * math.pi / 3.0 * 0.2 * math.sqrt(2) * 1.4 * 16)):
+        before = f"objects: {{drum: {{box: {{size: 0.4 0.4 1 m, position: {place}}}}}}}\n"
+        air = Air(tmp_path, "{auto: {}}", 1.0, before=before, around="[drum]")
+        assert air.run.march.system.largest_step == pytest.approx(0.25 / cells, rel=0.05)

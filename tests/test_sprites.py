@@ -137,6 +137,19 @@ def test_a_solid_throws_its_shadow_on_smoke(lamp):
         assert middle(1.5, 0.0, 0.0, radius=0.1) == middle(2.5, 0.0, 0.05) == plain
 
 
+def test_a_puff_that_goes_into_a_shadow_darkens_by_and_by():
+    """Whose edge is sharp: from no frame to the next it is dark all over."""
+    sun = Sun((0.0, 1.0, 0.0), (3.0,) * 3, 0.0)
+    roof = Points("b", WHITE, np.array([[0.5, 1.5, 0.0]]), np.full(1, 0.5))
+    rows = np.linspace(-0.3, 0.3, 31)  # a fifteenth of its radius a frame
+    seen = [
+        seen_in(sun, shapes=[roof, smoke((x, 0.0, 0.0), radius=0.3)])[SIDE // 2 - 20 : SIDE // 2 + 20].sum()
+        for x in rows
+    ]
+    assert seen[-1] < 0.2 * seen[0]
+    assert -np.diff(seen).min() < 0.3 * seen[0]
+
+
 def test_the_light_of_smoke_that_grows_does_not_jump():
     rng = np.random.default_rng(3)
     sheet = np.column_stack([rng.uniform(-1, 1, (MANY, 2)), np.zeros(MANY)])

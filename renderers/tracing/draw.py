@@ -81,7 +81,7 @@ def draw(
         with_waves(lambda w: w.refine(start, stop, busy, records, visibility, buffers.means, fine))
 
     buffers.mirrored[:] = 0
-    over_rows(height, gather)
+    over_rows(height, gather, "tracing rays")
     undecided, seconds, unsearched = map(sum, zip(*counts, strict=True))
     layers_seen = (1, 0) if seconds else (0,)  # layer 0 comes last: the stage of edges reads its planes
     if hard:
@@ -112,7 +112,7 @@ def draw(
         with_waves(lambda w: w.smooth(start, stop, points, doubted, buffers.busy, buffers.planes, *light, linear))
 
     if samples > 1:
-        over_rows(height, smooth)
+        over_rows(height, smooth, "tracing rays at edges")
     else:
         linear[:] = buffers.radiance
     over(frame, buffers.records[0], linear, scene, rows)

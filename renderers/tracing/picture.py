@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sceneql.compiled.kernels import over_tiles
+from sceneql.doing import doing
 
 if TYPE_CHECKING:
     from numpy import float32
@@ -28,6 +30,15 @@ class Picture:
     """Number of rays that were not searched, since the search of others at the same object had led nowhere."""
 
 
-def over_rows(height: int, work: Callable[[int, int], object]) -> None:
-    """Call ``work(start, stop)`` for bands of rows, on the thread pool."""
-    over_tiles(-(-height // BAND), lambda band: work(band * BAND, min(band * BAND + BAND, height)))
+def over_rows(height: int, work: Callable[[int, int], object], what: str = "") -> None:
+    """Call ``work(start, stop)`` for bands of rows, on the thread pool; ``what`` it does is told with how far it is."""
+    bands = -(-height // BAND)
+    with doing(what) if what else nullcontext() as deed:
+        done = iter(range(1, bands + 1))
+
+        def one(band: int) -> None:
+            work(band * BAND, min(band * BAND + BAND, height))
+            if deed is not None:
+                deed.what = f"{what}, {100 * next(done) // bands} %"
+
+        over_tiles(bands, one)

@@ -163,7 +163,8 @@ class _Checker:
                     self.unused_defaults(word, fields, kinds)
             elif not kinds:
                 words = [each for family in self.catalogue.families for each in self.catalogue.words(family)]
-                help = suggestion(word, words) or "defaults are written by word, `{sphere: {radius: 1 m}}`"
+                help = "defaults are written by word, `{sphere: {radius: 1 m}}`"
+                help = suggestion(word, words) or help if isinstance(fields, MappingNode) else help
                 if word in self.templates:
                     help = "the defaults of a template stand in its own `fields:`"
                 self.found.error("unknown-word", f"'{word}' is no word", section.keys[word].span, help=help)
@@ -284,7 +285,7 @@ class _Checker:
             copies=lambda node, mark: self.copies(node, mark, entry),
         )
         try:
-            kind = reader.record(entry.fields, cls, entry.word_span, entry.word)
+            kind = reader.record(entry.fields, cls, entry.word_span, cls.__module__.rpartition(".")[2])
         except Unreadable:
             return
         if known is None:  # read only to report what is wrong in its fields

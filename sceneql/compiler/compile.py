@@ -14,7 +14,7 @@ from sceneql.compiler.passes.boundary_names import report_boundary_names
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
 from sceneql.compiler.passes.contact_words import report_contacts
-from sceneql.compiler.passes.doubts import warn_of_doubts
+from sceneql.compiler.passes.doubts import warn_of_constants, warn_of_doubts
 from sceneql.compiler.passes.empty_holds import report_empty_holds
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.far_joints import warn_of_far_joints
@@ -25,7 +25,7 @@ from sceneql.compiler.passes.keys_beyond import warn_of_keys
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.left_behind import warn_of_left_behind
 from sceneql.compiler.passes.open_meshes import warn_of_open_meshes
-from sceneql.compiler.passes.outside_flows import report_outside_flows
+from sceneql.compiler.passes.outside_flows import report_outside_flows, warn_of_sections
 from sceneql.compiler.passes.overlaps import report_overlaps
 from sceneql.compiler.passes.probes import report_probes
 from sceneql.compiler.passes.prune import prune
@@ -33,12 +33,12 @@ from sceneql.compiler.passes.readable import report_unreadable
 from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
-from sceneql.compiler.passes.unforced import warn_of_unforced
+from sceneql.compiler.passes.unforced import warn_of_unforced, warn_of_weak
 from sceneql.compiler.passes.unmoved import report_moving
 from sceneql.compiler.passes.unseen import warn_of_buried, warn_of_unseen
 from sceneql.compiler.passes.unshown import warn_of_unshown, warn_of_unused_cameras
 from sceneql.compiler.passes.unused import warn_of_unused_defines
-from sceneql.compiler.passes.upward import warn_of_z_up
+from sceneql.compiler.passes.upward import warn_of_z_high, warn_of_z_up
 from sceneql.compiler.studies import check_studies
 from sceneql.compiler.values_below import values_of
 from sceneql.doing import duration
@@ -90,18 +90,22 @@ def compile_script(
     report_empty_holds(tasks, found)
     report_overlaps(tasks, groups, found)
     report_outside_flows(tasks, found)
+    warn_of_sections(tasks, found)
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
     warn_of_far_joints(tasks, found)
     warn_of_doubts(tasks, checked.settings.clock, found)
+    warn_of_constants(tasks, found)
     warn_of_keys(tasks, checked.settings.clock, found)
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
     warn_of_unforced(tasks, groups, found)
+    warn_of_weak(tasks, groups, checked.settings.clock.end, found)
     warn_of_balls(tasks, groups, found)
     warn_of_two_models(checked.tasks, found)
     warn_of_left_behind(tasks, found)
     warn_of_z_up(tasks, found)
+    warn_of_z_high(tasks, found)
     warn_of_unseen(tasks, drawn, cameras, found)
     warn_of_buried(tasks, found)
     found.raise_errors()

@@ -21,7 +21,7 @@ from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
-from sceneql.quantities.dimension import MASS
+from sceneql.quantities.dimension import ANGLE, MASS, PLAIN, Dimension
 from sceneql.quantities.instead import instead
 from sceneql.quantities.units import unit_of
 
@@ -31,6 +31,8 @@ _NAMES = re.compile(rf"{_NAME}(?:\s*[-+&|*/,]\s*{_NAME})+")
 _MEASURED = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*[^\W\d].*")
 _NUMBERS = re.compile(r"((?:[-+]?[\d.]+(?:[eE][-+]?\d+)?\s+)*[-+]?[\d.]+(?:[eE][-+]?\d+)?)\s+[^\W\d]\S*")
 OF_FORM = (
+    "file-missing",
+    "file-outside",
     "dimension-mismatch",
     "missing-value",
     "syntax",
@@ -83,6 +85,13 @@ def _wrong(reader: Any, node: Node, info: Any, name: str) -> tuple[Diagnostic, .
     return nothing.errors
 
 
+def table_of(cls: type[BaseModel]) -> str:
+    """The field of a record that has to be given, if it is the only one, and holds entries by name; else empty."""
+    required = [name for name, info in cls.model_fields.items() if info.is_required()]
+    only = required[0] if len(required) == 1 else ""
+    return kinds.written_name(only) if only and get_origin(cls.model_fields[only].annotation) is dict else ""
+
+
 def example_line(cls: type[BaseModel], name: str, description: str) -> str:
     """What a missing field is, with an example."""
     example = "..." if "`" in description else example_of(cls, name)
@@ -97,12 +106,16 @@ def first_of(name: str, node: Node) -> str | None:
     else:
         first, *more = node.span.text.replace(",", " ").split() or ("",)
         first += f" {more[-1]}" if more and (more[-1][:1].isalpha() or more[-1] == "%") else ""
-    return f"it is one number: write `{name}: {first}`" if first else None
+    several = isinstance(node, Sequence) and len(node.items) > 1
+    others = ", and a part of its own for each of the others" if several else ""
+    return f"it is one number: write `{name}: {first}`{others}" if first else None
 
 
 def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     """The help for a field without its colon, or for a value that suits one field of a record."""
     required = [kinds.written_name(name) for name, info in cls.model_fields.items() if info.is_required()]
+    if isinstance(node, Sequence) and (dealt := _dealt(reader, node, cls, required)) is not None:
+        return dealt
     if not isinstance(node, Scalar):
         found = required if len(required) == 1 else list(_taking(reader, node, cls))
         if len(found) == 1 and "\n" in node.span.text:
@@ -113,6 +126,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         return meant
     if node.text.lower() in TRUE and not required:
         return "write `{}`: all of its fields have defaults"
+    if node.text.lower() in TRUE:
+        return f"write `{first_field(cls)}`"
     ends = "bare" if "value" in cls.model_fields else "bare.wall" if "wall" in cls.model_fields else ""
     if (held := instead(ends, node.text)) is not None:
         return held
@@ -154,6 +169,24 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     return f"write `{{{likely[0]}: {text}}}`"
 
 
+def _dealt(reader: Any, node: Sequence, cls: type[BaseModel], required: Sequenced[str]) -> str | None:
+    """The help for a list of what several fields take: ``[a, b, 100 N/m]`` for a spring between a and b."""
+    if len(required) != 1:
+        return None
+    info = next(info for key, info in cls.model_fields.items() if kinds.written_name(key) == required[0])
+    size = len(get_args(info.annotation)) if is_fixed(info.annotation) else 0
+    first, rest = node.items[:size], node.items[size:]
+    if not size or not rest or not all(isinstance(one, Scalar) for one in node.items):
+        return None
+    told = [f"{required[0]}: [{', '.join(one.span.text for one in first)}]"]
+    for one in rest:
+        fitting = _fitting(reader, one, {key: more for key, more in cls.model_fields.items() if more is not info})
+        if len(fitting) != 1:
+            return None
+        told.append(f"{kinds.written_name(*fitting)}: {one.span.text}")
+    return f"write `{{{', '.join(told)}}}`"
+
+
 def _listing(cls: type[BaseModel], name: str) -> bool:
     """Whether a field is a list of parts."""
     (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
@@ -183,15 +216,62 @@ def for_each(reader: Any, node: Node, cls: type[BaseModel], name: str, title: st
     return f"it is one for all that touch: write a part for each pair, `{first}_hits: {{{title}: {inner}}}`"
 
 
-def in_other_unit(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
+def number_meant(node: Node, info: Any, name: str, code: str, help: str | None) -> str | None:
+    """The help for a word in place of a number, ``tolerance: high``, or behind one without a unit, ``10 lines``."""
+    extra: Any = info.json_schema_extra or {}
+    default, marks = extra.get("default"), quantities(info)
+    if code == "unknown-unit":
+        number = re.fullmatch(r"([-+.\d]+(?:[eE][-+]?\d+)?)\s*[^\W\d]\w*", node.span.text)
+        known = [mark.dimension for mark in marks if mark.dimension is not None]
+        plain = all(one.plain for one in known) if known else info.annotation in (int, float)
+        plain = plain and (help or "").startswith(("for a product", "units are such", "did you mean"))
+        return f"it has no unit: write `{name}: {number[1]}`" if number is not None and plain else None
+    word = re.fullmatch(_NAME, node.span.text) is not None and (help or "").startswith("names stand under")
+    if not word or not marks or not isinstance(default, str) or not default[:1].isdigit():
+        return None
+    return f"write a number, as `{name}: {default}`, or a name that stands under `define`"
+
+
+def plain_define(reader: Any, node: Node) -> str | None:
+    """The help for a formula of a wrong dimension with a define that is a number without a unit."""
+    if not isinstance(node, Scalar):
+        return None
+    defines = reader.names.defines
+    named = [one for one in re.findall(_NAME, node.text) if one in defines and isinstance(defines[one], Scalar)]
+    bare = [one for one in dict.fromkeys(named) if defines[one].kind in ("integer", "number")]
+    if not bare or len(named) == len(bare):
+        return None
+    text = f"{bare[0]}: {defines[bare[0]].text}"
+    return f"'{bare[0]}' is a plain number: give it its unit in `define`, where `{text}` stands"
+
+
+def _inverse(reader: Any, node: Node, name: str, wanted: Dimension) -> str | None:
+    """The help for a frequency in place of a time, and the like."""
+    nothing = Diagnostics()
+    other = kinds.Quantity(PLAIN / wanted)
+    fits = values.read_value(node, other, name, replace(reader.names, found=nothing), nothing) is not None
+    return f"it is one over that: write `1/({node.span.text})`" if fits else None
+
+
+def in_other_unit(reader: Any, node: Node, info: Any, others: Mapping[str, Any], name: str) -> str | None:
     """The help for a quantity of a wrong dimension: the one other field that takes it, or the unit that it has."""
+    numbers = _NUMBERS.fullmatch(node.span.text.strip("[]"))
+    marks = [mark for mark in marks_of(info) if isinstance(mark, kinds.Quantity | kinds.Symbols)]
+    if any(isinstance(mark, kinds.Symbols) and mark.of_field for mark in marks):
+        return None  # what is measured is the model's
+    wanted = next((mark.dimension for mark in marks if mark.dimension is not None), None)
+    if wanted is not None and not wanted.plain and (inverse := _inverse(reader, node, name, wanted)) is not None:
+        return inverse
+    if numbers is not None and wanted is not None and wanted.kind == ANGLE.kind:
+        return f"it is an angle, as `{numbers[1]} deg`"
+    if wanted is not None and wanted.plain and node.span.text[-1:] in ("C", "F", "K"):
+        return None
+    if numbers is not None and wanted is not None and wanted.plain:
+        return f"it has no unit: write `{name}: {numbers[1]}`"
     found = [kinds.written_name(name) for name in _fitting(reader, node, others)]
     if len(found) == 1:
         return f"that is what `{found[0]}` takes: write `{found[0]}: {node.span.text}`"
-    numbers = _NUMBERS.fullmatch(node.span.text.strip("[]"))
-    marks = [mark for mark in marks_of(info) if isinstance(mark, kinds.Quantity | kinds.Symbols)]
-    wanted = next((mark.dimension for mark in marks if mark.dimension is not None), None)
-    if numbers is None or wanted is None or wanted.plain:
+    if numbers is None or wanted is None:
         return None
     if wanted == MASS and node.span.text.endswith("N"):
         return f"a weight is a mass times gravity: write `{node.span.text}/(9.81 m/s^2)`"
@@ -242,6 +322,9 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     texts = [f"{name}: {{{_inside(one, NAMES)}}}" for one in items if (name := _name_in(one))]
     if record and items and len(texts) == len(items):
         return f"write `{{{', '.join(texts)}}}`, the name of each before its fields"
+    if not record and len(items) > 1 and all(isinstance(one, Scalar) for one in items):
+        pairs = zip("abcdefghijklmnopqrstuvwxyz", items, strict=False)
+        return f"each has a name of its own: write `{{{', '.join(f'{name}: {one.span.text}' for name, one in pairs)}}}`"
     first = items[0].span.text if items else "name"
     first = first if first.isidentifier() else "name"
     example = first_field(item) if record else "..."

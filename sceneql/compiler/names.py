@@ -25,6 +25,7 @@ from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import continues_unit, in_words, unit_hint
 
 WORDS = re.compile(WORD)
+PICTURES = ("jpg", "jpeg", "png", "hdr", "exr", "tif", "tiff", "webp", "gif")
 SPEEDS = ("speed", "vel", "v", "absolute_velocity")
 DEEPEST = 40
 """Largest depth of defines that are read within one another; what a define needs is read before it."""
@@ -246,7 +247,8 @@ class Names:
         mover = self.mover(task)
         model, body = self.part_of(mover) if mover else ("", "")
         known = self.outputs_of(model) or {}
-        gives = f"{body}.{wanted[0]}".strip(".") in known
+        inner = f"{body}.{wanted[0]}".strip(".")
+        gives = inner in known or f"{inner}.position" in known
         return f"'{model}' moves it: write `{'.'.join((mover, *wanted))}`" if gives else None
 
     def _component(self, whole: Expr, parts: tuple[str, ...], size: int, span: Span) -> Expr | None:
@@ -295,6 +297,8 @@ class Names:
         """The help for a dotted name of an unknown part: the nearest part, or the part without its section."""
         if parts[0] == "define":
             return f"what is defined is named by itself: write `{'.'.join(parts[1:])}`"
+        if parts[-1].lower() in PICTURES:
+            return "no picture is read here: write a color, `skyblue`"
         if parts[1] in known:
             return f"a part is named without its section: write `{'.'.join(parts[1:])}`"
         part = nearest(parts[0], known)

@@ -192,6 +192,8 @@ def _turned(node: Node, expr: Expr | None) -> str:
         written = node.text.strip()
         angle = f"{written} deg" if all(isinstance(one, Number) and one.bare for one in literal) else written
         return f"write `{{xyz: {angle}}}`" if len(literal) == 3 else f"write `{{about: y, angle: {angle}}}`"
+    if isinstance(node, Scalar) and expr is not None and not expr.type.shape:
+        return f"write `{{about: y, angle: {node.text.strip()}}}`, or about another axis"
     if isinstance(node, SequenceNode) and len(literal) == 3 and all(isinstance(one, Number) for one in literal):
         return f"write `{{xyz: [{', '.join(item.span.text for item in node.items)}]}}`"
     if isinstance(node, MappingNode) and node.entries:

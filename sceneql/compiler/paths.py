@@ -28,6 +28,10 @@ def read_path(node: Node, folder: Path, what: str, found: Diagnostics) -> str | 
         return None
     if not there:
         help = f"it is looked for at {path}"
+        if "://" in node.text:
+            help = f"no file is fetched: save it beside the scene, and write `{what}: {path.name}`"
+        if node.text.startswith("~"):
+            help = f"no `~` is read: copy it beside the scene, and write `{what}: {path.name}`"
         if path.suffix.lower() in _EXPORTED:
             help = f"export it there as GLB, OBJ, PLY or STL: a {path.suffix} file is its own program's alone"
         found.error("file-missing", f"there is no file '{node.text}'", node.span, help=help)

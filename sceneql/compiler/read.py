@@ -26,8 +26,9 @@ from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.problems import Unreadable, validated
-from sceneql.compiler.texts import read_text
+from sceneql.compiler.texts import read_text, unescaped
 from sceneql.compiler.unknown import meant_field, report_unknown
+from sceneql.kinds.values import Verbatim
 from sceneql.language.repeat import numbered
 from sceneql.language.scope import Scope
 from sceneql.language.tree import Mapping as MappingNode
@@ -92,7 +93,9 @@ class Reader:
             if isinstance(number, Scalar):  # the copies' number is not known, which the field's error tells
                 self.names.broken.add(number.text)
             renamed = partial(likely.renamed, self, cls)
-            ok = report_unknown(node, known, title, self.found, said_by, family, renamed, self.names.catalogue)
+            ok = report_unknown(
+                node, known, title, self.found, said_by, family, renamed, self.names.catalogue, likely.table_of(cls)
+            )
             ok = ok and not node.partial
             mistaken = {meant_field(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
@@ -111,12 +114,16 @@ class Reader:
             except Unreadable:
                 ok = False
                 told = [(one.code, one.help) for one in self.found.found[before:]]
+                if len(told) == 1 and told[0][0] in ("unknown-name", "unknown-unit"):
+                    number_alone = likely.number_meant(written[name], info, name, *told[0]) or told[0][1]
+                    self.found.found[before] = replace(self.found.found[before], help=number_alone)
                 pointing = any(mark.direction for mark in quantities(info))
                 if told in ([("wrong-shape", None)], [("dimension-mismatch", None)]):
                     rest = {
                         key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
                     }
-                    better = likely.elsewhere(self, written[name], info, rest)
+                    ours = told[0][0] == "wrong-shape" or pointing
+                    better = likely.elsewhere(self, written[name], info, rest) if ours else None
                     if better is None:
                         better = likely.for_each(self, written[name], cls, name, title)
                     if better is None and self.found.found[before].message.endswith(PLANAR):
@@ -126,7 +133,9 @@ class Reader:
                     if better is None and pointing and told[0][0] == "dimension-mismatch":
                         better = likely.direction_alone(written[name])
                     if better is None and told[0][0] == "dimension-mismatch":
-                        better = likely.in_other_unit(self, written[name], info, rest)
+                        better = likely.plain_define(self, written[name]) or likely.in_other_unit(
+                            self, written[name], info, rest, name
+                        )
                     self.found.found[before] = replace(self.found.found[before], help=better)
         if not ok:
             raise Unreadable
@@ -169,6 +178,9 @@ class Reader:
                 return self._some(self.refer(node, mark, self.owner))
             if isinstance(mark, kinds.Interpolated):
                 return self._some(read_text(node, mark, what, self.names, self.found))
+            if isinstance(mark, Verbatim) and isinstance(node, Scalar) and (plain := unescaped(node)) is not None:
+                text = "in double quotes a backslash begins a sign of YAML's, and is none of the text"
+                raise self._fail("syntax", text, node.span, f"write single quotes: `{what}: {plain}`")
             if isinstance(mark, kinds.SceneFile):
                 path = self._some(read_path(node, self.folder, what, self.found))
                 self.files.append(path)

@@ -19,7 +19,9 @@ from sceneql.quantities.span import Source, Span
 NUMBER = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
 RANGE = re.compile(rf"\s*({NUMBER})\s*\.\.\s*({NUMBER})\s*([^,]*?)\s*(?:,\s*(\d+) points)?\s*(?:,\s*(log|linear))?\s*")
 _ENDS = re.compile(rf"(?:from )?({NUMBER})[^\d+-]*?(?:to|-|:|,|\.\.\.)\s*({NUMBER})([^,:]*)")
-_EVEN = re.compile(rf"(?:linspace|arange|range)\(\s*({NUMBER}[^,]*),\s*({NUMBER}[^,)]*)(?:,\s*(\d+))?")
+_EVEN = re.compile(
+    rf"(?:linspace|logspace|geomspace|arange|range)\(\s*({NUMBER}[^,]*),\s*({NUMBER}[^,)]*)(?:,\s*(\d+))?"
+)
 POINTS = 13
 MOST_POINTS = 200
 HELP = "write `1e0 .. 1e12 N/m, 13 points`, or a list of values"
@@ -50,7 +52,7 @@ def tried(path: str, node: Node) -> list[Tried]:
         even = _EVEN.search(node.text) if isinstance(node, Scalar) else None
         help = HELP if ends is None else f'write `"{ends[1]} .. {ends[2]}{ends[3].rstrip()}, {POINTS} points"`'
         if even is not None:
-            help = f'write `"{even[1]} .. {even[2]}, {even[3] or POINTS} points, linear"`'
+            help = f'write `"{_ends_of(even[1], even[2])}, {even[3] or POINTS} points, {_way(node)}"`'
         raise ScriptError([Diagnostic("sweep-shape", "this is neither a range nor a list", node.span, help)])
     low, high, unit, count, way = float(found[1]), float(found[2]), found[3], float(found[4] or POINTS), found[5]
     if not (math.isfinite(low) and math.isfinite(high)):
@@ -66,6 +68,18 @@ def tried(path: str, node: Node) -> list[Tried]:
         value = Scalar(text, kind_of(text), False, Source(f"{path} of a study", text), 0, len(text))
         result.append(Tried(f"{number:.4g} {unit}".rstrip(), number, unit, (path, value, node.span)))
     return result
+
+
+def _ends_of(low: str, high: str) -> str:
+    """The ends of a range with one unit, behind the second: ``1 .. 50 ms`` for ``1 ms`` and ``50 ms``."""
+    first, second = (re.fullmatch(rf"\s*({NUMBER})\s*(.*?)\s*", one) for one in (low, high))
+    if first is None or second is None or first[2] not in ("", second[2]):
+        return f"{low.strip()} .. {high.strip()}"
+    return f"{first[1]} .. {second[1]} {second[2]}".rstrip()
+
+
+def _way(node: Node) -> str:
+    return "log" if isinstance(node, Scalar) and "space" in node.text and "lin" not in node.text else "linear"
 
 
 def _label(node: Node) -> str:

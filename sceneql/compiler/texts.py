@@ -61,6 +61,12 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
     pieces.append(text[at:])
     if (form := _PRINTED.search(text)) is not None:
         help = f"a text has its values in braces, and behind a colon their form: `{{ball.position.y:{form[1]}}}`"
+        values = re.fullmatch(r"\s*([^\W\d]\w*(?:\.\w+)*)\s*", text.rpartition(",")[2])
+        behind = re.match(r"\s*([^\W\d][\w/^*]*)?", text[form.end() :])
+        unit = f" {behind[1]}" if behind is not None and behind[1] else ""
+        if values is not None and "," in text[form.end() :]:
+            whole = f"{text[: form.start()]}{{{values[1]}:{form[1]}{unit}}}"
+            help = f'a text has its values in braces, with their form and unit: write `"{whole}"`'
         if text[: form.start()].endswith(":"):  # {energy:%.2f}
             help = f"write `{text[: form.start()]}{form[1]}{text[form.end() :]}`"
         found.error("syntax", f"'{form[0]}' would be drawn as it stands", node.span, help=help)
@@ -71,6 +77,14 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
         return None
     ok = ok and not _twice(pieces, node.span, found)
     return Text(tuple(one for one in pieces if one)) if ok else None
+
+
+def unescaped(node: Scalar) -> str | None:
+    """A text in double quotes with backslashes before letters, as single quotes keep it; None for others."""
+    written = node.span.text
+    if not node.quoted or written[:1] != '"' or re.search(r"(?<!\\)(?:\\\\)*\\[a-zA-Z_]", written) is None:
+        return None
+    return "'" + written[1:-1].replace("'", "''") + "'"
 
 
 def _twice(pieces: list[str | TextValue], place: Span, found: Diagnostics) -> bool:

@@ -44,11 +44,13 @@ def report_unknown(
     family: str = "",
     renamed: Renamed | None = None,
     catalogue: Vocabulary | None = None,
+    table: str = "",
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; returns whether there are none.
 
     ``said_by``: help texts for names that are likely to be tried; ``family``: that of the word, if any;
-    ``renamed``: offers a known field; ``catalogue``: to look for names among all words and their fields.
+    ``renamed``: offers a known field; ``catalogue``: to look for names among all words and their fields;
+    ``table``: the field, if it has to be given, that holds entries by names of the script.
     """
     offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
@@ -65,6 +67,9 @@ def report_unknown(
         help = help or _like(name, node.entries[name], known, offer, family, catalogue)
         if help is None and len(known) == 1:
             help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
+        if help is None and table and table not in node.entries:
+            inner = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown)
+            help = f"names of your own stand in `{table}`: write `{table}: {{{inner}}}`"
         help = help or "it has " + ", ".join(known)
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
     return not unknown
@@ -85,7 +90,7 @@ def _like(
         return f"'{name}' is a word of `{under[0]}`: write `{whole}`: `sceneql words {name}`"
     fits, help = (False, "") if (far := nearest(name, known)) is None else offer(far, value)
     having = [] if catalogue is None or fits or len(name) <= SHORT else catalogue.having(name)
-    own = [word for of, word in having if of == family]
+    own = [word for of, word in having if of == family in THINGS]
     usual = any(of in THINGS for of, _ in having)  # too usual a name to tell what was meant
     others = [] if usual or len(having) == 1 else having
     words = own or [word for _, word in others]

@@ -44,6 +44,7 @@ PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
 _MISSING = (
     (DENSITY, "(1000 kg/m^3)", "a density"),
+    (LENGTH**3 / MASS / TIME**2, "(6.674e-11 m^3/(kg*s^2))", "the constant of gravity"),
     (DENSITY * ENERGY / MASS / TEMPERATURE, "(4.2e6 J/(K*m^3))", "what a volume takes to be a kelvin warmer"),
 )
 """(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
@@ -63,7 +64,7 @@ def read_value(node: Node, quantity: Quantity, what: str, names: Names, found: D
 def _checked(expr: Expr | None, node: Node, quantity: Quantity, what: str, found: Diagnostics) -> Value | None:
     if expr is None or not fits(expr, quantity, what, node.span, found):
         return None
-    if not quantity.over_time and not momentary(expr, node.span, found):
+    if not (quantity.over_time or momentary(expr, node.span, found)):
         return None
     return Value(_scaled(expr) if quantity.direction else expr, node.span)
 
@@ -91,12 +92,11 @@ def read_expr(
         case Scalar():
             return scalar_expr(node, names, found)
         case Sequence():
-            inner = shape[1:] if shape is not None and len(shape) > 1 else ()
+            inner = () if shape is None else shape[1:]
             items = [read_expr(item, inner, dimension, what, names, found) for item in node.items]
             if any(item is None for item in items):
                 return None
-            known = [item for item in items if item is not None]
-            if not known:
+            if not (known := [item for item in items if item is not None]):
                 return Vector((), Type((0, *inner), dimension), node.span)
             return _vector(known, what, node.span, found, dimension)
         case MappingNode():
@@ -107,6 +107,7 @@ def read_expr(
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
             help = timed(node) or (f"write `[{', '.join(texts)}]`" if listed else None)
+            help = f"a name has one value: write `{node.span.text[1:-1]}`, each by itself" if what == "define" else help
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None
 

@@ -13,6 +13,7 @@ from sceneql.contacts.shapes import implicit
 from sceneql.doing import doing
 from sceneql.kinds import Collider, Object, Ref, Value
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.quantities.instead import instead
 
 if TYPE_CHECKING:
     from sceneql.frame import Floats
@@ -28,15 +29,16 @@ FAR_APART = 1.0
 to rounding."""
 
 
-def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int) -> tuple[int, ...]:
+def surfaces(refs: Sequence[Ref], assembly: Assembly, at: int, often: float = OFTEN) -> tuple[int, ...]:
     """Integers of objects, to stand at index ``at`` of a contact's integers, followed by the data of their shapes.
 
+    ``often``: longest step [s] where one moves unevenly.
     Raises ScriptError for an object without a collider.
     """
     heads: list[int] = []
     tail: list[int] = []
     for ref in refs:
-        head, data = _surface(ref, assembly)
+        head, data = _surface(ref, assembly, often)
         heads += [*head, at + len(refs) * layout.OBJECT + len(tail)]
         tail += data
     return (*heads, *tail)
@@ -64,7 +66,7 @@ def must_be_outside(model: str, refs: Sequence[Ref], ints: Sequence[int], assemb
         raise ScriptError([Diagnostic("starts-inside", text, ref.span or assembly.line(), help)])
 
 
-def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def _surface(ref: Ref, assembly: Assembly, often: float) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Integers of an object without the last (the index of its data), and the data of its shape."""
     kind = cast(Object, assembly.object(ref))
     try:
@@ -76,7 +78,7 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
         else:
             even = _moves_evenly(kind, assembly)
             if not even:
-                assembly.step_at_most(OFTEN)
+                assembly.step_at_most(often)
             exact = None if even else noted.motion(here)
             if exact is not None:
                 poses = (assembly.floats([0.0]), *exact)
@@ -85,9 +87,10 @@ def _surface(ref: Ref, assembly: Assembly) -> tuple[tuple[int, ...], tuple[int, 
                 before, after = _shifted(kind, -apart, assembly), _shifted(kind, apart, assembly)
                 poses = (assembly.floats([apart]), *before, *after)
     except (TypeError, ValueError) as error:
-        help = f"name under `between` what may touch, without '{ref.name}'"
+        name = ref.name if ref.span is None else ref.span.text
+        help = instead("collider", name) or f"name under `between` what may touch, without '{name}'"
         place = ref.span or assembly.line()
-        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", place, help)]) from None
+        raise ScriptError([Diagnostic("no-collider", f"'{name}': {error}", place, help)]) from None
     places = (here.position_at, here.rotation_at, here.size_at, here.depth_at)
     flat = int(here.flat and not is_moving(kind))
     return (*shape_kernels(here), *places, *poses, flat), here.data
@@ -125,9 +128,10 @@ def surface_of(
         with doing(f"looking at the surface of {ref.name}"):
             here = _collider(kind, assembly)
     except (TypeError, ValueError) as error:
-        help = f"name under `between` what may touch, without '{ref.name}'"
+        name = ref.name if ref.span is None else ref.span.text
+        help = instead("collider", name) or f"name under `between` what may touch, without '{name}'"
         at = ref.span or assembly.line()
-        raise ScriptError([Diagnostic("no-collider", f"'{ref.name}': {error}", at, help)]) from None
+        raise ScriptError([Diagnostic("no-collider", f"'{name}': {error}", at, help)]) from None
     values = [getattr(kind, name, None) for name in ("position", "rotation")]
     rests = (np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]))
     x, q = (

@@ -15,6 +15,7 @@ from sceneql.flows.obstacles.obstructed import obstructed, whole
 from sceneql.flows.obstacles.skin_velocities import SkinVelocities
 from sceneql.flows.pressure import write_pressure
 from sceneql.flows.staggered import Faces
+from sceneql.flows.ways_out import must_have_ways_out
 from sceneql.grids.at_points import at_points
 from sceneql.grids.cell_program import over_cells, over_faces
 from sceneql.grids.domain.boundary import shares
@@ -35,12 +36,8 @@ if TYPE_CHECKING:
     from sceneql.system import Assembly
 
 SCHEMES = {"upwind": layout.UPWIND, "central": layout.CENTRAL, "koren": layout.KOREN}
-UNBALANCED = 1e-6
-"""Net flux through the boundary, relative to the sum of magnitudes, that counts as rounding of inflow profiles."""
 ACROSS = 1e-9
 """Normal component of a wall's velocity, relative to its largest component, that counts as rounding."""
-TIMES = (0.0, 0.37, 1.0, 7.3)
-"""Instants [s] at which the balance of inflows into a closed box is tested."""
 
 
 def add_flow(name: str, model: Model, cells: Ground, assembly: Assembly) -> Flow:
@@ -95,7 +92,6 @@ class _Builder:
         self._must_slide()
         areas, volumes, given, pushes = self._faces()
         x = self._start(given)
-        self._must_balance(areas)
         at = len(assembly.start())
         edges, edge_faces = edges_of(self, at)
         ints = np.zeros(layout.EDGE_FACES + len(edge_faces), dtype=np.int64)
@@ -117,6 +113,11 @@ class _Builder:
             pushes = pushes * passage.fills + passage.gains / volumes
             weights = assembly.numbers()[edges[1] : edges[1] + len(edge_faces)]
             assembly.write(edges[1], weights * passage.edges[edge_faces])
+        inflows = [part for part, _ in self.parts if part.inflow is not None]
+        if inflows:
+            names = [ref.name for ref in (self.solids.refs if self.solids is not None else ())]
+            line = inflows[0].span or assembly.line()
+            must_have_ways_out(faces, areas, self.opened, self._given_velocity, names, line)
         friction = np.where(given, 0.0, passage.friction)
         inverses = np.where(given, 0.0, 1.0 / volumes)
         ints[layout.OWNERS] = assembly.floats([] if self.solids is None else self.solids.owners())
@@ -255,28 +256,6 @@ class _Builder:
                     by_axis[axis] = mine
             found.append((part, by_axis))
         return found
-
-    def _must_balance(self, areas: Floats) -> None:
-        """Raise ScriptError where the inflows of a box without outflow do not balance."""
-        if self.opened.any():
-            return
-        inflows = [part for part, _ in self.parts if part.inflow is not None]
-        outward = self._signs() * areas
-        for time in TIMES if inflows else ():
-            through = outward * self._given_velocity(time)
-            if abs(through.sum()) > UNBALANCED * np.abs(through).sum():
-                text = f"{abs(through.sum()):.3g} m^3/s more come {'in' if through.sum() < 0 else 'out'} than "
-                text += f"{'out' if through.sum() < 0 else 'in'} at {time:g} s, and the flow cannot be compressed"
-                help = "give a part of the boundary `outflow: {}`"
-                raise ScriptError([Diagnostic("no-way-out", text, inflows[0].span or self.assembly.line(), help)])
-
-    def _signs(self) -> Floats:
-        """(faces,): 1 on the high sides of the box, -1 on the low sides, 0 for inner faces."""
-        signs = np.zeros(self.faces.count)
-        for axis in range(self.faces.axes):
-            for high in range(0 if self.periodic[axis] else 2):
-                signs[self.faces.on_side(axis, high).ravel()] = 1.0 if high else -1.0
-        return signs
 
     def _start(self, given: Any) -> Floats:
         """Velocities (faces,) at the start, before the projection."""

@@ -106,6 +106,15 @@ class Rows:
             yield Problem(f"the rate of {name} is written '{name}', without `{row}`", ("rate", row))
         if derived:
             return
+        primed = [row for row in self.rate if row[-1:] == "'" != row[-2:-1] and row[:-1] in self.start]
+        for row in primed:
+            name, span = row[:-1], self.rate[row].span
+            help = (
+                f"it is the rate already: write `{name}: {'...' if span is None else span.text}`, which is d{name}/dt"
+            )
+            yield Problem(f"the rate of {name} is written '{name}', without `{row}`", ("rate", row), True, help=help)
+        if primed:
+            return
         for row in self.rate:
             name = row.rstrip("'")
             order = len(row) - len(name)

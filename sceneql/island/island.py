@@ -200,6 +200,11 @@ class IslandAssembly(Offered):
         """A linked output as an expression of time; None for one of a model that is solved."""
         return self.setting.formula(link)
 
+    @property
+    def end(self) -> float:
+        """End of the run [s]."""
+        return self.setting.end
+
     def step_at_most(self, seconds: float) -> None:
         """Bound the steps that a tolerance chooses (system.Assembly)."""
         self._largest_step = min(self._largest_step, seconds)

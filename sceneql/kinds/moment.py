@@ -145,6 +145,9 @@ class Moment(Protocol):
         None where that is not known, or where nothing is shown.
         """
 
+    def boxes(self) -> Floats:
+        """Low and high corners (n, 2, 3) [m] of each part that is drawn, over the whole film."""
+
     def outline(self) -> Floats:
         """Points (n, 3) [m] whose hull encloses all that is drawn over the whole film, except what leaves for good."""
 

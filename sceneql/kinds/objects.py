@@ -87,6 +87,10 @@ class Object(Kind):
         """Doubtful settings of its own fields, given the clock; warnings of `check`."""
         return ()
 
+    def odd_section(self) -> str:
+        """What its section at z = 0 is, where that is most likely not meant, and how it would be; empty for others."""
+        return ""
+
     def holes(self) -> str:
         """The holes of a surface that should be closed, as ``3 holes of 117 edges``; empty where there are none."""
         return ""

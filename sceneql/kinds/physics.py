@@ -192,8 +192,13 @@ class Model(Kind):
         return False
 
     def shows(self, name: str) -> Value | None:
-        """The field to draw by a default `field_map`, where no object of the script shows any of the model's fields."""
+        """The field that tells most of it; None for a model without fields."""
         return None
+
+    def drawn_by(self, name: str) -> tuple[str, Value] | None:
+        """Word and `of` of the object by which it is drawn where no object of the script shows any of its fields."""
+        field = self.shows(name)
+        return None if field is None else ("field_map", field)
 
     def called(self, output: str) -> str:
         """Name of an output in pictures."""

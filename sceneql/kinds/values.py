@@ -146,6 +146,10 @@ class Interpolated:
     over_time: bool = False
 
 
+class Verbatim:
+    """Marks a text of another language, as TeX, whose backslashes are its own: YAML reads them in double quotes."""
+
+
 class SceneFile:
     """Marks a text that is the path of a file, read as a path below the scene's folder where there is a file."""
 

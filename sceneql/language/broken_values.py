@@ -33,6 +33,7 @@ _ITEM = r"(?:[^(),]|\([^(),]*\))+"
 _PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
 _ROTATION = re.compile(r"\brotation:\s*\Z")
 _NAMED = re.compile(r"\$?\{\{?\s*([^\W\d][\w.]*)\s*\}\}?")
+_INDEXED = re.compile(r"([^\W\d][\w.]*)\[\s*(\d+)\s*\]")
 _COMMENT = re.compile(r"//|--|%(?=\s)")
 _UNIT_IN_BRACKETS = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?(?:\s+[-+]?[\d.]+)*)\s*\[\s*([^\W\d][^\[\],]*?)\s*\]")
 _UNPARTED = re.compile(r"([^\W\d]\w*)(?:[ ]+|(:))(?=\[)")
@@ -117,6 +118,11 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
                 found.error(
                     "syntax", "'$' cannot stand in an expression", Span(source, fault.caret, fault.end), help=help
                 )
+                continue
+            if (index := _INDEXED.fullmatch(written)) is not None:
+                help = f"write `item({index[1]}, {index[2]})`, in quotes; of a vector `{index[1]}.x` is the first"
+                text = "brackets behind a name mean nothing here"
+                found.error("syntax", text, Span(source, fault.caret, fault.end), help=help)
                 continue
             line = _corrected(source, fault, together)
             match fault.code:

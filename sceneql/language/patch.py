@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from typing import Final, cast
 
 from sceneql.language.compose import compose_node
@@ -11,7 +11,7 @@ from sceneql.language.reuse import USE
 from sceneql.language.sections import empty
 from sceneql.language.syntax import unprintable
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, broken, unsure
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, suggestion
+from sceneql.quantities.diagnostic import STRONG, Diagnostic, Diagnostics, ScriptError, suggestion
 from sceneql.quantities.span import Source, Span
 
 Patch = tuple[str, Node, Span]
@@ -19,6 +19,10 @@ Patch = tuple[str, Node, Span]
 
 SET: Final = "--set"
 """Source name of values given by `--set`."""
+WORD: Final = 2
+"""Number of steps of a path before the word of a part."""
+MOST_PATHS: Final = 3
+"""Largest number of paths that a message offers."""
 VARIANT_OPTIONS: Final = ("may_fail",)
 """Keys of a variant that are no paths."""
 
@@ -138,7 +142,8 @@ class _Path:
                 help = f"write {' or '.join(f'{key}.{self.path}' for key in owners)}"
                 names = [*root.entries, *self.families, *(n for key in sections for n in _keys(root.entries.get(key)))]
                 message = f"'{first}' is in several sections" if owners else f"the script has no '{first}'"
-                raise self.fail(0, message, help if owners else suggestion(first, names))
+                there = None if owners else suggestion(first, names, STRONG) or _written_as(root, self.steps[-1])
+                raise self.fail(0, message, help if owners else there or suggestion(first, names))
             self.steps, self.shift = [owners[0], *self.steps], 1
         return cast(Mapping, self.put(root, 0))
 
@@ -183,6 +188,7 @@ class _Path:
         if isinstance(node, Sequence):
             if not step.isdecimal() or len(step) > 9 or int(step) >= len(node.items):
                 help = f"its items are numbered from 0 to {len(node.items) - 1}" if node.items else "the list is empty"
+                help = _written_as(node, self.steps[-1], f"{before}.") or help
                 raise self.fail(at, f"the list '{before}' has no item '{step}'", help)
             items = list(node.items)
             items[int(step)] = self.put(items[int(step)], at + 1)
@@ -201,7 +207,11 @@ class _Path:
         if node.partial or (at == 1 and self.unsure):
             raise _LostError
         has = ", ".join(list(node.entries)[:8])
-        hint = suggestion(step, node.entries) or (f"it has {has}" if has else None)
+        hint = (
+            (_written_as(node, self.steps[-1], f"{before}.") if at + 1 < len(self.steps) else None)
+            or suggestion(step, node.entries)
+            or (f"it has {has}" if has else None)
+        )
         raise self.fail(at, f"'{before}' has no '{step}'", hint)
 
     def with_item(self, node: Mapping, key: str, value: Node, replaced: bool = False) -> Mapping:
@@ -214,6 +224,25 @@ class _Path:
         if replaced or key not in keys:
             keys[key] = Scalar(key, "text", False, self.span.source, self.span.start, self.span.end)
         return node.holding(entries, keys)
+
+
+def _written_as(node: Node, name: str, before: str = "") -> str | None:
+    """The help for a path that ends in a name: the few paths below a node that end so; None where there are none."""
+    found = [path for path, _ in zip(_paths_to(node, name, before), range(MOST_PATHS + 1), strict=False)]
+    if not before:  # the word of a part may be left out of a path
+        apart = [path.split(".") for path in found]
+        found = [".".join((*one[:2], *one[3:]) if len(one) > WORD + 1 else one) for one in apart]
+    return f"write {' or '.join(f'`{one}`' for one in found)}" if 1 <= len(found) <= MOST_PATHS else None
+
+
+def _paths_to(node: Node, name: str, before: str) -> Iterator[str]:
+    items = node.entries.items() if isinstance(node, Mapping) else enumerate(getattr(node, "items", ()))
+    for key, inner in items:
+        if key == "variants":
+            continue
+        if key == name:
+            yield f"{before}{key}"
+        yield from _paths_to(inner, name, f"{before}{key}.")
 
 
 def _keys(node: Node | None) -> Collection[str]:

@@ -16,6 +16,8 @@ NAMED: Final = ("define", "templates", "parts", "defaults", "variants", "expect"
 
 NOTHING: Final = ("none", "no", "false", "off")
 """Words of what is not to be there."""
+TYPES: Final = ("type", "kind", "shape", "geometry", "primitive")
+"""Keys by which other programs tell the word of a part."""
 SHOWN: Final = 80
 """Longest text of fields that a message repeats."""
 _ENTRY = "an entry is `name: word` or `name: {word: {fields}}`"
@@ -74,7 +76,14 @@ def read_entry(what: str, node: Node, found: Diagnostics, sections: Collection[s
         main = holding[0] if len(holding) == 1 or (holding and holding[0] == words[0]) else ""
         main = words[0] if not main and empty(node.entries[words[0]]) else main
         beside = (instead("beside", word) for word in words if word != main)
-        if (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:
+        typed = next((key for key in TYPES if key in words and isinstance(node.entries[key], Scalar)), None)
+        if typed is not None:
+            word = node.entries[typed].span.text
+            inner = ", ".join(f"{key}: {node.entries[key].span.text}" for key in words if key != typed)
+            help = (
+                f"the word stands around its fields: write `{{{word}: {{{inner if len(inner) <= SHOWN else '...'}}}}}`"
+            )
+        elif (other := instead("entry", words[0]) or next(filter(None, beside), None)) is not None:
             help = other
         elif main:
             help = f"fields stand inside the braces of the word: write `{_put_inside(main, words, node)}`"

@@ -20,7 +20,6 @@ _PROBLEMS: Final = (
         "a list item cannot begin here",
         "put `- ` on a line of its own, below its key; a text that begins with a dash goes in quotes",
     ),
-    ("unknown escape", "this backslash means nothing in double quotes", "use single quotes: they take it as it is"),
     ("could not find expected :", "a key without a colon", "write `name: value`, or `name:` with its fields below"),
     ("<document start>", "this stands behind the end of the script", "put a space behind the colon of a key"),
     ("alphabetic or numeric", "a name must follow & or *", "a text that begins with & or * goes in quotes"),
@@ -79,6 +78,13 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
     if (told := told_behind(source.text, at)) is not None:
         help = f"a text has its values in braces: write `{told}`"
         return _syntax("nothing can stand behind this quote", source, at, help)
+    if "escape" in problem:
+        start, end = source.text.rfind('"', 0, at), source.text.find('"', at)
+        inside = source.text[start + 1 : end]
+        help = "use single quotes: they take it as it is"
+        if 0 <= start < end and "\n" not in inside:
+            help = f"in single quotes it stands for itself: write `'{inside}'`"
+        return _syntax("this backslash means nothing in double quotes", source, at, help)
     if flow is not None:
         return _in_flow(source, at, since if source.text[since : since + 1] in ("[", "{") else flow)
     character = source.text[at : at + 1]

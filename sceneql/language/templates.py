@@ -99,7 +99,8 @@ class _Expander:
         self.defaults = self.named(root, "defaults")
         for word, node in self.defaults.items():
             if not (isinstance(node, Mapping) or broken(node)):
-                help = f"write `{word}: {{field: value}}`"
+                help = f"they stand by word, as of all spheres: write `sphere: {{{word}: {node.span.text}}}`"
+                help = help if isinstance(node, Scalar) else f"write `{word}: {{field: value}}`"
                 found.error("section-shape", f"the defaults of '{word}' are fields with values", node.span, help=help)
         self.read: dict[str, _Template | None] = {}
         self.made: set[str] = set()

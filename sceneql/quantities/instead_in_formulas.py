@@ -42,7 +42,8 @@ OF_FORMULAS = (
     (
         "function",
         "laplacian laplace lap del2 nabla grad gradient div divergence curl diff ddx ddy dx dy partial",
-        "rates have no derivatives by place: what spreads has a `coefficient`, and what is carried a `drift`",
+        "it is there without it: what spreads has its `coefficient: 2e-5`, and what is carried a `drift`; a rate is the"
+        " rest",
     ),
     (
         "function",
@@ -96,6 +97,7 @@ OF_FORMULAS = (
         "a name stands by itself, `radius: r`; only the number of a copy by `repeat` stands in braces, in a name,"
         ' `"ball.{i}.position"`: `sceneql words repeat`',
     ),
+    ("unit", "lines contours levels copies segments stars samples", "a number of them has no unit: write it alone"),
     ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
     (
         "unit",
@@ -120,6 +122,7 @@ OF_FORMULAS = (
         "lm lumen lumens cd candela lx lux",
         "a lamp has its power in W, as a bulb does: one of 800 lm is `60 W`, one of 1600 lm `100 W`",
     ),
+    ("unit", "e electron electrons elementary_charge", "the charge of a proton is `1.602e-19 C`"),
     ("unit name", "cp cps centipoise poise", "a poise is `0.1 Pa*s`, a hundredth of it `1e-3 Pa*s`"),
     ("name", "G", "write `6.6743e-11 m^3/(kg*s^2)`, or define it so: `define: {G: 6.6743e-11 m^3/(kg*s^2)}`"),
     ("sign", '"', "an inch is `inch`, a foot `ft`: `4 2 1 inch`"),

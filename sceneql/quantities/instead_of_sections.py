@@ -13,6 +13,54 @@ _VARIED = (
 
 OF_SECTIONS = (
     # fields of single words and groups
+    (
+        "field.rigid",
+        "type body_type kind",
+        "what stands still is `fixed: yes`, and what moves needs no more than `of`",
+    ),
+    (
+        "field.video field.images",
+        "from to begin start_time end_time t0 t1 range",
+        "a film shows the clock from 0 s to its end: `clock: {end: 3 s}`",
+    ),
+    (
+        "field.torus field.sphere field.cylinder",
+        "arc sweep sector theta phi start_angle end_angle angle half",
+        "it is whole: `intersection` or `difference` with a box cuts it, `{difference: {of: [ring, box]}}`",
+    ),
+    (
+        "field.outline",
+        "sides radius n corners regular",
+        "it has its corners by hand, a hexagon `points: [[1, 0], [0.5, 0.87], [-0.5, 0.87], [-1, 0], [-0.5, -0.87],"
+        " [0.5, -0.87]]`",
+    ),
+    (
+        "field.graph",
+        "xlim x_range xrange xmin xmax x_limits",
+        "the `range` is that of y; x goes as far as its values do",
+    ),
+    ("field.graph", "linewidth line_width width linestyle style marker grid", "lines have one look: leave it out"),
+    (
+        "field.wind",
+        "direction strength speed force power amount",
+        "its `velocity: 5 0 0 m/s` says how fast it is, and where to",
+    ),
+    (
+        "field.point",
+        "target angle cone penumbra direction spread look_at beam distance decay falloff attenuation",
+        "a lamp shines all around, and less with the square of the distance: leave it out",
+    ),
+    (
+        "field.shots",
+        "from to start end duration length time",
+        "a shot lasts `until: 1 s`, and begins where the one before it ends",
+    ),
+    (
+        "field.diffusion",
+        "density heat_capacity specific_heat capacity rho cp c conductivity k kappa lambda",
+        "of a solid only its diffusivity counts, the conductivity over density and heat capacity: `coefficient: 400"
+        " W/(m*K)/(8960 kg/m^3*385 J/(kg*K))`",
+    ),
     ("field.studies", "dt step k n h m", _VARIED),
     (
         "field.emit",
@@ -91,6 +139,7 @@ OF_SECTIONS = (
         "free neumann insulated adiabatic reflecting noflux no_flux no_slip noslip walls wall",
         "so it is where nothing is said: leave it out",
     ),
+    ("collider", "ground", "what masses touch is the `floor`: write `between: [ball, floor]`"),
     (
         "overlays",
         "timer clock time stopwatch counter timestamp",

@@ -9,6 +9,14 @@ LIBRARIES = ("math", "Math", "np", "numpy", "random", "glm", "torch", "scipy")
 """What stands before the dot of a function or constant elsewhere: ``Math.sin``."""
 
 _LISTS = (
+    ("title", "label name heading caption"),
+    ("radius", "width thickness line_width linewidth stroke"),
+    ("keep", "lifetime life"),
+    ("between", "materials shapes"),
+    ("points", "balls centers centres spheres positions blobs"),
+    ("circulation", "strength gamma"),
+    ("core", "radius"),
+    ("from", "anchor fixed_end"),
     # choices, sides, sections of templates
     ("smooth", "ease ease_in ease_out ease_in_out ease-in ease-out ease-in-out easeinout sine sinusoidal"),
     ("cubic", "bezier spline catmullrom catmull_rom hermite"),

@@ -56,11 +56,23 @@ def parse_value(text: str, span: Span) -> Expr:
         if (ends := two_ends(text)) is not None:
             help = f"two ends stand side by side, with one unit: write `{ends}`"
             raise ScriptError([replace(found, help=help)]) from None
+        if (points := with_points(text, span)) is not None:
+            help = f"a decimal number has a point: write `{points}`"
+            raise ScriptError([replace(found, help=help)]) from None
         spaced = found.code in ("syntax", "unknown-unit") and len(text) <= LONGEST
         if not spaced or (vector := bracketed(text, span)) is None:
             raise
         help = f"a vector with formulas stands in brackets: write `{vector}`"
         raise ScriptError([Diagnostic("syntax", "two values stand side by side", found.span, help)]) from None
+
+
+def with_points(text: str, span: Span) -> str | None:
+    """A value with decimal commas as one with points, if it is one then; None for others."""
+    points = re.sub(r"(?<=\d),(?=\d)", ".", text)
+    try:
+        return points.strip() if points != text and whole_value(points, span) is not None else None
+    except ScriptError:
+        return None
 
 
 def _crossed(text: str) -> str | None:

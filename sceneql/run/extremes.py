@@ -60,8 +60,11 @@ class Extremes:
 
 
 def watched(island: IslandRun) -> list[Extremes]:
-    """The fields of an island that have a range to keep; none where forces act on the island."""
+    """The fields of an island that have a range to keep, each by its first name; none where forces act on it."""
     if island.island.forces:
         return []
-    fields = island.assembly.fields.items()
-    return [Extremes(*names, grid) for names, grid in fields if any(map(math.isfinite, grid.keeps))]
+    found: dict[int, Extremes] = {}
+    for names, grid in island.assembly.fields.items():
+        if any(map(math.isfinite, grid.keeps)):
+            found.setdefault(grid.at, Extremes(*names, grid))
+    return list(found.values())

@@ -191,6 +191,13 @@ class Instant:
         boxes = boxes[np.isfinite(boxes).all(axis=(1, 2))]
         return (boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)) if len(boxes) else None
 
+    def boxes(self) -> Floats:
+        """Low and high corners (n, 2, 3) [m] of each part that is drawn, over the whole film, in all panels."""
+        found = [
+            np.array(list(known.values())).reshape(-1, 2, 3) for run in self._together[0] if (known := run.boxes())
+        ]
+        return np.concatenate([np.zeros((0, 2, 3)), *found])
+
     def outline(self) -> Floats:
         """Points (n, 3) [m] whose hull encloses all that stays over the whole film, in all panels."""
         points = self._of_panels(lambda run: run.outline())

@@ -200,6 +200,10 @@ class Assembly(Protocol):
     def formula(self, link: Link) -> Expr | None:
         """A linked output as an expression of time; None for one of a model that is solved."""
 
+    @property
+    def end(self) -> float:
+        """End of the run [s]."""
+
     def step_at_most(self, seconds: float) -> None:
         """Bound the adaptive step [s], where the error estimate cannot see what happens."""
 

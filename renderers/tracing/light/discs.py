@@ -35,7 +35,10 @@ STRAYS, BESIDE, SAMPLED = 0.01, 0.5, 50_000
 far it reaches beyond the others at least, relative to their extent; number of discs by which it is laid out."""
 OUT, FRONT = 0.6, 0.4
 """Distances from a disc's middle, across and towards the camera, at which its light is found [radii]."""
-PLACES = np.array([(0.0, 0.0, FRONT), (OUT, 0.0, FRONT), (-OUT, 0.0, FRONT), (0.0, OUT, FRONT), (0.0, -OUT, FRONT)])
+TURNED = np.array([(3.0, 1.0), (-1.0, 3.0)]) / 10.0**0.5
+"""The ways across, to the right and up: turned so that no two places come to an edge of a shadow, upright or level, at
+once; a disc then darkens by and by."""
+PLACES = np.column_stack([np.concatenate([np.zeros((1, 2)), OUT * TURNED, -OUT * TURNED]), np.full(5, FRONT)])
 """Those places, to the right, up and back."""
 
 MANY = 20_000
@@ -57,8 +60,8 @@ def lit(
     """Radiance (n, 3), over the discs' colors, in the middle of discs, and its change by a radius to the right and up.
 
     A place of a disc is as bright as a matte wall that faces the lamp, or all of the sky; less by what the shape's
-    discs hide of these, as they hide from a camera what is behind them, and of lamps by the ``shadows`` of solids on
-    its middle. ``axes``: of the view.
+    discs hide of these, as they hide from a camera what is behind them, and of lamps by the ``shadows`` of solids.
+    ``axes``: of the view.
     """
     small = min(max(2.0 - 2.0 * len(shape.centers) / MANY, 0.0), 1.0)
     offsets = (PLACES[: 5 if small > 0.0 else 1] * (small, small, 1.0)) @ axes
@@ -68,7 +71,7 @@ def lit(
     for leave, irradiance, ways in _lamps(places, lights):
         left = leave(places, shape)
         if shadows is not None:
-            left *= np.repeat(shadows(*_beyond(shape, ways(shape.centers))), len(offsets))
+            left *= shadows(*_beyond(places, np.repeat(shape.radii, len(offsets)), ways(places)))
         given += irradiance / np.pi * left[:, None]
     for way in directions(AROUND) if skies else ():
         radiance = np.sum([_radiance(sky, float(way[1])) for sky in skies], axis=0) / AROUND
@@ -76,7 +79,8 @@ def lit(
     at = given.reshape(-1, len(offsets), 3)
     if len(offsets) == 1:
         return at[:, 0], np.zeros_like(at[:, 0]), np.zeros_like(at[:, 0])
-    middle, right, up = at.mean(axis=1), (at[:, 1] - at[:, 2]) / (2 * OUT), (at[:, 3] - at[:, 4]) / (2 * OUT)
+    one, other = (at[:, 1] - at[:, 3]) / (2 * OUT), (at[:, 2] - at[:, 4]) / (2 * OUT)
+    middle, (right, up) = at.mean(axis=1), (one * c + other * d for c, d in TURNED.T)
     steep = np.sqrt(right * right + up * up)
     part = np.minimum(STEEPEST * middle / np.maximum(steep, 1e-300), 1.0)
     return middle, part * right, part * up
@@ -96,14 +100,14 @@ def _lamps(places: Floats, lights: Iterable[LightSource]) -> Iterator[tuple[Leav
             yield partial(left_around, lamp=position), np.array(light.intensity) / square[:, None], ways
 
 
-def _beyond(shape: Points, ways: Floats) -> tuple[Floats, Floats]:
-    """Places (n, 3) where ways (n, 4) leave their discs, and what is left of the ways.
+def _beyond(places: Floats, radii: Floats, ways: Floats) -> tuple[Floats, Floats]:
+    """Where ways (n, 4) from places (n, 3) have left the discs of radii (n,), and what is left of the ways.
 
     So what cuts through a disc throws no shadow on it, and none is black whose middle is just under a surface.
     """
-    inside = np.minimum(shape.radii, ways[:, 3])
+    inside = np.minimum(radii, ways[:, 3])
     rest = ways - inside[:, None] * (0.0, 0.0, 0.0, 1.0)
-    return shape.centers + inside[:, None] * ways[:, :3], rest
+    return places + inside[:, None] * ways[:, :3], rest
 
 
 def _to_sun(way: Floats, places: Floats) -> Floats:

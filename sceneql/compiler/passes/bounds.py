@@ -13,6 +13,6 @@ def warn_of_bounds(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     """Warn of each object that its own default bounds cut."""
     for task in tasks.values():
         if isinstance(task.kind, Object) and (where := task.kind.cut_by_default()):
-            help = "give it `bounds`, these or others"
+            help = "give it `bounds`, as large as it is: `bounds: {ball: 2}`, or `{box: [-2 -2 -2, 2 2 2]}`"
             message = f"'{task.name}' is cut by {where}, where it goes on: nothing says how far"
             found.warning("unset-bounds", message, task.span, help=help)

@@ -101,27 +101,33 @@ def _in_the_dark(tasks: Mapping[str, Task]) -> bool:
 
 
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
-    """Add a field map for each model of fields that no object reads; objects that would hide it are hidden."""
+    """Add what draws each model of fields that no object reads; objects that would hide it are hidden.
+
+    Of a flow and the fields in the same box that it carries one is drawn: what an object reads, else a field. Nor is a
+    flow drawn that is the wind of masses, or, if it is deep, around skins.
+    """
+    fields = {task.name: task for task in tasks.values() if isinstance(task.kind, Model) and task.kind.drawn_by("")}
     read = {need for task in tasks.values() if isinstance(task.kind, Object) for need in task.needs}
-    carriers = [task.kind.carrier() for task in tasks.values() if isinstance(task.kind, Interaction)]
-    shown = [tasks[name] for name in read if name in tasks and isinstance(tasks[name].kind, Model)]
-    carried = {need for task in shown for need in task.needs} | {flow.name for flow in carriers if flow is not None}
-    for name in sorted(carried & set(tasks)):  # a map of a 3D flow's box would hide skins and masses in it
-        kind = tasks[name].kind
-        if getattr(kind, "flows", False) and len(getattr(kind, "size", None) or ()) == 3:
+    forces = [task for task in tasks.values() if isinstance(task.kind, Interaction)]
+    around = {flow.name for task in forces if (flow := cast(Interaction, task.kind).carrier()) is not None}
+    for task in fields.values():
+        read.update(task.needs if task.name in read else read.intersection(task.needs) and {task.name})
+    carried = {need for task in (*fields.values(), *forces) for need in task.needs}
+    for name, task in fields.items():
+        kind: Any = task.kind
+        deep = len(getattr(kind, "size", None) or ()) == 3
+        if getattr(kind, "flows", False) and ((name in around and deep) or name in carried - around):
             read.add(name)
-    for model in [task for task in tasks.values() if task.name not in read]:
-        of = model.kind.shows(model.name) if isinstance(model.kind, Model) else None
-        cls = None if of is None else catalogue.load("objects", "field_map")
-        if cls is not None:
-            name = f"{model.name}_map"
-            while name in tasks:
-                name += "_"
-            tasks[name] = Task(name, "field_map", cls.model_validate({"of": of}), model.span, (model.name,))
-            for ref in cast(Model, model.kind).shown_in_place_of():
-                tasks[ref.name] = replace(
-                    tasks[ref.name], kind=tasks[ref.name].kind.model_copy(update={"hidden": True})
-                )
+    for model in [task for task in fields.values() if task.name not in read]:
+        word, of = cast(tuple[str, Value], cast(Model, model.kind).drawn_by(model.name))
+        if (cls := catalogue.load("objects", word)) is None:
+            continue
+        name = f"{model.name}_{'map' if word == 'field_map' else word}"
+        while name in tasks:
+            name += "_"
+        tasks[name] = Task(name, word, cls.model_validate({"of": of}), model.span, (model.name,))
+        for ref in cast(Model, model.kind).shown_in_place_of():
+            tasks[ref.name] = replace(tasks[ref.name], kind=tasks[ref.name].kind.model_copy(update={"hidden": True}))
     return tasks
 
 

@@ -10,6 +10,7 @@ from sceneql.compiler.passes.uncarried import report_carried
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Interaction, Kind, Model, Object, Solver, Tie
 from sceneql.quantities.diagnostic import Diagnostics, Note
+from sceneql.quantities.instead import instead
 
 _SUITS = {
     "a field": ("is_field", "a field on a grid"),
@@ -176,8 +177,9 @@ def _touching(
     for ref in task.kind.ties():
         why = None if ref.name in driver else no_collider(tasks[ref.name], tasks)
         if why is not None:
-            help = f"name under `between` what may touch, without '{ref.name}'"
-            found.error("no-collider", f"'{ref.name}': {why}", ref.span, help=help)
+            name = ref.name if ref.span is None else ref.span.text
+            help = instead("collider", name) or f"name under `between` what may touch, without '{name}'"
+            found.error("no-collider", f"'{name}': {why}", ref.span, help=help)
         elif ref.name in models and not _collides(tasks[ref.name], task.kind):
             text = f"{task.word} acts on masses, and there are none in {ref.name}"
             found.error("no-mass", text, ref.span, help=f"name under `between` what may touch, without '{ref.name}'")

@@ -1,4 +1,4 @@
-"""Check of skins in flows: none may start wholly outside of the flow that carries it."""
+"""Check of skins and solids in flows: none may start wholly outside, or be cut to another shape than is meant."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ from sceneql.compiler.passes.fillings import Beginning
 from sceneql.compiler.passes.overlaps import UNKNOWN
 from sceneql.graph import Task
 from sceneql.grids.domain.cells import periodic_axes
-from sceneql.kinds import Force, Model
+from sceneql.kinds import Force, Model, Object
 from sceneql.quantities.diagnostic import Diagnostics
+
+FLAT = 2
+"""Number of sides of a flat box."""
 
 
 def report_outside_flows(tasks: Mapping[str, Task], found: Diagnostics) -> None:
@@ -44,3 +47,16 @@ def _beyond(shape: Any, flow: Any, start: Any) -> str:
         if high[axis] <= first or low[axis] >= first + length:
             return f"{'xyz'[axis]} = {first if high[axis] <= first else first + length:g} m"
     return ""
+
+
+def warn_of_sections(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of solids in flat flows whose section at z = 0 is most likely another than meant."""
+    for task in tasks.values():
+        size = getattr(task.kind, "size", None)
+        flat = getattr(task.kind, "flat", False) or (isinstance(size, tuple) and len(size) == FLAT)
+        for ref in getattr(task.kind, "around", None) or () if flat and isinstance(task.kind, Model) else ():
+            kind = tasks[ref.name].kind
+            section, _, help = kind.odd_section().partition(": ") if isinstance(kind, Object) else ("", "", "")
+            if section:
+                text = f"'{task.name}' flows round the section of '{ref.name}' at z = 0, {section}"
+                found.warning("odd-section", text, ref.span, help=help)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 from pydantic import BaseModel
 
@@ -12,6 +12,8 @@ from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Interaction, Kind, Model, Object, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
+UNSEEN = 0.01
+"""Angle [rad] by which masses turn about each other, below which nobody sees their pull."""
 STARTS = ("velocity", "spin")
 """Fields that let masses or bodies move at the start."""
 
@@ -46,6 +48,22 @@ def warn_of_unforced(tasks: Mapping[str, Task], groups: Sequence[Island], found:
             if some:
                 help = f"name it, too, where a force is `on: [{some[0]}]`: `on: [{some[0]}, {models[0].name}]`"
             found.warning("nothing-moves", text, models[0].span, help=help)
+
+
+def warn_of_weak(tasks: Mapping[str, Task], groups: Sequence[Island], end: float, found: Diagnostics) -> None:
+    """Warn of masses that nothing but their pull on each other moves, too weakly to be seen until the ``end`` [s]."""
+    for island in groups:
+        forces = [tasks[name] for name, _ in island.forces]
+        if not forces or not all(isinstance(one.kind, Interaction) and one.kind.mutual for one in forces):
+            continue
+        on = {name: cast(Model, tasks[name].kind).static_masses() for name in island.models}
+        for force in forces:
+            rates = [one.frequency for one in cast(Interaction, force.kind).fastest(force.name, on)]
+            if rates and max(rates) * end < UNSEEN:
+                text = f"'{force.name}' is too weak to be seen: until {end:g} s it bends no way by as much as a part in"
+                help = f"masses of kg are pulled in seconds by `{force.word}: {{constant: 1 m^3/kg/s^2}}`, or write"
+                text, help = f"{text} {1 / UNSEEN**2:.0g}", f"{help} larger masses, or a longer clock"
+                found.warning("nothing-moves", text, force.span, help=help)
 
 
 def _leads(task: Task) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping
 from math import dist, sqrt
 
 from sceneql.graph import Task
-from sceneql.kinds import Light, Model, Object, Value
+from sceneql.kinds import Camera, Light, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
 
@@ -32,8 +32,8 @@ def warn_of_unseen(
 
 
 def warn_of_buried(tasks: Mapping[str, Task], found: Diagnostics) -> None:
-    """Warn of each lamp that stands still under a level ground, which throws its shadow over all above it."""
-    level = _ground(tasks)
+    """Warn of each lamp and camera that stands still under a level ground, which hides all above it."""
+    level = ground_level(tasks)
     if level is None:
         return
     for task in tasks.values():
@@ -42,9 +42,14 @@ def warn_of_buried(tasks: Mapping[str, Task], found: Diagnostics) -> None:
             text = f"'{task.name}' stands under the ground, so that none of its light is seen"
             higher = f"{at[0]:g} {level + 2.0:g} {at[2]:g} m"
             found.warning("buried-light", text, task.span, help=f"y is up: write `position: {higher}`")
+        eye = _place(getattr(task.kind, "position", None)) if isinstance(task.kind, Camera) else None
+        if eye is not None and eye[1] < level:
+            text = f"'{task.name}' stands under the ground, which hides all above it"
+            higher = f"{eye[0]:g} {level + 1.0:g} {eye[2]:g} m"
+            found.warning("buried-camera", text, task.span, help=f"y is up: write `position: {higher}`")
 
 
-def _ground(tasks: Mapping[str, Task]) -> float | None:
+def ground_level(tasks: Mapping[str, Task]) -> float | None:
     """The height [m] of a level ground that is drawn and stands still; None where there is none, or it is not known."""
     for task in tasks.values():
         kind = task.kind

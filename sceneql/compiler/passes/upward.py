@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from sceneql.compiler.passes.unseen import ground_level
 from sceneql.graph import Task
-from sceneql.kinds import Camera, Interaction, Value
+from sceneql.kinds import Camera, Interaction, Model, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
 MOSTLY = 0.9
@@ -28,6 +29,24 @@ def warn_of_z_up(tasks: Mapping[str, Task], found: Diagnostics) -> None:
             text = f"'{task.name}' pulls along z, but y is up here: the ground lies in x and z, cameras stand upright"
             help = "write places as `x y z` with y for the height, and leave the direction out: gravity is along -y"
             found.warning("z-up", text, getattr(value, "span", None) or task.span, help=help)
+
+
+def warn_of_z_high(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of objects that fall, start with their middle in the ground, and are high along z."""
+    level = ground_level(tasks)
+    weighs = any(isinstance(task.kind, Interaction) and task.kind.weighs for task in tasks.values())
+    if level is None or not weighs:
+        return
+    for model in [task.kind for task in tasks.values() if isinstance(task.kind, Model) and not task.kind.kinematic]:
+        for name in model.drives():
+            position = getattr(tasks[name].original, "position", None) if name in tasks else None
+            if not isinstance(position, Value) or not position.constant:
+                continue
+            x, y, z = (float(one) for one in position.number())
+            if y <= level < z:
+                text = f"'{name}' starts with its middle in the ground, and {z:g} m along z: y is up here"
+                help = f"write `position: {x:g} {z:g} {y:g} m`"
+                found.warning("z-up", text, position.span or tasks[name].span, help=help)
 
 
 def _along_z(value: object) -> bool:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from sceneql.contacts.colliders import is_moving, surfaces
+from sceneql.contacts.colliders import OFTEN, is_moving, shifted, surfaces
 from sceneql.flows import layout
 from sceneql.flows.obstacles import moving_layout as own
+from sceneql.island.start import Start
 from sceneql.kinds import Object
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
+from sceneql.shapes.placement import Placed, inverse
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -22,11 +25,14 @@ if TYPE_CHECKING:
     from sceneql.flows.obstacles.obstructed import Passage
     from sceneql.flows.staggered import Faces
     from sceneql.frame import Floats
-    from sceneql.kinds import Ref
+    from sceneql.kinds import Moment, Ref
     from sceneql.system import Assembly
 
 GO = "sceneql.flows.obstacles.cut_anew_kernels:go"
 GO_ON = "sceneql.flows.obstacles.cut_anew_kernels:go_on"
+CELLS, MOMENTS = 0.25, 40
+"""Cells that a solid passes in a step at most, since what it leaves or comes to has no order; intervals of the run in
+which its speed is sampled."""
 UNSOLVED = ("direct",)
 """Linear solvers of the pressure that are refused, since they would factor the matrix again in each step."""
 
@@ -79,7 +85,10 @@ class MovingSolids:
             text = f"beside solids that move the wall of '{named[0]}' has the velocity of its own motion"
             help = "leave it out of `boundary`, and give it a rotation by keys or a formula"
             raise ScriptError([Diagnostic("invalid", text, line, help)])
-        self.solids = surfaces(refs, assembly, own.HEAD)
+        self.solids = surfaces(refs, assembly, own.HEAD, often=np.inf)
+        for ref in refs:
+            if (turn := self._fastest(ref)) > 0.0:
+                assembly.step_at_most(CELLS / turn)
         self.count = count
         cells = int(np.prod(faces.cells.shape))
         zeros = np.zeros(faces.count)
@@ -89,6 +98,24 @@ class MovingSolids:
         self.middles = assembly.floats(np.concatenate([np.arange(faces.count), *[zeros] * 3]))
         self.owners = assembly.floats(np.zeros(faces.count + cells))
         self.seeping = assembly.floats(np.zeros(2 * cells + 1))
+
+    def _fastest(self, ref: Ref) -> float:
+        """Most cells along all axes that a corner of a solid's box passes in a second, from samples in time."""
+        kind: Any = self.assembly.object(ref)
+        moment = cast("Moment", Start(self.assembly))
+        if not is_moving(kind) or not 0.0 < self.assembly.end < np.inf:
+            return 0.0
+        if not isinstance(kind, Placed):
+            return CELLS / OFTEN
+        axes = self.faces.axes
+        low, high = kind.extent(inverse(kind.local(moment)), moment)
+        corners = np.array(list(product(*zip(low, high, strict=True), (1.0,)))).T
+        step = self.assembly.end / MOMENTS
+        times = step * (np.arange(MOMENTS)[:, None] + [0.25, 0.75])
+        moved: list[Any] = [shifted(kind, time, self.assembly) for time in times.ravel()]
+        places = (np.array([one.local(moment) for one in moved]) @ corners)[:, :axes].reshape(MOMENTS, 2, axes, -1)
+        cells = np.abs(places[:, 1] - places[:, 0]) / self.faces.cells.spacing[None, :axes, None]
+        return float(cells.sum(axis=1).max()) / (0.5 * step)
 
     def describe(self, ints: Any) -> None:
         """Write the entries on solids into the flow's integers."""

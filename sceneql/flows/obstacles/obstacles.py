@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from sceneql.flows.fluid_box import around
-from sceneql.flows.obstacles.gaps import must_leave_cells
+from sceneql.flows.obstacles.gaps import TOUCHING, must_leave_cells
 from sceneql.flows.obstacles.no_slip_numbers import LEAST, SLIVER
 from sceneql.grids.domain.cut import below
 from sceneql.grids.domain.domain import inside
@@ -89,11 +89,20 @@ class Solids:
                 others = [k for k in axes if k != component]
                 self.opened.append(self.cut(faces.points(component), faces.shapes[component], others))
                 self.opened[-1].parts[self.opened[-1].parts < SLIVER] = 0.0
+                self._shut(component)
         if not (self.parts > 0.0).any():
             text = "the solids fill the whole box: no cell is left to flow through"
             raise ScriptError([Diagnostic("no-cell", text, self.refs[0].span, "take smaller ones, or a larger `size`")])
         if len(self.refs) > 1:
             must_leave_cells(self.refs, self.levels, faces.cells.shape[::-1], centers, self.spacing)
+
+    def _shut(self, component: int) -> None:
+        """Close the faces on the box's sides where a solid touches these: beside cells that it fills."""
+        faces, line = self.faces, 2 - component
+        filled = self.parts.reshape(faces.cells.shape[::-1]) <= TOUCHING
+        for high in range(0 if faces.periodic[component] else 2):
+            mine = faces.on_side(component, high) - faces.starts[component]
+            self.opened[-1].parts[mine[filled.take(-1 if high else 0, axis=line)]] = 0.0
 
     def _centers(self) -> Floats:
         found = self.faces.cells.centers()

@@ -25,6 +25,9 @@ viewed nearly along it, so that bodies stand out from their ground; an EVEN one 
 LONG, ACROSS = 0.12, {0: ALONG[2], 2: ALONG[0]}
 """Larger one of both other sides, relative to the length, below which a scene long in x or z is viewed across; and
 directions towards the camera by the long axis."""
+MAP, NEARLY = 0.25, {0: (1.0, 0.25, 0.35), 2: (0.35, 0.25, 1.0)}
+"""Least area of an EVEN upright part, such as a map, relative to that of the whole scene along its normal, with which
+what is not flat is seen from nearer to this; and directions towards the camera by the normal."""
 FULL, AROUND, UNUSUAL = 0.6, 36, 0.4
 """Least cosine between the view and the normal of what is flat and tilted: a circle is then seen as an ellipse that
 fills a wide picture; number of views at this angle that are compared; by how much what is seen from a quarter turn away
@@ -32,16 +35,17 @@ from the usual view counts as smaller."""
 LOWEST, HIGHEST, STEEP = 0.1, 0.95, 0.35
 """Least and largest sine of the elevation of such a view, above the ground; largest height of the unit normal of what
 is seen along it, since it stands upright."""
-HEADROOM = 0.91
-"""Largest fraction of the height between the margins that is filled: with the margins, 80 % of the picture's."""
+HEADROOM = 0.9
+"""Largest fraction of the height between the margins that is filled: under 80 % of the picture, of round things too."""
 
 
 class Auto(Camera):
     """A three-quarter view of all that is drawn, from the right front and above, that holds still over the whole film.
 
-    A scene that is flat along an axis is seen along it, one that is flat and tilted from nearer to its normal, one that
-    is long and lies across. The few of many things that leave for good are let go, and variants that grow three times
-    as large as another by their solver alone. Panels of variants share one view, and overlays are left room.
+    A scene that is flat along an axis is seen along it, one that is flat and tilted, or has a large map, from
+    nearer to the normal of that, one that is long and lies across. The few of many things that leave for good are
+    let go, and variants that grow three times as large as another by their solver alone. Panels of variants share
+    one view, and overlays are left room.
 
     It holds still, so that what moves in the picture moves in the scene, as fast and as far. Where most of the picture
     would be empty for long, as around a ball that has come to rest, it goes along slowly, within a quarter of the film,
@@ -65,7 +69,7 @@ class Auto(Camera):
         half = math.tan(0.5 * float(moment.at(self.field_of_view)))
         points = moment.outline()
         slopes, middle = framing.inner(half, size, self.margin, moment.room, HEADROOM)
-        axes = framing.axes_towards(_towards(points, slopes))
+        axes = framing.axes_towards(_towards(points, slopes, moment.boxes()))
         origin, distance = framing.fitted(points, axes, slopes, middle=middle)
         alone, window = self.window is not None, WINDOW * moment.end if self.window is None else self.window
         rows = moment.moving(None if alone else window) if window > 0.0 else points[:0]
@@ -94,10 +98,11 @@ class Auto(Camera):
         return framing.view(origin, axes, size, half)
 
 
-def _towards(points: Floats, slopes: tuple[float, float]) -> Toward:
+def _towards(points: Floats, slopes: tuple[float, float], boxes: Floats) -> Toward:
     """Direction from the scene to its camera, by the proportions of the box around points (n, 3).
 
-    ``slopes``: half width and height, at distance 1, of the part of the picture that they fill.
+    ``slopes``: half width and height, at distance 1, of the part of the picture that they fill; ``boxes`` (n, 2, 3):
+    around each part.
     """
     sides = points.max(axis=0) - points.min(axis=0)
     thin = int(sides.argmin())
@@ -107,8 +112,23 @@ def _towards(points: Floats, slopes: tuple[float, float]) -> Toward:
         return x, y, z
     if sides[thin] < FLAT * min(others):
         return ALONG[thin]
+    upright = _largest_map(boxes, sides)
+    if upright is not None:
+        return NEARLY[upright]
     long = int(sides.argmax())
     return ACROSS.get(long, THREE_QUARTER) if min(others) < LONG * sides[long] else _onto_tilted(points, slopes)
+
+
+def _largest_map(boxes: Floats, sides: Floats) -> int | None:
+    """Axis of the normal of the largest EVEN upright part, of boxes (n, 2, 3), that is a MAP of a scene."""
+    found: dict[int, float] = {}
+    for one in boxes[:, 1] - boxes[:, 0]:
+        thin = int(one.argmin())
+        across = [k for k in range(3) if k != thin]
+        if thin in NEARLY and one[thin] < EVEN * one[across].min():
+            found[thin] = max(found.get(thin, 0.0), float(one[across].prod() / sides[across].prod()))
+    axis = max(found, key=found.__getitem__, default=None)
+    return axis if axis is not None and found[axis] >= MAP else None
 
 
 def _onto_tilted(points: Floats, slopes: tuple[float, float]) -> Toward:

@@ -103,7 +103,9 @@ class Flow(Model):
         {},
     )
     around: tuple[kinds.ObjectRef, ...] = field(
-        "Solids in the flow, which may move by keys or formulas; `cyl` gives outputs `cyl.force`, `cyl.torque`.", ()
+        "Solids in the flow, which may move by keys or formulas; a flow `air` around `cyl` gives `air.cyl.force` and "
+        "`air.cyl.torque`.",
+        (),
     )
     edges: Literal["cut_cell", "staircase"] = field(
         "How cells meet these solids: cut by them, or whole where their centers lie outside.", "cut_cell"
@@ -327,6 +329,12 @@ class Flow(Model):
     def shows(self, name: str) -> Value | None:
         """Its speed."""
         return Value(Link(name, "speed", Type((None,), dim.VELOCITY)))
+
+    def drawn_by(self, name: str) -> tuple[str, Value] | None:
+        """A deep flow by its streamlines: a map on its box would show its walls alone, and hide what is inside."""
+        if self.flat if self.size is None else len(self.size) == 2:
+            return super().drawn_by(name)
+        return "streamlines", Value(Link(name, "velocity", Type((None, 3), dim.VELOCITY)))
 
     def read(self, output: str, state: ModelState) -> Any:
         """An output: (cells,), (cells, 3), (3,) or float."""

@@ -112,7 +112,8 @@ class Membrane(Model):
     color: kinds.Color | None = field("Color in place of the material's.", None)
 
     said_by: ClassVar = {
-        **dict.fromkeys(("stiffness", "modulus", "tension"), "a law has it, `law: {springs: {stretch: 10 N/m}}`"),
+        "tension": "a law has it, `law: {tension: 1 N/m}`",
+        **dict.fromkeys(("stiffness", "modulus"), "a law has it, `law: {springs: {stretch: 10 N/m}}`"),
         **dict.fromkeys(
             ("pressure", "volume_constraint"), "what it holds keeps its volume: pressure is what comes of it"
         ),

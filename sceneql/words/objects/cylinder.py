@@ -32,6 +32,12 @@ class Cylinder(Solid):
     radius: Length = field("Its radius.", "0.5 m", above=0)
     height: Length = field("Its length along its own y.", "1 m", above=0)
 
+    def odd_section(self) -> str:
+        """Along y it is cut to a rectangle."""
+        round_one = "for a round one turn it along z, `rotation: {about: x, angle: 90 deg}`"
+        upright = self.rotation.constant and tuple(self.rotation.number()) == (1.0, 0.0, 0.0, 0.0)
+        return f"a rectangle: {round_one}" if upright else ""
+
     @property
     def traced(self) -> str:
         """It is met exactly."""

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 FOREVER = 1e30
 HIGHEST = 1e15
 """Largest height, relative to the longest side: above it float64 does not distinguish corners, and rays never end."""
-ROUNDING = 1e-12
+ROUNDING = 1e-9
 """Relative difference below which two values count as equal."""
 THIN = 1.5e-3
 """Default radius of contour lines, relative to the grid's longest side."""
@@ -95,12 +95,12 @@ class FieldMap(Object):
         past = moment.past(self.of)
         values = past[0][1] if past else moment.at(self.of)
         low, high = float(values.min()), float(values.max())
-        if high == low:
+        if _even(low, high):
             low, high = (float(pick(moment.course(end)[1])) for end, pick in zip(self._ends, (min, max), strict=True))
             low, high = (0.0 if abs(end) < ROUNDING * (high - low) else end for end in (low, high))
         if swings(self.of, moment):
             low, high = min(low, -high), max(high, -low)
-        return (low, high) if high - low > ROUNDING * max(abs(low), abs(high)) else (low, low + 1.0)
+        return (low, low + 1.0) if _even(low, high) else (low, high)
 
     @cached_property
     def _ends(self) -> tuple[Value, Value]:
@@ -113,7 +113,7 @@ class FieldMap(Object):
         """The extremes of a field that is even at the start."""
         if self.range is None:
             values = start.at(self.of)
-            if values.min() == values.max():
+            if _even(float(values.min()), float(values.max())):
                 yield from self._ends
 
     def color_key(self, moment: Moment) -> ColorKey:
@@ -160,8 +160,9 @@ class FieldMap(Object):
             sheet = raised(sheet, heights)
         made = placed(sheet, place) if self.height is not None else still(sheet, name, place, moment)
         matte = Surface(color=(1.0, 1.0, 1.0), roughness=1.0, specular=0.0)
-        look = matte if self.material is None else moment.surface(name, self.material, None)
         chosen = self._map(moment)
+        own = self.color if chosen is None else None
+        look = matte if self.material is None and own is None else moment.surface(name, self.material, own)
         colors = None if chosen is None else colored(values, self.scale(moment), chosen)
         yield Mesh(name, look, made.vertices, made.triangles, made.normals, colors)
         lines = [contour(sheet, values, level) for level in self._levels(moment)]
@@ -186,3 +187,8 @@ class FieldMap(Object):
             return skin(self.on, field.layout, moment)
         planes = tuple((one.through, one.normal) for one in self.cut)
         return sheet_of(field, moment, planes, self.surface)
+
+
+def _even(low: float, high: float) -> bool:
+    """Whether a field from ``low`` to ``high`` has one value, but for rounding."""
+    return high - low <= ROUNDING * max(abs(low), abs(high))

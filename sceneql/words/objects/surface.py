@@ -100,7 +100,9 @@ class Surface(Object):
             yield from self._carried(cloth, name, place, moment)
             return
         if "triangles" not in cloth.gives:
-            raise ValueError(f"'{self.of.name}' has no surface; a cloth, a solid and a membrane have one")
+            drawn, own = cloth.drawn_by(self.of.name), self.of.name
+            hint = "" if drawn is None else f"; write `{drawn[0]}: {{of: {own}.{drawn[1].links[0].output}}}`"
+            raise ValueError(f"'{self.of.name}' has no surface: a cloth, a solid and a membrane have one{hint}")
         if getattr(cloth, "has_skin", False):
             yield from self._elastic(cloth, name, place, moment)
             return

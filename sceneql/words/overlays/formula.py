@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from sceneql.kinds import FixedScalar, Moment, Overlay, Position, Problem, field
 from sceneql.kinds.texts import overlong
+from sceneql.kinds.values import Verbatim
 from sceneql.pictures.anchors import EDGES, Box, Place, box_at, projected
 from sceneql.pictures.callouts import UP, lead, stand
 
@@ -23,7 +24,7 @@ class Formula(Overlay):
     It is written in TeX's language as far as matplotlib's mathtext has it: `a = \\frac{g\\,m_1}{r^2}`.
     """
 
-    tex: str = field("The formula, without dollar signs.")
+    tex: Annotated[str, Verbatim()] = field("The formula, without dollar signs.")
     place: Place | None = field("Where it stands in the picture; by default at an edge that is free.", None)
     at: Position | None = field("The point that it stands over, in place of that.", None)
     size: FixedScalar = field("Height of its letters in parts of the picture's.", "0.05", above=0, at_most=0.3)

@@ -31,6 +31,10 @@ MOST_NAMED = 12
 """Largest number of curves with names."""
 
 
+def _text(value: Value) -> str:
+    return "..." if value.span is None else value.span.text
+
+
 class Graph(Overlay):
     """Curves on a panel in the picture, which grow with the film: energies, errors, distances over time.
 
@@ -73,7 +77,8 @@ class Graph(Overlay):
                 yield Problem("a curve is a number at each time, or a vector; this is a list of vectors", path)
             elif dimension != dimensions[0]:
                 text = f"curves of one graph are of one quantity, but here is {describe(dimensions[0])}"
-                yield Problem(f"{text} and {describe(dimension)}", path)
+                help = f"a second graph has it: write `{name or 'other'}: {{graph: {{y: {_text(value)}}}}}`"
+                yield Problem(f"{text} and {describe(dimension)}", path, help=help)
         across = dim.TIME if self.x is None else self.x.expr.type.dimension
         if self.x is not None and self.x.expr.type.shape:
             yield Problem("what a curve is drawn over is one number at each time", ("x",))

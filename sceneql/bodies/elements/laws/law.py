@@ -59,7 +59,8 @@ class Law(Record):
         if name != "poisson":
             return "" if 0.0 < number < float("inf") else f"{name} must be above 0 Pa, not {number:g} Pa"
         if number == 0.5:
-            return "a Poisson ratio of 0.5 leaves no volume to change; write 0.4999, with `element: p2_mean`"
+            more = "write `poisson: 0.4999`, and beside `law` `element: p2_mean`"
+            return f"a Poisson ratio of 0.5 leaves no volume to change; {more}"
         return "" if -1.0 < number < 0.5 else f"poisson must be above -1 and below 0.5, not {number:g}"
 
     def at(self, name: str, places: Floats) -> Floats:
