@@ -66,7 +66,7 @@ def test_words_of_other_programs_lead_to_names_of_the_language():
     field = Catalogue().load("models", "diffusion")
     outputs = {name for of in ("temperature", "concentration") for name in field.outputs({"of": of})}
     known = {*FUNCTIONS, *CONSTANTS, *outputs, "time", *names_in(schema(Catalogue()))}
-    known |= {*CURVES, *SIDES, "rest", "fields"}  # choices, sides, a section of templates
+    known |= {*CURVES, *SIDES, "720p", "1080p", "4k", "rest", "fields"}  # choices, sides, a section of templates
     assert {name for ours in OURS.values() for name in ours} <= known
     assert all(len(set(ours)) == len(ours) for ours in OURS.values())
 

@@ -21,15 +21,12 @@ from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
-from sceneql.quantities.dimension import ANGLE, MASS, PLAIN, Dimension
 from sceneql.quantities.instead import instead
-from sceneql.quantities.units import unit_of
 
 TRUE = ("true", "yes", "on")
-_NAME = r"[^\W\d][\w.]*"
-_NAMES = re.compile(rf"{_NAME}(?:\s*[-+&|*/,]\s*{_NAME})+")
+NAME = r"[^\W\d][\w.]*"
+_NAMES = re.compile(rf"{NAME}(?:\s*[-+&|*/,]\s*{NAME})+")
 _MEASURED = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*[^\W\d].*")
-_NUMBERS = re.compile(r"((?:[-+]?[\d.]+(?:[eE][-+]?\d+)?\s+)*[-+]?[\d.]+(?:[eE][-+]?\d+)?)\s+[^\W\d]\S*")
 OF_FORM = (
     "file-missing",
     "file-outside",
@@ -142,7 +139,7 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         return f"write `{name}: {rest}`" if rest else f"write `{{{name}: {example_of(cls, name)}}}`"
     if list(cls.model_fields) == [only := next(iter(cls.model_fields), "")]:
         return f"write `{{{kinds.written_name(only)}: {node.span.text}}}`"
-    fitting = list(_fitting(reader, node, cls.model_fields)) or list(_formulas(reader, node, cls))
+    fitting = list(quantities_fitting(reader, node, cls.model_fields)) or list(_formulas(reader, node, cls))
     alone = required if len(required) == 1 else []
     if alone and len(fitting) == 1 and fitting != alone:  # the value is another field's
         example = f"{alone[0]}: {example_of(cls, alone[0])}"
@@ -150,11 +147,11 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     names = _NAMES.fullmatch(node.text.strip())
     lists = alone or [name for name in map(kinds.written_name, cls.model_fields) if _listing(cls, name)]
     if len(lists) == 1 and names is not None and _listing(cls, lists[0]):
-        return f"write `{{{lists[0]}: [{', '.join(re.findall(_NAME, node.text))}]}}`"
+        return f"write `{{{lists[0]}: [{', '.join(re.findall(NAME, node.text))}]}}`"
     number = _MEASURED.fullmatch(node.span.text)
     if not (fitting or alone) and number is not None:
         bare = replace(node, text=number[1], end=node.start + len(number[1]))
-        plain = list(_fitting(reader, bare, cls.model_fields))
+        plain = list(quantities_fitting(reader, bare, cls.model_fields))
         if len(plain) == 1:
             return f"it has no unit: write `{{{kinds.written_name(plain[0])}: {number[1]}}}`"
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
@@ -180,7 +177,9 @@ def _dealt(reader: Any, node: Sequence, cls: type[BaseModel], required: Sequence
         return None
     told = [f"{required[0]}: [{', '.join(one.span.text for one in first)}]"]
     for one in rest:
-        fitting = _fitting(reader, one, {key: more for key, more in cls.model_fields.items() if more is not info})
+        fitting = quantities_fitting(
+            reader, one, {key: more for key, more in cls.model_fields.items() if more is not info}
+        )
         if len(fitting) != 1:
             return None
         told.append(f"{kinds.written_name(*fitting)}: {one.span.text}")
@@ -196,92 +195,13 @@ def _listing(cls: type[BaseModel], name: str) -> bool:
 
 def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
     """The help for a wrong count of numbers: the one other field that takes them."""
-    found = {name: mark for name, mark in _fitting(reader, node, others).items() if mark.shape}
+    found = {name: mark for name, mark in quantities_fitting(reader, node, others).items() if mark.shape}
     if len(found) > 1:
         own = [mark.dimension for mark in quantities(info)]
         found = {name: mark for name, mark in found.items() if mark.dimension in own}
     if len(found) != 1:
         return None
     return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
-
-
-def for_each(reader: Any, node: Node, cls: type[BaseModel], name: str, title: str) -> str | None:
-    """The help for values by the names of parts where a part has one for all that it joins."""
-    if not isinstance(node, MappingNode) or "between" not in cls.model_fields or not node.entries:
-        return None
-    first, value = next(iter(node.entries.items()))
-    if first not in reader.names.parts:
-        return None
-    inner = f"{{between: [{first}, OTHER], {name}: {value.span.text}}}"
-    return f"it is one for all that touch: write a part for each pair, `{first}_hits: {{{title}: {inner}}}`"
-
-
-def number_meant(node: Node, info: Any, name: str, code: str, help: str | None) -> str | None:
-    """The help for a word in place of a number, ``tolerance: high``, or behind one without a unit, ``10 lines``."""
-    extra: Any = info.json_schema_extra or {}
-    default, marks = extra.get("default"), quantities(info)
-    if code == "unknown-unit":
-        number = re.fullmatch(r"([-+.\d]+(?:[eE][-+]?\d+)?)\s*[^\W\d]\w*", node.span.text)
-        known = [mark.dimension for mark in marks if mark.dimension is not None]
-        plain = all(one.plain for one in known) if known else info.annotation in (int, float)
-        plain = plain and (help or "").startswith(("for a product", "units are such", "did you mean"))
-        return f"it has no unit: write `{name}: {number[1]}`" if number is not None and plain else None
-    word = re.fullmatch(_NAME, node.span.text) is not None and (help or "").startswith("names stand under")
-    if not word or not marks or not isinstance(default, str) or not default[:1].isdigit():
-        return None
-    return f"write a number, as `{name}: {default}`, or a name that stands under `define`"
-
-
-def plain_define(reader: Any, node: Node) -> str | None:
-    """The help for a formula of a wrong dimension with a define that is a number without a unit."""
-    if not isinstance(node, Scalar):
-        return None
-    defines = reader.names.defines
-    named = [one for one in re.findall(_NAME, node.text) if one in defines and isinstance(defines[one], Scalar)]
-    bare = [one for one in dict.fromkeys(named) if defines[one].kind in ("integer", "number")]
-    if not bare or len(named) == len(bare):
-        return None
-    text = f"{bare[0]}: {defines[bare[0]].text}"
-    return f"'{bare[0]}' is a plain number: give it its unit in `define`, where `{text}` stands"
-
-
-def _inverse(reader: Any, node: Node, name: str, wanted: Dimension) -> str | None:
-    """The help for a frequency in place of a time, and the like."""
-    nothing = Diagnostics()
-    other = kinds.Quantity(PLAIN / wanted)
-    fits = values.read_value(node, other, name, replace(reader.names, found=nothing), nothing) is not None
-    return f"it is one over that: write `1/({node.span.text})`" if fits else None
-
-
-def in_other_unit(reader: Any, node: Node, info: Any, others: Mapping[str, Any], name: str) -> str | None:
-    """The help for a quantity of a wrong dimension: the one other field that takes it, or the unit that it has."""
-    numbers = _NUMBERS.fullmatch(node.span.text.strip("[]"))
-    marks = [mark for mark in marks_of(info) if isinstance(mark, kinds.Quantity | kinds.Symbols)]
-    if any(isinstance(mark, kinds.Symbols) and mark.of_field for mark in marks):
-        return None  # what is measured is the model's
-    wanted = next((mark.dimension for mark in marks if mark.dimension is not None), None)
-    if wanted is not None and not wanted.plain and (inverse := _inverse(reader, node, name, wanted)) is not None:
-        return inverse
-    if numbers is not None and wanted is not None and wanted.kind == ANGLE.kind:
-        return f"it is an angle, as `{numbers[1]} deg`"
-    if wanted is not None and wanted.plain and node.span.text[-1:] in ("C", "F", "K"):
-        return None
-    if numbers is not None and wanted is not None and wanted.plain:
-        return f"it has no unit: write `{name}: {numbers[1]}`"
-    found = [kinds.written_name(name) for name in _fitting(reader, node, others)]
-    if len(found) == 1:
-        return f"that is what `{found[0]}` takes: write `{found[0]}: {node.span.text}`"
-    if numbers is None or wanted is None:
-        return None
-    if wanted == MASS and node.span.text.endswith("N"):
-        return f"a weight is a mass times gravity: write `{node.span.text}/(9.81 m/s^2)`"
-    return f"it is measured in {(unit := unit_of(wanted))}, as `{numbers[1]} {unit}`"
-
-
-def direction_alone(node: Node) -> str | None:
-    """The help for a direction with a unit behind its numbers."""
-    numbers = _NUMBERS.fullmatch(node.span.text)
-    return None if numbers is None else f"a direction has no unit, and its length does not matter: write `{numbers[1]}`"
 
 
 def choice_meant(text: str, choices: Sequenced[str]) -> str | None:
@@ -359,7 +279,9 @@ def _taking(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:
 
 def _takes(reader: Any, node: Node, cls: type[BaseModel], name: str) -> bool:
     """Whether a field of a record, a formula or a quantity, accepts a value."""
-    return name in _formulas(reader, node, cls) or name in _fitting(reader, node, {name: cls.model_fields[name]})
+    return name in _formulas(reader, node, cls) or name in quantities_fitting(
+        reader, node, {name: cls.model_fields[name]}
+    )
 
 
 def _paints(reader: Any, node: Node, cls: type[BaseModel]) -> list[str]:
@@ -369,7 +291,7 @@ def _paints(reader: Any, node: Node, cls: type[BaseModel]) -> list[str]:
     return ["color"] if fits and "color" in cls.model_fields else []
 
 
-def _fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
+def quantities_fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
     """The fields of quantities that accept a value."""
     nothing = Diagnostics()
     names = replace(reader.names, found=nothing)

@@ -24,6 +24,10 @@ def finite(number: Any) -> bool:
     return math.isfinite(number)
 
 
+WORDS = 2
+"""Most words of a number with its unit."""
+
+
 def check_limits(
     value: Any, limits: Mapping[str, float], what: str, annotation: Any, span: Span, found: Diagnostics
 ) -> None:
@@ -46,8 +50,19 @@ def check_limits(
                 help = None if taken is None else instead(taken, what.rpartition(".")[2])
                 if limit == "at_most" and bound == 1 and 2 <= number <= 100 and given == f"{number:g}":
                     help = f"write `{number:g} %` for a percentage"
+                if help is None:
+                    help = _mended(span.text, number, bound)
                 found.error("out-of-range", f"{what} must be {word} {asked}, not {given}", span, help=help)
                 return
+
+
+def _mended(text: str, number: float, bound: float) -> str | None:
+    """The help for a number that lies outside by its sign, or by radians that are degrees."""
+    if number < 0.0 <= bound and text.startswith("-") and len(text.split()) <= WORDS:
+        return f"write it without the minus, `{text[1:].strip()}`"
+    if text.endswith("rad") and number > bound:
+        return f"in degrees write `{text[: -len('rad')].strip()} deg`"
+    return None
 
 
 def numbers(value: Any) -> list[float]:

@@ -18,8 +18,8 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler import likely, limits, paint, values
+from sceneql.compiler import quantity_help as helped
 from sceneql.compiler.annotations import could_be, is_fixed, quantities, unwrap
-from sceneql.compiler.corners import by_corners
 from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.likely import TRUE
 from sceneql.compiler.names import Names
@@ -114,8 +114,11 @@ class Reader:
             except Unreadable:
                 ok = False
                 told = [(one.code, one.help) for one in self.found.found[before:]]
-                if len(told) == 1 and told[0][0] in ("unknown-name", "unknown-unit"):
-                    number_alone = likely.number_meant(written[name], info, name, *told[0]) or told[0][1]
+                if [one[0] for one in told] == ["unknown-name"] and helped.is_part(self, written[name]):
+                    suiting = helped.other_output(self, written[name], info, name) or told[0][1]
+                    self.found.found[before] = replace(self.found.found[before], help=suiting)
+                elif len(told) == 1 and told[0][0] in ("unknown-name", "unknown-unit"):
+                    number_alone = helped.number_meant(written[name], info, name, *told[0]) or told[0][1]
                     self.found.found[before] = replace(self.found.found[before], help=number_alone)
                 pointing = any(mark.direction for mark in quantities(info))
                 if told in ([("wrong-shape", None)], [("dimension-mismatch", None)]):
@@ -124,16 +127,18 @@ class Reader:
                     }
                     ours = told[0][0] == "wrong-shape" or pointing
                     better = likely.elsewhere(self, written[name], info, rest) if ours else None
+                    if better is None and told[0][0] == "wrong-shape":
+                        better = helped.other_output(self, written[name], info, name)
                     if better is None:
-                        better = likely.for_each(self, written[name], cls, name, title)
+                        better = helped.for_each(self, written[name], cls, name, title)
                     if better is None and self.found.found[before].message.endswith(PLANAR):
                         better = "a number is missing: it has one for each of x, y and z"
                     if better is None and self.found.found[before].message.startswith(f"{name}{SINGLE}"):
                         better = likely.first_of(name, written[name])
                     if better is None and pointing and told[0][0] == "dimension-mismatch":
-                        better = likely.direction_alone(written[name])
+                        better = helped.direction_alone(written[name])
                     if better is None and told[0][0] == "dimension-mismatch":
-                        better = likely.plain_define(self, written[name]) or likely.in_other_unit(
+                        better = helped.plain_define(self, written[name]) or helped.in_other_unit(
                             self, written[name], info, rest, name
                         )
                     self.found.found[before] = replace(self.found.found[before], help=better)
@@ -273,7 +278,12 @@ class Reader:
         every = ", ".join(str(c) for c in choices)
         if other:
             several = text.replace("x", " ").replace("*", " ").split()  # 640x360
-            hint = f"write `{' '.join(several)}`" if len(several) > 1 and "".join(several).isdecimal() else None
+            hint = (
+                f"write `{text}p`"
+                if f"{text}p" in map(str, choices)
+                else likely.choice_meant(text, list(map(str, choices)))
+            )
+            hint = f"write `{' '.join(several)}`" if len(several) > 1 and "".join(several).isdecimal() else hint
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
         hint = likely.choice_meant(text, [str(c) for c in choices]) or f"one of {every}"
         hint = f"it is always `{what}: {every}`" if len(choices) == 1 else hint
@@ -306,7 +316,7 @@ class Reader:
     def _miscounted(self, node: Node, arms: tuple[Any, ...], what: str, count: int) -> Unreadable:
         marks = [mark for arm in arms for mark in unwrap(arm)[1] if isinstance(mark, kinds.Quantity)]
         vectors = [mark.shape[0] for mark in marks if mark.shape and mark.shape[0]]
-        help = by_corners(node, what, vectors[0]) if len(vectors) == 2 == len(arms) else None
+        help = helped.by_corners(node, what, vectors[0]) if len(vectors) == 2 == len(arms) else None
         names = re.split(r"\s*[-/&+>]+\s*", node.text) if isinstance(node, Scalar) else []
         if len(names) == len(arms) and all(name.isidentifier() for name in names):
             help = f"write `{what}: [{', '.join(names)}]`"

@@ -19,6 +19,7 @@ from sceneql.quantities.dimension import (
     ANGLE,
     DENSITY,
     ENERGY,
+    FORCE,
     FREQUENCY,
     LENGTH,
     MASS,
@@ -64,9 +65,8 @@ def read_value(node: Node, quantity: Quantity, what: str, names: Names, found: D
 def _checked(expr: Expr | None, node: Node, quantity: Quantity, what: str, found: Diagnostics) -> Value | None:
     if expr is None or not fits(expr, quantity, what, node.span, found):
         return None
-    if not (quantity.over_time or momentary(expr, node.span, found)):
-        return None
-    return Value(_scaled(expr) if quantity.direction else expr, node.span)
+    read = Value(_scaled(expr) if quantity.direction else expr, node.span)
+    return read if quantity.over_time or momentary(expr, node.span, found) else None
 
 
 def _scaled(expr: Expr) -> Expr:
@@ -266,7 +266,7 @@ def _repeated(expr: Expr, wanted: Quantity) -> str | None:
         zero = "0" if wanted.dimension is None or wanted.dimension.plain else f"0 {unit_of(wanted.dimension)}"
         return f"write `[{', '.join([text, *(size - 1) * [zero]])}]`, a value for each axis"
     items = size * [text]
-    if size == 3 and expr.type.dimension in (FREQUENCY, LENGTH / TIME):  # of these a direction is meant
+    if size == 3 and expr.type.dimension in (FREQUENCY, LENGTH / TIME, FORCE):  # of these a direction is meant
         items[0] = items[2] = re.sub(r"^[-+.\d]+(e[-+]?\d+)?", "0", text)
     vector = vector_meant(", ".join(items))
     return None if vector is None else f"write `{vector}`, a number for each axis"

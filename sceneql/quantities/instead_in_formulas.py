@@ -50,6 +50,11 @@ OF_FORMULAS = (
         "ddt dt derivative deriv diff integral integrate",
         "there is none: velocities are outputs, `fall.velocity`, and states of an `equations` model have a `rate`",
     ),
+    (
+        "function",
+        "energy kinetic potential momentum velocity position speed height mass volume temperature",
+        "a value is named with its part: write `fall.energy`, `ball.position.y`",
+    ),
     ("name", "required mandatory", "a field that has to be given is left empty: `fields: {height: }`"),
     ("function", "sqr square", "write `x^2`"),
     ("function", "frac fract", "write `mod(x, 1)`"),

@@ -13,6 +13,12 @@ _VARIED = (
 
 OF_SECTIONS = (
     # fields of single words and groups
+    ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
+    (
+        "field.streamlines",
+        "count number n density spacing seeds",
+        "how far they are `apart` says how many there are: `apart: 5 cm`",
+    ),
     (
         "field.rigid",
         "type body_type kind",

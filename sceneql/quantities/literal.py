@@ -23,6 +23,7 @@ _GAP = re.compile(r"\s*")
 _ITEM = re.compile(rf"\s*([+-]?{NUMBER})\s*([^\W\d][\w^*/·-]*|%)?\s*,?\s*")
 _ITEMS = re.compile(rf"(?:{_ITEM.pattern})+")
 _THOUSANDS = re.compile(r"(?<![\d,.])([1-9]\d{0,2}(?:,\d{3})+)(?![\d,])")
+_LINK = re.compile(r"[^\W\d]\w*(?:\.\w+)*")
 _DECIMAL = re.compile(r"(?<![\d,])(\d+),(?=\d+(?![\d,]))")
 _ANGLED = re.compile(r"(?:rgb\w*\s*)?<([^<>{}\[\]\n]*)>")
 EXACT = 40
@@ -158,6 +159,9 @@ def comma_meant(text: str, at: int = 0) -> str:
     decimal = _DECIMAL.sub(r"\1.", text.strip())
     if ", " not in text and decimal != text.strip():
         return f"{point}: write `{decimal}`"
+    names = [one.strip() for one in text.split(",")]
+    if len(names) > 1 and all(_LINK.fullmatch(one) for one in names):
+        return f"a list stands in brackets: write `[{', '.join(names)}]`"
     vector = vector_meant(text)
     return f"a vector is `0 1.2 0 m` or `[a, b, c]`, and {point}" if vector is None else f"write `{vector}`; {point}"
 

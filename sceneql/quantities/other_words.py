@@ -17,6 +17,11 @@ _LISTS = (
     ("circulation", "strength gamma"),
     ("core", "radius"),
     ("from", "anchor fixed_end"),
+    ("at", "level isovalue iso threshold values"),
+    ("absorption", "density opacity extinction thickness"),
+    ("720p", "hd"),
+    ("1080p", "fhd full_hd fullhd"),
+    ("4k", "uhd 2160p"),
     # choices, sides, sections of templates
     ("smooth", "ease ease_in ease_out ease_in_out ease-in ease-out ease-in-out easeinout sine sinusoidal"),
     ("cubic", "bezier spline catmullrom catmull_rom hermite"),
