@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
+from sceneql.compiler.sources import around_place
 from sceneql.compiler.values import origin, parsed_text, remedy
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.bind import SECONDS, Lookup, bind
@@ -64,11 +65,7 @@ def read_formula(
     if unsure(node):
         return None
     if not isinstance(node, Scalar):
-        help = (
-            f"write one by place and time: `{what}: 10*exp(-((x - 0.5)^2 + (y - 0.5)^2)/0.01)`"
-            if "x" in symbols
-            else None
-        )
+        help = around_place(node, wanted.dimension, what, names) if "x" in symbols else None
         found.error("wrong-shape", f"{what} is a formula", node.span, help=help)
         return None
     free = set(symbols)
