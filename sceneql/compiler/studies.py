@@ -55,11 +55,9 @@ def tried(path: str, node: Node) -> list[Tried]:
         ends = _ENDS.fullmatch(node.text.strip()) if isinstance(node, Scalar) else None
         even = _EVEN.search(node.text) if isinstance(node, Scalar) else None
         help = HELP if ends is None else f'write `"{ends[1]} .. {ends[2]}{ends[3].rstrip()}, {POINTS} points"`'
-        steps = (
-            _STEPS.fullmatch(node.text) or _ARANGE.fullmatch(node.text.strip()) if isinstance(node, Scalar) else None
-        )
-        if steps is not None:
-            help = _by_steps(steps, "range" in node.text)
+        text = node.text.strip() if isinstance(node, Scalar) else ""
+        if (steps := _STEPS.fullmatch(text) or _ARANGE.fullmatch(text)) is not None:
+            help = _by_steps(steps, "range" in text)
         elif even is not None:
             help = f'write `"{_ends_of(even[1], even[2])}, {even[3] or POINTS} points, {_way(node)}"`'
         raise ScriptError([Diagnostic("sweep-shape", "this is neither a range nor a list", node.span, help)])

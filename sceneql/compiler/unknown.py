@@ -30,6 +30,7 @@ OFF = ("0", "0.0", "no", "false")
 FEW = 4
 """Largest number of words with a field by which it is told what has that field."""
 
+_FIRST = re.compile(r"\{(\w+): [<\[]")
 _BLANK = re.compile(r"<(\w+)\|([^>]*)>")
 _UNPARTED = re.compile(r"(\w+)(?:(:)|\s*=| )(.*)")
 
@@ -81,6 +82,8 @@ def report_unknown(
 def filled(help: str, value: Node) -> str:
     """A help text in which `<position|0 1 0 m>` is the text of the value's field `position`, or what stands behind."""
     fields = value.entries if isinstance(value, Mapping) else {}
+    if "<" in help and value.span.text and not isinstance(value, Mapping) and (own := _FIRST.search(help)) is not None:
+        return f"write `{own[1]}: {value.span.text}`"
     return _BLANK.sub(lambda blank: fields[blank[1]].span.text if blank[1] in fields else blank[2], help)
 
 
@@ -226,8 +229,8 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
             inner = ", ".join(f"{name}: {value.span.text}" for name, value in node.entries.items() if name != key)
             return f"the word stands around its fields: write `{{{word}: {{{inner}}}}}`"
     having, text = _having(list(node.entries), family, catalogue), node.span.text
-    if (told := _told(node, having or catalogue.choices(family), family, catalogue)) is not None:
-        return told
+    if (meant := _told(node, having or catalogue.choices(family), family, catalogue)) is not None:
+        return meant
     for name, value in () if having else node.entries.items():
         having = _having([name], family, catalogue)
         text = f"{{{name}: {value.span.text}}}"
@@ -247,7 +250,7 @@ def _told(node: Mapping, words: Collection[str], family: str, catalogue: Catalog
     for word in words:
         cls = catalogue.load(family, word)
         called: Naming[str, str] = getattr(cls, "told_by", {})
-        telling = {key for key, one in node.entries.items() if key in called and one.span.text not in OFF}
+        telling = {key for key, value in node.entries.items() if key in called and value.span.text not in OFF}
         weight = len(telling) + len(telling - set(called.values()))
         if cls is None or weight <= best:
             continue
