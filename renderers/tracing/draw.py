@@ -151,6 +151,8 @@ def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> N
         busy, marks = np.where(buffers.mirrored != 0, busy, np.int8(0)), np.empty_like(marks)
         choose(busy, np.zeros_like(marks), marks)
 
+    laid = marks.any(axis=1)  # elsewhere, in most rows of a second layer, all chunks are BLANK
+
     def along(start: int, stop: int) -> None:
         lay_out(start, stop, width, marks, records, visibility, planes)
         widen(start, stop, columns, marks, planes, sums, np.empty(LANES, dtype=np.float32))
@@ -163,4 +165,4 @@ def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> N
         refine_rows(start * width, stop * width, busy, records, visibility, fine)
 
     for stage in (along, down, at_last):
-        over_rows(height, stage)
+        over_rows(height, lambda start, stop, stage=stage: laid[start // TILE] and stage(start, stop))
