@@ -274,7 +274,9 @@ class Names:
         if wanted in parts_known:
             message = f"'{wanted}' is a part, not a value"
             some = f"write one of its outputs, such as '{self._some_output(wanted)}'"
-            hint = some if self.outputs_of(wanted) else instead("name", wanted) or "it has no values to read"
+            hint: str | None = (
+                some if self.outputs_of(wanted) else instead("name", wanted) or "it has no values to read"
+            )
         else:
             hint = instead("name", wanted)
             hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])

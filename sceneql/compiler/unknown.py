@@ -27,9 +27,13 @@ MANY = 6
 THINGS, SHORT = ("objects", "models", "cameras", "lights"), 2
 """Families whose fields are looked for among their own words alone, and the longest name that tells too little."""
 SIZES = ("width", "height", "depth", "length")
+OFF = ("0", "0.0", "no", "false")
+"""Texts of a field that says that something is not."""
 FEW = 4
 """Largest number of words with a field by which it is told what has that field."""
 
+_FIRST = re.compile(r"\{(\w+): [<\[]")
+_BLANK = re.compile(r"<(\w+)\|([^>]*)>")
 _UNPARTED = re.compile(r"(\w+)(?:(:)|\s*=| )(.*)")
 
 
@@ -60,7 +64,7 @@ def report_unknown(
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
         help = (said_by or {}).get(name) or instead(f"field.{title.partition('.')[0]}", name)
-        help = help or _together(name, unknown, node, known)
+        help = (help and filled(help, node.entries[name])) or _together(name, unknown, node, known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
             help = f"write `{written[1]}: {written[3].strip()}`{space}"
@@ -78,6 +82,14 @@ def report_unknown(
         help = help or "it has " + ", ".join(known)
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
     return not unknown
+
+
+def filled(help: str, value: Node) -> str:
+    """A help text in which `<position|0 1 0 m>` is the text of the value's field `position`, or what stands behind."""
+    fields = value.entries if isinstance(value, Mapping) else {}
+    if "<" in help and value.span.text and not isinstance(value, Mapping) and (own := _FIRST.search(help)) is not None:
+        return f"write `{own[1]}: {value.span.text}`"
+    return _BLANK.sub(lambda blank: fields[blank[1]].span.text if blank[1] in fields else blank[2], help)
 
 
 def _like(
@@ -227,6 +239,8 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
             inner = ", ".join(f"{name}: {value.span.text}" for name, value in node.entries.items() if name != key)
             return f"the word stands around its fields: write `{{{word}: {{{inner}}}}}`"
     having, text = _having(list(node.entries), family, catalogue), node.span.text
+    if (meant := _told(node, having or catalogue.choices(family), family, catalogue)) is not None:
+        return meant
     for name, value in () if having else node.entries.items():
         having = _having([name], family, catalogue)
         text = f"{{{name}: {value.span.text}}}"
@@ -246,6 +260,28 @@ def other_family(name: str, mark: Refers, names: Names, catalogue: Catalogue, fa
         return f"write `{word}`, a word, or the name of one of {mark.family}"
     others = [part for part in names.parts if family_of(part) == mark.family]
     return f"those of {mark.family} are {', '.join(others[:8])}" if others else f"write one under `{mark.family}:`"
+
+
+def _told(node: Mapping, words: Collection[str], family: str, catalogue: Catalogue) -> str | None:
+    """The help for fields that tell which of the words is meant, as ``metallic: 1``; None for others.
+
+    Names of other programs tell more than those that the word has as well.
+    """
+    best, help = 0, None
+    for word in words:
+        cls = catalogue.load(family, word)
+        called: Naming[str, str] = getattr(cls, "told_by", {})
+        telling = {key for key, value in node.entries.items() if key in called and value.span.text not in OFF}
+        weight = len(telling) + len(telling - set(called.values()))
+        if cls is None or weight <= best:
+            continue
+        best, names = weight, set(map(written_name, cls.model_fields))
+        kept = {
+            called.get(key, key): one.span.text for key, one in node.entries.items() if called.get(key, key) in names
+        }
+        inner = ", ".join(f"{key}: {text}" for key, text in kept.items())
+        help = f"the word stands around its fields: write `{{{word}: {{{inner}}}}}`" if kept else f"write `{word}`"
+    return help
 
 
 def several_meant(node: Sequence, mark: Refers, entry: Entry, catalogue: Catalogue) -> str | None:

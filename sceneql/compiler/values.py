@@ -166,7 +166,7 @@ def _by_component(
 ) -> Expr | None:
     for key in node.entries:
         if key not in COMPONENTS:
-            help = vector_meant_by(node) or suggestion(key, (*COMPONENTS, "keys"))
+            help = vector_meant_by(node, what) or suggestion(key, (*COMPONENTS, "keys"))
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"
