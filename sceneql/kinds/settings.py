@@ -87,7 +87,8 @@ class Expect(Record):
     def problems(self) -> Iterator[Problem]:
         """An expectation that is compared with nothing, or with two things."""
         if (self.value is None) == (self.below is None):
-            yield Problem("an expectation has either 'value' or 'below'")
+            help = "write what it must be, `value: 2 m`, or what it stays below, `below: 3 m`"
+            yield Problem("an expectation has either 'value' or 'below'", help=help)
         if not self.tolerance.constant:
             yield Problem("tolerance must be constant", ("tolerance",), code="not-constant")
         yield from _unlike(self.of, {"value": self.value, "tolerance": self.tolerance, "below": self.below})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import dist
 from typing import Any, cast
 
 from pydantic import BaseModel
@@ -10,6 +11,7 @@ from pydantic import BaseModel
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Formula, Interaction, Kind, Model, Object, Tie, Value
+from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Number
 
@@ -64,7 +66,9 @@ def warn_of_weak(tasks: Mapping[str, Task], groups: Sequence[Island], end: float
             rates = [one.frequency for one in cast(Interaction, force.kind).fastest(force.name, on)]
             if rates and max(rates) * end < UNSEEN:
                 text = f"'{force.name}' is too weak to be seen: until {end:g} s it bends no way by as much as a part in"
-                help = f"masses of kg are pulled in seconds by `{force.word}: {{constant: 1 m^3/kg/s^2}}`, or write"
+                constant, why = _circling([mass for of in on.values() for mass in of.items()])
+                help = f"masses of kg are pulled in seconds by `{force.word}: {{constant: {constant} m^3/kg/s^2}}`"
+                help += f"{why}, or write"
                 text, help = f"{text} {1 / UNSEEN**2:.0g}", f"{help} larger masses, or a longer clock"
                 found.warning("nothing-moves", text, force.span, help=help)
 
@@ -84,6 +88,17 @@ def warn_of_slow(tasks: Mapping[str, Task], end: float, found: Diagnostics) -> N
                 longer = f"`clock: {{end: {end * (cell / way) ** 2:.0f} s, speed: ...}}`"
                 help = f"for a cell take {longer}, or smaller cells, or a larger `coefficient`"
                 found.warning("nothing-moves", text, task.span, help=help)
+
+
+def _circling(masses: Sequence[tuple[str, StaticMass]]) -> tuple[str, str]:
+    """The constant by which a mass circles the heaviest at its speed, v^2 r/M in SI, and which one that is; else 1."""
+    placed = sorted((one for one in masses if one[1].position is not None), key=lambda one: -one[1].mass)
+    for name, mass in placed[1:]:
+        (center, heavy), away = placed[0], dist(mass.position or (), placed[0][1].position or ())
+        speed = dist(mass.velocity or (0.0,) * 3, heavy.velocity or (0.0,) * 3)
+        if speed * away > 0.0 and heavy.mass > 0.0 and name and center:
+            return f"{speed**2 * away / heavy.mass:.2g}", f", with which '{name}' circles '{center}'"
+    return "1", ""
 
 
 def _leads(task: Task) -> bool:
