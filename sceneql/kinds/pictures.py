@@ -58,6 +58,8 @@ class Material(Kind):
     """How a surface looks."""
 
     family: ClassVar[str] = "materials"
+    clear: ClassVar[bool] = False
+    """Whether one sees through it."""
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
         """The surface at the moment; ``color`` (linear RGB), where given, replaces the material's own."""

@@ -7,6 +7,7 @@ from typing import Any, cast
 
 from pydantic import BaseModel
 
+from sceneql.compiler.passes.doubts import GRAVITATION
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Interaction, Kind, Model, Object, Tie, Value
@@ -57,13 +58,16 @@ def warn_of_weak(tasks: Mapping[str, Task], groups: Sequence[Island], end: float
         if not forces or not all(isinstance(one.kind, Interaction) and one.kind.mutual for one in forces):
             continue
         on = {name: cast(Model, tasks[name].kind).static_masses() for name in island.models}
+        each = [[one.frequency for one in cast(Interaction, force.kind).fastest(force.name, on)] for force in forces]
+        if not all(rates and max(rates) * end < UNSEEN for rates in each):
+            continue  # one of them moves the masses, or may: the others may well be weak beside it
         for force in forces:
-            rates = [one.frequency for one in cast(Interaction, force.kind).fastest(force.name, on)]
-            if rates and max(rates) * end < UNSEEN:
-                text = f"'{force.name}' is too weak to be seen: until {end:g} s it bends no way by as much as a part in"
-                help = f"masses of kg are pulled in seconds by `{force.word}: {{constant: 1 m^3/kg/s^2}}`, or write"
-                text, help = f"{text} {1 / UNSEEN**2:.0g}", f"{help} larger masses, or a longer clock"
-                found.warning("nothing-moves", text, force.span, help=help)
+            constant = getattr(force.kind, "constant", None)
+            pulls = isinstance(constant, Value) and constant.expr.type.dimension == GRAVITATION
+            text = f"'{force.name}' is too weak to be seen: until {end:g} s it bends no way by as much as a part in"
+            help = f"masses of kg are pulled in seconds by `{force.word}: {{constant: 1 m^3/kg/s^2}}`, or write"
+            help = f"{help} larger masses, or a longer clock" if pulls else "write a stronger one, or a longer clock"
+            found.warning("nothing-moves", f"{text} {1 / UNSEEN**2:.0g}", force.span, help=help)
 
 
 def _leads(task: Task) -> bool:

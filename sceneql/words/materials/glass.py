@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Color, FixedScalar, Material, Moment, field
 from sceneql.shapes.color import linear
@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 class Glass(Material):
     """Refracts by Snell's law and reflects by Fresnel's equations; light that passes its surface takes its color."""
+
+    clear: ClassVar[bool] = True
 
     color: Color = field("Color of the light that passes.", "1 1 1")
     index_of_refraction: FixedScalar = field("1.33 is water, 1.5 glass, 2.42 diamond.", "1.5", at_least=1, at_most=4)
