@@ -42,7 +42,7 @@ def main() -> None:
     _without_overflows()
     room.ask_before_imports()
     try:
-        with interrupts.raised() as interrupted:
+        with interrupts.raised(stopped) as interrupted:
             code = _run(interrupted)
     except KeyboardInterrupt as error:
         code = stopped(error)

@@ -34,7 +34,7 @@ from sceneql.failure import (
 )
 from sceneql.files import NUMBERS, refuse_unwritable, try_folder
 from sceneql.graph import SimulationGraph
-from sceneql.interrupts import held, within
+from sceneql.interrupts import held, keeping, within
 from sceneql.kinds import FAMILIES, Camera, Kind, Model, Output, Picture
 from sceneql.language.patch import Patch
 from sceneql.language.script import read_script
@@ -117,6 +117,7 @@ def render(
     run: Any = None
     ending = ExitStack()
     late = ending.enter_context(within(limit, lambda: doing.now(0.0)))
+    ending.enter_context(keeping(lambda: [*report.files, *_kept(sinks, KeyboardInterrupt())]))
     try:
         for name, kind in outputs.items():
             if isinstance(kind, Picture):

@@ -253,6 +253,20 @@ def test_a_ball_that_lands_takes_few_factorizations_a_stage(tmp_path):
     assert island.march.statistics.rejected <= 2
 
 
+def test_friction_of_skins_that_roll_over_one_another_takes_few_updates_a_stage(tmp_path):
+    ball = "elastic: {of: %s, spacing: 10 cm, element: p1, law: {neo_hookean: {modulus: 50 kPa, poisson: 0.4}}"
+    island = run_of(
+        tmp_path,
+        "objects: {a: {sphere: {radius: 0.2 m, position: -0.201 1 0 m}}, "
+        "b: {sphere: {radius: 0.2 m, position: 0.202 1.05 0 m}}}\nmodels:\n"
+        f"  one: {{{ball % 'a'}, velocity: 1 0 0 m/s}}}}\n  two: {{{ball % 'b'}, velocity: -1 0 0 m/s}}}}\n"
+        "contacts: {touch: {collision: {between: [one, two], friction: 0.3}}}\n",
+    )
+    island.advance(0.06)
+    assert island.march._settings[newton_kernels.ITERATIONS] <= 9 * island.march.floats[channels.STAGES]
+    assert island.march.statistics.rejected == 0
+
+
 def matrix(normal, u, p, slip):
     xx, xy, xz, yy, yz, zz = derivative(normal, u, p, slip)
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

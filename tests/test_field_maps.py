@@ -449,6 +449,21 @@ outputs: {still: {image: {size: 64 36, time: 0 s}}}
     assert load(tmp_path / "scene.yaml").drawn["still"] == ("plate_map",)
 
 
+@pytest.mark.parametrize(
+    ("look", "drawn"), [("", ("map",)), (", color: red", ("disc", "map")), (", hidden: no", ("disc", "map"))]
+)
+def test_a_map_is_seen_in_place_of_its_domain_of_which_no_look_is_said(tmp_path, look, drawn):
+    disc = f"disc: {{cylinder: {{radius: 0.5 m, height: 1 cm, rotation: {{about: x, angle: 90 deg}}{look}}}}}"
+    (tmp_path / "scene.yaml").write_text(f"""
+objects:
+  {disc}
+  map: {{field_map: {{of: drum.height, height: 1}}}}
+models: {{drum: {{wave: {{domain: disc, flat: yes, cell: 5 cm, speed: 1 m/s}}}}}}
+outputs: {{still: {{image: {{size: 64 36, time: 0 s}}}}}}
+""")
+    assert load(tmp_path / "scene.yaml").drawn["still"] == drawn
+
+
 SKIN = """
 models: {{skin: {{wave: {{size: 1 1 m, cell: 0.25 m, speed: 1 m/s, initial: 0.2*x - 0.05}}}}}}
 objects: {{sheet: {{field_map: {{of: skin.height, {fields}}}}}}}

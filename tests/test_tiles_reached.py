@@ -9,8 +9,9 @@ import pytest
 
 import stage
 from renderers.trace import Trace
-from renderers.tracing import buffers
+from renderers.tracing import buffers, waves
 from renderers.tracing import draw as drawing
+from renderers.tracing.light import look_lanes_kernels
 from renderers.tracing.pack import pack
 from renderers.tracing.probe import probe
 from renderers.tracing.tiles_kernels import reach
@@ -20,6 +21,7 @@ from stage import GLOW, WHITE, frame, sun, view
 
 SKY = Sky((0.9, 1.0, 1.2), (0.8, 0.6, 0.4), (0.3, 0.3, 0.3))
 SIZE = (150, 90)
+MIRROR = replace(WHITE, roughness=0.0, metallic=1.0)
 TILE = 16
 
 
@@ -106,7 +108,7 @@ def test_what_is_drawn_at_once_is_what_rays_see(monkeypatch, orthographic, visib
     """To the bit: edges at the rim of a tile, lines thinner than a pixel, mirrors and glass among nothing."""
     glass = replace(WHITE, roughness=0.0, transmission=1.0)
     shapes = (
-        stage.sphere(replace(WHITE, roughness=0.0, metallic=1.0), (-1.2, 0.3, 0.0), 0.2),
+        stage.sphere(MIRROR, (-1.2, 0.3, 0.0), 0.2),
         stage.sphere(glass, (0.9, -0.4, 0.0), 0.22),
         stage.blob(WHITE, (0.1, 0.6, -0.4)),
         stage.segment(WHITE, (-1.5, -0.8, 0.0), (0.4, -0.1, 0.3), 0.002),
@@ -120,10 +122,15 @@ def test_what_is_drawn_at_once_is_what_rays_see(monkeypatch, orthographic, visib
     assert np.array_equal(once, Trace(samples=4).draw(scene).linear)
 
 
-def test_a_thing_that_moves_leaves_nothing_behind():
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_thing_that_moves_leaves_nothing_behind(mirrored):
+    """Nor does a mirror, of whose pixels two records are kept, on a floor, whose pixels have one."""
+
     def at(x):
+        shapes = (stage.sphere(MIRROR, (x, 0.1, 0.0), 0.3), stage.floor()) if mirrored else ()
         ball = stage.blob(WHITE, (x, 0.1, 0.0))
-        return frame(ball, lights=(SKY, sun((0.5, 0.8, 0.4))), seen=view((0.0, 0.5, 4.0), (0, 0, 0), SIZE, 1.5))
+        seen = view((0.0, 0.5, 4.0), (0, 0, 0), SIZE, 1.5)
+        return frame(*(shapes or (ball,)), lights=(SKY, sun((0.5, 0.8, 0.4), angle=0.1)), seen=seen)
 
     fresh = []
     for x in (-1.2, 1.0, 9.0):
@@ -131,3 +138,31 @@ def test_a_thing_that_moves_leaves_nothing_behind():
         fresh.append(Trace(samples=4).draw(at(x)).linear)
     for x, picture in zip((-1.2, 1.0, 9.0, 1.0, -1.2), [*fresh, fresh[1], fresh[0]], strict=True):
         assert np.array_equal(Trace(samples=4).draw(at(x)).linear, picture)
+
+
+def test_rays_to_suns_that_boxes_show_to_meet_nothing_are_left_out_to_the_bit(monkeypatch):
+    """Two soft suns and a lamp above a floor: one sun from behind it, one low, whose light a box far away takes."""
+    shapes = (
+        stage.sphere(MIRROR, (0.2, 0.4, 0.0), 0.4),
+        stage.floor(),
+        stage.box(WHITE, (9.0, 2.0, 0.0), (0.5, 4.0, 1.0)),
+    )
+    suns = sun((0.5, 0.8, 0.4), angle=0.05), sun((1.0, 0.2, 0.0), angle=0.02), sun((0.0, -1.0, 0.1), angle=0.1)
+    lights = SKY, *suns, PointLight((-1.0, 3.0, 2.0), (3.0,) * 3, 0.2)
+    for orthographic in (True, False):
+        seen = view((0.3, 1.5, 4.0), (0, 0, 0), SIZE, 1.2 if orthographic else 0.35, orthographic)
+        scene = frame(*shapes, lights=lights, seen=seen)
+        listed = Trace(samples=4).draw(scene).linear
+        with monkeypatch.context() as patch:
+            patch.setattr(look_lanes_kernels, "MOST_LIGHTS", -1)  # all look around one by one
+            assert np.array_equal(listed, Trace(samples=4).draw(scene).linear)
+
+
+def test_paths_of_light_followed_by_one_call_end_as_wave_by_wave(monkeypatch):
+    for shapes in ((stage.torus(WHITE, 0.5, 0.2),), (stage.sphere(WHITE, (0.0, 0.5, 0.0), 0.5),)):
+        seen = view((0.3, 1.5, 4.0), (0, 0, 0), (64, 48), 1.2)
+        scene = frame(*shapes, stage.floor(), lights=(SKY, sun((0.5, 0.8, 0.4), angle=0.05)), seen=seen)
+        at_once = Trace(samples=4).draw(scene).linear
+        with monkeypatch.context() as patch:
+            patch.setattr(waves, "ways_follower", lambda *_: None)
+            assert np.array_equal(at_once, Trace(samples=4).draw(scene).linear)

@@ -8,6 +8,7 @@ import numpy as np
 
 from renderers.tracing import layout
 from renderers.tracing.buffers import Buffers, put_back, take
+from renderers.tracing.camera_kernels import TILE
 from renderers.tracing.certified import BOUNCES, TOLERANCE
 from renderers.tracing.filter.filter_kernels import deepen, widen
 from renderers.tracing.filter.hard_kernels import is_hard, list_cuts
@@ -80,7 +81,6 @@ def draw(
         busy, records, visibility, fine = of_layer
         with_waves(lambda w: w.refine(start, stop, busy, records, visibility, buffers.means, fine))
 
-    buffers.mirrored[:] = 0
     over_rows(height, gather, "tracing rays")
     undecided, seconds, unsearched = map(sum, zip(*counts, strict=True))
     layers_seen = (1, 0) if seconds else (0,)  # layer 0 comes last: the stage of edges reads its planes
@@ -92,7 +92,8 @@ def draw(
         _filter(refine, buffers, layer)
 
     def shade(start: int, stop: int) -> None:
-        light = buffers.records, buffers.fine, buffers.visibility
+        seen = layers if buffers.mirrored[start // TILE : -(-stop // TILE)].any() else 1
+        light = buffers.records[:seen], buffers.fine[:seen], buffers.visibility[:seen]
         shade_rows(scene, start, stop, buffers.busy, *light, buffers.radiance)
 
     def lay_keys(start: int, stop: int) -> None:

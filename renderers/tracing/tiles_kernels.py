@@ -127,11 +127,20 @@ def reach(scene, reached):
                 reached[y, x] = 1
 
 
-@kernel(types.void(SCENE, _i, _i, MARKS, MARKS, _stack, _rows), _nrt=False)
-def fill_background(scene, start, stop, reached, busy, records, radiance):
+@part
+def erase_tile(records, first, start, stop, tile, width):
+    """Empty the records of a tile of rows start..stop, from the ``first`` layer on."""
+    for y in range(start, stop):
+        for k in range(y * width + tile * TILE, y * width + min((tile + 1) * TILE, width)):
+            for layer in range(first, len(records)):
+                erase(records[layer, k])
+
+
+@kernel(types.void(SCENE, _i, _i, MARKS, MARKS, MARKS, _stack, _rows), _nrt=False)
+def fill_background(scene, start, stop, reached, busy, mirrored, records, radiance):
     """Draw the tiles of rows start..stop, at most TILE, that are not ``reached``; erase their records if ``busy``.
 
-    None of the tiles is busy then.
+    Second records are erased where tiles were ``mirrored``. None of the tiles is busy or mirrored then.
     """
     width = int(scene.reals[layout.WIDTH])
     u = scene.reals
@@ -143,15 +152,15 @@ def fill_background(scene, start, stop, reached, busy, records, radiance):
         else:
             even = even and u[layout.SKY + c] == u[layout.SKY + 3 + c] == u[layout.SKY + 6 + c]
     for tile in range(reached.shape[1]):
+        if mirrored[row, tile] != 0:
+            erase_tile(records, 1, start, stop, tile, width)
+            mirrored[row, tile] = 0
         if reached[row, tile] != 0:
             busy[row, tile] = 0
             continue
         last = min((tile + 1) * TILE, width)
         if busy[row, tile] != 0:
-            for y in range(start, stop):
-                for k in range(y * width + tile * TILE, y * width + last):
-                    for layer in range(len(records)):
-                        erase(records[layer, k])
+            erase_tile(records[:1], 0, start, stop, tile, width)
             busy[row, tile] = 0
         r, g, b = backdrop(u, 0.0)
         for y in range(start, stop):

@@ -20,6 +20,7 @@ from renderers.tracing.filter.refine_kernels import refine
 from renderers.tracing.gather_kernels import PATH
 from renderers.tracing.light import look_lanes_kernels as looks
 from renderers.tracing.light.bounce_kernels import WAY, dress_hits, follow_all, look_about, step_all
+from renderers.tracing.light.ways import few_of, ways_follower
 from renderers.tracing.path_hits_kernels import bend_paths, dress_paths, meet_paths
 from renderers.tracing.record_kernels import COLUMNS
 from renderers.tracing.scratch import asked_rays, begun, given_up, scratch_beside
@@ -51,9 +52,6 @@ TILES, RAYS = 10, 40
 """Size of a wave of the camera's rays, and of a list of rays, in tiles; a wave's memory stays in a core's cache."""
 MORE_TILES, MORE_RAYS = 40, 80
 """Sizes in scenes without light from around: for most pictures a wave is a whole band, to save calls from Python."""
-FEW = 4
-"""Number of light paths below which each is followed singly, because a wave costs more than it saves. This does not
-apply if packets intersect the whole scene: a single ray then costs as much as a wave."""
 
 
 class Waves:
@@ -98,6 +96,8 @@ class Waves:
             np.empty(count, np.int64),
         )
         self.ways_met, self.ways_skins = np.empty((count, 5)), np.empty((count, 6))
+        own = self.ways, self.live, self.ways_hit, self.ways_met, self.ways_skins
+        self.follow = ways_follower(scene, packets, self.lanes, self.scratch, self.asked, *own)
         self.marks, self.same = (
             np.empty((TILE, -(-width // LANES) * LANES), np.float32),
             np.empty(LANES, np.float32),
@@ -118,7 +118,7 @@ class Waves:
         ``reached`` tiles; tiles with a hit become ``busy``, those with a second record ``mirrored``.
         """
         begun(self.scratch)
-        fill_background(self.scene, start, stop, reached, busy, records, radiance)
+        fill_background(self.scene, start, stop, reached, busy, mirrored, records, radiance)
         tiles = np.flatnonzero(reached[start // TILE])
         undecided = seconds = 0
         for wave, first in enumerate(range(0, len(tiles), self.tiles)):
@@ -135,11 +135,12 @@ class Waves:
         """Run ``gather`` for some tiles, but for the light of paths that begin there: see ``_end_ways``."""
         scene, asked = self.scene, self.asked
         count = list_pixels(scene, start, stop, tiles, asked, self.cones, at)
-        self._follow(count, at, records)
+        if not self._follow(count, at, records):  # no pixel has a second record: none is looked for
+            records, visibility = records[:1], visibility[:1]
 
         def look(first: int, last: int) -> int:
             if self.looks is not None and asked[0, layout.MODE] == layout.ASKING:
-                return int(looks.list_looks(scene, asked, first, last, at, records, self.looks))
+                return int(looks.list_looks(scene, asked, first, last, at, records, visibility, self.looks))
             telling = self.looks is not None and asked[0, layout.MODE] == layout.TELLING
             kernel = looks.tell_looks if telling else look_from
             return int(kernel(scene, self.scratch, asked, self.ways, first, last, at, records, visibility))
@@ -188,6 +189,7 @@ class Waves:
         each, count = len(some), len(some) * len(edges)
         own, found = self.own, self.found
         list_samples(scene, some, edges, self.asked, self.cones)
+        own[1:, :count] = 0.0
         self._follow(count, self.each, own)
         more = each, edges, records, visibility, own, found
         self._ask(0, count, lambda i, end: look_from_samples(scene, self.scratch, self.asked, self.ways, i, end, *more))
@@ -195,8 +197,11 @@ class Waves:
         left = add_samples(scene, each, used + each, len(points), edges, *light, self.sums, picture)
         return edges[:left]
 
-    def _follow(self, count: int, at: Array, records: Array) -> None:
-        """Trace ``count`` listed rays of the camera, and their paths to the end; see waves_kernels.meet_first."""
+    def _follow(self, count: int, at: Array, records: Array) -> int:
+        """Trace ``count`` listed rays of the camera, and their paths to the end; see waves_kernels.meet_first.
+
+        Returns the number of paths.
+        """
         self._meet()
         scene, asked, cones, gathered, met, spares = (
             self.scene,
@@ -213,7 +218,7 @@ class Waves:
             self.packets.skin(scene, self.hits[:hits], met, self.skins)
             describe_hits(scene, asked, cones, *out, self.hits[:hits], met, self.skins)
         if not started:
-            return
+            return 0
         paths, of = self.paths[:started], self.of[:started]
         own_at = at[of]
         while True:
@@ -225,6 +230,7 @@ class Waves:
                 break
             self._meet()
         end_paths(paths, of, gathered)
+        return int(started)
 
     def _dress(self, paths: Array) -> None:
         """Compute normals of implicit solids at the hits of live paths, and beside these places."""
@@ -271,7 +277,7 @@ class Waves:
             if together:
                 self.awaited.append((work, start, end))
             elif head[layout.WAYS] > before:
-                self._light_ways(before)
+                self.light_ways(before)
                 head[layout.MODE], head[layout.NEXT] = layout.ENDING, before
                 work(start, end)
                 head[layout.WAYS] = before
@@ -281,7 +287,7 @@ class Waves:
         """Follow the light paths that calls of ``_ask`` have begun together, and run what awaits them."""
         head = self.asked[0]
         if head[layout.WAYS] > 0:
-            self._light_ways(0)
+            self.light_ways(0)
             head[layout.MODE], head[layout.NEXT] = layout.ENDING, 0
             for work, start, end in self.awaited:
                 work(start, end)
@@ -299,13 +305,16 @@ class Waves:
         work(start, end)
         return end
 
-    def _light_ways(self, first: int) -> None:
+    def light_ways(self, first: int) -> None:
         """Follow the light paths from the ``first`` on to their ends, in waves; the last few one by one."""
+        if self.follow is not None:
+            self.follow(first)
+            return
         scene, asked, ways, live, hits = self.scene, self.asked, self.ways, self.live, self.ways_hit
         last = int(asked[0, layout.WAYS])
         count = last - first
         live[:count] = np.arange(first, last)
-        few = 1 if self.lanes is None and asked[0, layout.ALONE] else FEW
+        few = few_of(self.lanes, asked)
         while True:
             count, some = look_about(scene, self.scratch, ways, live, count, hits, self.ways_met)
             if count < few:

@@ -133,19 +133,17 @@ def meet_first(scene, scratch, asked, count, cones, at, records, gathered, paths
     What is seen without more rays, the background and matte surfaces, is done then: its light but for the records is
     in ``gathered[i]`` (r, g, b, and as DOUBTED). Of matte hits of solids that packets know the records are left to
     ``describe_hits``: they are listed in ``hits``, with (t, item, point) in ``met``. The rest begin as paths, of rays
-    ``of``. Returns the numbers of paths and of hits.
+    ``of``. Further layers of records, which paths alone write, are empty before. Returns the numbers of paths and hits.
     """
     counter = scratch.shape[0] - 1
     together = asked.shape[1] > layout.ANSWERS
-    alone, last = asked[0, layout.ALONE] != 0.0, len(records) - 1
+    alone = asked[0, layout.ALONE] != 0.0
     paths_now = hits_now = 0
     thin = scene.ints[layout.HAS_THIN] != 0
     seen, ends, even = -1, False, False  # the item met last, whether rays end at it, and whether it ``is_plain``
     for i in range(count):
         k, ray = at[i], asked[1 + i]
         first = records[0, k]
-        for layer in range(1, last + 1):
-            erase(records[layer, k])
         item, plain = -1, False
         if not thin:
             scratch[counter, 0] = 0.0

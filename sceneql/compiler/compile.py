@@ -33,9 +33,9 @@ from sceneql.compiler.passes.readable import report_unreadable
 from sceneql.compiler.passes.sizes import check_sizes
 from sceneql.compiler.passes.slopes import warn_of_values
 from sceneql.compiler.passes.stable_steps import warn_of_steps
-from sceneql.compiler.passes.unforced import warn_of_unforced, warn_of_weak
+from sceneql.compiler.passes.unforced import warn_of_slow, warn_of_unforced, warn_of_weak
 from sceneql.compiler.passes.unmoved import report_moving
-from sceneql.compiler.passes.unseen import warn_of_buried, warn_of_unseen
+from sceneql.compiler.passes.unseen import warn_of_buried, warn_of_dim, warn_of_unseen
 from sceneql.compiler.passes.unshown import warn_of_unshown, warn_of_unused_cameras
 from sceneql.compiler.passes.unused import warn_of_unused_defines
 from sceneql.compiler.passes.upward import warn_of_z_high, warn_of_z_up
@@ -100,6 +100,7 @@ def compile_script(
     warn_of_steps(script, tasks, groups, checked.settings.clock.end, found)
     warn_of_values(tasks, groups, found)
     warn_of_unforced(tasks, groups, found)
+    warn_of_slow(tasks, checked.settings.clock.end, found)
     warn_of_weak(tasks, groups, checked.settings.clock.end, found)
     warn_of_balls(tasks, groups, found)
     warn_of_two_models(checked.tasks, found)
@@ -108,6 +109,7 @@ def compile_script(
     warn_of_z_high(tasks, found)
     warn_of_unseen(tasks, drawn, cameras, found)
     warn_of_buried(tasks, found)
+    warn_of_dim(checked.tasks, found)
     found.raise_errors()
     order, needed_by, left_out = prune(tasks, groups, drawn, cameras)
     expected = {link.task for value in values_of(checked.settings.expect) for link in value.links}

@@ -32,6 +32,7 @@ OF_FORM = (
     "file-outside",
     "dimension-mismatch",
     "missing-value",
+    "rotation-shape",
     "syntax",
     "unit-needed",
     "unknown-color",

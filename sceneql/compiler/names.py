@@ -326,6 +326,8 @@ def _place(part: str, wanted: str, outputs: Collection[str]) -> str | None:
     """The help for a coordinate, or for the one place of a part with several bodies: `ball.y`, `fall.position`."""
     if wanted in ("x", "y", "z") and "position" in outputs:
         return f"write `{part}.position.{wanted}`"
+    if wanted == "velocity" and "position" in outputs:
+        return "only what a model moves has one: write what it is by the formula, as `[1 m/s, 0 m/s, 0 m/s]`"
     *of, last = wanted.split(".")
     if last in SPEEDS and (velocity := ".".join((*of, "velocity"))) in outputs:
         return f"write `length({part}.{velocity})`, or a component, `{part}.{velocity}.x`"

@@ -37,6 +37,8 @@ class Object(Kind):
     edgeless: ClassVar[bool] = False
     """Whether its surface is the zero set of a field, as a rule without edges."""
 
+    covers: ClassVar[bool] = False
+    """Whether it shows a field where the object that the field fills would hide it."""
     decorates: ClassVar[bool] = False
     """Whether a model whose outputs it reads still draws itself."""
 

@@ -118,6 +118,9 @@ def with_known_keys(node: Mapping, known: Collection[str], holder: str, lost: Br
             if other is not None and isinstance(value, Scalar) and value.text.lower() in NOTHING:
                 other = instead("absent", key) or other
             near = nearest(key, known) if other is None else None
+            above = next(reversed(result.entries), "") if not node.flow else ""
+            if above and empty(result.entries[above]) and not isinstance(value, Scalar) and near is None:
+                other = f"what belongs to `{above}:` is indented below it: write two spaces before `{key}:`"
             every = f"{holder} may have {', '.join(dict.fromkeys(known))}: `sceneql words sections`"
             help = other or suggestion(key, known) or every
             found.error("unknown-section", f"{holder} has no section '{key}'", node.keys[key].span, help=help)
@@ -151,7 +154,7 @@ def section(name: str, node: Node, taken: Collection[str], found: Diagnostics) -
                 own = _free(written.word.text, result.entries.keys() | set(taken))
                 result.entries[own], result.keys[own] = item, written.word
     elif not (empty(node) or broken(node)):
-        help = f"write `{name}: [{node.text}]`" if node.kind == "text" else _ENTRY
+        help = f"write `{name}: [{node.text.strip('[] ')}]`" if node.kind == "text" else _ENTRY
         if name == "outputs" and "." in node.text:
             help = "write `outputs: {film: video}`; `sceneql render SCENE -o FILE` names the file"
         found.error("section-shape", f"'{name}' holds parts by name, or a list of words", node.span, help=help)

@@ -90,6 +90,8 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
     character = source.text[at : at + 1]
     if (tab := _tab(source, at)) is not None:
         return _syntax("a tab cannot indent a line", source, tab, "use spaces: two for each level")
+    if character in ("}", "]"):
+        return _syntax(f"this `{character}` closes nothing", source, at, "leave it out")
     if "cannot start any token" in problem:
         message = f"a text cannot begin with `{character}`"
         return _syntax(message, source, at, "put it in quotes")

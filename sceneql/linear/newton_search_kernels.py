@@ -33,6 +33,7 @@ from sceneql.linear.newton_kernels import (
     FACTORED,
     FACTORIZATIONS,
     ITERATIONS,
+    LOOSELY,
     NEWTON,
     NOISE,
     NOISE_APART,
@@ -70,6 +71,9 @@ TRUE_AFTER, TRUE_AFTER_APART = 3, 1
 RARELY = 8
 ENOUGH = 1e-4
 """Part of the fall that the slope predicts which a step must bring (Armijo)."""
+KEEPING = 0.3
+"""Contraction up to which factors are kept where surfaces are kept apart: an update with new ones takes four times as
+long, and positive slopes bring no more."""
 KEPT = 4
 """Evaluations of slopes where surfaces are kept apart that take those of strain from before (channels.KEEPS)."""
 EASY = 4
@@ -86,7 +90,7 @@ ULPS, UNTOLD = 1.0 + 4e-16, 100.0
 """Factor by which a state is rounded another way; fall of a potential, over what that changes, up to which likewise."""
 LESS = 0.25
 """Square of the part to which an update must bring down the residual where the potential tells nothing of it."""
-LOOSE = 3e-2
+LOOSE = 0.3
 """Last update, over the largest with the same loads of friction, from which on these are taken anew."""
 UNMOVED = 1e-12
 """Part of an update that a limit allows, below which nothing can move."""
@@ -258,12 +262,16 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             if along(plan, scales, residual, residual) <= LESS * left:
                 part, value = longest, lowest
         if part <= SHORTEST * longest:
-            if positive:
+            if positive and stale and failing == 0:
                 break
             go(y, change, 0.0, floats)
+            if failing > 0:  # what is searched for less of may have been let grow where it told nothing
+                for k in range(n):
+                    y[k] = best[k]
+                foresee(y, y, floats)
             remain(functions, t, a, base, y, residual, plan, floats, ints)
             positive = stale = True
-            since = slow = 0
+            since = slow = failing = 0
             patience = min(2 * patience, RARELY)
             continue
         searching = has_limit
@@ -280,6 +288,7 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             contraction = size / before if before > 0.0 else 0.0
             memory[CONTRACTION] = max(contraction, 1e-3)
         first = max(first, size) if size < math.inf else first
+        anew = False
         if part == 1.0 and size < math.inf:
             done = size == 0.0 or (contraction < 1.0 and size * contraction <= memory[SHARE] * (1.0 - contraction))
             done = done and (since > 0 or memory[SHARE] < 1.0 or size < TINY)
@@ -289,9 +298,11 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
             loose = contraction < 1.0 and size * contraction <= LOOSE * first * (1.0 - contraction)
             if rubs and since > 0 and (done or loose) and value <= lowest + rounding:
                 # Loads of friction follow the state, before the solution with those of before is exact.
+                anew = floats[channels.STALE] > LOOSELY
                 floats[channels.LAGS] += 1.0
                 floats[channels.STALE] = first = 0.0
                 remain(functions, t, a, base, y, residual, plan, floats, ints)
+                foresee(y, y, floats)  # the directions of friction have learned what there was to learn
                 rubs = floats[channels.STALE] > unlike(memory)
                 done = False
             if done:
@@ -320,8 +331,8 @@ def search(functions, t, a, base, y0, y, scratch, jacobian, store, scales, memor
                 positive = searching = stale = True
                 failing = since = slow = 0
                 continue
-        well = has_limit and since > 1 and contraction <= SLOWED_APART
-        stale = (positive and not well) or part < 1.0 or (since > 1 and contraction > SLOW)
+        well = has_limit and since > 1 and contraction <= KEEPING and not anew
+        stale = ((positive or has_limit) and not well) or part < 1.0 or (since > 1 and contraction > SLOW)
         slow = slow + 1 if contraction > slowed and since > 1 else 0
         if positive and slow >= patience:
             positive, slow, stale = False, 0, True

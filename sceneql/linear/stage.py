@@ -123,8 +123,8 @@ def _chosen(system: System, kinds: Kinds, exact: bool, signs: bool) -> tuple[Lef
     pattern = _pattern(left, inertia_places(system, left))
     if one_grid(system, left.core):
         return left, pattern, _over_grids(system, left.core, pattern)
-    solver = None
-    if by_masses is None:
+    solver = _beside_few(pattern, _places(system, left), exact) if by_masses is None else None
+    if by_masses is None and solver is None:
         points = None if system.border else _points(system, left)
         # Factors of a field's matrix serve many steps, so they pay even if iterations would be faster for one.
         solver = _factored(pattern, 1, points, exact, signs or system.fields.on_elements > 0, system.border)
@@ -216,7 +216,15 @@ def _points(system: System, left: Left) -> Floats | None:
     """Positions (units, 3) [m] of the units' masses at the start; None if a unit is no velocity."""
     import numpy as np
 
-    points = np.full((len(system.y), 3), np.nan)
+    found = _places(system, left)
+    return None if np.isnan(found).any() else found
+
+
+def _places(system: System, left: Left) -> Floats:
+    """Positions (units, 3) [m] of the units' masses at the start; NaN for what is no velocity of a mass."""
+    import numpy as np
+
+    points = np.full((len(system.y) + system.border, 3), np.nan)
     position_of = np.full(len(system.y), -1, dtype=np.int64)
     paired = np.flatnonzero(system.partner >= 0)
     position_of[system.partner[paired]] = paired
@@ -224,8 +232,8 @@ def _points(system: System, left: Left) -> Floats | None:
         positions = position_of[velocity_at : velocity_at + 3 * count]
         if (positions >= 0).all():
             points[velocity_at : velocity_at + 3 * count] = system.y[positions].reshape(-1, 3).repeat(3, axis=0)
-    found = points[left.core[:: left.unit]]
-    return None if np.isnan(found).any() else found
+    found: Floats = points[left.core[:: left.unit]]
+    return found
 
 
 def likely_kernels(system: System) -> tuple[str, ...]:
@@ -291,6 +299,23 @@ def _factored(
         text,
         True,
     )
+
+
+def _beside_few(pattern: Any, places: Floats, exact: bool) -> _Solver | None:
+    """Factors of the masses among the unknowns, with all others as a border; None where that does not pay."""
+    from sceneql.linear import bordered, bordered_kernels
+    from sceneql.linear.multifrontal import planning
+
+    many = bordered.split(places)
+    if many is None:
+        return None
+    plan = planning.plan(bordered.within(pattern, many), None, places[many], 1, exact)
+    if plan.operations > MOST_OPERATIONS:
+        return None
+    found = bordered.bordered(pattern, many, plan.numbers, plan.factors, plan.work)
+    few, all_ = int((~many).sum()), len(many)
+    text = f"sparse factorization of {all_} unknowns, {plan.factors:.3g} numbers in its factors, and {few} beside them"
+    return _Solver(bordered_kernels, found.numbers, found.factors, found.work, text)
 
 
 def _iterations(pattern: Any) -> _Solver:

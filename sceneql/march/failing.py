@@ -34,7 +34,7 @@ MESSAGES = {
     kernels.STUCK: "contacts push against each other at one instant without end",
     kernels.UNSEEN: "bodies are in each other, or held apart, by a contact that mode `exact` has not seen",
     kernels.COSTLY: "contacts take more work than they may",
-    kernels.MADE: "contacts make energy, in however short a step",
+    kernels.MADE: "contacts make or lose energy, in however short a step",
 }
 AHEAD = 1e-9
 """Interval ahead, relative to the time reached, in which a rate without a value is searched for."""
@@ -85,12 +85,18 @@ def failure(march: Stopped, status: int, entry: int, ahead: float) -> RunFailure
 
 def _at_contact(march: Stopped, status: int, pair: int) -> RunFailure:
     """The failure of contacts, at the line of the pair's contact, or of the first contact that has advice."""
-    message, first = MESSAGES[status], 0
+    message, first, advised = MESSAGES[status], 0, None
     for pairs, origin, help in march.system.events:
-        if help and (status != kernels.STUCK or first <= pair < first + pairs):
-            return RunFailure(message, part=origin.part, time=march.time, span=origin.span, help=help)
+        own = status == kernels.STUCK and first <= pair < first + pairs
+        if own or (help and advised is None):
+            advised = origin, help
+        if own:
+            break
         first += pairs
-    return blamed(march, 0, message)
+    if advised is None or not advised[1]:
+        return blamed(march, 0, message)
+    origin, help = advised
+    return RunFailure(message, part=origin.part, time=march.time, span=origin.span, help=help)
 
 
 def blamed(march: Stopped, entry: int, message: str, aheads: Iterable[float] = ()) -> RunFailure:

@@ -122,6 +122,7 @@ class March:
         if self.system.structure.local or self.system.structure.limits:
             slopes = stepper.needs.jacobian
             self.floats[channels.STAGE] = self.system.floats[channels.STAGE] if slopes else channels.NO_SLOPES
+        self.floats[channels.FIXED] = not stepper.control.adaptive
         self._engaged = engaged = self._methods.begin(self.system, stepper, self.driver, counts=self._counts)
         self._settings, self._numbers, self._work = engaged.settings, engaged.numbers, engaged.work
         self._alone = engaged.alone

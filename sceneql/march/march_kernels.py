@@ -38,13 +38,15 @@ pair whose impact is due (-1: none)."""
     CRAWLED,
     SETTLES,
     WATCHED,
+    SHRUNK,
     COUNTS,
-) = range(8, 22)
+) = range(8, 23)
 """Properties of solver and island (system.Stepper); whether a body rests on a local contact (channels.HOLDS); whether
 the arrays of the step's start and end are swapped, for the end of a step is the next one's start; whether there are
 kernels that act after steps (Assembly.after_step), and whether they changed anything after the last one; successive
 steps that have hardly moved time; whether there are such kernels that act on samples, too; whether surfaces may pass
-one another in a whole step (Assembly.limit)."""
+one another in a whole step (Assembly.limit); how often the step to try next is halved for what exact contacts did in
+those before, which fixed steps forget by and by, and others after each."""
 
 SHORTEST = 1e-3
 """Part of a fixed step below which it is not halved any more."""
@@ -256,7 +258,7 @@ def march(
     back_off = pointers.back_off_at(functions[pointers.AT_BACK_OFF])
     after_step = pointers.after_step_at(functions[pointers.AT_AFTER_STEP])
     settle = pointers.settle_at(functions[pointers.AT_SETTLE])
-    n, part = y0.size, 1.0
+    n = y0.size
     alone = counts[LOCAL] == 0 and counts[ACTS] == 0
     # Where nothing asks for the rate before a step's end is settled, it is evaluated once, after that.
     later = alone and leaving.size == 0 and counts[SETTLES] > 0 and counts[LAST_STAGE] < 0
@@ -264,7 +266,7 @@ def march(
         if counts[LEFT] <= 0:
             return PAUSED
         counts[LEFT] -= 1
-        t0 = clock[T1]
+        t0, part = clock[T1], 0.5 ** counts[SHRUNK]
         y0, y1 = y1, y0
         rate0, rate1 = rate1, rate0
         counts[SWAPPED] = 1 - counts[SWAPPED]
@@ -303,7 +305,7 @@ def march(
             copy(y0, y1)
             copy(rate0, rate1)
             if leaving.size > 0 and counts[ADAPTIVE] == 0 and status in (GROWTH, NOT_FINITE) and part > LEAST_PART:
-                part *= 0.5
+                counts[SHRUNK] += 1
                 continue
             return status
         if counts[LAST_STAGE] >= 0:
@@ -373,7 +375,7 @@ def march(
                     floats[channels.CHANGED] = 0.0
                     counts[PENDING] = -1
                     counts[REJECTED] += 1
-                    part *= 0.5
+                    counts[SHRUNK] += 1
                     continue
                 return MADE if made else (UNSEEN if unseen else COSTLY)
             if floats[channels.CHANGED] == 1.0:
@@ -384,7 +386,7 @@ def march(
                 rate(t1, y1, rate1, floats, ints)
         clock[T0] = t0
         clock[T1] = t1
-        part = 1.0
+        counts[SHRUNK] = 0 if counts[ADAPTIVE] > 0 else max(0, counts[SHRUNK] - 1)
         counts[STEPS] += 1
         if counts[ADAPTIVE] == 0:
             counts[GRID] += t1 >= grid

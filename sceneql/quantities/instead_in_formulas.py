@@ -55,6 +55,7 @@ OF_FORMULAS = (
         "energy kinetic potential momentum velocity position speed height mass volume temperature",
         "a value is named with its part: write `fall.energy`, `ball.position.y`",
     ),
+    ("function", "sind cosd tand", "an angle has its unit: write `sin(30 deg)`, or `sin(x*(1 deg))`"),
     ("name", "required mandatory", "a field that has to be given is left empty: `fields: {height: }`"),
     ("function", "sqr square", "write `x^2`"),
     ("function", "frac fract", "write `mod(x, 1)`"),

@@ -313,7 +313,7 @@ OF_PARTS = (
         "a solid's law says it, `law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`: `sceneql words elastic`",
     ),
     ("field", "opacity alpha transparency transparent", "write `material: glass`: `sceneql words glass`"),
-    ("field", "visible show enabled", "write `hidden: yes` for a part that is not drawn"),
+    ("field", "visible visibility show enabled display", "write `hidden: yes` for a part that is not drawn"),
     ("field", "parent", "a part moves with others in a group, `{group: {children: [a, b]}}`: `sceneql words group`"),
     (
         "field",

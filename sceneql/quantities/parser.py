@@ -20,7 +20,7 @@ from sceneql.quantities.literal import (
     whole_value,
 )
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
-from sceneql.quantities.spaced import bracketed, meant_by_equals, two_ends, without_dots
+from sceneql.quantities.spaced import bracketed, meant_by_equals, other_signs, two_ends, without_dots
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
@@ -237,6 +237,8 @@ class _Parser:
                 plain := from_latex(self.text)
             ):
                 help = f"write `{plain}`"
+            if self.token in "|%@":
+                help = other_signs(self.text) or help
             if self.token in "=.":
                 help = meant_by_equals(self.text) or without_dots(self.text) or help
             name = re.match(WORD, self.text[self.end :])

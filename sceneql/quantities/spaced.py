@@ -15,6 +15,8 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _NAME = re.compile(r"(?<![\w.])[^\W\d][\w.]*")
 _FORMULA = re.compile(r"[-+]?[\w.(]")
 _JOINS = tuple("+*/^<>=,")
+BARS = 2
+"""Number of bars around an absolute value."""
 SIZE = 3
 """Components of the vectors that are recognised."""
 
@@ -116,3 +118,15 @@ def without_dots(text: str) -> str | None:
         if plain != text and "." not in re.sub(r"\d\.\d*|\w\.\w", "", plain)
         else None
     )
+
+
+def other_signs(text: str) -> str | None:
+    """The help for signs of other programs in a formula: ``|x|``, ``a % b``, ``@(t, x) -x``."""
+    handle = re.match(r"\s*@\([^()]*\)\s*", text)
+    if handle is not None and text[handle.end() :].strip():
+        return f"write the formula alone, `{text[handle.end() :].strip()}`"
+    if text.count("|") == BARS:
+        plain = re.sub(r"[|]([^|]+)[|]", r"abs(\1)", text.strip())
+        return f"write `{plain}`"
+    whole = re.fullmatch(r"\s*([\w.()*/ ]+?)\s*%\s*([\w.]+(?:\s*[a-zA-Z]+)?)\s*", text)
+    return None if whole is None else f"write `mod({whole[1]}, {whole[2]})`"

@@ -5,9 +5,24 @@ script and memories of words follow. Where a solver needs slopes, three arrays o
 Only this file says where they are.
 """
 
-RATES, STEP_END, HOLDS, CHANGED, SETTLED, NEWTON, POSITIVE, STAGE, STAGES, GROWS, LAGS, STALE, STATIC, KEEPS, HEAD = (
-    range(15)
-)
+(
+    RATES,
+    STEP_END,
+    HOLDS,
+    CHANGED,
+    SETTLED,
+    NEWTON,
+    POSITIVE,
+    STAGE,
+    STAGES,
+    GROWS,
+    LAGS,
+    STALE,
+    STATIC,
+    KEEPS,
+    FIXED,
+    HEAD,
+) = range(16)
 """RATES: number of evaluations of the rate so far.
 
 STEP_END: above 0, the planned end [s] of the step, which local contacts may only lower in this call; 0 where they
@@ -47,7 +62,9 @@ PLACING: the rates of prescribed positions are instead their distances from wher
 time.
 
 KEEPS: not 0 where the entries of terms that have positive slopes, as strain does, stay in the Jacobian as they were
-evaluated last: within a stage they change by far less than those of contacts."""
+evaluated last: within a stage they change by far less than those of contacts.
+
+FIXED: not 0 where no tolerance chooses the steps: exact contacts then look closer at the energy that a step makes."""
 
 NO_SLOPES, OUTSIDE, BETWEEN = 0.0, -1.0, -2.0
 """Values of STAGE, for contacts. NO_SLOPES: they act between steps, and no solver needs slopes. OUTSIDE: they act

@@ -53,6 +53,7 @@ STAGES = {
             f"renderers.tracing.waves:{name}"
             for name in ("look_from", "step_all", "look_about", "dress_hits", "follow_all", "light_paths")
         ),
+        "renderers.tracing.waves:Waves.light_ways",
         "renderers.tracing.light.look_lanes_kernels:list_looks",
         "renderers.tracing.light.look_lanes_kernels:tell_looks",
     ),

@@ -83,14 +83,18 @@ class Packets:
         """Empty list of rays (1 + rays, columns); see scene_kernels.ASKED."""
         return asked_rays(rays, self.solids)
 
-    def meet(self, asked: Floats) -> None:
-        """Write the first crossings of all listed rays with the solids into ``asked``."""
+    def of_rays(self, asked: Floats) -> list[tuple[Any, ...]]:
+        """Arguments of ``meet_asked`` for a list of rays, by solids."""
         if self.asked_last is not asked:
             self.asked_last, self.calls = asked, []
             for k, (memory, bounds) in enumerate(zip(self.memories, self.bounds, strict=True)):
                 more = *bounds, asked, layout.ANSWERS + k, self.chosen, self.spans
                 self.calls.append((*memory.bundle, memory.found, *memory.rest, *more))
-        for arguments in self.calls:
+        return self.calls
+
+    def meet(self, asked: Floats) -> None:
+        """Write the first crossings of all listed rays with the solids into ``asked``."""
+        for arguments in self.of_rays(asked):
             meet_asked(*arguments)
 
     def skin(self, scene: Scene, hits: NDArray[int64], met: Floats, skins: Floats) -> None:

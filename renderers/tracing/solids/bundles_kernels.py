@@ -127,7 +127,11 @@ def answer(rays, found, j, anywhere):
     return t if t0 > 0.0 or t > t0 + FINE * (t1 - t0) else np.nan
 
 
-@lean(types.void(*ARGUMENTS, _rows, _rows, types.float64[::1], _rows, ASKED, types.int64, _lists, _spans))
+SOLID = (*ARGUMENTS, _rows, _rows, types.float64[::1], _rows, ASKED, types.int64, _lists, _spans)
+"""Types of what ``meet_asked`` takes."""
+
+
+@lean(types.void(*SOLID))
 def meet_asked(
     code, constants, singles, registers, point, status, lanes, ids, rays, asked_from, queue, found, parts, scratch,
     beams, doubles, points, short, near_singles, near_parts, plan, order, room, table, flat, other, box, clips,

@@ -18,12 +18,15 @@ LANES = 64
 """Hits of a batch."""
 
 
-@lean(
-    types.void(
-        SCENE, types.int64[::1], _rows, _rows, _rows, types.float64[:, :, ::1], _rows, types.int32[:, :, ::1],
-        _rows, types.float32[:, ::1], types.int64[::1], types.int64[::1],
-    )
+HITS = (SCENE, types.int64[::1], _rows, _rows)
+MEMORY = (
+    _rows, types.float64[:, :, ::1], _rows, types.int32[:, :, ::1], _rows, types.float32[:, ::1], types.int64[::1],
+    types.int64[::1],
 )  # fmt: skip
+"""Types of what ``skin_hits`` takes: hits, and memory."""
+
+
+@lean(types.void(*HITS, *MEMORY))
 def skin_hits(scene, hits, met, skins, registers, slopes, points, codes, near, blocks, bases, listed):
     """Normals and colors of ``hits`` into ``skins`` (n, 6), as ``skin_kernels.skin`` finds them one by one.
 

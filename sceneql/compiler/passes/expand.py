@@ -14,6 +14,9 @@ from sceneql.kinds import Camera, Contact, Interaction, Kind, Light, Model, Obje
 from sceneql.quantities.dimension import LENGTH
 from sceneql.quantities.expression import Link, Number, Type
 
+LOOKS = {"material", "color", "hidden"}
+"""Fields by which a script says that an object is to be seen, or not."""
+
 
 def expand(
     tasks: Mapping[str, Task],
@@ -101,7 +104,8 @@ def _in_the_dark(tasks: Mapping[str, Task]) -> bool:
 
 
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
-    """Add what draws each model of fields that no object reads; objects that would hide it are hidden.
+    """Add what draws each model of fields that no object reads; objects that would hide it are hidden, also those that
+    would hide a map of the script, where nothing is said of their looks.
 
     Of a flow and the fields in the same box that it carries one is drawn: what an object reads, else a field. Nor is a
     flow drawn that is the wind of masses, or, if it is deep, around skins.
@@ -112,6 +116,13 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
     around = {flow.name for task in forces if (flow := cast(Interaction, task.kind).carrier()) is not None}
     for task in fields.values():
         read.update(task.needs if task.name in read else read.intersection(task.needs) and {task.name})
+    covered = {
+        need for task in tasks.values() if isinstance(task.kind, Object) and task.kind.covers for need in task.needs
+    }
+    for task in [fields[name] for name in covered & set(fields)]:
+        for ref in cast(Model, task.kind).shown_in_place_of():
+            if not LOOKS & tasks[ref.name].kind.model_fields_set:
+                tasks[ref.name] = _hidden(tasks[ref.name])
     carried = {need for task in (*fields.values(), *forces) for need in task.needs}
     for name, task in fields.items():
         kind: Any = task.kind
@@ -127,8 +138,13 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
             name += "_"
         tasks[name] = Task(name, word, cls.model_validate({"of": of}), model.span, (model.name,))
         for ref in cast(Model, model.kind).shown_in_place_of():
-            tasks[ref.name] = replace(tasks[ref.name], kind=tasks[ref.name].kind.model_copy(update={"hidden": True}))
+            tasks[ref.name] = _hidden(tasks[ref.name])
     return tasks
+
+
+def _hidden(task: Task) -> Task:
+    """An object that is not drawn."""
+    return replace(task, kind=task.kind.model_copy(update={"hidden": True}))
 
 
 def _drive(tasks: dict[str, Task]) -> dict[str, Task]:

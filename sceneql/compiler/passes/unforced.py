@@ -10,11 +10,14 @@ from pydantic import BaseModel
 from sceneql.compiler.passes.doubts import GRAVITATION
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Island, Task
-from sceneql.kinds import Contact, Interaction, Kind, Model, Object, Tie, Value
+from sceneql.kinds import Contact, Formula, Interaction, Kind, Model, Object, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.quantities.expression import Number
 
 UNSEEN = 0.01
 """Angle [rad] by which masses turn about each other, below which nobody sees their pull."""
+SEEN = 0.2
+"""Part of a cell that a field has to spread by for the change to be seen."""
 STARTS = ("velocity", "spin")
 """Fields that let masses or bodies move at the start."""
 
@@ -68,6 +71,23 @@ def warn_of_weak(tasks: Mapping[str, Task], groups: Sequence[Island], end: float
             help = f"masses of kg are pulled in seconds by `{force.word}: {{constant: 1 m^3/kg/s^2}}`, or write"
             help = f"{help} larger masses, or a longer clock" if pulls else "write a stronger one, or a longer clock"
             found.warning("nothing-moves", f"{text} {1 / UNSEEN**2:.0g}", force.span, help=help)
+
+
+def warn_of_slow(tasks: Mapping[str, Task], end: float, found: Diagnostics) -> None:
+    """Warn of fields that spread by less than a cell until the ``end`` [s], and that nothing else changes."""
+    for task in tasks.values():
+        kind = task.kind
+        spread, cell = getattr(kind, "coefficient", None), getattr(kind, "cell", None)
+        if not isinstance(kind, Model) or not isinstance(spread, Formula) or not isinstance(cell, float):
+            continue
+        still = getattr(kind, "drift", None) is None and getattr(kind, "source", None) is None
+        if still and isinstance(spread.expr, Number) and isinstance(spread.expr.value, float | int):
+            way = (2.0 * max(float(spread.expr.value), 0.0) * end) ** 0.5
+            if 0.0 < way < SEEN * cell:
+                text = f"'{task.name}' spreads by {way:.1g} m until {end:g} s, far less than a cell: nothing moves"
+                longer = f"`clock: {{end: {end * (cell / way) ** 2:.0f} s, speed: ...}}`"
+                help = f"for a cell take {longer}, or smaller cells, or a larger `coefficient`"
+                found.warning("nothing-moves", text, task.span, help=help)
 
 
 def _leads(task: Task) -> bool:

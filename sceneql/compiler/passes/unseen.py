@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from math import dist, sqrt
+from math import dist, pi, sqrt
 
 from sceneql.graph import Task
 from sceneql.kinds import Camera, Light, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
+
+DIM = 3.0
+"""[W] power of all lamps together below which a scene of some meters is nearly dark."""
 
 
 def warn_of_unseen(
@@ -91,3 +94,16 @@ def _reach(task: Task) -> float | None:
         return None
     numbers = [one.number() for one in sizes]
     return sum(sqrt(sum(c * c for c in one)) if isinstance(one, tuple) else float(one) for one in numbers)
+
+
+def warn_of_dim(tasks: Mapping[str, Task], found: Diagnostics) -> None:
+    """Warn of a script that has but lamps of a watt or so: they light what is a hand's breadth away."""
+    lights = [task for task in tasks.values() if isinstance(task.kind, Light) and task.span is not None]
+    powers = [getattr(task.kind, "power", None) for task in lights]
+    if not powers or not all(isinstance(one, Value) and one.constant for one in powers):
+        return
+    power = sum(float(one.number()) for one in powers if isinstance(one, Value))
+    if 0.0 < power < DIM:
+        bright = power / (4.0 * pi**2)
+        text = f"'{lights[0].name}' is dim: what is white and 1 m away is {bright:.1g} as bright as white"
+        found.warning("dim-light", text, lights[0].span, help="a lamp in a room has 60 W: write `power: 60 W`")

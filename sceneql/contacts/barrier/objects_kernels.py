@@ -8,7 +8,7 @@ from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts import layout as surfaces
 from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import mobilized, push
-from sceneql.contacts.barrier.friction_slopes_kernels import direction
+from sceneql.contacts.barrier.friction_slopes_kernels import foreseen
 from sceneql.contacts.barrier.on_bodies_kernels import on_body, push_body, speed_on_body
 from sceneql.contacts.shape_kernels import facing, surface, velocity
 from sceneql.system.signatures_kernels import TERM
@@ -103,6 +103,18 @@ def stale(floats, stage, changed, total):
 
 
 @lean_inlined
+def learn(old, new, floats, ints, p, j, at, slip):
+    """The direction of friction on a point after an update from one state to another."""
+    k = at + layout.HELD
+    a, b, c = floats[at + 1], floats[at + 2], floats[at + 3]
+    ou, ov, ow = sliding(old, floats, ints, p, j, a, b, c)
+    nu, nv, nw = sliding(new, floats, ints, p, j, a, b, c)
+    q, r, s = foreseen(floats[k], floats[k + 1], floats[k + 2], ou, ov, ow, nu, nv, nw, slip)
+    floats[k], floats[k + 1], floats[k + 2] = q, r, s
+    return q, r, s
+
+
+@lean_inlined
 def lag(n, floats, ints):
     """Within implicit stages friction has the loads and normals of the state that newton_kernels.newton left."""
     first, gap = ints[layout.LAGGED], floats[ints[layout.NUMBERS] + layout.GAP]
@@ -111,7 +123,7 @@ def lag(n, floats, ints):
         return
     floats[first] = floats[channels.LAGS]
     start = floats[floats.size - channels.AFTER * n : floats.size - channels.AFTER * n + n]
-    anew = floats[first + 1] != floats[channels.STAGES]
+    old = floats[floats.size - channels.BEFORE * n : floats.size - channels.BEFORE * n + n]
     total = changed = 0.0
     for p in range(ints[layout.NODES] + ints[layout.EDGES]):
         x, y, z = place(start, floats, ints, p)
@@ -120,13 +132,13 @@ def lag(n, floats, ints):
             d, a, b, c = distance(floats, ints, p, j, x, y, z, gap)
             pressed = load(floats, ints, p, d) if 0.0 < d < gap else 0.0
             total, changed = total + pressed, changed + abs(pressed - floats[at])
-            begins = anew or floats[at] == 0.0
+            if pressed > 0.0:
+                learn(old, start, floats, ints, p, j, at, slip)
+                part = min(1.0, floats[at] / pressed)
+                for k in range(at + layout.HELD, at + layout.HELD + 3):
+                    floats[k] *= part
             floats[at] = pressed
             floats[at + 1], floats[at + 2], floats[at + 3] = a, b, c
-            if pressed > 0.0 and begins:
-                u, v, w = sliding(start, floats, ints, p, j, a, b, c)
-                k = at + layout.HELD
-                floats[k], floats[k + 1], floats[k + 2] = direction(u, v, w, slip)
     stale(floats, first, changed, total)
 
 

@@ -9,8 +9,8 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import objects_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import steepness
-from sceneql.contacts.barrier.friction_slopes_kernels import direction, foreseen, resistance
-from sceneql.contacts.barrier.objects_kernels import distance, ends, load, place, sliding
+from sceneql.contacts.barrier.friction_slopes_kernels import direction, resistance
+from sceneql.contacts.barrier.objects_kernels import distance, ends, learn, load, place, sliding
 from sceneql.system.signatures_kernels import TERM
 
 
@@ -63,11 +63,8 @@ def rubbed(y, old, new, floats, ints, p, j, a, b, c, lagged, slip):
     """The derivative of a point's friction over its load (friction_slopes_kernels.resistance)."""
     u, v, w = sliding(y, floats, ints, p, j, a, b, c)
     if lagged:
-        at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (ints[layout.OBJECTS] * p + j) + layout.HELD
-        ou, ov, ow = sliding(old, floats, ints, p, j, a, b, c)
-        nu, nv, nw = sliding(new, floats, ints, p, j, a, b, c)
-        q, r, s = foreseen(floats[at], floats[at + 1], floats[at + 2], ou, ov, ow, nu, nv, nw, slip)
-        floats[at], floats[at + 1], floats[at + 2] = q, r, s
+        at = ints[layout.LAGGED] + layout.LOADS + layout.LAG * (ints[layout.OBJECTS] * p + j)
+        q, r, s = learn(old, new, floats, ints, p, j, at, slip)
     else:
         q, r, s = direction(u, v, w, slip)
     return resistance(a, b, c, u, v, w, q, r, s, slip)

@@ -7,7 +7,7 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import barrier, mobilized, push
-from sceneql.contacts.barrier.friction_slopes_kernels import direction
+from sceneql.contacts.barrier.friction_slopes_kernels import foreseen
 from sceneql.contacts.barrier.objects_kernels import stale
 from sceneql.contacts.barrier.on_bodies_kernels import push_body, speed_on_body
 from sceneql.contacts.barrier.pair_weights_kernels import listed, node, product, stencil
@@ -52,6 +52,17 @@ def sliding(y, floats, ints, at):
 
 
 @lean_inlined
+def learn(old, new, floats, ints, at, slip):
+    """The direction of a lagged pair's friction after an update from one state to another."""
+    f = at + layout.FRICTION_OF
+    ou, ov, ow = sliding(old, floats, ints, at)
+    nu, nv, nw = sliding(new, floats, ints, at)
+    p, q, r = foreseen(floats[f], floats[f + 1], floats[f + 2], ou, ov, ow, nu, nv, nw, slip)
+    floats[f], floats[f + 1], floats[f + 2] = p, q, r
+    return p, q, r
+
+
+@lean_inlined
 def keep(y, floats, ints, m, edges, found):
     """Note a pair that presses for friction, where there is room."""
     memory = ints[layout.MEMORY]
@@ -66,10 +77,6 @@ def keep(y, floats, ints, m, edges, found):
     for k in range(3):
         floats[at + layout.NORMAL + k] = found[1 + k]
         floats[at + layout.FRICTION_OF + k] = 0.0
-    if floats[channels.STAGE] > 0.0:
-        u, v, w = sliding(y, floats, ints, at)
-        f, slip = at + layout.FRICTION_OF, floats[ints[layout.NUMBERS] + layout.SLIP]
-        floats[f], floats[f + 1], floats[f + 2] = direction(u, v, w, slip)
     listed_at = (ints[layout.EDGES_AT] if edges else ints[layout.POINTS_AT]) + 2 * m
     first = (ints[layout.TRIANGLES] if edges else 0) + floats[listed_at]
     floats[at + layout.KEY] = first * (ints[layout.VERTICES] + ints[layout.EDGES]) + floats[listed_at + 1]
@@ -80,9 +87,44 @@ def keep(y, floats, ints, m, edges, found):
 
 
 @lean_inlined
+def keep_directions(n, floats, ints):
+    """Put the directions of all lagged pairs aside, as the latest update has changed them; how many they are."""
+    before, count = ints[layout.LAGGED_BEFORE], int(floats[ints[layout.MEMORY] + layout.LAGGED])
+    slip = floats[ints[layout.NUMBERS] + layout.SLIP]
+    start, end = floats.size - channels.BEFORE * n, floats.size - channels.AFTER * n
+    old, new = floats[start : start + n], floats[end : end + n]
+    for m in range(count):
+        at, other = ints[layout.LAG_AT] + layout.LAG * m, before + layout.BEFORE * m
+        learn(old, new, floats, ints, at, slip)
+        floats[other] = floats[at + layout.KEY]
+        for k in range(3):
+            floats[other + 1 + k] = floats[at + layout.FRICTION_OF + k]
+        floats[other + 4] = floats[at + layout.LOAD]
+    return count
+
+
+@lean_inlined
+def find_directions(floats, ints, count):
+    """Give the lagged pairs the directions of the same ones of those that were put aside."""
+    memory, before = ints[layout.MEMORY], ints[layout.LAGGED_BEFORE]
+    other = 0
+    for m in range(int(floats[memory + layout.LAGGED])):
+        at = ints[layout.LAG_AT] + layout.LAG * m
+        while other < count and floats[before + layout.BEFORE * other] < floats[at + layout.KEY]:
+            other += 1
+        if other < count and floats[before + layout.BEFORE * other] == floats[at + layout.KEY]:
+            for k in range(3):
+                part = min(1.0, floats[before + layout.BEFORE * other + 4] / floats[at + layout.LOAD])
+                floats[at + layout.FRICTION_OF + k] = part * floats[before + layout.BEFORE * other + 1 + k]
+
+
+@lean_inlined
 def keep_all(y, floats, ints):
     """Note all pairs that press at a state, and by how much the loads on vertices have changed."""
     memory, loads, count = ints[layout.MEMORY], ints[layout.LOADS], ints[layout.VERTICES]
+    # Within a stage the direction of friction, which updates have learned, outlives the loads that it was learned with.
+    within = floats[channels.STAGE] > 0.0
+    learned = keep_directions(y.size, floats, ints) if within else 0
     floats[memory + layout.LAGGED] = 0.0
     for k in range(count):
         floats[loads + count + k] = floats[loads + k]
@@ -94,6 +136,7 @@ def keep_all(y, floats, ints):
             found = stencil(floats, ints, m, edges)
             if 0.0 < found[0] < math.inf:
                 keep(y, floats, ints, m, edges, found)
+    find_directions(floats, ints, learned)
     total = changed = 0.0
     for k in range(loads, loads + count):
         total, changed = total + floats[k], changed + abs(floats[k] - floats[count + k])

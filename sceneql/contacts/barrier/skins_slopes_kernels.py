@@ -10,11 +10,11 @@ import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.contacts.barrier import pairs_layout as layout
 from sceneql.contacts.barrier.barrier_kernels import steepness
-from sceneql.contacts.barrier.friction_slopes_kernels import direction, foreseen, resistance
+from sceneql.contacts.barrier.friction_slopes_kernels import direction, resistance
 from sceneql.contacts.barrier.objects_slopes_kernels import add_block
 from sceneql.contacts.barrier.pair_weights_kernels import listed, node, stencil
 from sceneql.contacts.barrier.pairs_kernels import known, vertex
-from sceneql.contacts.barrier.skin_forces_kernels import sliding
+from sceneql.contacts.barrier.skin_forces_kernels import learn, sliding
 from sceneql.system.signatures_kernels import TERM
 
 
@@ -38,11 +38,7 @@ def rubbed(y, old, new, floats, ints, at, lagged, slip):
     """The derivative of a lagged pair's friction over its load (friction_slopes_kernels.resistance)."""
     u, v, w = sliding(y, floats, ints, at)
     if lagged:
-        f = at + layout.FRICTION_OF
-        ou, ov, ow = sliding(old, floats, ints, at)
-        nu, nv, nw = sliding(new, floats, ints, at)
-        p, q, r = foreseen(floats[f], floats[f + 1], floats[f + 2], ou, ov, ow, nu, nv, nw, slip)
-        floats[f], floats[f + 1], floats[f + 2] = p, q, r
+        p, q, r = learn(old, new, floats, ints, at, slip)
     else:
         p, q, r = direction(u, v, w, slip)
     a, b, c = floats[at + layout.NORMAL], floats[at + layout.NORMAL + 1], floats[at + layout.NORMAL + 2]

@@ -9,7 +9,6 @@ from sceneql.bodies.rigid.tie_kernels import shift_mover
 from sceneql.bodies.rigid.tie_rows_kernels import (
     AT_A,
     AT_FORCE,
-    AT_TWIST,
     AT_V,
     AT_W,
     AT_X,
@@ -45,6 +44,7 @@ from sceneql.contacts.rigid_exact.contact_kernels import (
     pace,
     three,
 )
+from sceneql.contacts.rigid_exact.energy_made_kernels import keep_losses
 from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     AGAIN,
     AT_CONTACT,
@@ -268,9 +268,9 @@ def hold(t, y, rate, floats, ints):
         at, to = ints[MOVERS_AT] + MOVER * m, mover_at(ints, m)
         see(y, floats, to, ints, at)
         press(y, rate, floats, to, ints, at)
-        for c in range(3):
+        for c in range(6):
             floats[pull_at(ints, m) + c] = floats[to + AT_A + c]
-            floats[pull_at(ints, m) + 3 + c] = floats[to + AT_TWIST + c]
+    keep_losses(rate, floats, ints)
     floats[ints[COUNT_AT]] = 0.0
     look_at_motions(y, floats, ints)
     if floats[memory + KEPT] == 0.0 and ints[DRIVES] == 0:
@@ -363,15 +363,15 @@ def settle(t0, t1, y0, rate0, y1, floats, ints):
         n = write_rows(floats, ints, GAPS, friction)
         solve_rows(floats, ints, n, 0.0, False)
         for m in range(ints[MOVERS]):
-            for c in range(3):
-                floats[mover_at(ints, m) + AT_A + c] = floats[mover_at(ints, m) + AT_TWIST + c] = 0.0
+            for c in range(6):
+                floats[mover_at(ints, m) + AT_A + c] = 0.0
         for i in range(n):
             unit, by = ints[UNITS_AT] + UNIT * i, floats[solution_at(ints) + i]
             for side in range(2):
                 mover = mover_at(ints, int(floats[unit + AT_FIRST + side]))
                 for c in range(3):
                     floats[mover + AT_A + c] += by * floats[unit + AT_WEIGHED + 6 * side + c]
-                    floats[mover + AT_TWIST + c] += by * floats[unit + AT_WEIGHED + 6 * side + 3 + c]
+                    floats[mover + AT_A + 3 + c] += by * floats[unit + AT_WEIGHED + 6 * side + 3 + c]
         for m in range(ints[MOVERS]):
             shift_mover(y1, floats, ints, ints[MOVERS_AT] + MOVER * m, mover_at(ints, m))
         changed = True

@@ -109,7 +109,8 @@ def assemble(
     dense = assembly.floats(np.zeros(2 * room * room + (10 + exact_law_kernels.VECTORS) * room + 2))
     kept = assembly.floats(np.zeros(4 * spots))
     driven = assembly.floats(np.reshape(drives, len(drives) * DRIVEN))
-    memory = assembly.floats([0.0] * rows.BOUNDED + [float(gives_way)] + [0.0] * energy_made_kernels.ROOM)
+    account = energy_made_kernels.ROOM + energy_made_kernels.EACH * len(movers)
+    memory = assembly.floats([0.0] * rows.BOUNDED + [float(gives_way)] + [0.0] * account)
     assembly.gives_way = assembly.gives_way or gives_way
     outputs = [assembly.floats([0.0]), *(assembly.floats(np.zeros(3 * most)) for _ in range(3))]
     nan = float("nan")

@@ -85,15 +85,13 @@ from sceneql.contacts.rigid_exact.features_kernels import size_at
 from sceneql.contacts.rigid_exact.find_kernels import begin, find, start_step
 from sceneql.contacts.rigid_exact.rim_kernels import any_rim, exchange_all
 from sceneql.contacts.rigid_exact.stop_kernels import REBOUND, STOP
-from sceneql.contacts.rigid_exact.true_gap_kernels import unseen
+from sceneql.contacts.rigid_exact.true_gap_kernels import DRIFT, unseen
 from sceneql.system.signatures_kernels import IMPACT, A, F, I, N
 
 APPROACHES = 1e-13
 """Speed of approach, in parts of the speeds that it is a sum of, that counts."""
 PARTS, STILL = 1e-9, 1e-12
 """Speed away from each other, in the same parts and [m/s], from which a contact is not kept."""
-DRIFT = 1e-3
-"""The same of a contact that pushed in the step before: what the step's error leaves is closed after it."""
 MOST_ROUNDS = 200
 """Reflections at one instant, after which all contacts end their approach together, without restitution."""
 

@@ -8,7 +8,16 @@ from numba import types
 from sceneql.compiled.kernels import lean
 from sceneql.contacts.distance.convex import SHAPE
 from sceneql.contacts.distance.gap_kernels import gap as distance
-from sceneql.contacts.rigid_exact.contact_kernels import GAP, PAIR, RECORD
+from sceneql.contacts.rigid_exact.contact_kernels import (
+    GAP,
+    PAIR,
+    PUSHES,
+    RECORD,
+    SHAPE_A,
+    SHAPE_B,
+    SPEED,
+    pace,
+)
 from sceneql.contacts.rigid_exact.curved_ahead_kernels import is_cut
 from sceneql.contacts.rigid_exact.curved_find_kernels import ask, is_curved
 from sceneql.contacts.rigid_exact.curved_meet_kernels import meet
@@ -31,10 +40,14 @@ from sceneql.contacts.rigid_exact.exact_rows_kernels import (
     spots,
 )
 from sceneql.contacts.rigid_exact.features_kernels import smaller
+from sceneql.system import channels
 from sceneql.system.signatures_kernels import A, F, I, N
 
 UNSEEN = 1e-6
 """Depth, and gap of what is held, in parts of the smaller body, that the contacts do not tell and that is an error."""
+DRIFT, SINKS = 1e-3, 1e-9
+"""Speed, in parts of the speeds that it is a sum of and [m/s], up to which a contact that pushed in the step before is
+kept: what the step's error leaves is closed after it."""
 
 
 @lean(F(A, I, N))
@@ -59,6 +72,18 @@ def kept_gap(floats, ints, pair, most):
     return most
 
 
+@lean(types.boolean(A, I, N, F))
+def drifts(floats, ints, pair, most):
+    """Whether a kept contact of a pair that pushes has sunk below a gap, or approaches too fast to be kept."""
+    for k in range(int(floats[ints[MEMORY_AT] + KEPT])):
+        rec = ints[RECORDS_AT] + RECORD * k
+        if floats[rec + PAIR] == pair and floats[rec + PUSHES] > 0.0:
+            a, b = mover_at(ints, int(floats[rec + SHAPE_A])), mover_at(ints, int(floats[rec + SHAPE_B]))
+            if floats[rec + GAP] < most or floats[rec + SPEED] < -SINKS - DRIFT * pace(floats, rec, a, b):
+                return True
+    return False
+
+
 @lean(types.boolean(F, A, A, I, types.boolean))
 def unseen(t, y, floats, ints, first):
     """Whether a pair is deeper than its contacts tell, or is held by contacts while it is apart.
@@ -79,6 +104,13 @@ def unseen(t, y, floats, ints, first):
         told = kept_gap(floats, ints, pair, math.inf if held else 0.0)
         size = smaller(floats, ints, ints[ints[PAIRS_AT] + 2 * pair], ints[ints[PAIRS_AT] + 2 * pair + 1])
         a, b = ints[ints[PAIRS_AT] + 2 * pair], ints[ints[PAIRS_AT] + 2 * pair + 1]
+        if (
+            floats[channels.FIXED] > 0.0
+            and held
+            and is_curved(ints, ints[SHAPES_AT] + SHAPE * a)
+            and drifts(floats, ints, pair, min(0.0, floats[allowed]) - UNSEEN * size)
+        ):
+            found = True
         if is_curved(ints, ints[SHAPES_AT] + SHAPE * a) and now < size:
             found = found or is_cut(floats, ints, ask(ints, pair, a, b, mover_at(ints, a), mover_at(ints, b)))
         deeper = now < min(told, floats[allowed]) - UNSEEN * size

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.formulas.formula_rows import TIMES, Rows, states
 from sceneql.island.static_rates import told_slope
-from sceneql.kinds import FixedLength, Formula, Gives, Model, Problem, Record, Value, field, quantity_type
+from sceneql.kinds import Doubt, FixedLength, Formula, Gives, Model, Problem, Record, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation, StaticScene, oscillations
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.evaluate import evaluate
-from sceneql.quantities.expression import Call, Expr, Link, Symbol, each_once
+from sceneql.quantities.expression import Call, Expr, Link, Number, Symbol, each_once, walk
 
 if TYPE_CHECKING:
     from numpy import int64
@@ -36,6 +36,10 @@ class Copies(Record):
 
     count: int = field("How many.", at_least=1, at_most=1_000_000)
     as_: str = field("Name of a copy's number in the formulas: 0, 1, ..., count - 1.", "i")
+
+
+TURN, DEGREES = 6.3, 360.0
+"""Angles [rad] between which most likely degrees are meant."""
 
 
 class Equations(Model):
@@ -104,6 +108,23 @@ class Equations(Model):
     def count(self) -> int:
         """Number of copies."""
         return 1 if self.copies is None else self.copies.count
+
+    def doubts(self) -> Iterator[Doubt]:
+        """Angles at the start that are most likely degrees: states whose sine is taken, beyond a turn in radians."""
+        turned = {
+            arg.name
+            for formula in (*self.rate.values(), *self.gives_.values())
+            for node in walk(formula.expr)
+            if isinstance(node, Call) and node.op in ("sin", "cos")
+            for arg in node.args
+            if isinstance(arg, Symbol)
+        }
+        for name in sorted(turned & self.start.keys()):
+            formula = self.start[name]
+            if isinstance(formula.expr, Number) and formula.expr.bare and TURN < abs(formula.expr.value) <= DEGREES:
+                number = f"{formula.expr.value:g}"
+                text = f"the angle {name} starts at {number} rad, which are turns"
+                yield Doubt("radians", text, formula.span, f"in degrees write `{name}: {number} deg`")
 
     def problems(self) -> list[Problem]:
         """Rows that make no system, or one without a finite rate at the start."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import nullcontext
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from sceneql import kinds
 from sceneql.failure import RunFailure
@@ -40,6 +40,8 @@ class FieldMap(Object):
     cells it is linear, on elements it is as their functions are. Under a sky of one color alone (`sky: {color: white}`)
     colors come out as the map has them.
     """
+
+    covers: ClassVar[bool] = True
 
     of: Field = field("The field: `lake.concentration`.")
     colors: ColorMap | Literal["none"] | None = field(
