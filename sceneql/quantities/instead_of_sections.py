@@ -13,6 +13,11 @@ _VARIED = (
 
 OF_SECTIONS = (
     # fields of single words and groups
+    (
+        "field.solvers",
+        "timestep time_step dt step",
+        "its steps are its own; those that are given are taken by `{rk4: {step: 1 ms}}`, and others of fixed steps",
+    ),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",
