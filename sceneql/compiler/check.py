@@ -20,10 +20,10 @@ from sceneql.compiler.read import Reader
 from sceneql.compiler.unknown import (
     beside_world,
     mover_of,
+    other_family,
     part_meant,
     report_unknown,
     several_meant,
-    those_of,
     warn_of_another,
     word_having,
     word_meant,
@@ -381,7 +381,7 @@ class _Checker:
 
     def _unknown(self, node: Scalar, name: str, mark: Refers) -> None:
         if name in self.entries:
-            help = those_of(mark.family, [n for n in self.entries if self.family(n) == mark.family])
+            help = other_family(node.text, mark, self.names, self.catalogue, self.family)
             text = f"'{node.text}' is one of {self.family(name)}, not of {mark}"
             self.found.error("wrong-family", text, node.span, help=help)
             return

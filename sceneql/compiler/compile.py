@@ -13,7 +13,7 @@ from sceneql.compiler.passes.as_balls import warn_of_balls, warn_of_two_models
 from sceneql.compiler.passes.boundary_names import report_boundary_names
 from sceneql.compiler.passes.bounds import warn_of_bounds
 from sceneql.compiler.passes.circles import report_circles
-from sceneql.compiler.passes.contact_words import report_contacts
+from sceneql.compiler.passes.contact_words import report_contacts, warn_of_nothing_hit
 from sceneql.compiler.passes.doubts import warn_of_constants, warn_of_doubts
 from sceneql.compiler.passes.empty_holds import report_empty_holds
 from sceneql.compiler.passes.expand import expand
@@ -103,6 +103,7 @@ def compile_script(
     warn_of_slow(tasks, checked.settings.clock.end, found)
     warn_of_weak(tasks, groups, checked.settings.clock.end, found)
     warn_of_balls(tasks, groups, found)
+    warn_of_nothing_hit(tasks, groups, found)
     warn_of_two_models(checked.tasks, found)
     warn_of_left_behind(tasks, found)
     warn_of_z_up(tasks, found)

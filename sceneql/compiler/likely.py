@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 from collections.abc import Sequence as Sequenced
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
@@ -83,6 +84,32 @@ def _wrong(reader: Any, node: Node, info: Any, name: str) -> tuple[Diagnostic, .
     return nothing.errors
 
 
+def asked(reader: Any, cls: type[BaseModel]) -> dict[str, Any]:
+    """What `sceneql.compiler.unknown.report_unknown` asks of a record whose fields a reader reads."""
+    return {
+        "said_by": cls.said_by if issubclass(cls, kinds.Record) else {},
+        "family": cls.family if issubclass(cls, kinds.Kind) else "",
+        "renamed": partial(renamed, reader, cls),
+        "catalogue": reader.names.catalogue,
+        "table": table_of(cls),
+        "inside": partial(inside, reader.outer, cls),
+    }
+
+
+def inside(outer: type[BaseModel] | None, cls: type[BaseModel], name: str, text: str) -> str | None:
+    """The help for a field that the record ``outer`` around a record has, or one of those in its fields."""
+    text = text if "\n" not in text and len(text) <= SHOWN else "..."
+    if outer is not None and name in map(kinds.written_name, outer.model_fields):
+        return f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
+    for key, info in cls.model_fields.items():
+        inner = [one for one in (info.annotation, *get_args(info.annotation)) if isinstance(one, type)]
+        records = [one for one in inner if issubclass(one, BaseModel) and not issubclass(one, kinds.Kind)]
+        if any(name in map(kinds.written_name, one.model_fields) for one in records):
+            field = kinds.written_name(key)
+            return f"it stands inside `{field}`: write `{field}: {{{name}: {text}}}`"
+    return None
+
+
 def table_of(cls: type[BaseModel]) -> str:
     """The field of a record that has to be given, if it is the only one, and holds entries by name; else empty."""
     required = [name for name, info in cls.model_fields.items() if info.is_required()]
@@ -126,6 +153,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         return "write `{}`: all of its fields have defaults"
     if node.text.lower() in TRUE:
         return f"write `{first_field(cls)}`"
+    if "neo_hookean" in cls.model_fields and (law := instead("bare.law", node.text)) is not None:
+        return law
     ends = "bare" if "value" in cls.model_fields else "bare.wall" if "wall" in cls.model_fields else ""
     if (held := instead(ends, node.text)) is not None:
         return held

@@ -273,7 +273,10 @@ class Names:
         message, parts_known = f"nothing is called '{wanted}'", list(self.parts)
         if wanted in parts_known:
             message = f"'{wanted}' is a part, not a value"
-            hint: str | None = f"write one of its outputs, such as '{self._some_output(wanted)}'"
+            some = f"write one of its outputs, such as '{self._some_output(wanted)}'"
+            hint: str | None = (
+                some if self.outputs_of(wanted) else instead("name", wanted) or "it has no values to read"
+            )
         else:
             hint = instead("name", wanted)
             hint = hint or suggestion(wanted, [*self._inside(), *self.defines, *parts_known, "time", *CONSTANTS])

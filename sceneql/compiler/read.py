@@ -10,7 +10,6 @@ import re
 import types
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
@@ -63,6 +62,8 @@ class Reader:
     """Free symbols of formulas of this word (Kind.formula_symbols)."""
     solved: Dimension | None = None
     """Dimension of the field that this word solves (Kind.formula_dimension)."""
+    outer: type[BaseModel] | None = None
+    """The class of the record around this one."""
     copies: Callable[[Scalar, kinds.Refers], list[str]] = lambda node, mark: []
     """Resolves a collective name (of a repeated part, or a template's instance) to its parts; empty for other names."""
 
@@ -86,16 +87,11 @@ class Reader:
         mistaken: set[str | None] = set()
         if isinstance(node, MappingNode):
             known = [kinds.written_name(name) for name in cls.model_fields]
-            said_by = cls.said_by if issubclass(cls, kinds.Record) else {}
-            family = cls.family if issubclass(cls, kinds.Kind) else ""
             counter = node.entries.get("repeat") if "repeat" not in known else None
             number = counter.entries.get("as") if isinstance(counter, MappingNode) else None
             if isinstance(number, Scalar):  # the copies' number is not known, which the field's error tells
                 self.names.broken.add(number.text)
-            renamed = partial(likely.renamed, self, cls)
-            ok = report_unknown(
-                node, known, title, self.found, said_by, family, renamed, self.names.catalogue, likely.table_of(cls)
-            )
+            ok = report_unknown(node, known, title, self.found, **likely.asked(self, cls))
             ok = ok and not node.partial
             mistaken = {meant_field(name, known) for name in node.entries if name not in known}
         for python_name, info in cls.model_fields.items():
@@ -108,7 +104,10 @@ class Reader:
                     self.found.error("missing-field", f"{title} needs '{name}'", span, help=help)
                 continue
             owner = f"{self.owner}.{name}" if self.owner else ""
-            reader, before = replace(self, owner=owner, symbols=symbols, solved=solved), len(self.found.found)
+            reader, before = (
+                replace(self, owner=owner, symbols=symbols, solved=solved, outer=cls),
+                len(self.found.found),
+            )
             try:
                 got[python_name] = reader.field(written[name], info, name)
             except Unreadable:

@@ -19,6 +19,10 @@ from sceneql.quantities.span import Source, Span
 NUMBER = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
 RANGE = re.compile(rf"\s*({NUMBER})\s*\.\.\s*({NUMBER})\s*([^,]*?)\s*(?:,\s*(\d+) points)?\s*(?:,\s*(log|linear))?\s*")
 _ENDS = re.compile(rf"(?:from )?({NUMBER})[^\d+-]*?(?:to|-|:|,|\.\.\.)\s*({NUMBER})([^,:]*)")
+_STEPS = re.compile(rf"\s*(?P<low>{NUMBER})\s*:\s*(?P<step>{NUMBER})\s*:\s*(?P<high>{NUMBER})(?P<unit>[^:]*)")
+_ARANGE = re.compile(
+    rf"(?:np\.)?a?range\(\s*(?P<low>{NUMBER})\s*,\s*(?P<high>{NUMBER})\s*,\s*(?P<step>{NUMBER})\s*\)(?P<unit>.*)"
+)
 _EVEN = re.compile(
     rf"(?:linspace|logspace|geomspace|arange|range)\(\s*({NUMBER}[^,]*),\s*({NUMBER}[^,)]*)(?:,\s*(\d+))?"
 )
@@ -51,7 +55,10 @@ def tried(path: str, node: Node) -> list[Tried]:
         ends = _ENDS.fullmatch(node.text.strip()) if isinstance(node, Scalar) else None
         even = _EVEN.search(node.text) if isinstance(node, Scalar) else None
         help = HELP if ends is None else f'write `"{ends[1]} .. {ends[2]}{ends[3].rstrip()}, {POINTS} points"`'
-        if even is not None:
+        text = node.text.strip() if isinstance(node, Scalar) else ""
+        if (steps := _STEPS.fullmatch(text) or _ARANGE.fullmatch(text)) is not None:
+            help = _by_steps(steps, "range" in text)
+        elif even is not None:
             help = f'write `"{_ends_of(even[1], even[2])}, {even[3] or POINTS} points, {_way(node)}"`'
         raise ScriptError([Diagnostic("sweep-shape", "this is neither a range nor a list", node.span, help)])
     low, high, unit, count, way = float(found[1]), float(found[2]), found[3], float(found[4] or POINTS), found[5]
@@ -68,6 +75,17 @@ def tried(path: str, node: Node) -> list[Tried]:
         value = Scalar(text, kind_of(text), False, Source(f"{path} of a study", text), 0, len(text))
         result.append(Tried(f"{number:.4g} {unit}".rstrip(), number, unit, (path, value, node.span)))
     return result
+
+
+def _by_steps(steps: re.Match[str], open_end: bool) -> str:
+    """The help for a range by its steps, as ``10:10:100 N/m``; ``open_end``: the last value is not one of it."""
+    first, by, last = (float(steps[name]) for name in ("low", "step", "high"))
+    number = (last - first) / by if by else 0.0
+    count = math.ceil(number - 1e-9) if open_end else 1 + math.floor(number + 1e-9)
+    if not 2 <= count <= MOST_POINTS:
+        return HELP
+    ends = f"{steps['low']} .. {first + (count - 1) * by:g} {steps['unit'].strip()}".rstrip()
+    return f'write `"{ends}, {count} points, linear"`'
 
 
 def _ends_of(low: str, high: str) -> str:

@@ -18,6 +18,7 @@ from sceneql.language.script import Script
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import STRONG, Diagnostics, all_same_as, nearest, same_as, suggestion
 from sceneql.quantities.instead import instead
+from sceneql.quantities.literal import vector_meant
 
 DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere", "contacts": "collision"}
 """The word of a family that is shown where several have a field."""
@@ -25,9 +26,14 @@ MANY = 6
 """Largest number of words of which all that have a field are listed."""
 THINGS, SHORT = ("objects", "models", "cameras", "lights"), 2
 """Families whose fields are looked for among their own words alone, and the longest name that tells too little."""
+SIZES = ("width", "height", "depth", "length")
+OFF = ("0", "0.0", "no", "false")
+"""Texts of a field that says that something is not."""
 FEW = 4
 """Largest number of words with a field by which it is told what has that field."""
 
+_FIRST = re.compile(r"\{(\w+): [<\[]")
+_BLANK = re.compile(r"<(\w+)\|([^>]*)>")
 _UNPARTED = re.compile(r"(\w+)(?:(:)|\s*=| )(.*)")
 
 
@@ -45,18 +51,20 @@ def report_unknown(
     renamed: Renamed | None = None,
     catalogue: Vocabulary | None = None,
     table: str = "",
+    inside: Callable[[str, str], str | None] = lambda name, text: None,
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; returns whether there are none.
 
     ``said_by``: help texts for names that are likely to be tried; ``family``: that of the word, if any;
     ``renamed``: offers a known field; ``catalogue``: to look for names among all words and their fields;
-    ``table``: the field, if it has to be given, that holds entries by names of the script.
+    ``table``: the field, if it has to be given, that holds entries by names of the script; ``inside``: the help for
+    a name and a value that stand one level further in.
     """
     offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
         help = (said_by or {}).get(name) or instead(f"field.{title.partition('.')[0]}", name)
-        help = help or _together(name, unknown, node, known)
+        help = (help and filled(help, node.entries[name])) or _together(name, unknown, node, known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
             help = f"write `{written[1]}: {written[3].strip()}`{space}"
@@ -64,6 +72,7 @@ def report_unknown(
         help = help or next((text for fits, text in offers if fits), None)
         help = help or instead(f"field.{family}", name) or instead("field", name)
         help = help or (offers[0][1] if offers else None)
+        help = help or inside(name, node.entries[name].span.text)
         help = help or _like(name, node.entries[name], known, offer, family, catalogue)
         if help is None and len(known) == 1:
             help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
@@ -73,6 +82,14 @@ def report_unknown(
         help = help or "it has " + ", ".join(known)
         found.error("unknown-field", f"{title} has no field '{name}'", node.keys[name].span, help=help)
     return not unknown
+
+
+def filled(help: str, value: Node) -> str:
+    """A help text in which `<position|0 1 0 m>` is the text of the value's field `position`, or what stands behind."""
+    fields = value.entries if isinstance(value, Mapping) else {}
+    if "<" in help and value.span.text and not isinstance(value, Mapping) and (own := _FIRST.search(help)) is not None:
+        return f"write `{own[1]}: {value.span.text}`"
+    return _BLANK.sub(lambda blank: fields[blank[1]].span.text if blank[1] in fields else blank[2], help)
 
 
 def _like(
@@ -113,6 +130,11 @@ def _together(name: str, unknown: Sequenced[str], node: Mapping, known: Collecti
     same = [other for other in unknown if same_as(other, known) == ours]
     if ours == "between" and len(same) == 2 and ours not in node.entries:
         return f"write `{ours}: [{', '.join(node.entries[other].span.text for other in same)}]`"
+    sides = [other for other in SIZES if other in unknown]
+    if name in sides and len(sides) > 1 and "size" in known and "size" not in node.entries:
+        texts = [node.entries[other].span.text for other in sides]
+        if (size := vector_meant(", ".join(texts))) is not None:
+            return f"write `size: {size}`"
     whole, _, part = name.rpartition(".")
     parts = [other for other in unknown if other.rpartition(".")[0] == whole and other[-1:] in "xyz"]
     if (whole or "position") in known and part in ("x", "y", "z"):
@@ -217,6 +239,8 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
             inner = ", ".join(f"{name}: {value.span.text}" for name, value in node.entries.items() if name != key)
             return f"the word stands around its fields: write `{{{word}: {{{inner}}}}}`"
     having, text = _having(list(node.entries), family, catalogue), node.span.text
+    if (meant := _told(node, having or catalogue.choices(family), family, catalogue)) is not None:
+        return meant
     for name, value in () if having else node.entries.items():
         having = _having([name], family, catalogue)
         text = f"{{{name}: {value.span.text}}}"
@@ -227,9 +251,37 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
     )
 
 
-def those_of(family: str, names: Sequenced[str]) -> str:
-    """The help where a part of a wrong family is named."""
-    return f"those of {family} are {', '.join(names[:8])}" if names else f"write one under `{family}:`"
+def other_family(name: str, mark: Refers, names: Names, catalogue: Catalogue, family_of: Callable[[str], str]) -> str:
+    """The help for a part of a wrong family: the model that moves it, a word by that name, or parts of the right."""
+    mover = names.mover(name)
+    if mover and mark.family == "models":
+        return f"'{mover}' moves it: write `{mover}`"
+    if (word := same_as(name, catalogue.words(mark.family))) is not None:
+        return f"write `{word}`, a word, or the name of one of {mark.family}"
+    others = [part for part in names.parts if family_of(part) == mark.family]
+    return f"those of {mark.family} are {', '.join(others[:8])}" if others else f"write one under `{mark.family}:`"
+
+
+def _told(node: Mapping, words: Collection[str], family: str, catalogue: Catalogue) -> str | None:
+    """The help for fields that tell which of the words is meant, as ``metallic: 1``; None for others.
+
+    Names of other programs tell more than those that the word has as well.
+    """
+    best, help = 0, None
+    for word in words:
+        cls = catalogue.load(family, word)
+        called: Naming[str, str] = getattr(cls, "told_by", {})
+        telling = {key for key, value in node.entries.items() if key in called and value.span.text not in OFF}
+        weight = len(telling) + len(telling - set(called.values()))
+        if cls is None or weight <= best:
+            continue
+        best, names = weight, set(map(written_name, cls.model_fields))
+        kept = {
+            called.get(key, key): one.span.text for key, one in node.entries.items() if called.get(key, key) in names
+        }
+        inner = ", ".join(f"{key}: {text}" for key, text in kept.items())
+        help = f"the word stands around its fields: write `{{{word}: {{{inner}}}}}`" if kept else f"write `{word}`"
+    return help
 
 
 def several_meant(node: Sequence, mark: Refers, entry: Entry, catalogue: Catalogue) -> str | None:

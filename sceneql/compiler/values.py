@@ -36,7 +36,7 @@ from sceneql.quantities.expression import Expr, Keys, Link, Number, Shape, Symbo
 from sceneql.quantities.instead import of_unit, power_of_ten, unit_meant
 from sceneql.quantities.literal import vector_meant
 from sceneql.quantities.parser import parse_value
-from sceneql.quantities.spaced import apart
+from sceneql.quantities.spaced import apart, parted_meant
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import describe, in_words, unit_of
@@ -50,7 +50,6 @@ _MISSING = (
 )
 """(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
 viscosity to dynamic, conductivity to diffusivity."""
-_EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
 
@@ -117,8 +116,7 @@ def scalar_expr(node: Scalar, names: Names, found: Diagnostics) -> Expr | None:
     text = parsed_text(node)
     if not text.strip():
         line = node.source.text[node.source.text.rfind("\n", 0, node.start) + 1 : node.start]
-        written = _EQUATED.search(line)
-        help = None if written is None else f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
+        help = parted_meant(line)
         found.error("missing-value", "a value is missing here", node.span, help=help)
         return None
     before, expr = len(found.found), None
@@ -168,7 +166,7 @@ def _by_component(
 ) -> Expr | None:
     for key in node.entries:
         if key not in COMPONENTS:
-            help = vector_meant_by(node) or suggestion(key, (*COMPONENTS, "keys"))
+            help = vector_meant_by(node, what) or suggestion(key, (*COMPONENTS, "keys"))
             if key == what and len(node.entries) == 1:
                 help = f"write the value alone, `{node.entries[key].span.text}`"
             message = f"{what} has the components x, y, z, not '{key}'"

@@ -8,9 +8,25 @@ SIDES = (("width", "w", "breadth"), ("height", "h"), ("depth", "d", "length", "l
 """Names of the sides of a box along x, y and z."""
 
 
-def vector_meant_by(node: Mapping) -> str | None:
-    """The help for fields that stand in place of a vector's components; None where nothing is known of them."""
-    return timed(node) or _by_side(node) or _from_to(node)
+PLACES = ("position", "pos", "at", "center", "place", "location", "coordinates")
+"""Names of a place."""
+
+
+def vector_meant_by(node: Mapping, what: str) -> str | None:
+    """The help for fields that stand in place of a vector's components; None where nothing is known of them.
+
+    ``what``: the vector's own field.
+    """
+    return timed(node) or _by_side(node) or _from_to(node) or _placed(node, what.rpartition(".")[2])
+
+
+def _placed(node: Mapping, what: str) -> str | None:
+    """The help where a place stands inside with other fields: ``point: {position: 0 1 0 m, radius: 0.6 m}``."""
+    places = [key for key in node.entries if key in PLACES]
+    if len(places) != 1:
+        return None
+    others = ", ".join(f"`{key}: {one.span.text}`" for key, one in node.entries.items() if key != places[0])
+    return f"write `{what}: {node.entries[places[0]].span.text}`" + (f", and {others} beside it" if others else "")
 
 
 def _by_side(node: Mapping) -> str | None:

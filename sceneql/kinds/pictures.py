@@ -60,6 +60,9 @@ class Material(Kind):
     family: ClassVar[str] = "materials"
     clear: ClassVar[bool] = False
     """Whether one sees through it."""
+    told_by: ClassVar[Mapping[str, str]] = {}
+    """Fields that tell that this material is meant, as other programs call them, each with the field here that takes
+    its value; or "" for none."""
 
     def surface(self, moment: Moment, color: RGB | None) -> Surface:
         """The surface at the moment; ``color`` (linear RGB), where given, replaces the material's own."""

@@ -11,9 +11,11 @@ from sceneql.kinds.types import Color, Expected, FixedScalar, FixedTime
 from sceneql.kinds.values import Quantity, Value
 from sceneql.kinds.word import Problem, Record, field
 from sceneql.quantities.dimension import comparable
-from sceneql.quantities.units import describe, in_words
+from sceneql.quantities.units import describe, format_quantity, in_words
 
 MOST_MOMENTS = 1_000_000
+_NUMBER = re.compile(r"[-+]?\d[\d.]*(?:[eE][-+]?\d+)?")
+_UNIT = re.compile(r"[\d.]\s*([^\W\d_][^\s:.()]*)\s*$")
 
 
 class Exceeds(ValueError):
@@ -85,7 +87,8 @@ class Expect(Record):
     def problems(self) -> Iterator[Problem]:
         """An expectation that is compared with nothing, or with two things."""
         if (self.value is None) == (self.below is None):
-            yield Problem("an expectation has either 'value' or 'below'")
+            help = "write what it must be, `value: 2 m`, or what it stays below, `below: 3 m`"
+            yield Problem("an expectation has either 'value' or 'below'", help=help)
         if not self.tolerance.constant:
             yield Problem("tolerance must be constant", ("tolerance",), code="not-constant")
         yield from _unlike(self.of, {"value": self.value, "tolerance": self.tolerance, "below": self.below})
@@ -98,8 +101,17 @@ def _unlike(of: Value, others: dict[str, Value | None]) -> Iterator[Problem]:
         given = None if value is None else value.expr.type.dimension
         if not comparable(given, measured):
             text = f"{name} is {describe(measured)} as what is measured, but this is {in_words(given)}"
-            share = "a tolerance is no part of the value, but in its unit: `0.01 J`" if name == "tolerance" else None
-            yield Problem(text, (name,), code="dimension-mismatch", help=share)
+            part = f"a tolerance is no part of the value, but in its unit: `{format_quantity(0.01, measured)}`"
+            share = part if name == "tolerance" else None
+            unlike = None if measured is None else f"write such a one, `{name}: {format_quantity(1.0, measured)}`"
+            yield Problem(text, (name,), code="dimension-mismatch", help=share or unlike)
+
+
+def _first(tried: Any) -> str:
+    """The text of the first of the values that a sweep tries: of a list, or of a range with its unit."""
+    text = tried.items[0].span.text if getattr(tried, "items", None) else getattr(tried, "text", "...")
+    number, unit = _NUMBER.search(text), _UNIT.search(text.partition(",")[0])
+    return text if number is None else f"{number[0]} {unit[1] if unit else ''}".strip()
 
 
 class Study(Record):
@@ -126,7 +138,9 @@ class Study(Record):
         if not self.sweep:
             yield Problem("a study tries values by path, `{define.k: 1 .. 1e6 N/m}`", ("sweep",))
         if (self.exact is None) == (self.reference is None):
-            help = "write what is known, `exact: 9.81 J`, or other values by path to compare with, as in variants"
+            path, tried = next(iter(self.sweep.items()), ("define.k", None))
+            known = f"exact: {format_quantity(1.0, self.of.expr.type.dimension)}"
+            help = f"write what is known, `{known}`, or what to compare with, `reference: {{{path}: {_first(tried)}}}`"
             yield Problem("a study compares with either `exact` or a `reference`", help=help)
         yield from _unlike(self.of, {"exact": self.exact})
 

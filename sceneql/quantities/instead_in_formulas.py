@@ -56,6 +56,17 @@ OF_FORMULAS = (
         "a value is named with its part: write `fall.energy`, `ball.position.y`",
     ),
     ("function", "sind cosd tand", "an angle has its unit: write `sin(30 deg)`, or `sin(x*(1 deg))`"),
+    ("name", "up upward upwards", "upwards is `0 1 0`"),
+    ("name", "down downward downwards", "downwards is `0 -1 0`"),
+    ("name", "left right", "to the right is `1 0 0`, to the left `-1 0 0`"),
+    ("name", "forward forwards backward backwards", "away from the usual camera is `0 0 -1`, towards it `0 0 1`"),
+    (
+        "name",
+        "random",
+        "`fill: {object: NAME, count: 100}` scatters masses in an object; in a formula write `random(1)`",
+    ),
+    ("sign", "±", "how far it may be off stands apart: `value: 2 m, tolerance: 1 cm`"),
+    ("sign", ":", "a time is in seconds or minutes, `90 s`, `1.5 min`"),
     ("name", "required mandatory", "a field that has to be given is left empty: `fields: {height: }`"),
     ("function", "sqr square", "write `x^2`"),
     ("function", "frac fract", "write `mod(x, 1)`"),
@@ -103,6 +114,7 @@ OF_FORMULAS = (
         "a name stands by itself, `radius: r`; only the number of a copy by `repeat` stands in braces, in a name,"
         ' `"ball.{i}.position"`: `sceneql words repeat`',
     ),
+    ("unit", "G Gs gauss Gauss", "a gauss is 1e-4 T: 500 G are `0.05 T`"),
     ("unit", "lines contours levels copies segments stars samples", "a number of them has no unit: write it alone"),
     ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
     (

@@ -18,6 +18,63 @@ OF_SECTIONS = (
         "timestep time_step dt step",
         "its steps are its own; those that are given are taken by `{rk4: {step: 1 ms}}`, and others of fixed steps",
     ),
+    (
+        "field.trail field.tube field.coil field.streamlines field.arrow",
+        "width thickness line_width linewidth stroke",
+        "half of how thick it is is its `radius: 1 cm`",
+    ),
+    ("field.galaxy", "mass masses", "its masses are `heart`, in the middle, and `disk`, around it"),
+    (
+        "field.gravity",
+        "planet body world place",
+        "on the moon it is `strength: 1.62 m/s^2`, on Mars `strength: 3.72 m/s^2`",
+    ),
+    (
+        "field.sun",
+        "time date hour latitude longitude daytime",
+        "write how high it stands and where, `elevation: 50 deg, azimuth: 30 deg`",
+    ),
+    (
+        "field.perspective",
+        "aperture focus_distance focus fstop f_stop depth_of_field dof blur focal_distance bokeh",
+        "all is sharp: leave it out",
+    ),
+    (
+        "bare.law",
+        "steel iron metal aluminium aluminum copper",
+        "steel is `{linear: {modulus: 200 GPa, poisson: 0.3}}`, aluminium has 70 GPa",
+    ),
+    ("bare.law", "rubber elastomer silicone", "rubber is `{neo_hookean: {modulus: 1 MPa, poisson: 0.49}}`"),
+    ("bare.law", "jelly gel soft foam flesh", "jelly is `{neo_hookean: {modulus: 10 kPa, poisson: 0.45}}`"),
+    ("bare.law", "wood plastic stiff", "wood is `{linear: {modulus: 10 GPa, poisson: 0.3}}`"),
+    ("cameras", "isometric iso axonometric", "write `{orthographic: {look_along: -1 -0.8 -1}}`"),
+    (
+        "cameras",
+        "top front side left right above",
+        "write `{orthographic: {look_along: 0 -1 0}}` from above, `0 0 -1` from the front, `-1 0 0` from the right",
+    ),
+    (
+        "forces",
+        "buoyancy archimedes lift",
+        "of a body write how it is pushed up by place, `{force: {components: [0, where(y < 0, 1000, 0), 0]}}`; a `flow`"
+        " has its `buoyancy`",
+    ),
+    (
+        "forces",
+        "lennard_jones lennardjones lj van_der_waals morse cohesion attraction",
+        "between all masses there are `mutual_gravity`, which draws them together, `repulsion` and `electrostatic`",
+    ),
+    (
+        "forces",
+        "magnet magnetism lorentz",
+        "write `{magnetic: {field: 0 0 1 T, charge: 1 C}}`: `sceneql words magnetic`",
+    ),
+    (
+        "models",
+        "sph smoke fire gas fluid_particles flip mpm",
+        "a fluid is a `flow`, smoke a `diffusion` with `drift: {by: FLOW}`, and sparks and drops are `particles` with"
+        " `emit`",
+    ),
     ("field.gear", "ratio gear_ratio transmission", "its teeth say it: a ratio of 2 is `teeth: 40 20`"),
     (
         "field.streamlines",

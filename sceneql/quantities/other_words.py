@@ -10,7 +10,12 @@ LIBRARIES = ("math", "Math", "np", "numpy", "random", "glm", "torch", "scipy")
 
 _LISTS = (
     ("title", "label name heading caption"),
-    ("radius", "width thickness line_width linewidth stroke"),
+    ("stars", "count number n particles"),
+    ("samples", "spp aa rays samples_per_pixel"),
+    ("trace", "cycles arnold raytrace raytracer path_tracer pathtracer povray mitsuba octane"),
+    ("raster", "opengl eevee webgl rasterizer workbench"),
+    ("glass", "water ice clear"),
+    ("value", "strength amount"),
     ("keep", "lifetime life"),
     ("between", "materials shapes"),
     ("points", "balls centers centres spheres positions blobs"),
@@ -72,7 +77,7 @@ _LISTS = (
     ("follow", "track tracking"),
     ("to", "end stop finish"),
     ("count", "segments pieces resolution divisions"),
-    ("pins", "pin fixed anchors anchored hold held fix"),
+    ("pins", "pin pinned fixed anchors anchored hold held fix"),
     ("field", "formula function expression equation f"),
     ("distance", "radius orbit_radius"),
     ("limits", "range"),

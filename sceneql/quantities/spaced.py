@@ -13,6 +13,8 @@ from sceneql.quantities.units import scan_unit
 
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _NAME = re.compile(r"(?<![\w.])[^\W\d][\w.]*")
+_EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
+_GLUED = re.compile(r"([^\W\d]\w*):([^\s,{}:]+)\s*$")
 _FORMULA = re.compile(r"[-+]?[\w.(]")
 _JOINS = tuple("+*/^<>=,")
 BARS = 2
@@ -130,3 +132,11 @@ def other_signs(text: str) -> str | None:
         return f"write `{plain}`"
     whole = re.fullmatch(r"\s*([\w.()*/ ]+?)\s*%\s*([\w.]+(?:\s*[a-zA-Z]+)?)\s*", text)
     return None if whole is None else f"write `mod({whole[1]}, {whole[2]})`"
+
+
+def parted_meant(line: str) -> str | None:
+    """The help for a line that ends in a name without a value: by an equals sign, or by a colon without a space."""
+    glued, written = _GLUED.search(line), _EQUATED.search(line)
+    if written is not None:
+        return f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
+    return None if glued is None else f"write `{glued[1]}: {glued[2]}`, with a space behind the colon"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Hashable, Iterator
+from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
@@ -49,6 +49,17 @@ class Part(Record):
     Where parts of *different* entries come together their densities add up; a line or a polygon does not bulge where
     its own pieces meet.
     """
+
+    said_by: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(
+            ("sphere", "ball", "metaball", "blob"),
+            "a ball is a point: write `{point: <position|0 1 0 m>, radius: <radius|0.5 m>}`",
+        ),
+        **dict.fromkeys(
+            ("cylinder", "capsule", "line", "segment", "rod"),
+            "a rod is a line: write `{polyline: [<from|0 0 0 m>, <to|0 1 0 m>], radius: <radius|0.3 m>}`",
+        ),
+    }
 
     KINDS: ClassVar[tuple[str, ...]] = ("point", "points", "segments", "polyline", "spline", "polygon")
 

@@ -26,6 +26,27 @@ def report_contacts(tasks: Mapping[str, Task], groups: Iterable[Island], found: 
         _report_shared({name: acting[name] for name in alone}, island, tasks, found)
 
 
+def warn_of_nothing_hit(tasks: Mapping[str, Task], groups: Iterable[Island], found: Diagnostics) -> None:
+    """Warn of contacts of masses with objects where there are none: masses pass through each other."""
+    acting = [one for island in groups for one in island.contacts]
+    for contact in dict.fromkeys(name for name, _, _ in acting):
+        task, kind = tasks[contact], tasks[contact].kind
+        models = [tasks[model].kind for name, model, _ in acting if name == contact]
+        masses = [one for one in models if isinstance(one, Model) and not (one.turns or one.has_skin or one.carried)]
+        if getattr(kind, "mutual", False) or any(others for name, _, others in acting if name == contact):
+            continue
+        if not masses or len(masses) < len(models):
+            continue
+        text = f"'{contact}' is of masses with objects, and there is none to collide with"
+        help = "write an object, as the floor"
+        if len(masses) > 1 or len(masses[0].drives()) != 1:
+            value = getattr(kind, "restitution", None) if "restitution" in kind.model_fields_set else None
+            kept = "" if value is None or value.span is None else f"restitution: {value.span.text}"
+            word = f"{contact}: {{mutual_collision: {{{kept}}}}}" if contact != task.word else "mutual_collision"
+            help = f"masses hit one another by `{word}`; for a wall or a floor write an object"
+        found.warning("nothing-hit", text, task.span, help=help)
+
+
 def _report_shared(
     acting: Mapping[str, list[str]], island: Island, tasks: Mapping[str, Task], found: Diagnostics
 ) -> None:

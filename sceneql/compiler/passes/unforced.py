@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import dist
 from typing import Any, cast
 
 from pydantic import BaseModel
@@ -11,6 +12,7 @@ from sceneql.compiler.passes.doubts import GRAVITATION
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Formula, Interaction, Kind, Model, Object, Tie, Value
+from sceneql.kinds.stable_step import StaticMass
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.expression import Number
 
@@ -18,6 +20,8 @@ UNSEEN = 0.01
 """Angle [rad] by which masses turn about each other, below which nobody sees their pull."""
 SEEN = 0.2
 """Part of a cell that a field has to spread by for the change to be seen."""
+ALIKE = 0.2
+"""Relative difference of the constant of a circle from the one that is there, up to which this one was meant."""
 STARTS = ("velocity", "spin")
 """Fields that let masses or bodies move at the start."""
 
@@ -65,11 +69,15 @@ def warn_of_weak(tasks: Mapping[str, Task], groups: Sequence[Island], end: float
         if not all(rates and max(rates) * end < UNSEEN for rates in each):
             continue  # one of them moves the masses, or may: the others may well be weak beside it
         for force in forces:
-            constant = getattr(force.kind, "constant", None)
-            pulls = isinstance(constant, Value) and constant.expr.type.dimension == GRAVITATION
+            own = getattr(force.kind, "constant", None)
             text = f"'{force.name}' is too weak to be seen: until {end:g} s it bends no way by as much as a part in"
-            help = f"masses of kg are pulled in seconds by `{force.word}: {{constant: 1 m^3/kg/s^2}}`, or write"
-            help = f"{help} larger masses, or a longer clock" if pulls else "write a stronger one, or a longer clock"
+            help = "write a stronger one, or a longer clock"
+            if isinstance(own, Value) and own.expr.type.dimension == GRAVITATION:
+                constant, why = _circling([mass for of in on.values() for mass in of.items()])
+                help = f"masses of kg are pulled in seconds by `{force.word}: {{constant: {constant} m^3/kg/s^2}}`"
+                help += f"{why}, or write larger masses, or a longer clock"
+                if own.constant and abs(float(constant) - own.number()) < ALIKE * own.number():
+                    help = f"write a longer clock, `clock: {{end: 1 year, speed: 1e6}}`: its constant is right{why}"
             found.warning("nothing-moves", f"{text} {1 / UNSEEN**2:.0g}", force.span, help=help)
 
 
@@ -88,6 +96,17 @@ def warn_of_slow(tasks: Mapping[str, Task], end: float, found: Diagnostics) -> N
                 longer = f"`clock: {{end: {end * (cell / way) ** 2:.0f} s, speed: ...}}`"
                 help = f"for a cell take {longer}, or smaller cells, or a larger `coefficient`"
                 found.warning("nothing-moves", text, task.span, help=help)
+
+
+def _circling(masses: Sequence[tuple[str, StaticMass]]) -> tuple[str, str]:
+    """The constant by which a mass circles the heaviest at its speed, v^2 r/M in SI, and which one that is; else 1."""
+    placed = sorted((one for one in masses if one[1].position is not None), key=lambda one: -one[1].mass)
+    for name, mass in placed[1:]:
+        (center, heavy), away = placed[0], dist(mass.position or (), placed[0][1].position or ())
+        speed = dist(mass.velocity or (0.0,) * 3, heavy.velocity or (0.0,) * 3)
+        if speed * away > 0.0 and heavy.mass > 0.0 and name and center:
+            return f"{speed**2 * away / heavy.mass:.2g}", f", with which '{name}' circles '{center}'"
+    return "1", ""
 
 
 def _leads(task: Task) -> bool:

@@ -6,11 +6,14 @@ from collections.abc import Collection, Mapping
 from math import dist, pi, sqrt
 
 from sceneql.graph import Task
-from sceneql.kinds import Camera, Light, Model, Object, Value
+from sceneql.kinds import Camera, Kind, Light, Model, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
 DIM = 3.0
 """[W] power of all lamps together below which a scene of some meters is nearly dark."""
+
+MASS = 1.0
+"""[m] A bound of how far a mass of a model reaches from its place."""
 
 
 def warn_of_unseen(
@@ -30,8 +33,13 @@ def warn_of_unseen(
         camera = tasks.get(cameras.get(picture, ""))
         mirrors = any(getattr(tasks[name].kind, "material", None) for name in names if tasks[name] not in parts)
         if camera is not None and parts and not mirrors and all(_behind(task, camera) for task in parts):
-            text = f"'{camera.name}' sees nothing but the ground: all else that is drawn is behind it"
-            found.warning("not-seen", text, camera.span, help="turn it round: `look_at` is the place in the middle")
+            start = any(task.original or isinstance(task.kind, Model) for task in parts)
+            text = f"'{camera.name}' sees nothing{' but the ground' if len(parts) < len(names) else ''}: all "
+            text += f"{'else ' if len(parts) < len(names) else ''}that is drawn is behind it"
+            middle = next((place for task in parts for place in _places(task)), None)
+            at = "is the place in the middle" if middle is None else f"is the place in the middle, as `{_text(middle)}`"
+            text += " at the start" if start else ""
+            found.warning("not-seen", text, camera.span, help=f"turn it round: `look_at` {at}")
 
 
 def warn_of_buried(tasks: Mapping[str, Task], found: Diagnostics) -> None:
@@ -73,23 +81,35 @@ def ground_level(tasks: Mapping[str, Task]) -> float | None:
 
 
 def _behind(task: Task, camera: Task) -> bool:
-    """Whether an object that stands still certainly lies behind a camera that stands still."""
+    """Whether what stands still, or starts somewhere, certainly lies there behind a camera that stands still."""
     eye, aim = (_place(getattr(camera.kind, field, None)) for field in ("position", "look_at"))
-    at = None if isinstance(task.kind, Model) or task.original else _place(getattr(task.kind, "position", None))
-    if eye is None or aim is None or at is None or (away := dist(eye, aim)) == 0:
+    if eye is None or aim is None or (away := dist(eye, aim)) == 0:
         return False
-    reach = _reach(task)
-    ahead = sum((a - e) * (p - e) for e, a, p in zip(eye, aim, at, strict=True)) / away
-    return reach is not None and ahead < -reach
+    reach = MASS if isinstance(task.kind, Model) else _reach(task.original or task.kind)
+    ahead = [sum((a - e) * (p - e) for e, a, p in zip(eye, aim, at, strict=True)) / away for at in _places(task)]
+    return reach is not None and bool(ahead) and max(ahead) < -reach
+
+
+def _places(task: Task) -> list[tuple[float, ...]]:
+    """Where an object stands or starts, or the masses of a model start [m]; empty where that is not known."""
+    if isinstance(task.kind, Model):
+        known = [mass.position for mass in task.kind.static_masses().values()]
+        return [] if None in known else [place for place in known if place is not None]
+    at = _place(getattr(task.original or task.kind, "position", None))
+    return [] if at is None else [at]
+
+
+def _text(place: tuple[float, ...]) -> str:
+    return f"{' '.join(f'{one:g}' for one in place)} m"
 
 
 def _place(value: object) -> tuple[float, ...] | None:
     return tuple(map(float, value.number())) if isinstance(value, Value) and value.constant else None
 
 
-def _reach(task: Task) -> float | None:
+def _reach(kind: Kind) -> float | None:
     """A bound of how far an object reaches from its position [m]; None where its fields do not tell."""
-    sizes = [value for field in ("radius", "size", "tube", "height") if (value := getattr(task.kind, field, None))]
+    sizes = [value for field in ("radius", "size", "tube", "height") if (value := getattr(kind, field, None))]
     if not sizes or not all(isinstance(one, Value) and one.constant for one in sizes):
         return None
     numbers = [one.number() for one in sizes]

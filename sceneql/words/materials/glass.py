@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Color, FixedScalar, Material, Moment, field
@@ -15,6 +16,10 @@ class Glass(Material):
     """Refracts by Snell's law and reflects by Fresnel's equations; light that passes its surface takes its color."""
 
     clear: ClassVar[bool] = True
+    told_by: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(("ior", "index_of_refraction", "refractive_index", "refraction"), "index_of_refraction"),
+        **dict.fromkeys(("transmission", "transparency", "transparent", "dielectric"), ""),
+    }
 
     color: Color = field("Color of the light that passes.", "1 1 1")
     index_of_refraction: FixedScalar = field("1.33 is water, 1.5 glass, 2.42 diamond.", "1.5", at_least=1, at_most=4)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Color, FixedScalar, Material, Moment, Scalar, field
 from sceneql.shapes.color import linear
@@ -13,6 +14,13 @@ if TYPE_CHECKING:
 
 class Glossy(Material):
     """A diffuse color under a clear reflecting surface (Burley 2012): plastic, paint, porcelain."""
+
+    told_by: ClassVar[Mapping[str, str]] = {
+        "roughness": "roughness",
+        "specular": "specular",
+        "shininess": "",
+        "clearcoat": "",
+    }
 
     color: Color = field("The diffuse color.", "0.8 0.8 0.8")
     roughness: Scalar = field("0 reflects like a mirror, 1 is dull.", "0.3", at_least=0, at_most=1)

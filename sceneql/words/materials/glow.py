@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Color, FixedScalar, Material, Moment, field
 from sceneql.shapes.color import linear
@@ -17,6 +18,11 @@ class Glow(Material):
     A sphere of it shows a lamp where a `point` light stands that is as large: it throws no shadow in that light, and
     adds none of its own.
     """
+
+    told_by: ClassVar[Mapping[str, str]] = {
+        **dict.fromkeys(("emission", "emission_strength", "emissive_intensity", "luminance"), "strength"),
+        **dict.fromkeys(("emissive", "emission_color"), "color"),
+    }
 
     color: Color = field("The color of its light.", "1 1 1")
     strength: FixedScalar = field("Its radiance; 1 is as bright as a white surface in full light.", "1", at_least=0)

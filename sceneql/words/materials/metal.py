@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, get_args
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 
 from sceneql.kinds import Color, Material, Moment, Scalar, field
 from sceneql.shapes.color import linear
@@ -24,6 +25,8 @@ REFLECTED = (
 
 class Metal(Material):
     """Reflection alone, in its own color (Burley 2012, metallic 1)."""
+
+    told_by: ClassVar[Mapping[str, str]] = {"metallic": "", "metalness": "", "metal": "", "conductor": ""}
 
     color: Named | Color = field("The metal by its name, or the color of its reflection.", "0.86 0.86 0.87")
     roughness: Scalar = field("0 is polished, 1 is dull.", "0.25", at_least=0, at_most=1)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, ClassVar
 
 from sceneql.kinds import Color, Material, Moment, field
 from sceneql.shapes.color import linear
@@ -13,6 +14,8 @@ if TYPE_CHECKING:
 
 class Mirror(Material):
     """A sharp reflection, tinted by its color."""
+
+    told_by: ClassVar[Mapping[str, str]] = {"reflection": "", "reflectivity": "", "reflective": "", "reflectance": ""}
 
     color: Color = field("Tint of the reflection.", "0.97 0.97 0.97")
 

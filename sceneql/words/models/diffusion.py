@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
@@ -19,7 +20,7 @@ from sceneql.grids.medium import (
     number_in,
 )
 from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
-from sceneql.kinds import Formula, Gives, Problem, Value, field
+from sceneql.kinds import Doubt, Formula, Gives, Problem, Value, field
 from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.dimension import Dimension
@@ -37,6 +38,11 @@ UNITS = {"concentration": dim.DENSITY, "temperature": dim.TEMPERATURE, "number":
 
 LEAST_RATES = {1: 8.0, 2: 150.0}
 """By degree of elements: measured factor of D/cell^2 that is at most the fastest decay rate."""
+
+
+WARM, COLD = 5.0, 150.0
+"""[K] Numbers between which temperatures are most likely meant in °C: those below are as likely parts of a range."""
+NUMBER = re.compile(r"[-+]?\d+\.?\d*")
 
 
 def _names(what: str) -> tuple[str, ...]:
@@ -110,6 +116,22 @@ class Diffusion(SpreadingMedium):
     def coefficients(self) -> Iterable[tuple[Formula | None, tuple[str, ...]]]:
         """That of its field."""
         return ((self.coefficient, ("coefficient",)),)
+
+    def doubts(self) -> Iterable[Doubt]:
+        """Temperatures without a unit that are most likely meant in °C."""
+        start = self.initial if isinstance(self.initial, Formula) else None
+        given = [one for one in (start, *(part.value for part in self.boundary.values())) if one is not None]
+        known = [(number_in(one), one.span) for one in given]
+        bare = [
+            span for number, span in known if number is not None and span is not None and NUMBER.fullmatch(span.text)
+        ]
+        most = max((abs(number) for number, _ in known if number is not None), default=0.0)
+        if self.of == "temperature" and given and len(bare) == len(given) and WARM < most < COLD:
+            texts = list(dict.fromkeys(span.text for span in bare))
+            text = f"a temperature without a unit is in K: {texts[-1]} K is {float(texts[-1]) - 273.15:.4g} °C"
+            yield Doubt(
+                "kelvin", text, bare[0], f"write `{'`, `'.join(f'{one} °C' for one in texts)}` if these are meant"
+            )
 
     @property
     def made(self) -> bool:
