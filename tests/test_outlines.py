@@ -105,10 +105,17 @@ def test_what_is_long_and_lies_is_seen_across(tmp_path, size, back):
 
 
 @pytest.mark.parametrize(
-    ("size", "axis"), [("6 4 0.01 m", 2), ("0.01 4 6 m", 0), ("6 0.01 6 m", None), ("2 1 0.01 m", None)]
+    ("size", "axis"),
+    [
+        ("6 4 0.01 m", 2),
+        ("0.01 4 6 m", 0),
+        ("6 0.01 6 m", None),
+        ("2 1 0.01 m", None),
+        ("6 4 0.01 m, position: 3 0 4 m", None),
+    ],
 )
 def test_a_map_beside_a_thick_tower_is_seen_nearly_along_its_normal(tmp_path, size, axis):
-    """Not what lies flat, as a floor, and not a small plate."""
+    """Not what lies flat, as a floor, not a small plate, and not what stands before all else, as a wall."""
     tower = "box: {size: 3 7 3 m, position: 6 3 0 m}}, b: {box: {size: " + size + "}"
     seen = default_view(tmp_path, tower).axes[2]
     towards = THREE_QUARTER if axis is None else NEARLY[axis]

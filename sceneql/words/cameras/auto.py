@@ -28,6 +28,8 @@ directions towards the camera by the long axis."""
 MAP, NEARLY = 0.25, {0: (1.0, 0.25, 0.35), 2: (0.35, 0.25, 1.0)}
 """Least area of an EVEN upright part, such as a map, relative to that of the whole scene along its normal, with which
 what is not flat is seen from nearer to this; and directions towards the camera by the normal."""
+HALFWAY = 0.6
+"""How far towards the camera such a part may stand, in parts of the scene."""
 FULL, AROUND, UNUSUAL = 0.6, 36, 0.4
 """Least cosine between the view and the normal of what is flat and tilted: a circle is then seen as an ellipse that
 fills a wide picture; number of views at this angle that are compared; by how much what is seen from a quarter turn away
@@ -112,18 +114,24 @@ def _towards(points: Floats, slopes: tuple[float, float], boxes: Floats) -> Towa
         return x, y, z
     if sides[thin] < FLAT * min(others):
         return ALONG[thin]
-    upright = _largest_map(boxes, sides)
+    upright = _largest_map(boxes, sides, points.min(axis=0) + HALFWAY * sides)
     if upright is not None:
         return NEARLY[upright]
     long = int(sides.argmax())
     return ACROSS.get(long, THREE_QUARTER) if min(others) < LONG * sides[long] else _onto_tilted(points, slopes)
 
 
-def _largest_map(boxes: Floats, sides: Floats) -> int | None:
-    """Axis of the normal of the largest EVEN upright part, of boxes (n, 2, 3), that is a MAP of a scene."""
+def _largest_map(boxes: Floats, sides: Floats, most: Floats) -> int | None:
+    """Axis of the normal of the largest EVEN upright part, of boxes (n, 2, 3), that is a MAP of a scene.
+
+    One beyond ``most`` (3,) [m] along its normal is none: it would hide what is behind it, as a wall does.
+    """
     found: dict[int, float] = {}
-    for one in boxes[:, 1] - boxes[:, 0]:
+    for low, high in boxes:
+        one = high - low
         thin = int(one.argmin())
+        if low[thin] > most[thin]:
+            continue
         across = [k for k in range(3) if k != thin]
         if thin in NEARLY and one[thin] < EVEN * one[across].min():
             found[thin] = max(found.get(thin, 0.0), float(one[across].prod() / sides[across].prod()))
