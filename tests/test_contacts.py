@@ -272,3 +272,17 @@ def test_a_flight_past_local_contacts_costs_no_more_evaluations_of_the_rate(tmp_
         island.advance(0.4)
         counts.append(island.march.statistics.evaluations)
     assert counts[0] == counts[1] > 0
+
+
+@pytest.mark.parametrize("height", [2, 3, 10])
+def test_a_ball_rests_though_nobody_looks_for_long(tmp_path, height):
+    """Steps are long then, and flights before it rests so short that the gap near their start is rounding alone."""
+    script = f"""
+models: {{fall: {{particles: {{of: ball, mass: 1 kg}}}}}}
+objects: {{ball: {{sphere: {{radius: 0.1 m, position: 0 {height} 0 m}}}}, floor: plane}}
+forces: [gravity]
+contacts: [collision]
+clock: {{end: 20 s}}
+"""
+    ((at,),) = watch(tmp_path, script, [15.0], "ball.position")
+    assert at == pytest.approx([0.0, 0.1, 0.0], abs=1e-12)

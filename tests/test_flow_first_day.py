@@ -14,6 +14,8 @@ BOX = "size: 1 0.4 m, cell: 5 cm, density: 1 kg/m^3, viscosity: 0.1 Pa*s"
 HEAT = (
     "diffusion: {size: 1 0.4 m, cell: 5 cm, coefficient: 1e-3 m^2/s, of: temperature, initial: 20 °C, drift: {by: air}}"
 )
+LED = "diffusion: {size: 1 1 m, cell: 25 cm, coefficient: 1e-3, of: number, source: lead.position.y}"
+LEAD = "{motion: {position: 0 1 0 m}}"
 DEEP = "size: 1 1 1 m, cell: 25 cm, density: 1 kg/m^3, viscosity: 0.1 Pa*s"
 DUST = "particles: {list: {mote: {position: 0.5 0.5 0.5 m, mass: 1 mg}}}"
 
@@ -48,10 +50,19 @@ def test_what_closes_a_channel_off_is_named(tmp_path):
         (f"air: {{flow: {{{BOX}}}}}, heat: {{{HEAT}}}", "", "", ["heat_map"]),
         (f"air: {{flow: {{{BOX}}}}}, heat: {{{HEAT}}}", "map: {field_map: {of: heat.temperature}}", "", ["map"]),
         (f"air: {{flow: {{{BOX}}}}}, heat: {{{HEAT}}}", "map: {field_map: {of: air.speed}}", "", ["map"]),
+        (f"heat: {{{LED}}}, lead: {LEAD}", "ball: {sphere: {position: lead.position}}", "", ["ball", "heat_map"]),
         (f"air: {{flow: {{{DEEP}}}}}", "", "", ["air_streamlines"]),
         (f"air: {{flow: {{{DEEP}}}}}, dust: {{{DUST}}}", "", "wind: {in: air, linear: 1e-5 N*s/m}", ["dust"]),
     ],
-    ids=["a flow", "what it carries", "a map of that", "a map of the flow", "a deep flow", "its wind"],
+    ids=[
+        "a flow",
+        "what it carries",
+        "a map of that",
+        "a map of the flow",
+        "what else moves",
+        "a deep flow",
+        "its wind",
+    ],
 )
 def test_one_picture_of_a_flow_and_what_it_carries(tmp_path, models, objects, more, drawn):
     """No map lies in the plane of another, nor does an opaque box hide what moves in it."""

@@ -155,3 +155,11 @@ def test_steps_are_as_long_as_a_solid_that_moves_unevenly_lets_them_be(tmp_path)
         before = f"objects: {{drum: {{box: {{size: 0.4 0.4 1 m, position: {place}}}}}}}\n"
         air = Air(tmp_path, "{auto: {}}", 1.0, before=before, around="[drum]")
         assert air.run.march.system.largest_step == pytest.approx(0.25 / cells, rel=0.05)
+
+
+def test_a_solid_that_shakes_fast_bounds_the_steps(tmp_path):
+    """Its places in even intervals of the run are always the same."""
+    before = "objects: {drum: {box: {size: 0.4 0.4 1 m, position: '[0.5 m + 1 cm*sin(80*pi*time/(1 s)), 0.5 m, 0]'}}}\n"
+    air = Air(tmp_path, "{auto: {}}", 1.0, before=before, around="[drum]")
+    cells = 80 * math.pi * 0.01 * 16
+    assert air.run.march.system.largest_step == pytest.approx(0.25 / cells, rel=0.05)

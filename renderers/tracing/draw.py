@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -151,6 +152,10 @@ def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> N
         busy, marks = np.where(buffers.mirrored != 0, busy, np.int8(0)), np.empty_like(marks)
         choose(busy, np.zeros_like(marks), marks)
 
+    def where_laid(stage: Callable[[int, int], None], start: int, stop: int) -> None:
+        if marks[start // TILE].any():  # elsewhere, in most rows of a second layer, all chunks are BLANK
+            stage(start, stop)
+
     def along(start: int, stop: int) -> None:
         lay_out(start, stop, width, marks, records, visibility, planes)
         widen(start, stop, columns, marks, planes, sums, np.empty(LANES, dtype=np.float32))
@@ -163,4 +168,4 @@ def _filter(refine_rows: Callable[..., None], buffers: Buffers, layer: int) -> N
         refine_rows(start * width, stop * width, busy, records, visibility, fine)
 
     for stage in (along, down, at_last):
-        over_rows(height, stage)
+        over_rows(height, partial(where_laid, stage))

@@ -274,9 +274,11 @@ class Waves:
                 self._end_ways()
             before = int(head[layout.WAYS])
             end = self._twice(start, stop, work)
-            if together:
+            if head[layout.WAYS] == before:
+                pass
+            elif together:
                 self.awaited.append((work, start, end))
-            elif head[layout.WAYS] > before:
+            else:
                 self.light_ways(before)
                 head[layout.MODE], head[layout.NEXT] = layout.ENDING, before
                 work(start, end)

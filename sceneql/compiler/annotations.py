@@ -14,6 +14,8 @@ from sceneql.quantities.units import format_quantity
 
 _USUAL = {PRESSURE: "10 kPa", DENSITY: "1000 kg/m^3", LENGTH: "0.1 m"}
 """Examples where 1 in SI is far from what things have."""
+_CALLED = {"torque": "1 N*m"}
+"""Examples of fields by name where their dimension has another unit: 1 J is no torque."""
 SPACE = ("x", "y", "z", "t")
 COMPONENTS = ("x", "y", "z")
 _SHOWN = re.compile(r"`([^`]*[\[{.\d\"][^`]*)`")
@@ -72,7 +74,7 @@ def example_of(cls: type[BaseModel], name: str) -> str:
         return "yes"
     dimensions = (mark.dimension for mark in quantities(info) if not mark.shape and mark.dimension is not None)
     if (one := next(dimensions, None)) is not None:
-        return _USUAL.get(one, format_quantity(1.0, one))
+        return _CALLED.get(name) or _USUAL.get(one, format_quantity(1.0, one))
     if (vector := _vector(quantities(info))) is not None:
         return vector
     refers = any(isinstance(mark, kinds.Refers) for mark in marks_of(info))

@@ -17,6 +17,7 @@ from sceneql.quantities.span import Span
 from sceneql.quantities.units import Unit, describe, parse_unit, unit_of
 
 _WORD = re.compile(r"\s?([^\W\d]\w*(?:[/*^]\w+)*)")
+_NUMBERED = r"(?<!\\)\\(?:x[\da-fA-F]{2}|u[\da-fA-F]{4}|U[\da-fA-F]{8})"
 _PRINTED = re.compile(r"%(\.\d+[efg])")
 _SIGN = re.compile(r"\$(\{[^{}]*\})")
 _LINK = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
@@ -80,10 +81,14 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
 
 
 def unescaped(node: Scalar) -> str | None:
-    """A text in double quotes with backslashes before letters, as single quotes keep it; None for others."""
-    written = node.span.text
+    """A text in double quotes with backslashes before letters, as single quotes keep it; None for others.
+
+    The number of a character, as `\\u03b1`, is YAML's and nothing else.
+    """
+    written = re.sub(_NUMBERED, "", node.span.text)
     if not node.quoted or written[:1] != '"' or re.search(r"(?<!\\)(?:\\\\)*\\[a-zA-Z_]", written) is None:
         return None
+    written = node.span.text
     return "'" + written[1:-1].replace("'", "''") + "'"
 
 

@@ -310,12 +310,13 @@ def warn_of_another(
     node: Scalar, family: str, user: str, entries: Naming[str, Entry], family_of: Naming[str, str], found: Diagnostics
 ) -> None:
     """Warn of a word in a model, ``user``, that makes another part, where there is a part by that word to be meant."""
-    if family_of.get(user) != "models":
-        return
+    if family_of.get(user) != "models" or family not in ("objects", "models"):
+        return  # a plain material beside a tinted one is most likely meant
     same = [name for name, entry in entries.items() if entry.word == node.text and family_of[name] == family]
     if same and "." not in same[0]:
         text = f"'{node.text}' is a word here, and makes another one, with its defaults"
-        found.warning("second-part", text, node.span, help=f"to name the one that is there write `{same[0]}`")
+        help = f"to name the one that is there write `{same[0]}`, to make another `{{{node.text}: {{}}}}`"
+        found.warning("second-part", text, node.span, help=help)
 
 
 def beside_world(place: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
@@ -27,6 +27,12 @@ def states(rows: Iterable[str]) -> list[str]:
     rows = list(rows)
     second = [row.removesuffix("''") for row in rows if row.endswith("''")]
     return [*second, *(f"{name}'" for name in second), *(row for row in rows if not row.endswith("'"))]
+
+
+def derived(row: str, start: Collection[str]) -> str:
+    """The state whose rate other notations call so, ``da/dt``, ``da`` or ``a_dot``; empty for none."""
+    named = (found[1] for shape in _DERIVATIVES if (found := shape.fullmatch(row)) is not None)
+    return next((name for name in named if name in start), "")
 
 
 @dataclass(frozen=True)
@@ -101,10 +107,11 @@ class Rows:
     def _row_problems(self) -> Iterator[Problem]:
         if not self.rate:
             yield Problem("a system needs a rate: `y: ...` is dy/dt, `a'': ...` is d²a/dt²", ("rate",))
-        derived = {row: name for row in self.rate if row not in self.start and (name := self._derived(row))}
-        for row, name in derived.items():
-            yield Problem(f"the rate of {name} is written '{name}', without `{row}`", ("rate", row))
-        if derived:
+        called = {row: name for row in self.rate if row not in self.start and (name := derived(row, self.start))}
+        for row, name in called.items():
+            help = None if (span := self.rate[row].span) is None else f"write `{name}: {span.text}`"
+            yield Problem(f"the rate of {name} is written '{name}', without `{row}`", ("rate", row), True, help=help)
+        if called:
             return
         primed = [row for row in self.rate if row[-1:] == "'" != row[-2:-1] and row[:-1] in self.start]
         for row in primed:
@@ -134,11 +141,6 @@ class Rows:
                 yield Problem(
                     f"{name} has a value at the start but no rate{f': {hint}' if hint else ''}", ("start", name)
                 )
-
-    def _derived(self, row: str) -> str:
-        """The state whose rate other notations call so, ``da/dt``, ``da`` or ``a_dot``; empty for none."""
-        named = (found[1] for shape in _DERIVATIVES if (found := shape.fullmatch(row)) is not None)
-        return next((name for name in named if name in self.start), "")
 
     def _name_problems(self) -> Iterator[Problem]:
         taken = dict.fromkeys(TIMES, "the time")

@@ -58,6 +58,8 @@ class Material(Kind):
     """How a surface looks."""
 
     family: ClassVar[str] = "materials"
+    clear: ClassVar[bool] = False
+    """Whether one sees through it."""
     told_by: ClassVar[Mapping[str, str]] = {}
     """Fields that tell that this material is meant, as other programs call them, each with the field here that takes
     its value; or "" for none."""

@@ -132,6 +132,8 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
                     message, help = f"the unit '{written}' cannot stand behind a bracket", f"write: {line}"
                 case _ if "\\" in written and (plain := from_latex(written)) is not None:
                     message, help = "commands of LaTeX mean nothing here", f"write `{plain}`"
+                    if source.text[: fault.start].rstrip().endswith("tex:"):
+                        message, help = "TeX has braces, which are YAML's, too", f"quote it: `'{written}'`"
                 case _ if _UNIT_IN_BRACKETS.fullmatch(written) is not None:
                     message, help = "a unit stands behind its number, without brackets", f"write: {line}"
                 case _ if written.startswith("(") and fault.fixed[0] not in "\"'":

@@ -54,6 +54,28 @@ def apply_patch(
     return root
 
 
+def _by_name(node: Node, root: Mapping) -> str:
+    """Variants under their names, of a list in which each has a field `name`; else an example."""
+    define = root.entries.get("define")
+    known = define.entries if isinstance(define, Mapping) else {}
+    shown = []
+    for item in node.items if isinstance(node, Sequence) else ():
+        fields = item.entries if isinstance(item, Mapping) else {}
+        if not isinstance(fields.get("name"), Scalar):
+            return EXAMPLE
+        values = (
+            f"{'define.' if key in known else ''}{key}: {value.span.text}"
+            for key, value in fields.items()
+            if key != "name"
+        )
+        shown.append(f"{fields['name'].span.text}: {{{', '.join(values)}}}")
+    return f"{{{', '.join(shown)}}}" if shown else EXAMPLE
+
+
+EXAMPLE: Final = "{soft: {define.k: 200 N/m}}"
+"""Variants, for messages."""
+
+
 class _LostError(Exception):
     """A path leads through an unreadable value."""
 
@@ -62,7 +84,7 @@ def report_unnamed(root: Mapping, found: Diagnostics) -> None:
     """Report variants that have no names."""
     node = root.entries.get("variants")
     if node is not None and not (isinstance(node, Mapping) or unsure(node) or empty(node)):
-        text, help = "variants hold values by path, each under a name", "write `variants: {soft: {define.k: 200 N/m}}`"
+        text, help = "variants hold values by path, each under a name", f"write `variants: {_by_name(node, root)}`"
         found.error("section-shape", text, node.span, help=help)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Sequence
 from typing import Final, Literal
 
@@ -10,6 +11,7 @@ from sceneql.language.reuse import USE
 from sceneql.language.tree import Mapping, Node, Scalar, unsure
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
 
+_WORD: Final = re.compile(r"[^\W\d]\w*")
 MOST_NAMED: Final = 6
 """Largest number of lost parts that are named."""
 
@@ -25,8 +27,8 @@ def word_of(part: Node | None) -> str:
 def report_replaced(root: Mapping, name: str, families: Collection[str], found: Diagnostics) -> None:
     """Warn of sections that a variant replaces by fewer parts, and report fields that stand in place of a part's word.
 
-    As many parts by other names, and a list, which has no names, replace a section without a warning: all of it is
-    meant. Of `define` a name that is lost is an error.
+    As many parts by other names, a part as it was, which is to stay, and a list, which has no names, replace a section
+    without a warning: all of it is meant. Of `define` a name that is lost is an error where it is used still.
     """
     try:
         patches = variant(root, name)
@@ -44,7 +46,11 @@ def report_replaced(root: Mapping, name: str, families: Collection[str], found: 
         named = path in (*families, "define", "parts")
         if named and isinstance(old, Mapping) and isinstance(value, Mapping) and value.entries and not unsure(value):
             gone = [part for part in old.entries if part not in value.entries]
-            if gone and (path == "define" or len(value.entries) < len(old.entries)):
+            kept = [part for part, was in old.entries.items() if part not in gone and _same(was, value.entries[part])]
+            if path == "define":
+                used = {word for one in _remaining(root, patches) for word in _WORD.findall(one)}
+                gone = [part for part in gone if part in used]
+            if gone and (path == "define" or (len(value.entries) < len(old.entries) and not kept)):
                 told = ", ".join(
                     _changed(path, part, old.entries.get(part), one) for part, one in value.entries.items()
                 )
@@ -73,6 +79,28 @@ def _parts(root: Mapping, patch: Patch, families: Collection[str]) -> Iterator[t
 def dotted(part: str, fields: Mapping) -> str:
     """The fields of a part by their paths: ``ball.radius: 1 m, ball.color: red``."""
     return ", ".join(f"{part}.{name}: {_short(one)}" for name, one in fields.entries.items() if name != "repeat")
+
+
+def _remaining(root: Mapping, patches: Sequence[Patch]) -> Iterator[str]:
+    """The texts of a script that a variant leaves, and of what it gives."""
+    whole = {path for path, _, _ in patches}
+    for name, node in root.entries.items():
+        if name not in ("variants", *whole):
+            yield from _texts(node)
+    for _, value, _ in patches:
+        yield from _texts(value)
+
+
+def _texts(node: Node) -> Iterator[str]:
+    if isinstance(node, Scalar):
+        yield node.text
+    for inner in node.entries.values() if isinstance(node, Mapping) else getattr(node, "items", ()):
+        yield from _texts(inner)
+
+
+def _same(node: Node, other: Node) -> bool:
+    """Whether two nodes are written alike, but for spaces."""
+    return node.span.text.split() == other.span.text.split()
 
 
 def _changed(section: str, part: str, was: Node | None, now: Node) -> str:

@@ -11,6 +11,8 @@ from sceneql.march.events_kernels import FIRST_OF, reference
 from sceneql.system.signatures_kernels import A, F, I, N
 
 ULP = 2.3e-16
+NEARER = 0.01
+"""Factor by which a short flight is sought nearer to its start: by far nearer its gap is hidden by rounding, a root."""
 
 LOCATE = types.UniTuple(F, 2)(I, N, F, types.boolean, F, F, F, A, A, A, A, A, I, A, I, A)
 
@@ -47,7 +49,7 @@ def locate(
             break
         x2 = x1
         f2 = f1
-        x1 *= 1e-6
+        x1 *= NEARER
         if x1 < 1e-18 * high or t0 + x1 <= t0:
             # A pair that is apart at the start meets in between; one that touches never leaves.
             gap(t0, y0, now, floats, ints)

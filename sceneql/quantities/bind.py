@@ -26,6 +26,8 @@ number (``1500 /s``). None: the name is one of these constants, or its error has
 
 SECONDS = "the time is `t` here, a plain number of seconds, as all numbers here: write `sin(3*t)`, not `sin(3 /s*time)`"
 """The help of the error for `time` with a unit in a formula over plain numbers."""
+_TIMED = re.compile(r"([-+]?\d[\d.]*(?:[eE][-+]?\d+)?\s*)([^\W\d]\w*)\s*\*\s*time")
+"""A number with a unit times the time."""
 FEWEST_DEGREES = 15.0
 """A bare number that is a multiple of it is most likely meant in degrees."""
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
@@ -175,8 +177,18 @@ def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, lookup: L
     time = time_meant(written)
     if time is not None and node.span is not None and isinstance(lookup(("t",), node.span), Symbol):
         time = SECONDS
-    help = time or "; ".join(filter(None, (error.help, _better(node, parts, error))))
+    help = time or "; ".join(filter(None, (error.help, _better(node, parts, error) or _by_time(parts, error))))
     found.error(error.code, error.message, parts[error.first].span or node.span, help=help or None, notes=notes)
+
+
+def _by_time(parts: tuple[Expr, ...], error: MismatchError) -> str | None:
+    """The help where one of two terms is a value times the time, and should be a rate: ``1 m + 0.1 m*time``."""
+    both = [] if error.second is None else [parts[error.first], parts[error.second]]
+    for one, other in zip(both, reversed(both), strict=True):
+        text = None if one.span is None else _TIMED.fullmatch(one.span.text.strip())
+        if text is not None and other.span is not None and re.search(rf"\d\s*{text[2]}$", other.span.text):
+            return f"it grows by time: write `{text[1]}{text[2]}/s*time`"
+    return None
 
 
 def _better(node: Expr, parts: tuple[Expr, ...], error: MismatchError) -> str | None:

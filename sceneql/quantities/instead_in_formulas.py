@@ -114,6 +114,7 @@ OF_FORMULAS = (
         "a name stands by itself, `radius: r`; only the number of a copy by `repeat` stands in braces, in a name,"
         ' `"ball.{i}.position"`: `sceneql words repeat`',
     ),
+    ("unit", "G Gs gauss Gauss", "a gauss is 1e-4 T: 500 G are `0.05 T`"),
     ("unit", "lines contours levels copies segments stars samples", "a number of them has no unit: write it alone"),
     ("unit", "particles particle balls items pieces times", "what is counted has no unit: write `100 /s`"),
     (

@@ -14,6 +14,11 @@ _VARIED = (
 OF_SECTIONS = (
     # fields of single words and groups
     (
+        "field.solvers",
+        "timestep time_step dt step",
+        "its steps are its own; those that are given are taken by `{rk4: {step: 1 ms}}`, and others of fixed steps",
+    ),
+    (
         "field.trail field.tube field.coil field.streamlines field.arrow",
         "width thickness line_width linewidth stroke",
         "half of how thick it is is its `radius: 1 cm`",

@@ -115,7 +115,10 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
     forces = [task for task in tasks.values() if isinstance(task.kind, Interaction)]
     around = {flow.name for task in forces if (flow := cast(Interaction, task.kind).carrier()) is not None}
     for task in fields.values():
-        read.update(task.needs if task.name in read else read.intersection(task.needs) and {task.name})
+        if task.name in read:
+            read.update(task.needs)
+    shown = read.intersection(fields)
+    read.update(name for name, task in fields.items() if shown.intersection(task.needs))
     covered = {
         need for task in tasks.values() if isinstance(task.kind, Object) and task.kind.covers for need in task.needs
     }

@@ -8,6 +8,7 @@ from typing import Any, cast
 
 from pydantic import BaseModel
 
+from sceneql.compiler.passes.doubts import GRAVITATION
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Island, Task
 from sceneql.kinds import Contact, Formula, Interaction, Kind, Model, Object, Tie, Value
@@ -19,6 +20,8 @@ UNSEEN = 0.01
 """Angle [rad] by which masses turn about each other, below which nobody sees their pull."""
 SEEN = 0.2
 """Part of a cell that a field has to spread by for the change to be seen."""
+ALIKE = 0.2
+"""Relative difference of the constant of a circle from the one that is there, up to which this one was meant."""
 STARTS = ("velocity", "spin")
 """Fields that let masses or bodies move at the start."""
 
@@ -62,15 +65,20 @@ def warn_of_weak(tasks: Mapping[str, Task], groups: Sequence[Island], end: float
         if not forces or not all(isinstance(one.kind, Interaction) and one.kind.mutual for one in forces):
             continue
         on = {name: cast(Model, tasks[name].kind).static_masses() for name in island.models}
+        each = [[one.frequency for one in cast(Interaction, force.kind).fastest(force.name, on)] for force in forces]
+        if not all(rates and max(rates) * end < UNSEEN for rates in each):
+            continue  # one of them moves the masses, or may: the others may well be weak beside it
         for force in forces:
-            rates = [one.frequency for one in cast(Interaction, force.kind).fastest(force.name, on)]
-            if rates and max(rates) * end < UNSEEN:
-                text = f"'{force.name}' is too weak to be seen: until {end:g} s it bends no way by as much as a part in"
+            own = getattr(force.kind, "constant", None)
+            text = f"'{force.name}' is too weak to be seen: until {end:g} s it bends no way by as much as a part in"
+            help = "write a stronger one, or a longer clock"
+            if isinstance(own, Value) and own.expr.type.dimension == GRAVITATION:
                 constant, why = _circling([mass for of in on.values() for mass in of.items()])
                 help = f"masses of kg are pulled in seconds by `{force.word}: {{constant: {constant} m^3/kg/s^2}}`"
-                help += f"{why}, or write"
-                text, help = f"{text} {1 / UNSEEN**2:.0g}", f"{help} larger masses, or a longer clock"
-                found.warning("nothing-moves", text, force.span, help=help)
+                help += f"{why}, or write larger masses, or a longer clock"
+                if own.constant and abs(float(constant) - own.number()) < ALIKE * own.number():
+                    help = f"write a longer clock, `clock: {{end: 1 year, speed: 1e6}}`: its constant is right{why}"
+            found.warning("nothing-moves", f"{text} {1 / UNSEEN**2:.0g}", force.span, help=help)
 
 
 def warn_of_slow(tasks: Mapping[str, Task], end: float, found: Diagnostics) -> None:

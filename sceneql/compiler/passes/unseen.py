@@ -54,17 +54,24 @@ def warn_of_buried(tasks: Mapping[str, Task], found: Diagnostics) -> None:
             higher = f"{at[0]:g} {level + 2.0:g} {at[2]:g} m"
             found.warning("buried-light", text, task.span, help=f"y is up: write `position: {higher}`")
         eye = _place(getattr(task.kind, "position", None)) if isinstance(task.kind, Camera) else None
-        if eye is not None and eye[1] < level:
+        aim = _place(getattr(task.kind, "look_at", None))
+        down = aim is not None and aim[1] < level  # what is below is meant
+        if eye is not None and eye[1] < level and not down:
             text = f"'{task.name}' stands under the ground, which hides all above it"
             higher = f"{eye[0]:g} {level + 1.0:g} {eye[2]:g} m"
             found.warning("buried-camera", text, task.span, help=f"y is up: write `position: {higher}`")
 
 
 def ground_level(tasks: Mapping[str, Task]) -> float | None:
-    """The height [m] of a level ground that is drawn and stands still; None where there is none, or it is not known."""
+    """The height [m] of a level ground that is drawn, hides what is behind it and stands still.
+
+    None where there is none, or it is not known.
+    """
     for task in tasks.values():
         kind = task.kind
         if not isinstance(kind, Object) or not kind.grounds or kind.hidden:
+            continue
+        if kind.material is not None and getattr(tasks[kind.material.name].kind, "clear", False):
             continue
         height, up = getattr(kind, "height", None), _place(getattr(kind, "normal", None)) or (0.0, 1.0, 0.0)
         base = _place(getattr(kind, "position", None)) or (0.0, 0.0, 0.0)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import cast
 
+from sceneql.compiler.passes.fillings import Beginning
+from sceneql.compiler.passes.overlaps import UNKNOWN
 from sceneql.compiler.passes.unseen import ground_level
 from sceneql.graph import Task
-from sceneql.kinds import Camera, Interaction, Model, Value
+from sceneql.kinds import Camera, Interaction, Model, Moment, Object, Value
 from sceneql.quantities.diagnostic import Diagnostics
 
+EVEN = 0.1
+"""Part of its height by which the middle of an object may lie beside its position."""
 MOSTLY = 0.9
 """Part of a vector's length along z from which on it is taken for up or down."""
 
@@ -33,20 +38,32 @@ def warn_of_z_up(tasks: Mapping[str, Task], found: Diagnostics) -> None:
 
 def warn_of_z_high(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     """Warn of objects that fall, start with their middle in the ground, and are high along z."""
-    level = ground_level(tasks)
+    level, start = ground_level(tasks), cast(Moment, Beginning(tasks))
     weighs = any(isinstance(task.kind, Interaction) and task.kind.weighs for task in tasks.values())
     if level is None or not weighs:
         return
     for model in [task.kind for task in tasks.values() if isinstance(task.kind, Model) and not task.kind.kinematic]:
         for name in model.drives():
-            position = getattr(tasks[name].original, "position", None) if name in tasks else None
+            kind = tasks[name].original if name in tasks else None
+            position = getattr(kind, "position", None)
             if not isinstance(position, Value) or not position.constant:
                 continue
             x, y, z = (float(one) for one in position.number())
-            if y <= level < z:
+            if y <= level < z and _in_the_middle(cast(Object, kind), y, start):
                 text = f"'{name}' starts with its middle in the ground, and {z:g} m along z: y is up here"
                 help = f"write `position: {x:g} {z:g} {y:g} m`"
                 found.warning("z-up", text, position.span or tasks[name].span, help=help)
+
+
+def _in_the_middle(kind: Object, height: float, start: Moment) -> bool:
+    """Whether an object reaches as far below a height [m] as above; of a group, or one above its place, it is not."""
+    import numpy as np
+
+    try:
+        low, high = kind.extent(np.eye(3, 4), start)
+    except UNKNOWN:
+        return False
+    return bool(abs(0.5 * (low[1] + high[1]) - height) < EVEN * (high[1] - low[1]))
 
 
 def _along_z(value: object) -> bool:

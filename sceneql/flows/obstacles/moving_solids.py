@@ -33,6 +33,9 @@ GO_ON = "sceneql.flows.obstacles.cut_anew_kernels:go_on"
 CELLS, MOMENTS = 0.25, 40
 """Cells that a solid passes in a step at most, since what it leaves or comes to has no order; intervals of the run in
 which its speed is sampled."""
+UNEVEN, BRIEF = 0.618034, 1e-4
+"""How much further on in each interval than in that before its speed is sampled there, so that no beat of the solid is
+missed; part of an interval that this takes."""
 UNSOLVED = ("direct",)
 """Linear solvers of the pressure that are refused, since they would factor the matrix again in each step."""
 
@@ -100,7 +103,10 @@ class MovingSolids:
         self.seeping = assembly.floats(np.zeros(2 * cells + 1))
 
     def _fastest(self, ref: Ref) -> float:
-        """Most cells along all axes that a corner of a solid's box passes in a second, from samples in time."""
+        """Most cells along all axes that a corner of a solid's box passes in a second, from samples in time.
+
+        The larger of means over intervals and of speeds at instants, each of which misses motions of a kind.
+        """
         kind: Any = self.assembly.object(ref)
         moment = cast("Moment", Start(self.assembly))
         if not is_moving(kind) or not 0.0 < self.assembly.end < np.inf:
@@ -111,11 +117,14 @@ class MovingSolids:
         low, high = kind.extent(inverse(kind.local(moment)), moment)
         corners = np.array(list(product(*zip(low, high, strict=True), (1.0,)))).T
         step = self.assembly.end / MOMENTS
-        times = step * (np.arange(MOMENTS)[:, None] + [0.25, 0.75])
+        number = np.arange(MOMENTS)
+        long = step * (number[:, None] + [0.0, 1.0])  # what moves for a short time, between two keys
+        short = step * (number + UNEVEN * number % 1.0)[:, None] + [0.0, BRIEF * step]  # what goes to and fro
+        times = np.stack([long, short])
         moved: list[Any] = [shifted(kind, time, self.assembly) for time in times.ravel()]
-        places = (np.array([one.local(moment) for one in moved]) @ corners)[:, :axes].reshape(MOMENTS, 2, axes, -1)
-        cells = np.abs(places[:, 1] - places[:, 0]) / self.faces.cells.spacing[None, :axes, None]
-        return float(cells.sum(axis=1).max()) / (0.5 * step)
+        places = (np.array([one.local(moment) for one in moved]) @ corners)[:, :axes].reshape(*times.shape, axes, -1)
+        cells = np.abs(places[:, :, 1] - places[:, :, 0]) / self.faces.cells.spacing[:axes, None]
+        return float((cells.sum(axis=2).max(axis=2) / (times[:, :, 1] - times[:, :, 0])).max())
 
     def describe(self, ints: Any) -> None:
         """Write the entries on solids into the flow's integers."""

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 class Glass(Material):
     """Refracts by Snell's law and reflects by Fresnel's equations; light that passes its surface takes its color."""
 
+    clear: ClassVar[bool] = True
     told_by: ClassVar[Mapping[str, str]] = {
         **dict.fromkeys(("ior", "index_of_refraction", "refractive_index", "refraction"), "index_of_refraction"),
         **dict.fromkeys(("transmission", "transparency", "transparent", "dielectric"), ""),

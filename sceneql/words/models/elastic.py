@@ -46,6 +46,8 @@ COARSEST = 2.0
 """Spacing, relative to the size of the filled object, above which no element fits into it."""
 WATER = 1000.0
 """Default density [kg/m^3]."""
+SOFT = 300
+"""[Pa] Modulus below which 3 cm of the default density lie flat under their own weight."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -166,7 +168,12 @@ class Elastic(Model):
                 yield Problem(f"the probe '{name}' stands outside of the block", ("probes", name), code="probe-outside")
 
     def doubts(self) -> Iterator[Doubt]:
-        """Elements that lock."""
+        """Elements that lock, and a modulus without a unit that is most likely meant in kPa."""
+        modulus: Formula | None = getattr(self.law.law, "modulus", None)
+        bare = "" if modulus is None or modulus.span is None else modulus.span.text
+        if modulus is not None and self.density is None and bare.isdecimal() and 0 < int(bare) < SOFT:
+            text = f"a modulus without a unit is in Pa: at {bare} Pa it lies flat under its own weight"
+            yield Doubt("too-soft", text, modulus.span, f"write `{bare} kPa`, or another unit; jelly has some kPa")
         poisson = self.law.law.poisson
         if poisson is None or self.law.law.varies("poisson") or self.chosen_element().mean:
             return

@@ -8,7 +8,7 @@ from functools import cached_property
 from math import isfinite
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from sceneql.formulas.formula_rows import TIMES, Rows, states
+from sceneql.formulas.formula_rows import TIMES, Rows, derived, states
 from sceneql.island.static_rates import told_slope
 from sceneql.kinds import Doubt, FixedLength, Formula, Gives, Model, Problem, Record, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation, StaticScene, oscillations
@@ -81,6 +81,7 @@ class Equations(Model):
         plain = quantity_type(dim.PLAIN, many)
         vector = quantity_type(dim.LENGTH, (*many, 3))
         result = {state: Gives(plain, f"The state {state}.") for state in states(_mapping(written.get("rate")))}
+        result |= {name: Gives(plain, "A state whose rate is called otherwise.") for name in _misnamed(written)}
         result |= {name: Gives(plain, f"The invariant {name}.") for name in _mapping(written.get("invariants"))}
         for name, item in _mapping(written.get("gives")).items():
             result[name] = Gives(
@@ -312,6 +313,12 @@ def _slopes(system: RateSystem, at: int, count: int, assembly: Assembly) -> Slop
 
 def _no_link(link: Link) -> Any:
     raise LookupError(link)
+
+
+def _misnamed(written: Mapping[str, Any]) -> list[str]:
+    """States whose rates other notations call ``da/dt``: an error of its own, so that reading them is none."""
+    start = _mapping(written.get("start"))
+    return [name for row in _mapping(written.get("rate")) if row not in start and (name := derived(row, start))]
 
 
 def _mapping(item: Any) -> Mapping[str, Any]:

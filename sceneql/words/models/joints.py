@@ -45,7 +45,8 @@ class Joints(Model):
             if joint.of is not None and joint.of not in known:
                 listed = ", ".join(known) or "none"
                 message = f"'{name}' hangs on '{joint.of}', which is not listed before it; those are {listed}"
-                yield Problem(message, ("joints", name, "of"))
+                later = f"list '{joint.of}' before '{name}'" if joint.of in self.joints and joint.of != name else None
+                yield Problem(message, ("joints", name, "of"), help=later)
             known.append(name)
 
     @classmethod

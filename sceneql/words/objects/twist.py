@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import atan2, hypot
-from typing import Any
+from typing import Any, ClassVar
 
 from sceneql.kinds import Angle, FieldBuilder, Length, Moment, field
 from sceneql.shapes.checked_values import positive
@@ -18,6 +19,8 @@ class Twist(Warp):
     its field is divided by (w r + sqrt(w^2 r^2 + 4)) / 2, the most that it becomes steeper. Any object with an inside
     can be twisted, so no mesh; it keeps the object's colors.
     """
+
+    said_by: ClassVar[Mapping[str, str]] = {"axis": "it is one of the twist's own: write `about: y`, or `x` or `z`"}
 
     angle: Angle = field("By how much it turns on the length `per`.", "90 deg")
     per: Length = field("The length on which it turns by the angle.", "1 m", above=0)

@@ -1,0 +1,62 @@
+"""Scenes that look like a mistake, and are right: their check says nothing."""
+
+import pytest
+
+from sceneql import pipeline
+
+BALL = "ball: {sphere: {radius: 0.3 m, position: 0 0.3 0 m}}"
+EYE = "{perspective: {position: 0 -1 4 m, look_at: 0 %s 0 m}}"
+CHARGES = """
+models:
+  gas: {particles: {list: {a: {mass: 1 kg, position: 1 0 0 m}, b: {mass: 1 kg, position: -1 0 0 m}}}}
+forces: {repel: {electrostatic: {charge: 10 uC}}, pull: mutual_gravity}
+clock: {end: 1 s}
+"""
+FALLING = """
+objects:
+  floor: plane
+  leg: {box: {size: 0.1 1 0.1 m, position: 0 0.5 0 m}}
+  top: {box: {size: 1 0.1 1 m, position: 0 1.05 0 m}}
+  table: {union: {of: [leg, top], position: 0 0 2 m}}
+models: {falls: {rigid: {of: table, density: 500 kg/m^3}}}
+forces: [gravity]
+contacts: [collision]
+clock: {end: 0.1 s}
+"""
+VARIED = """
+define: {k: 10 N/m, c: 0.1 s}
+objects: {ball: {sphere: {radius: 0.2 m, position: 0 2 0 m}}}
+models: {fall: {particles: {of: ball, mass: 1 kg}}}
+forces: {weight: gravity, air: {drag: {linear: k*c}}}
+variants:
+  vacuum: {forces: {weight: gravity}}
+  thick: {define: {k: 2 N*s/m}, forces: {weight: gravity, air: {drag: {linear: k}}}}
+clock: {end: 0.1 s}
+"""
+TINTED = """
+materials: {tinted: {glass: {color: 1 0.5 0.5}}}
+objects: {other: {sphere: {position: 3 0.5 0.5 m, material: tinted}}, blob: {sphere: {radius: 0.2 m, hidden: yes}}}
+models:
+  drop: {membrane: {of: blob, material: glass, law: {tension: 1 N/m}}}
+  water: {flow: {size: 1 1 1 m, corner: -0.5 -0.5 -0.5 m, cell: 0.2 m, density: 1 kg/m^3, viscosity: 0.1 Pa*s}}
+forces: {carried: {immersion: {on: [drop], in: water}}}
+clock: {end: 1 ms}
+"""
+SCENES = {
+    "a camera under a table of glass": f"objects: {{table: {{plane: {{material: glass}}}}, {BALL}}}\n"
+    f"cameras: {{eye: {EYE % 0.3}}}\nlights: {{lamp: {{point: {{position: 1 -1 1 m}}}}}}\n",
+    "a camera that sees what is underground": "objects: {floor: plane, root: {sphere: {position: 0 -1 0 m}}}\n"
+    f"cameras: {{eye: {EYE % -1}}}\n",
+    "charges, which weigh, too": CHARGES,
+    "a group of parts above its place": FALLING,
+    "variants that leave a force out, and a name that nothing uses then": VARIED,
+    "a plain material beside a tinted one": TINTED,
+    "TeX with the number of a character": 'overlays: {a: {formula: {tex: "\\u03b1 = 1"}}}\nobjects: {ball: sphere}\n',
+}
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_no_warning_of_what_is_right(scene, tmp_path):
+    script = tmp_path / "scene.yaml"
+    script.write_text(SCENES[scene].lstrip())
+    assert not [str(one) for one in pipeline.load(str(script)).warnings]
