@@ -295,15 +295,15 @@ class _Checker:
 
     def meant(self, family: str, entry: Entry) -> type[Kind] | None:
         """The class of the word nearest to an unknown one, if the entry's fields suit it; else None."""
-        words, fields = self.catalogue.choices(family), entry.fields
-        near = nearest(entry.word, words)
+        fields, near = entry.fields, nearest(entry.word, words := self.catalogue.choices(family))
         cls = None if near is None else self.catalogue.load(family, near)
         if cls is None or not isinstance(fields, MappingNode):
             return None
         known = {written_name(name): info for name, info in cls.model_fields.items()}
         required = {name for name, info in known.items() if info.is_required()}
         fits = known.keys() >= fields.entries.keys() and (fields.partial or required <= fields.entries.keys())
-        like = nearest(entry.word, words, STRONG) == near and any(nearest(one, known, STRONG) for one in fields.entries)
+        matched = {nearest(one, known, STRONG) for one in fields.entries} - {None}
+        like = nearest(entry.word, words, STRONG) == near and bool(matched) and required <= matched
         return cls if fits or like else None
 
     def refer(self, node: Node, mark: Refers, anonymous: str, entry: Entry) -> Ref | None:

@@ -101,7 +101,13 @@ def _like(
     """
     if (near := nearest(name, known, STRONG)) is not None:
         return offer(near, value)[1]
-    if catalogue is not None and family and (under := catalogue.families_of(name)) and under[0] != family:
+    if (
+        catalogue is not None
+        and family
+        and isinstance(value, Mapping)
+        and (under := catalogue.families_of(name))
+        and under[0] != family
+    ):
         text = value.span.text if "\n" not in value.span.text else "{...}"
         whole = f"{under[0]}: {{NAME: {{{name}: {text}}}}}"
         return f"'{name}' is a word of `{under[0]}`: write `{whole}`: `sceneql words {name}`"
@@ -131,7 +137,8 @@ def _together(name: str, unknown: Sequenced[str], node: Mapping, known: Collecti
     if ours == "between" and len(same) == 2 and ours not in node.entries:
         return f"write `{ours}: [{', '.join(node.entries[other].span.text for other in same)}]`"
     sides = [other for other in SIZES if other in unknown]
-    if name in sides and len(sides) > 1 and "size" in known and "size" not in node.entries:
+    flat = "rotation" not in known or "cells" in known  # of a box there are three
+    if name in sides and len(sides) > (1 if flat else 2) and "size" in known and "size" not in node.entries:
         texts = [node.entries[other].span.text for other in sides]
         if (size := vector_meant(", ".join(texts))) is not None:
             return f"write `size: {size}`"

@@ -207,6 +207,11 @@ OF_SECTIONS = (
         "free neumann insulated adiabatic reflecting noflux no_flux no_slip noslip walls wall",
         "so it is where nothing is said: leave it out",
     ),
+    (
+        "objects",
+        "cone pyramid frustum",
+        "a cone is a cylinder that is tapered, `{taper: {of: {cylinder: {height: 2 m}}, factor: 0.1}}`",
+    ),
     ("collider", "ground", "what masses touch is the `floor`: write `between: [ball, floor]`"),
     (
         "overlays",

@@ -188,7 +188,6 @@ _LISTS = (
     ("weld", "fixed glue"),
     ("hold", "fixed fix pins pinned anchor anchors clamped dirichlet"),
     ("boundary", "bc bcs boundary_conditions walls inlet outlet inflow outflow boundaries"),
-    ("taper", "cone pyramid frustum"),
     ("gravity", "weight g"),
     ("drag", "air air_resistance"),
     ("force", "constant push pull thrust external constant_force"),
