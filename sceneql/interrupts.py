@@ -32,6 +32,8 @@ LATER, LATEST = 5e-3, 400
 
 DEAF = 10.0
 """Seconds after a signal in which the main thread must handle one: if not, another thread ends the process."""
+STACK = 2**18
+"""Bytes of that thread's stack: where little memory is left, the usual eight megabytes are missed."""
 CALL = getattr(signal, "SIGURG", None)
 """The signal by which that thread asks; systems ignore it."""
 
@@ -112,7 +114,9 @@ def _minded(tell: Callable[[BaseException], int]) -> Iterator[None]:
     ended = threading.Event()
     thread = threading.Thread(target=_mind, args=(read, threading.get_ident(), CALL, ended, tell), daemon=True)
     before, woken = signal.signal(CALL, _answer), signal.set_wakeup_fd(write, warn_on_full_buffer=False)
+    whole = threading.stack_size(STACK)
     thread.start()
+    threading.stack_size(whole)
     try:
         yield
     finally:

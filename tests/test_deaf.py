@@ -15,8 +15,8 @@ from sceneql import interrupts
 from sceneql.exits import stopped
 interrupts.DEAF = {deaf}
 with interrupts.raised(stopped), interrupts.keeping(lambda: [Path("film.partial.mp4")]):
-    print("begun", flush=True)
     try:
+        print("begun", flush=True)
         hashlib.pbkdf2_hmac("sha256", b"", b"", {turns})  # without the interpreter's lock, as kernels
     except KeyboardInterrupt:
         print("heard", flush=True)

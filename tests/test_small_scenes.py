@@ -81,11 +81,12 @@ def test_light_takes_as_many_steps_around_small_lines_as_around_large_ones(monke
 
     waves_step = waves.step_all
     monkeypatch.setattr(waves, "step_all", counted)
-    aside = implicit_sphere(GLOW, 1e-6, 2e-6)  # packets count steps: they are for frames with such a solid
+    # Packets count steps, of frames with two solids: with one all steps of a wave are one call.
+    aside = [implicit_sphere(GLOW, 1e-6, 2e-6), implicit_sphere(GLOW, 2e-6, 3e-6)]
     for scale in (1.0, 1e-3):
         steps.append(0)
         small = seen_at(scale, ring(surface=ROUGH))
-        Trace().draw(replace(small, shapes=(*small.shapes, aside)))
+        Trace().draw(replace(small, shapes=(*small.shapes, *aside)))
     assert steps[0] > 300
     assert steps[1] == pytest.approx(steps[0], rel=0.02)
 

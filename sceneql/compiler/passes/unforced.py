@@ -18,6 +18,8 @@ from sceneql.quantities.expression import Number
 
 UNSEEN = 0.01
 """Angle [rad] by which masses turn about each other, below which nobody sees their pull."""
+MANY = 1e12
+"""Seconds from which on they are told in powers of ten."""
 SEEN = 0.2
 """Part of a cell that a field has to spread by for the change to be seen."""
 ALIKE = 0.2
@@ -88,12 +90,14 @@ def warn_of_slow(tasks: Mapping[str, Task], end: float, found: Diagnostics) -> N
         spread, cell = getattr(kind, "coefficient", None), getattr(kind, "cell", None)
         if not isinstance(kind, Model) or not isinstance(spread, Formula) or not isinstance(cell, float):
             continue
+        cell = min(cell, *(getattr(kind, "size", None) or (cell,)))
         still = getattr(kind, "drift", None) is None and getattr(kind, "source", None) is None
         if still and isinstance(spread.expr, Number) and isinstance(spread.expr.value, float | int):
             way = (2.0 * max(float(spread.expr.value), 0.0) * end) ** 0.5
             if 0.0 < way < SEEN * cell:
                 text = f"'{task.name}' spreads by {way:.1g} m until {end:g} s, far less than a cell: nothing moves"
-                longer = f"`clock: {{end: {end * (cell / way) ** 2:.0f} s, speed: ...}}`"
+                needed = end * (cell / way) * (cell / way)
+                longer = f"`clock: {{end: {needed:{'.0f' if needed < MANY else '.3g'}} s, speed: ...}}`"
                 help = f"for a cell take {longer}, or smaller cells, or a larger `coefficient`"
                 found.warning("nothing-moves", text, task.span, help=help)
 
@@ -105,7 +109,7 @@ def _circling(masses: Sequence[tuple[str, StaticMass]]) -> tuple[str, str]:
         (center, heavy), away = placed[0], dist(mass.position or (), placed[0][1].position or ())
         speed = dist(mass.velocity or (0.0,) * 3, heavy.velocity or (0.0,) * 3)
         if speed * away > 0.0 and heavy.mass > 0.0 and name and center:
-            return f"{speed**2 * away / heavy.mass:.2g}", f", with which '{name}' circles '{center}'"
+            return f"{speed * speed * away / heavy.mass:.2g}", f", with which '{name}' circles '{center}'"
     return "1", ""
 
 
