@@ -146,9 +146,12 @@ def by_own_density(reader: Any, written: Mapping[str, Node], first: int) -> None
     if not lacking or not isinstance(own, Scalar):
         return
     value = values.read_value(own, kinds.Quantity(DENSITY), "density", reader.names, Diagnostics())
-    text = own.span.text if own.span.text.isidentifier() else f"({own.span.text})"
-    for k in lacking if value is not None else ():
-        errors[k] = replace(errors[k], help=errors[k].help.replace(WATER, text))
+    if value is None or not value.constant:
+        return
+    # A name would not do: formulas take what is defined as plain numbers.
+    text = own.span.text if own.span.text[:1].isdigit() else format_quantity(float(value.number()), DENSITY)
+    for k in lacking:
+        errors[k] = replace(errors[k], help=errors[k].help.replace(WATER, f"({text})"))
 
 
 def warn_of_hertz(expr: Expr, mark: kinds.Quantity, found: Diagnostics) -> None:

@@ -322,7 +322,8 @@ class _Parser:
             of_copies = f'a copy\'s number stands in braces: write `"{self.before}.{{{number}}}{rest}"`'
             if number.isdecimal():
                 of_copies = f"a copy's number stands behind a dot: write `{self.before}.{number}{rest}`"
-            help = of_copies if rest else f"an item of a list is `item({self.before}, {number})`; {of_copies}"
+            of_list, take = ("an item of a list", "item") if "." in self.before else ("of a vector it", "component")
+            help = of_copies if rest else f"{of_list} is `{take}({self.before}, {number})`; {of_copies}"
         elif isinstance(expr, Number) and (of := _UNIT_IN_BRACKETS.match(self.text, self.start)) is not None:
             help = f"a unit stands behind its number, without brackets: write `{self.before} {of[1]}`"
         elif self.kind == "name" and self.token in UNITS and expr.span is not None and expr.span.text[-1:] == ")":
