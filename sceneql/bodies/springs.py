@@ -87,7 +87,7 @@ class SpringModel(Model):
     )
     tear: Tear | None = field("When springs break; by default never.", None)
     velocity: kinds.FixedVelocity = field("Velocity of all at the start.", "0 0 0 m/s")
-    spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,))] = field(
+    spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,), turning=True)] = field(
         "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
     )
     radius: kinds.FixedLength | None = field(

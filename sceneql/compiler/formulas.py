@@ -26,6 +26,7 @@ AMOUNTS = ("rate", "strength", "amount", "value", "power", "flux", "intensity", 
 """Names of how much there is."""
 SQUARE = 0.01
 """Square of the distance [m^2] at which the formula has fallen to 1/e."""
+_RATE_OF = re.compile(r"d_?(\w+?)(?:_?dt)?|(\w+?)_?dot")
 EXAMPLE = ((0.5, 0.5), 10.0)
 """Place [m] and peak of the formula where nothing is told."""
 
@@ -85,7 +86,11 @@ def read_formula(
         lost = parts[0] in names.broken
         if parts[0] not in names.defines and parts[0] not in CONSTANTS and len(parts) == 1 and not lost:
             here = f"free here are {', '.join(sorted(free))}; other names stand under `define`, `{parts[0]}: 1`"
-            help = suggestion(parts[0], [*free, *names.defines]) or here
+            rate = _RATE_OF.fullmatch(parts[0])
+            prime = "" if rate is None else f"{rate[1] or rate[2]}'"
+            help = (
+                f"did you mean `{prime}`?" if prime in free else suggestion(parts[0], [*free, *names.defines]) or here
+            )
             if parts[0] == "time" and "t" in free:
                 help = SECONDS
             return Diagnostic("unknown-name", f"nothing is called '{parts[0]}'", span, help)

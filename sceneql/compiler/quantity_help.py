@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from math import tau
 from typing import Any
 
 from pydantic import BaseModel
@@ -19,12 +20,16 @@ from sceneql.compiler.likely import NAME, TRUE, quantities_fitting
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics
-from sceneql.quantities.dimension import ANGLE, MASS, PLAIN, Dimension
+from sceneql.quantities.dimension import ANGLE, DENSITY, MASS, PLAIN, Dimension
+from sceneql.quantities.expression import Expr, Number, Vector
 from sceneql.quantities.units import format_quantity, unit_of
 
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 MOST = 200
 """Largest length of a value in which numbers are looked for."""
+WATER = "(1000 kg/m^3)"
+"""The density in a help where the script says none."""
+_HERTZ = re.compile(r"[\d.]\s*[kM]?Hz\s*$")
 ANSWERS = (*TRUE, "false", "no", "off")
 FRAMES = 30
 """Frames a second of a film that says nothing else."""
@@ -132,6 +137,39 @@ def in_other_unit(reader: Any, node: Node, info: Any, others: Mapping[str, Any],
     if wanted == MASS and node.span.text.endswith("N"):
         return f"a weight is a mass times gravity: write `{node.span.text}/(9.81 m/s^2)`"
     return f"it is measured in {(unit := unit_of(wanted))}, as `{numbers[1]} {unit}`"
+
+
+def by_own_density(reader: Any, written: Mapping[str, Node], first: int) -> None:
+    """Let the helps of errors from number ``first`` on multiply and divide by the density that the script says."""
+    errors, own = reader.found.found, written.get("density")
+    lacking = [k for k in range(first, len(errors)) if WATER in (errors[k].help or "")]
+    if not lacking or not isinstance(own, Scalar):
+        return
+    value = values.read_value(own, kinds.Quantity(DENSITY), "density", reader.names, Diagnostics())
+    if value is None or not value.constant:
+        return
+    # A name would not do: formulas take what is defined as plain numbers.
+    text = own.span.text if own.span.text[:1].isdigit() else format_quantity(float(value.number()), DENSITY)
+    for k in lacking:
+        errors[k] = replace(errors[k], help=errors[k].help.replace(WATER, f"({text})"))
+
+
+def warn_of_hertz(expr: Expr, mark: kinds.Quantity, found: Diagnostics) -> None:
+    """Warn of an angular velocity in Hz, which are rad/s, though most likely turns a second were meant."""
+    items = expr.items if isinstance(expr, Vector) else (expr,)
+    numbers = [one for one in items if isinstance(one, Number)]
+    if not mark.turning or not numbers:
+        return
+    largest = max(numbers, key=lambda one: abs(one.value))
+    place = expr.span  # of `0 2 0 Hz`, whose numbers have their unit together
+    if largest.span is not None and _HERTZ.search(largest.span.text) is not None:
+        place, numbers = largest.span, [largest]
+    if place is None or largest.value == 0 or _HERTZ.search(place.text) is None:
+        return
+    turns = " ".join(f"{60 * one.value:.6g}" for one in numbers)
+    rates = " ".join(f"{one.value:.6g}" for one in numbers)
+    text = f"{largest.value:g} Hz is {largest.value:g} rad/s here, and {largest.value / tau:.3g} turns a second"
+    found.warning("hertz", text, place, help=f"for turns write `{turns} rpm`; if that is meant write `{rates} rad/s`")
 
 
 def direction_alone(node: Node) -> str | None:

@@ -112,6 +112,7 @@ class Reader:
                 got[python_name] = reader.field(written[name], info, name)
             except Unreadable:
                 ok = False
+                helped.by_own_density(self, written, before)
                 told = [(one.code, one.help) for one in self.found.found[before:]]
                 if [one[0] for one in told] == ["unknown-name"] and helped.is_part(self, written[name]):
                     suiting = helped.other_output(self, written[name], info, name) or told[0][1]
@@ -223,6 +224,7 @@ class Reader:
             value = self._some(read_numbers(node, mark, what, self.folder, self.files, self.found))
         else:
             value = self._some(values.read_value(node, mark, what, self.names, self.found))
+        helped.warn_of_hertz(value.expr, mark, self.found)
         if base is kinds.Value:
             return value
         if not value.constant:

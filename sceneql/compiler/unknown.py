@@ -6,7 +6,11 @@ import re
 from collections.abc import Callable, Collection
 from collections.abc import Mapping as Naming
 from collections.abc import Sequence as Sequenced
+from typing import Any
 
+from pydantic import BaseModel
+
+from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.css_colors import NAMED
 from sceneql.compiler.names import Names, Vocabulary
@@ -16,9 +20,11 @@ from sceneql.language.replaced import word_of
 from sceneql.language.scope import Entry
 from sceneql.language.script import Script
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
-from sceneql.quantities.diagnostic import STRONG, Diagnostics, all_same_as, nearest, same_as, suggestion
+from sceneql.quantities.diagnostic import STRONG, Diagnostics, ScriptError, all_same_as, nearest, same_as, suggestion
+from sceneql.quantities.expression import Number, Vector
 from sceneql.quantities.instead import instead
 from sceneql.quantities.literal import vector_meant
+from sceneql.quantities.parser import parse_value
 
 DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere", "contacts": "collision"}
 """The word of a family that is shown where several have a field."""
@@ -192,8 +198,9 @@ def word_meant(
         word = DEFAULT.get(family) if DEFAULT.get(family) in having else having[0]
         text = f"main: {{{word}: {{{entry.name}: {entry.word}}}}}"
         return f"a part has a name, and a word around its fields: write `{text}`"
-    if catalogue.load(family, entry.name) is not None:
-        return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: ...}}`"
+    if (named := catalogue.load(family, entry.name)) is not None:
+        inner = _fields_of(entry, named)
+        return f"'{entry.name}' is a word, but stands where a name does: write `name: {{{entry.name}: {inner}}}`"
     having = [] if fields is None else _having([entry.word], family, catalogue)
     if fields is not None and having:
         usual = next((word for word in DEFAULT.values() if word in having), having[0])
@@ -209,6 +216,25 @@ def word_meant(
         return f"did you mean '{near}'?"
     having = _having(given, family, catalogue) if given else []
     return f"words with such fields are {', '.join(having[:MANY])}" if having else None
+
+
+def _fields_of(entry: Entry, cls: type[BaseModel]) -> str:
+    """The fields of a word that stands in place of a name: those written, or the one that takes a number; else dots."""
+    given = entry.fields
+    if given is not None and entry.word in map(written_name, cls.model_fields) and "\n" not in given.span.text:
+        return f"{{{entry.word}: {given.span.text}}}"
+    try:
+        value = None if given is not None else parse_value(entry.word, entry.word_span)
+    except ScriptError:
+        value = None
+    if not isinstance(value, Number | Vector) or value.type.dimension is None:
+        return "..."
+    for name, info in cls.model_fields.items():
+        if any((one.dimension, one.shape) == (value.type.dimension, value.type.shape) for one in quantities(info)):
+            extra: Any = info.json_schema_extra or {}
+            above = isinstance(value, Number) and {"above", "at_least"} & extra.get("limits", {}).keys()
+            return f"{{{written_name(name)}: {entry.word.lstrip('-+ ') if above else entry.word}}}"
+    return "..."
 
 
 def _field_of_replaced(entry: Entry, family: str, script: Script, catalogue: Catalogue) -> str | None:

@@ -50,6 +50,7 @@ _MISSING = (
 )
 """(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
 viscosity to dynamic, conductivity to diffusivity."""
+_AXES: dict[Dimension | None, int] = {LENGTH / TIME: 0, FREQUENCY: 1, FORCE: 1}
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
 
@@ -241,9 +242,8 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
     bare = [one for one in _items(expr) if _bare(one)] if quantity.needs_unit else []
     for one in bare:
         place = span if one is expr or one.span is None else one.span
-        found.error(
-            "unit-needed", f"{what} needs a unit", place, help=f"write `{place.text} deg` or `{place.text} rad`"
-        )
+        text = vector_meant(place.text.strip("[]")) or place.text  # no unit stands behind a bracket
+        found.error("unit-needed", f"{what} needs a unit", place, help=f"write `{text} deg` or `{text} rad`")
     return not bare
 
 
@@ -264,8 +264,9 @@ def _repeated(expr: Expr, wanted: Quantity) -> str | None:
         zero = "0" if wanted.dimension is None or wanted.dimension.plain else f"0 {unit_of(wanted.dimension)}"
         return f"write `[{', '.join([text, *(size - 1) * [zero]])}]`, a value for each axis"
     items = size * [text]
-    if size == 3 and expr.type.dimension in (FREQUENCY, LENGTH / TIME, FORCE):  # of these a direction is meant
-        items[0] = items[2] = re.sub(r"^[-+.\d]+(e[-+]?\d+)?", "0", text)
+    if size == 3 and (axis := _AXES.get(expr.type.dimension)) is not None:  # of these a direction is meant
+        zero = re.sub(r"^[-+.\d]+(e[-+]?\d+)?", "0", text)
+        items = [text if k == axis else zero for k in range(size)]
     vector = vector_meant(", ".join(items))
     return None if vector is None else f"write `{vector}`, a number for each axis"
 

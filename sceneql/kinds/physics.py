@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from sceneql.frame import Floats
     from sceneql.frame import Shape as Drawn
     from sceneql.kinds.moment import Moment
+    from sceneql.kinds.settings import Clock
     from sceneql.system import Assembly, Bodies, ModelState
 
 
@@ -164,8 +165,8 @@ class Model(Kind):
         """Bounds on its fastest oscillations from its own fields, for `check`: without numpy, and quickly."""
         return ()
 
-    def doubts(self) -> Iterable[Doubt]:
-        """Doubtful settings of its own fields, for warnings of `check`."""
+    def doubts(self, clock: Clock) -> Iterable[Doubt]:
+        """Doubtful settings of its own fields, given the clock; warnings of `check`."""
         return ()
 
     def static_masses(self) -> Mapping[str, StaticMass]:

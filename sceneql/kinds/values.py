@@ -113,6 +113,8 @@ class Quantity:
     """Whether the vector must not be zero."""
     over_time: bool = False
     """Whether it may use operations over the whole run, such as `final`."""
+    turning: bool = False
+    """Whether it is an angular velocity, of which 1 Hz is 1 rad/s."""
 
 
 class Paint:

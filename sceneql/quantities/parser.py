@@ -20,7 +20,7 @@ from sceneql.quantities.literal import (
     whole_value,
 )
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
-from sceneql.quantities.spaced import bracketed, meant_by_equals, other_signs, two_ends, without_dots
+from sceneql.quantities.spaced import bracketed, by_frame, meant_by_equals, other_signs, two_ends, without_dots
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
@@ -41,7 +41,8 @@ TOKEN = re.compile(
 
 _UNIT_IN_BRACKETS = re.compile(r"\[\s*([^\W\d][^\[\],]*?)\s*\]")
 _CROSSED = re.compile(rf"{NUMBER}\s*[a-zµ]*(?:\s*[x×]\s*{NUMBER}\s*[a-zµ]*)+")
-_INDEX = re.compile(r"\[\s*(\d)\s*\]")
+_INDEX = re.compile(r"\[\s*(\d)\s*\](?!\.)")
+_COPY = re.compile(r"\[\s*([^\[\]{}\"']+?)\s*\](\.[\w.]+)?")
 
 
 def parse_value(text: str, span: Span) -> Expr:
@@ -245,7 +246,7 @@ class _Parser:
             if self.token == "$" and name is not None:
                 own = name.group()
                 help = f"a name stands by itself: write `{own}`, or `{own}*(1 cm)` where it is a plain number"
-                help = "the time is `time`" if own in ("t", "T", "F", "FF") else help
+                help = by_frame(self.text, own, self.span.source.text) or help
             component = re.match(r"\.([xyz])\b", self.text[self.start :])
             if component is not None and self.before in (")", "]"):
                 help = f"a component of an expression is written `component(..., {'xyz'.index(component[1])})`"
@@ -316,6 +317,13 @@ class _Parser:
             help = (
                 f"write `{self.before}.{'xyz'[min(int(index[1]), 2)]}`, or of a list `item({self.before}, {index[1]})`"
             )
+        elif isinstance(expr, Name) and (copy := _COPY.match(self.text, self.start)) is not None:
+            number, rest = copy[1], copy[2] or ""
+            of_copies = f'a copy\'s number stands in braces: write `"{self.before}.{{{number}}}{rest}"`'
+            if number.isdecimal():
+                of_copies = f"a copy's number stands behind a dot: write `{self.before}.{number}{rest}`"
+            of_list, take = ("an item of a list", "item") if "." in self.before else ("of a vector it", "component")
+            help = of_copies if rest else f"{of_list} is `{take}({self.before}, {number})`; {of_copies}"
         elif isinstance(expr, Number) and (of := _UNIT_IN_BRACKETS.match(self.text, self.start)) is not None:
             help = f"a unit stands behind its number, without brackets: write `{self.before} {of[1]}`"
         elif self.kind == "name" and self.token in UNITS and expr.span is not None and expr.span.text[-1:] == ")":

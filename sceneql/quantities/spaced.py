@@ -17,6 +17,11 @@ _EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
 _GLUED = re.compile(r"([^\W\d]\w*):([^\s,{}:]+)\s*$")
 _FORMULA = re.compile(r"[-+]?[\w.(]")
 _JOINS = tuple("+*/^<>=,")
+_RATE = re.compile(r"\bfps\s*:\s*(\d+(?:\.\d+)?)(?![\w.])")
+TIMES, FRAMES = ("t", "T"), ("F", "FF")
+"""Variables of other programs, behind a `$`: the time, and the frame's number."""
+USUAL = "30"
+"""Frames a second of a film that says nothing else."""
 BARS = 2
 """Number of bars around an absolute value."""
 SIZE = 3
@@ -90,6 +95,18 @@ def apart(text: str) -> str | None:
             return f"{text[: found.start()]}{found[1]}*{text[found.start(2) :]}"
         found = re.compile(r"(?<![\w.])([^\W\d_])([^\W\d_]{1,3})(?![\w.])").search(text, found.end())
     return None
+
+
+def by_frame(text: str, name: str, script: str) -> str | None:
+    """The help for a time or a frame's number of other programs, ``6 deg*$F``: by the script's frames a second."""
+    if name in TIMES:
+        return f"the time is `time`: write `{text.strip().replace(f'${name}', 'time')}`"
+    if name not in FRAMES:
+        return None
+    rate = _RATE.search(script)
+    meant = f"time*({USUAL if rate is None else rate[1]} Hz)"
+    whole = f"({meant})" if re.search(rf"(?:/\s*\${name}\b|\${name}\s*(?:\^|\*\*))", text) else meant
+    return f"a frame's number goes by the time: write `{re.sub(rf'[$]{name}(?![A-Za-z0-9_])', whole, text.strip())}`"
 
 
 def less(text: str, other: str) -> str:

@@ -20,8 +20,8 @@ def warn_of_doubts(tasks: Mapping[str, Task], clock: Clock, found: Diagnostics) 
     grounded = any(isinstance(task.kind, Object) and task.kind.grounds for task in tasks.values())
     for task in tasks.values():
         kind = task.kind
-        doubts = kind.doubts() if isinstance(kind, Model) or (grounded and isinstance(kind, Light)) else ()
-        doubts = kind.doubts(clock) if isinstance(kind, Object) else doubts
+        doubts = kind.doubts() if grounded and isinstance(kind, Light) else ()
+        doubts = kind.doubts(clock) if isinstance(kind, Model | Object) else doubts
         for doubt in doubts:
             found.warning(doubt.code, f"'{task.name}': {doubt.text}", doubt.place or task.span, help=doubt.help)
 

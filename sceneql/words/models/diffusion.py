@@ -20,7 +20,7 @@ from sceneql.grids.medium import (
     number_in,
 )
 from sceneql.grids.spreading_medium import COEFFICIENT, SpreadingMedium
-from sceneql.kinds import Doubt, Formula, Gives, Problem, Value, field
+from sceneql.kinds import Clock, Doubt, Formula, Gives, Problem, Value, field
 from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.dimension import Dimension
@@ -117,7 +117,7 @@ class Diffusion(SpreadingMedium):
         """That of its field."""
         return ((self.coefficient, ("coefficient",)),)
 
-    def doubts(self) -> Iterable[Doubt]:
+    def doubts(self, clock: Clock) -> Iterable[Doubt]:
         """Temperatures without a unit that are most likely meant in °C."""
         start = self.initial if isinstance(self.initial, Formula) else None
         given = [one for one in (start, *(part.value for part in self.boundary.values())) if one is not None]

@@ -21,7 +21,7 @@ from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.filling.block import Block
 from sceneql.bodies.filling.finer import Finer
 from sceneql.bodies.solid_modes import Bent
-from sceneql.kinds import Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, TooCoarse, field
+from sceneql.kinds import Clock, Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, TooCoarse, field
 from sceneql.kinds.probed import HeldPart, Probed
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import suggestion
@@ -128,7 +128,7 @@ class Elastic(Model):
     position: kinds.FixedPosition | None = field("Where its center of mass starts; by default where it is drawn.", None)
     rotation: kinds.Rotation | None = field("How it is turned at the start, about its center of mass.", None)
     velocity: kinds.FixedVelocity = field("Velocity at the start.", "0 0 0 m/s")
-    spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,))] = field(
+    spin: Annotated[tuple[float, float, float], Quantity(dim.FREQUENCY, (3,), turning=True)] = field(
         "Angular velocity at the start, about the center of mass [rad/s].", "0 0 0 rad/s"
     )
     modes: int = field("How many of its modes `frequencies` and `mode_shapes` tell, the lowest first.", 12, at_least=1)
@@ -167,7 +167,7 @@ class Elastic(Model):
             if self.block is not None and not self.block.may_hold(self.probes[name]):
                 yield Problem(f"the probe '{name}' stands outside of the block", ("probes", name), code="probe-outside")
 
-    def doubts(self) -> Iterator[Doubt]:
+    def doubts(self, clock: Clock) -> Iterator[Doubt]:
         """Elements that lock, and a modulus without a unit that is most likely meant in kPa."""
         modulus: Formula | None = getattr(self.law.law, "modulus", None)
         bare = "" if modulus is None or modulus.span is None else modulus.span.text

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.formulas.formula_rows import TIMES, Rows, derived, states
 from sceneql.island.static_rates import told_slope
-from sceneql.kinds import Doubt, FixedLength, Formula, Gives, Model, Problem, Record, Value, field, quantity_type
+from sceneql.kinds import Clock, Doubt, FixedLength, Formula, Gives, Model, Problem, Record, Value, field, quantity_type
 from sceneql.kinds.stable_step import Oscillation, StaticScene, oscillations
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.derivative import components
@@ -110,7 +110,7 @@ class Equations(Model):
         """Number of copies."""
         return 1 if self.copies is None else self.copies.count
 
-    def doubts(self) -> Iterator[Doubt]:
+    def doubts(self, clock: Clock) -> Iterator[Doubt]:
         """Angles at the start that are most likely degrees: states whose sine is taken, beyond a turn in radians."""
         turned = {
             arg.name

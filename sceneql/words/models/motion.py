@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from sceneql import kinds
 from sceneql.bodies.time_shift import rate_of_change
-from sceneql.kinds import Gives, Model, Problem, field, quantity_type
+from sceneql.kinds import Clock, Doubt, Gives, Model, Problem, field, quantity_type
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError
 from sceneql.quantities.expression import Call, Expr, Key, Keys, Number, Type, Vector
@@ -73,6 +73,12 @@ class Motion(Model):
         for name, given in (("even", self.even), ("heading", self.heading is not None)):
             if given and self.along is None:
                 yield Problem(f"`{name}` is of a path: give `along`", (name,), at_key=True)
+
+    def doubts(self, clock: Clock) -> Iterator[Doubt]:
+        """A path that nothing goes along."""
+        if self.along is not None and self.progress.span is None:  # that of the default
+            text = "it stands at the first point of its path, for want of a `progress`"
+            yield Doubt("no-progress", text, None, f"write `progress: time/({clock.end:g} s)`, or by keys")
 
     def _place(self) -> Expr:
         """Position as an expression of time."""

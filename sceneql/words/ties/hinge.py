@@ -40,7 +40,7 @@ class HingeMotor(Record):
     torque: Annotated[Value, Quantity(TORQUE)] = field(
         "The largest torque with `speed` or `angle`; without them the torque on the first body, against the second."
     )
-    speed: Annotated[Value, Quantity(dim.FREQUENCY)] | None = field("The speed that it follows.", None)
+    speed: Annotated[Value, Quantity(dim.FREQUENCY, turning=True)] | None = field("The speed that it follows.", None)
     angle: Angle | None = field("The angle that it follows, from that at the start.", None)
     settling: FixedTime = field("Time in which an error of the angle falls to a part 1/e.", "0.1 s", above=0)
 
