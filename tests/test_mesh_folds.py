@@ -200,6 +200,11 @@ def test_any_field_whatever_gives_a_closed_sharp_manifold_of_finite_vertices(tap
     assert ((np.abs(lengths - 1.0) < 1e-9) | (lengths == 0.0)).all()
 
 
+def test_folds_of_a_field_that_jumps_leave_a_closed_manifold():
+    """Flips went on to the rim of what is looked at, and made an edge that was there beyond it."""
+    assert_closed_manifold(refined(tape_of("floor(x + 0.5)"), (-1.5,) * 3, (1.5,) * 3, 0.3, 3e-3)[0])
+
+
 @settings(max_examples=examples(40))
 @given(tape=tapes(), cell=st.sampled_from([0.3, 0.5]), tolerance=st.sampled_from([None, 3e-3, 0.03]))
 def test_any_field_whatever_gives_a_closed_manifold_when_refined(tape, cell, tolerance):

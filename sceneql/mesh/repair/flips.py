@@ -20,11 +20,12 @@ if TYPE_CHECKING:
 ROUNDS = 8
 
 
-def faced_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Ints:
+def faced_outward(tape: Tape, polygons: Polygons, doubtful: Rows, outer: NDArray[np.bool_] | None = None) -> Ints:
     """The triangles (t, 3) with edges flipped where one of the rows ``doubtful`` (n,) faces inward by ``agreement``.
 
     The edge of two triangles is replaced by the other diagonal of their four vertices if that raises the smaller
-    agreement of the two, and is no edge of the mesh yet: a closed 2-manifold stays one.
+    agreement of the two, and is no edge of the mesh yet: a closed 2-manifold stays one. ``outer`` (v,) marks vertices
+    of triangles that are not among these: of those between two of them it is not known whether they are edges.
     """
     import numpy as np
 
@@ -34,7 +35,7 @@ def faced_outward(tape: Tape, polygons: Polygons, doubtful: Rows) -> Ints:
         near = np.zeros(len(polygons.vertices), dtype=bool)
         near[found[turned]] = True
         around = np.flatnonzero(touched(near, found))
-        changed = _flipped(tape, polygons, found[around], np.searchsorted(around, turned))
+        changed = _flipped(tape, polygons, found[around], np.searchsorted(around, turned), outer)
         if not changed:
             break
         for at, row in changed.items():
@@ -101,7 +102,9 @@ def _by_vertices(polygons: Polygons, triangles: NDArray[np.integer]) -> Floats:
     return least
 
 
-def _flipped(tape: Tape, polygons: Polygons, triangles: Rows, turned: Rows) -> dict[int, tuple[int, int, int]]:
+def _flipped(
+    tape: Tape, polygons: Polygons, triangles: Rows, turned: Rows, outer: NDArray[np.bool_] | None
+) -> dict[int, tuple[int, int, int]]:
     """New vertices of flipped triangles, by row of ``triangles`` (t, 3): the best flips of the triangles ``turned``.
 
     ``triangles`` must contain all triangles at the vertices of the turned ones. No triangle is flipped twice.
@@ -117,6 +120,8 @@ def _flipped(tape: Tape, polygons: Polygons, triangles: Rows, turned: Rows) -> d
     a, b, c, at, other = a[paired], b[paired], c[paired], at[paired], other[paired]
     d = triangles[other].sum(axis=1) - a - b
     free = (c != d) & (sides.owners(c, d) < 0) & (sides.owners(d, c) < 0)
+    if outer is not None:
+        free &= ~(outer[c] & outer[d])
     a, b, c, d, at, other = a[free], b[free], c[free], d[free], at[free], other[free]
     if not len(a):
         return {}

@@ -50,12 +50,14 @@ def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
     found = Polygons(polygons.vertices, some, polygons.normals)
     rows = (np.cumsum(part) - 1)[rows]
     best, best_rows = found, rows
+    outer = np.zeros(len(polygons.vertices), dtype=bool)
+    outer[rest] = True
     for turn in range(ROUNDS):
         near[:] = False
         near[found.triangles[rows]] = True
         for _ in range(turn // WIDENED):
             near[found.triangles[touched(near, found.triangles)]] = True
-        found = _relaxed(tape, found, near)
+        found = _relaxed(tape, found, near, outer)
         rows = overturned(tape, found, rest)
         if len(rows) < len(best_rows):
             best, best_rows = found, rows
@@ -72,8 +74,11 @@ def unfolded(tape: Tape, polygons: Polygons) -> Polygons:
     return Polygons(best.vertices[used], (np.cumsum(used) - 1)[triangles].astype(np.int32), best.normals[used])
 
 
-def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_]) -> Polygons:
-    """The mesh with the vertices of the mask ``chosen`` (v,) moved, and edges near them flipped."""
+def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_], outer: NDArray[np.bool_]) -> Polygons:
+    """The mesh with the vertices of the mask ``chosen`` (v,) moved, and edges near them flipped.
+
+    ``outer`` (v,): the vertices of triangles that are left out.
+    """
     import numpy as np
 
     triangles = polygons.triangles.astype(np.int64)
@@ -91,5 +96,5 @@ def _relaxed(tape: Tape, polygons: Polygons, chosen: NDArray[np.bool_]) -> Polyg
     kept = slopes.any(axis=1)
     places[corners[kept]], normals[corners[kept]] = new[kept], slopes[kept]
     rows = np.flatnonzero(touched(chosen, triangles))
-    flipped = faced_outward(tape, Polygons(places, polygons.triangles, normals), rows)
+    flipped = faced_outward(tape, Polygons(places, polygons.triangles, normals), rows, outer)
     return Polygons(places, flipped, normals)
