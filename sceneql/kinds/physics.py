@@ -198,8 +198,7 @@ class Model(Kind):
 
     def drawn_by(self, name: str) -> tuple[str, Value] | None:
         """Word and `of` of the object by which it is drawn where no object of the script shows any of its fields."""
-        field = self.shows(name)
-        return None if field is None else ("field_map", field)
+        return None if (field := self.shows(name)) is None else ("field_map", field)
 
     def called(self, output: str) -> str:
         """Name of an output in pictures."""

@@ -389,11 +389,8 @@ def _orders(graph: SimulationGraph) -> dict[str, int]:
 
 def _holders(graph: SimulationGraph) -> dict[str, str]:
     """For every object inside another one, the name of the (first) object that draws it."""
-    holders: dict[str, str] = {}
-    for name, task in graph.tasks.items():
-        for ref in task.kind.members() if isinstance(task.kind, Object) else ():
-            holders.setdefault(ref.name, name)
-    return holders
+    objects = [(name, task.kind) for name, task in graph.tasks.items() if isinstance(task.kind, Object)]
+    return {ref.name: name for name, kind in reversed(objects) for ref in kind.members()}
 
 
 def _palette(graph: SimulationGraph) -> dict[str, int]:

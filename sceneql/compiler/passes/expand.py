@@ -104,12 +104,12 @@ def _in_the_dark(tasks: Mapping[str, Task]) -> bool:
 
 
 def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
-    """Add what draws each model of fields that no object reads; objects that would hide it are hidden, also those that
-    would hide a map of the script, where nothing is said of their looks.
+    """Add what draws each model of fields that no object reads; objects that would hide it are hidden.
 
     Of a flow and the fields in the same box that it carries one is drawn: what an object reads, else a field. Nor is a
     flow drawn that is the wind of masses, or, if it is deep, around skins.
     """
+    _uncover(tasks)
     fields = {task.name: task for task in tasks.values() if isinstance(task.kind, Model) and task.kind.drawn_by("")}
     read = {need for task in tasks.values() if isinstance(task.kind, Object) for need in task.needs}
     forces = [task for task in tasks.values() if isinstance(task.kind, Interaction)]
@@ -119,13 +119,6 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
             read.update(task.needs)
     shown = read.intersection(fields)
     read.update(name for name, task in fields.items() if shown.intersection(task.needs))
-    covered = {
-        need for task in tasks.values() if isinstance(task.kind, Object) and task.kind.covers for need in task.needs
-    }
-    for task in [fields[name] for name in covered & set(fields)]:
-        for ref in cast(Model, task.kind).shown_in_place_of():
-            if not LOOKS & tasks[ref.name].kind.model_fields_set:
-                tasks[ref.name] = _hidden(tasks[ref.name])
     carried = {need for task in (*fields.values(), *forces) for need in task.needs}
     for name, task in fields.items():
         kind: Any = task.kind
@@ -143,6 +136,16 @@ def _show(tasks: dict[str, Task], catalogue: Catalogue) -> dict[str, Task]:
         for ref in cast(Model, model.kind).shown_in_place_of():
             tasks[ref.name] = _hidden(tasks[ref.name])
     return tasks
+
+
+def _uncover(tasks: dict[str, Task]) -> None:
+    """Hide objects that would hide a map of the script that fills them, where nothing is said of their looks."""
+    maps = [task for task in tasks.values() if isinstance(task.kind, Object) and task.kind.covers]
+    for name in {need for task in maps for need in task.needs}.intersection(tasks):
+        kind = tasks[name].kind
+        for ref in kind.shown_in_place_of() if isinstance(kind, Model) and kind.drawn_by(name) else ():
+            if not LOOKS & tasks[ref.name].kind.model_fields_set:
+                tasks[ref.name] = _hidden(tasks[ref.name])
 
 
 def _hidden(task: Task) -> Task:

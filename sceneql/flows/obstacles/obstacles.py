@@ -89,20 +89,20 @@ class Solids:
                 others = [k for k in axes if k != component]
                 self.opened.append(self.cut(faces.points(component), faces.shapes[component], others))
                 self.opened[-1].parts[self.opened[-1].parts < SLIVER] = 0.0
-                self._shut(component)
+                self._shut(component, self.opened[-1].parts)
         if not (self.parts > 0.0).any():
             text = "the solids fill the whole box: no cell is left to flow through"
             raise ScriptError([Diagnostic("no-cell", text, self.refs[0].span, "take smaller ones, or a larger `size`")])
         if len(self.refs) > 1:
             must_leave_cells(self.refs, self.levels, faces.cells.shape[::-1], centers, self.spacing)
 
-    def _shut(self, component: int) -> None:
-        """Close the faces on the box's sides where a solid touches these: beside cells that it fills."""
+    def _shut(self, component: int, parts: Floats) -> None:
+        """Set ``parts`` of a component's faces to 0 on the box's sides beside cells in a solid, which touches them."""
         faces, line = self.faces, 2 - component
         filled = self.parts.reshape(faces.cells.shape[::-1]) <= TOUCHING
         for high in range(0 if faces.periodic[component] else 2):
             mine = faces.on_side(component, high) - faces.starts[component]
-            self.opened[-1].parts[mine[filled.take(-1 if high else 0, axis=line)]] = 0.0
+            parts[mine[filled.take(-1 if high else 0, axis=line)]] = 0.0
 
     def _centers(self) -> Floats:
         found = self.faces.cells.centers()
