@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from sceneql.compiler.css_colors import NAMED, css_color
-from sceneql.compiler.output_help import output_meant
+from sceneql.compiler.meant.output_help import output_meant
 from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Entry, Given, Scope
 from sceneql.language.tree import Node, Scalar, Sequence

@@ -16,17 +16,18 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql import kinds
-from sceneql.compiler import likely, limits, paint, values
-from sceneql.compiler import quantity_help as helped
+from sceneql.compiler import limits, paint, values
 from sceneql.compiler.annotations import could_be, is_fixed, quantities, unwrap
 from sceneql.compiler.formulas import Wanted, read_formula
-from sceneql.compiler.likely import TRUE
+from sceneql.compiler.meant import likely
+from sceneql.compiler.meant import quantity_help as helped
+from sceneql.compiler.meant.likely import TRUE
+from sceneql.compiler.meant.unknown import report_unknown
 from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.problems import Unreadable, validated
 from sceneql.compiler.texts import read_text, unescaped
-from sceneql.compiler.unknown import report_unknown
 from sceneql.kinds.values import Verbatim
 from sceneql.language.repeat import numbered
 from sceneql.language.scope import Scope

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from sceneql.quantities.diagnostic import Diagnostic, ScriptError, of_library, suggestion
 from sceneql.quantities.expression import Call, Expr, Name, Number, Vector, children, each_once
-from sceneql.quantities.indexed import indexed
 from sceneql.quantities.instead import instead
 from sceneql.quantities.latex import from_latex
 from sceneql.quantities.literal import (
@@ -21,7 +20,15 @@ from sceneql.quantities.literal import (
     whole_value,
 )
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
-from sceneql.quantities.spaced import bracketed, by_frame, meant_by_equals, other_signs, two_ends, without_dots
+from sceneql.quantities.spaced import (
+    bracketed,
+    by_frame,
+    indexed,
+    meant_by_equals,
+    other_signs,
+    two_ends,
+    without_dots,
+)
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS

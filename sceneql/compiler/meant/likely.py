@@ -18,9 +18,9 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler import paint, values
 from sceneql.compiler.annotations import example_of, first_field, is_fixed, marks_of, quantities, unwrap
-from sceneql.compiler.own_examples import own_example
+from sceneql.compiler.meant.own_examples import own_example
+from sceneql.compiler.meant.unknown import meant_field
 from sceneql.compiler.problems import Unreadable
-from sceneql.compiler.unknown import meant_field
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
@@ -87,7 +87,7 @@ def _wrong(reader: Any, node: Node, info: Any, name: str) -> tuple[Diagnostic, .
 
 
 def asked(reader: Any, cls: type[BaseModel]) -> dict[str, Any]:
-    """What `sceneql.compiler.unknown.report_unknown` asks of a record whose fields a reader reads."""
+    """What `sceneql.compiler.meant.unknown.report_unknown` asks of a record whose fields a reader reads."""
     return {
         "said_by": cls.said_by if issubclass(cls, kinds.Record) else {},
         "family": cls.family if issubclass(cls, kinds.Kind) else "",
