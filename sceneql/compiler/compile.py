@@ -20,12 +20,11 @@ from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.fall_through import warn_of_falling_through
 from sceneql.compiler.passes.far_joints import warn_of_far_joints
 from sceneql.compiler.passes.fillings import check_fillings
-from sceneql.compiler.passes.insides import report_hollow
+from sceneql.compiler.passes.insides import report_hollow, warn_of_open_meshes
 from sceneql.compiler.passes.islands import islands
 from sceneql.compiler.passes.keys_beyond import warn_of_keys
 from sceneql.compiler.passes.layouts import check_layouts
 from sceneql.compiler.passes.left_behind import warn_of_left_behind
-from sceneql.compiler.passes.open_meshes import warn_of_open_meshes
 from sceneql.compiler.passes.outside_flows import report_outside_flows, warn_of_sections
 from sceneql.compiler.passes.overlaps import report_overlaps
 from sceneql.compiler.passes.probes import report_probes
