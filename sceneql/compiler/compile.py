@@ -18,7 +18,7 @@ from sceneql.compiler.passes.doubts import warn_of_constants, warn_of_doubts
 from sceneql.compiler.passes.empty_holds import report_empty_holds
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.fall_through import warn_of_falling_through
-from sceneql.compiler.passes.far_joints import warn_of_far_joints
+from sceneql.compiler.passes.far_joints import warn_of_far_joints, warn_of_unturned
 from sceneql.compiler.passes.fillings import check_fillings
 from sceneql.compiler.passes.insides import report_hollow, warn_of_open_meshes
 from sceneql.compiler.passes.islands import islands
@@ -94,6 +94,7 @@ def compile_script(
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
     warn_of_far_joints(tasks, found)
+    warn_of_unturned(tasks, groups, found)
     warn_of_doubts(tasks, checked.settings.clock, found)
     warn_of_constants(tasks, found)
     warn_of_keys(tasks, checked.settings.clock, found)

@@ -70,7 +70,7 @@ _LISTS = (
     ("time", "t seconds elapsed elapsed_time now millis itime at instant when moment"),
     # fields
     ("place", "position corner align anchor where"),
-    ("at", "position anchor pivot location time when instant from origin start"),
+    ("at", "position pos anchor pivot location time when instant from origin start"),
     ("position", "pos location loc center centre translate translation origin xyz offset move place"),
     ("rotation", "rotate rot orientation orient euler euler_angles angles quat quaternion rotation_euler rpy"),
     ("look_at", "target lookat look aim focus point_at center centre to"),

@@ -34,6 +34,7 @@ from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import parse_unit
 
+COORDINATES = ("x", "y", "z")
 LONGEST, DEEPEST = 10_000, 100
 """Limits on the number of characters of one expression (each node takes at least one), and on the depth of its tree."""
 
@@ -333,7 +334,11 @@ class _Parser:
             help = f"a unit stands directly after a number: write `{expr.span.text[:60]}*(1 {unit})`"
         elif self.before in FUNCTIONS and self.kind != "sign":
             help = f"write `{self.before}({self.token[:40]})`"
-        elif (other := instead("name", self.token) or instead("name", self.before)) is not None:
+        elif (plain := from_latex(self.text)) is not None:
+            help = f"write `{plain}`"
+        elif (other := instead("name", self.token) or instead("name", self.before)) is not None and not (
+            isinstance(expr, Name | Number) and {self.token, self.before} & {*COORDINATES}
+        ):
             help = other
         else:
             help = f"write `{self.before[-40:]}*{self.token[:40]}` for a product"

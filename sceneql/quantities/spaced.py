@@ -181,6 +181,8 @@ def indexed(expr: Expr, before: str, text: str, at: int) -> str | None:
     if (copy := _COPY.match(text, at)) is None:
         return None
     number, rest = copy[1], copy[2] or ""
+    if number == "-1" and not rest:
+        return f"at the end of the run it is `final({before})`"
     of_copies = f'a copy\'s number stands in braces: write `"{before}.{{{number}}}{rest}"`'
     if number.isdecimal():
         of_copies = f"a copy's number stands behind a dot: write `{before}.{number}{rest}`"
