@@ -169,7 +169,8 @@ def _through_quadric(shape: Quadric, eyes: Floats, ends: Floats) -> Floats:
     first = np.where(a > 0.0, (-b - root) / (2.0 * a), np.where(b < 0.0, at, -np.inf))
     last = np.where(a > 0.0, (-b + root) / (2.0 * a), np.where(b > 0.0, at, np.inf))
     met: Floats = np.maximum(np.maximum(enter, first), 0.0) < np.minimum(np.minimum(leave, last), NEARLY)
-    met = met & ((a > 0.0) | (b != 0.0) | (c <= 0.0))
+    flat_out = (a == 0.0) & (b == 0.0) & (c > 0.0)
+    met[flat_out] = False
     return met
 
 
