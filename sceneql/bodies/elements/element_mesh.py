@@ -17,7 +17,7 @@ from sceneql.bodies.filling.tetrahedra import ENDS, boundary, edges
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy import bool_, int64
+    from numpy import int64
     from numpy.typing import NDArray
 
     from sceneql.bodies.elements.element import Element
@@ -188,7 +188,7 @@ def curved(straight: ElementMesh, onto: Onto) -> tuple[ElementMesh, int]:
         if not bad.any():
             return mesh, left
         if attempt == 0:
-            moved = points + _bent_along(straight, moved - points, bad)
+            moved = _bent_along(straight, moved, bad)
             continue
         back = np.unique(straight.cells[bad, 4:])
         bent = (moved[back] != points[back]).any(axis=1)
@@ -198,10 +198,10 @@ def curved(straight: ElementMesh, onto: Onto) -> tuple[ElementMesh, int]:
     return straight, left
 
 
-def _bent_along(straight: ElementMesh, moves: Floats, bad: NDArray[bool_]) -> Floats:
-    """Moves (n, 3) [m] of nodes with those of inner edges of bad elements (e,) and their neighbors smooth: harmonic.
+def _bent_along(straight: ElementMesh, moved: Floats, bad: Any) -> Floats:
+    """Nodes (n, 3) [m] with inner edges of bad elements (e,) and of their neighbors bent along: moved harmonically.
 
-    Corners and outer nodes move as they do.
+    Corners and outer nodes stay where ``moved`` has them.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.linalg import splu
@@ -213,7 +213,7 @@ def _bent_along(straight: ElementMesh, moves: Floats, bad: NDArray[bool_]) -> Fl
     free = np.setdiff1d(own, np.concatenate([straight.faces.ravel(), straight.cells[~region].ravel()]))
     free = free[free >= straight.corners]
     if not len(free):
-        return moves
+        return moved
     part = ElementMesh(straight.element, straight.points, own, straight.corners)
     places, weights = fine_rule()
     slopes = part.gradients(places)
@@ -221,9 +221,11 @@ def _bent_along(straight: ElementMesh, moves: Floats, bad: NDArray[bool_]) -> Fl
     each = own.shape[1]
     at = np.repeat(own, each, axis=1).ravel(), np.tile(own, each).ravel()
     stiffness = coo_array((entries.ravel(), at), shape=(count, count)).tocsr()[free]
-    found = moves.copy()
-    found[free] = 0.0
-    found[free] = splu(stiffness[:, free].tocsc()).solve(-(stiffness @ found))
+    moves = moved - straight.points
+    moves[free] = 0.0
+    moves[free] = splu(stiffness[:, free].tocsc()).solve(-(stiffness @ moves))
+    found = moved.copy()
+    found[free] += moves[free]
     return found
 
 
