@@ -15,7 +15,7 @@ from sceneql.bodies import solid_modes
 from sceneql.bodies.elements import strain_outputs
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
-from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
+from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws, number
 from sceneql.bodies.elements.load import Load
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.filling.block import Block
@@ -231,15 +231,15 @@ class Elastic(Model):
 
     def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
         """What its elements surpass in the small, where law and size are the same everywhere."""
-        from sceneql.bodies.elements.fastest import fastest
         from sceneql.bodies.elements.filled import default_spacing
 
         element, spacing = self.chosen_element(), self.spacing
         if self.of is not None and spacing is None and (box := scene.box(self.of)) is not None:
             spacing = default_spacing(*box, element)
         size = spacing if self.block is None else self.block.finest
-        found = fastest(self.law.law, self.density, WATER, size or 0.0, element, self.block is not None)
-        if found > 0.0:
+        wave, density = self.law.law.wave_modulus(), WATER if self.density is None else number(self.density)
+        if wave and density and size:
+            found = element.fastest[self.block is not None] * (wave / density) ** 0.5 / size
             decay, at = self.retardation * found**2 + self.mass_damping, ("spacing" if self.block is None else "block",)
             yield Oscillation(found, decay, f"the elements of '{name}', {size:.3g} m across", at)
 
