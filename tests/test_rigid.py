@@ -64,6 +64,43 @@ def test_every_solver_keeps_the_angular_momentum_to_rounding_where_no_torque_act
     assert turned(tmp_path, (TUMBLE[0], 2, TUMBLE[2]), solver)[1] < 1e-15 * 4
 
 
+@pytest.mark.parametrize("case", [TUMBLE, RACKET], ids=["A", "B"])
+def test_auto_moves_what_flies_freely_exactly(tmp_path, case):
+    error, off = turned(tmp_path, case, "auto: {tolerance: 1e-3}")
+    assert error < 1e-13
+    assert off == 0
+
+
+def test_a_thrown_body_flies_along_a_parabola_and_turns_as_without_gravity(tmp_path):
+    spin, end, expected = TUMBLE
+    model = f"{{rigid: {{mass: 1 kg, inertia: 1 2 3 kg*m^2, spin: {spin} rad/s, velocity: 3 90 0 m/s}}}}"
+    script = f"clock: {{end: {end} s}}\nmodels: {{top: {model}}}\nforces: [gravity]\n"
+    times = [0.0, 7.0, end]
+    rows = watch(tmp_path, script, times, "top.position", "top.velocity", "top.rotation", "top.energy")
+    for t, (place, velocity, _, energy) in zip(times, rows, strict=True):
+        assert place == pytest.approx([3 * t, 90 * t - 0.5 * 9.81 * t**2, 0], abs=1e-11)
+        assert velocity == pytest.approx([3, 90 - 9.81 * t, 0], abs=1e-12)
+        assert energy == pytest.approx(rows[0][3], rel=1e-13)
+    assert np.abs(rows[-1][2]) == pytest.approx(np.abs(expected), abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "forces: {f: {force: {on: [top], components: [0 N, 1 N, 0 N]}}}",
+        "forces: {g: {gravity: {strength: 9.81 m/s^2 * (1 - time / 1 s)}}}",
+        "forces: {i: {impulse: {on: top.position, at: 0.5 s, value: 0 1 0 N*s}}}",
+        "ties: {b: {ball: {between: [top, world], at: 0 0 0 m}}}",
+    ],
+)
+def test_auto_takes_steps_where_more_than_constant_gravity_acts(tmp_path, more):
+    path = tmp_path / "scene.yaml"
+    model = "{rigid: {mass: 1 kg, inertia: 1 2 3 kg*m^2, spin: 1 0 0 rad/s}}"
+    path.write_text(f"clock: {{end: 1 s}}\nmodels: {{top: {model}}}\n{more}\n")
+    (island,) = Run(load(path, pruned=False)).islands
+    assert island.methods.first.needs.march is None
+
+
 def test_a_body_that_turns_for_long_has_a_quaternion_of_length_1(tmp_path):
     ((q,),) = watch(tmp_path, FREE.format(spin="1 2 3", end=20, solver="euler: {step: 10 ms}"), [20], "top.rotation")
     assert np.linalg.norm(q) == pytest.approx(1, abs=1e-15)

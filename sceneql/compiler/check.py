@@ -13,11 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from sceneql.compiler.catalogue import Catalogue
-from sceneql.compiler.names import Names, Parsed
-from sceneql.compiler.over_time import check_instants
-from sceneql.compiler.problems import Unreadable
-from sceneql.compiler.read import Reader
-from sceneql.compiler.unknown import (
+from sceneql.compiler.meant.unknown import (
     beside_world,
     mover_of,
     other_family,
@@ -28,6 +24,10 @@ from sceneql.compiler.unknown import (
     word_having,
     word_meant,
 )
+from sceneql.compiler.names import Names, Parsed
+from sceneql.compiler.over_time import check_instants
+from sceneql.compiler.problems import Unreadable
+from sceneql.compiler.read import Reader
 from sceneql.compiler.values import read_expr
 from sceneql.compiler.values_below import values_of
 from sceneql.graph import Task

@@ -30,6 +30,8 @@ DARK = 16
 BRIGHTER = "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
 OPAQUE = "it has three numbers; what one sees through is `material: glass`: `sceneql words glass`"
 RED = 'write a CSS name, `orange`, "#ff8800", or three numbers from 0 to 1, `1 0.5 0`'
+_CHOSEN = re.compile(r"\[([\w\s,]+)\]\s*\[([^\[\]]+)\]")
+"""A list of colors by name, and the number behind it: ``[red, green][i]``."""
 _ABOUT = re.compile(r"([-+]?[\d.]+)\s*(?:deg)?\s*\*?\s*([xyz])")
 EULER = ("euler", "angles", "degrees", "euler_angles")
 """Fields of other programs for angles about x, y and z."""
@@ -56,6 +58,9 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
                 found.error("unknown-color", f"'{text}' is no color", node.span, help=_meant(text))
                 return None
             return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
+    if (several := _several(node, names)) is not None:
+        found.error("wrong-shape", "color is one color, not several", node.span, help=several)
+        return None
     before = len(found.found)
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
     if [one.code for one in found.found[before:] if one.help is None] == ["wrong-shape"]:
@@ -68,6 +73,24 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
         found.error("out-of-range", "the numbers of a color are from 0 to 1", node.span, help=help)
         return None
     return value
+
+
+def _several(node: Node, names: Names) -> str | None:
+    """The help for colors by name in brackets, of which a number behind them, or that of the copy, chooses one."""
+    chosen = _CHOSEN.fullmatch(node.text.strip()) if isinstance(node, Scalar) else None
+    given = [] if chosen is None else [one.strip() for one in chosen[1].split(",")]
+    if isinstance(node, SequenceNode):
+        given = [item.text for item in node.items if isinstance(item, Scalar)]
+        given = given if len(given) == len(node.items) else []
+    if not given or not all(one in NAMED and one not in names.defines for one in given):
+        return None
+    scope = names.scope
+    copy = next(iter(scope.fields), "") if scope is not None else ""
+    number = chosen[2] if chosen is not None else copy
+    if not number:
+        return f"write one of them, `{given[0]}`; one for each of several objects stands at each of them"
+    listed = ", ".join(f"[{', '.join(f'{c:.3g}' for c in css_color(one) or ())}]" for one in given)
+    return f"of the colors by their numbers one is `item([{listed}], {number})`"
 
 
 def _is_name(text: str) -> bool:

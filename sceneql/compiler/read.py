@@ -16,17 +16,18 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql import kinds
-from sceneql.compiler import likely, limits, paint, values
-from sceneql.compiler import quantity_help as helped
+from sceneql.compiler import limits, paint, values
 from sceneql.compiler.annotations import could_be, is_fixed, quantities, unwrap
 from sceneql.compiler.formulas import Wanted, read_formula
-from sceneql.compiler.likely import TRUE
+from sceneql.compiler.meant import likely
+from sceneql.compiler.meant import quantity_help as helped
+from sceneql.compiler.meant.likely import TRUE
+from sceneql.compiler.meant.unknown import report_unknown
 from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.problems import Unreadable, validated
 from sceneql.compiler.texts import read_text, unescaped
-from sceneql.compiler.unknown import meant_field, report_unknown
 from sceneql.kinds.values import Verbatim
 from sceneql.language.repeat import numbered
 from sceneql.language.scope import Scope
@@ -93,14 +94,15 @@ class Reader:
                 self.names.broken.add(number.text)
             ok = report_unknown(node, known, title, self.found, **likely.asked(self, cls))
             ok = ok and not node.partial
-            mistaken = {meant_field(name, known) for name in node.entries if name not in known}
+            unknown = [name for name in node.entries if name not in known]
+            mistaken = {one for name in unknown for one in likely.meant(self, cls, name, known)}
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:
                 if info.is_required():
                     ok = False
                 if info.is_required() and name not in mistaken and not (node is not None and unsure(node)):
-                    help = likely.example_line(cls, name, info.description or "")
+                    help = likely.example_line(self, cls, name, info)
                     self.found.error("missing-field", f"{title} needs '{name}'", span, help=help)
                 continue
             owner = f"{self.owner}.{name}" if self.owner else ""

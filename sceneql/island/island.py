@@ -40,8 +40,7 @@ if TYPE_CHECKING:
 
 STAGES: tuple[Stage, ...] = ("velocity", "internal", "force", "tie", "close", "constrain")
 TIED = 150
-"""Largest number of entries of y at which the Jacobian of an island with ties is found by differences, which are as
-fast."""
+"""Largest number of entries of y at which a Jacobian with ties is found by differences, which are as fast."""
 
 
 @dataclass
@@ -188,6 +187,12 @@ class IslandAssembly(Offered):
         paired = 2 * sum(n for *_, n in self._pairs) + len(self._masses)
         return bool(self._masses) and paired == self._size and not others
 
+    @property
+    def moves_freely(self) -> bool:
+        """Whether it has a free motion, beside which nothing but constant forces act, if any."""
+        others = self._varying or any(self._terms[stage] for stage in STAGES if stage not in ("force", "close"))
+        return bool(self._free) and not (others or self._tied or self.changed_between_steps)
+
     def object(self, ref: Ref) -> Object:
         """The kind of an object of the script."""
         return self.setting.object(ref)
@@ -271,8 +276,7 @@ class IslandAssembly(Offered):
     def contact_mode(self) -> str:
         """The modes of its contacts ("exact", "local", "barrier", joined by "and"), or "none"."""
         kinds = (("exact", self._exact), ("local", self._local), ("barrier", self._limits))
-        modes = [mode for mode, blocks in kinds if blocks]
-        return " and ".join(modes) or "none"
+        return " and ".join(mode for mode, blocks in kinds if blocks) or "none"
 
     def finish(self, jacobian: bool = False, newton: bool = False) -> System:
         """The island as arrays; ``jacobian``: with its Jacobian; ``newton``: as Newton's method alone needs it.
@@ -293,8 +297,7 @@ class IslandAssembly(Offered):
         local = grouped(self._local, blocks)
         between = (self._after, self._settling, self._free, self._tied, self._limits)
         after, settling, free, tied, limits = (grouped(some, blocks) for some in between)
-        stages = (groups, exact, local, after, settling, free, tied, limits)
-        counts = [[count for _, count in stage] for stage in stages]
+        counts = [[n for _, n in stage] for stage in (groups, exact, local, after, settling, free, tied, limits)]
         ints = lay_out(self._pairs, self._frees, bool(tied), blocks, counts, pairs)
         found, derived, border = full(len(y)) if jacobian else None, None, 0
         if slopes is not None:

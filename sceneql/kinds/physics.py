@@ -270,6 +270,10 @@ class Interaction(Kind):
         """Whether it is a smooth force at a distance, such as gravity."""
         return False
 
+    def uniform(self) -> bool:
+        """Whether it accelerates all masses alike, wherever they are; its acceleration may vary in time."""
+        return False
+
     def remark(self, state: ModelState) -> str:
         """Text for `explain` on a `mutual` force at the start of the run, as on the error of its approximation."""
         return ""

@@ -104,6 +104,7 @@ class Assembled:
         """The facts by which a solver chooses its methods; call it once forces and contacts are added."""
         made = self.assembly
         forces = [cast(Interaction, self.graph.tasks[force].kind) for force, _ in self.island.forces]
+        turning = all(one is not None and one.turning is not None for one in self.bodies.values())
         solids = [one for one in self.bodies.values() if one is not None and one.skin is not None]
         return IslandFacts(
             entries=len(made.start()),
@@ -112,6 +113,7 @@ class Assembled:
             fields=made.on_grids,
             floats=made.numbers,
             orbits=bool(forces) and made.moved_by_forces_alone and all(force.at_a_distance() for force in forces),
+            free=made.moves_freely and turning and all(force.uniform() for force in forces),
             apart="barrier" in made.contact_mode,
             in_solids=sum(3 * one.count for one in solids),
             solids_size=min((diagonal(one, made.start()) for one in solids), default=1.0),

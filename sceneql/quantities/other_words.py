@@ -161,6 +161,11 @@ _LISTS = (
     ("children", "of parts objects members items"),
     ("of", "members operands children body object objects target source model particles solid shape mesh columns"),
     ("of", "values quantities field"),
+    # outputs
+    ("kinetic", "kinetic_energy ke ekin e_kin e_kinetic"),
+    ("potential", "potential_energy pe epot e_pot e_potential"),
+    ("energy", "total_energy e_total etot e_tot mechanical_energy"),
+    ("dissipated", "heat lost loss losses"),
     # words
     ("sphere", "ball orb circle ellipse uv_sphere icosphere"),
     ("outline", "polygon disk disc"),

@@ -137,6 +137,8 @@ class IslandFacts:
     """Returns the island's floats, into which the offsets of ``fields`` point."""
     orbits: bool = False
     """Whether it consists of masses on which only forces at a distance act (Force.at_a_distance)."""
+    free: bool = False
+    """Whether it consists of rigid bodies that nothing holds, touches or drives, under constant uniform forces."""
     apart: bool = False
     """Whether a barrier keeps surfaces apart; explicit steps would become ever shorter near it."""
     in_solids: int = 0

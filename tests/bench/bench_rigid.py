@@ -115,7 +115,8 @@ def angle(rotation: Sequence[float], exact: Sequence[float]) -> float:
 
 def free() -> None:
     """Cases A and B."""
-    words = [f"dop853: {{tolerance: {tolerance}}}" for tolerance in ("1e-9", "1e-11", "1e-12", "1e-13", "1e-14")]
+    words = ["auto"]
+    words += [f"dop853: {{tolerance: {tolerance}}}" for tolerance in ("1e-9", "1e-11", "1e-12", "1e-13", "1e-14")]
     words += ["gauss_radau15", "rk4: {step: 10 ms}", "rk4: {step: 1 ms}", "verlet: {step: 1 ms}", "verlet: {step: 1 s}"]
     words += ["verlet: {step: 20 s}"]
     for name, (spin, end, exact) in CASES.items():

@@ -39,6 +39,10 @@ class Gravity(Force):
         """Smooth wherever no two masses meet."""
         return True
 
+    def uniform(self) -> bool:
+        """The same everywhere."""
+        return True
+
     def assemble(self, name: str, assembly: Assembly, bodies: Bodies) -> None:
         """Add F = m g to every mass."""
         from sceneql.system import Slopes

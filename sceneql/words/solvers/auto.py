@@ -47,19 +47,21 @@ STAGES_OF_SOLIDS = 3.0
 class Auto(Solver):
     """The solver that suits: dop853, or dopri5 for a tolerance above 1e-4, and radau where the scene is stiff.
 
-    Where contacts, tears or births act it is dopri5 for one of 1e-6 or more. From there up to 1e-4, dop853 has a tenth
-    of the tolerance, with which it errs less than dopri5. Stiff is where stability rather than the tolerance would hold
-    the steps of the explicit method. That choice is made at the start, by the fastest mode of the island, the step that
-    the tolerance allows, the length of the run and what a step of radau costs with so many unknowns, and looked at
-    again as long as enough of the run is left; `explain` says the first and why. Few masses that nothing but forces at
-    a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance of 1e-10 or less. (On large nets
-    tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Local contacts of up to some sixty masses keep
-    it with dopri5. A field on a grid, or on elements, is marched by tr_bdf2, and on cells of a box whose coefficient
-    and boundary do not vary by exact; a flow, with all that is solved with it, by ark3, and by imex_midpoint where its
-    density or viscosity varies; elastic solids that may touch by tr_bdf2 in steps of 1/480 s, others by these explicit
-    methods with 100 times the tolerance and, where they are stiff, by tr_bdf2 with that; for a tolerance below 1e-7 as
-    all else. Errors are measured as those of `radau` are. Sources: see these words;
-    the sign of stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996), IV.2.
+    Where contacts, tears or births act it is dopri5 for one of 1e-6 or more. From there up to 1e-4, dop853 has a
+    tenth of the tolerance, with which it errs less than dopri5. Stiff is where stability rather than the tolerance
+    would hold the steps of the explicit method. That choice is made at the start, by the fastest mode of the
+    island, the step that the tolerance allows, the length of the run and what a step of radau costs with so many
+    unknowns, and looked at again as long as enough of the run is left; `explain` says the first and why. Few masses
+    that nothing but forces at a distance moves (gravity, attractors) are marched by gauss_radau15 for a tolerance
+    of 1e-10 or less. (On large nets tr_bdf2 is quicker where errors of 1e-4 will do: ask for it by name.) Rigid
+    bodies that nothing but uniform gravity acts on move by exact, without steps. Local contacts of up to some sixty
+    masses keep it with dopri5. A field on a grid, or on elements, is marched by tr_bdf2, and on cells of a box
+    whose coefficient and boundary do not vary by exact; a flow, with all that is solved with it, by ark3, and by
+    imex_midpoint where its density or viscosity varies; elastic solids that may touch by tr_bdf2 in steps of 1/480
+    s, others by these explicit methods with 100 times the tolerance and, where they are stiff, by tr_bdf2 with
+    that; for a tolerance below 1e-7 as all else. Errors are measured as those of `radau` are. Sources: see these
+    words; the sign of stiffness is that of Hairer & Wanner, Solving Ordinary Differential Equations II (1996),
+    IV.2.
     """
 
     tolerance: FixedScalar = field(
@@ -95,6 +97,8 @@ class Auto(Solver):
 
         from sceneql.island.jacobian import BY_DIFFERENCES
 
+        if island.free:
+            return replace(Exact().choose(island), remark="on rigid bodies that move freely")
         grid = island.fields.single
         if grid is not None and island.floats is not None:
             from sceneql.grids.multigrid.separable import axes_of

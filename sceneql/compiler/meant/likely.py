@@ -18,6 +18,8 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler import paint, values
 from sceneql.compiler.annotations import example_of, first_field, is_fixed, marks_of, quantities, unwrap
+from sceneql.compiler.meant.own_examples import own_example
+from sceneql.compiler.meant.unknown import meant_field
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
@@ -85,20 +87,39 @@ def _wrong(reader: Any, node: Node, info: Any, name: str) -> tuple[Diagnostic, .
 
 
 def asked(reader: Any, cls: type[BaseModel]) -> dict[str, Any]:
-    """What `sceneql.compiler.unknown.report_unknown` asks of a record whose fields a reader reads."""
+    """What `sceneql.compiler.meant.unknown.report_unknown` asks of a record whose fields a reader reads."""
     return {
         "said_by": cls.said_by if issubclass(cls, kinds.Record) else {},
         "family": cls.family if issubclass(cls, kinds.Kind) else "",
         "renamed": partial(renamed, reader, cls),
         "catalogue": reader.names.catalogue,
         "table": table_of(cls),
-        "inside": partial(inside, reader.outer, cls),
+        "inside": partial(inside, reader, cls),
     }
 
 
-def inside(outer: type[BaseModel] | None, cls: type[BaseModel], name: str, text: str) -> str | None:
-    """The help for a field that the record ``outer`` around a record has, or one of those in its fields."""
+def taking_word(reader: Any, cls: type[BaseModel], name: str) -> str | None:
+    """The only field of a record that takes a part made in place by a word, ``sphere``; None for other names."""
+    families = [] if reader.names.catalogue is None else reader.names.catalogue.families_of(name)
+    fields = [
+        kinds.written_name(key)
+        for key, info in cls.model_fields.items()
+        if any(isinstance(mark, kinds.Refers) and mark.family in families for mark in marks_of(info))
+    ]
+    return fields[0] if len(fields) == 1 else None
+
+
+def meant(reader: Any, cls: type[BaseModel], name: str, known: Collection[str]) -> tuple[str | None, str | None]:
+    """The fields of a record that an unknown name most likely stands for, by its letters and as a word."""
+    return meant_field(name, known), taking_word(reader, cls, name)
+
+
+def inside(reader: Any, cls: type[BaseModel], name: str, text: str) -> str | None:
+    """The help for a field that the record around a record has, or one of those in its fields, or a part in place."""
+    outer: type[BaseModel] | None = reader.outer
     text = text if "\n" not in text and len(text) <= SHOWN else "..."
+    if (field := taking_word(reader, cls, name)) is not None:
+        return f"write `{field}: {{{name}: {text or '{}'}}}`"
     if outer is not None and name in map(kinds.written_name, outer.model_fields):
         return f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
     for key, info in cls.model_fields.items():
@@ -117,9 +138,10 @@ def table_of(cls: type[BaseModel]) -> str:
     return kinds.written_name(only) if only and get_origin(cls.model_fields[only].annotation) is dict else ""
 
 
-def example_line(cls: type[BaseModel], name: str, description: str) -> str:
-    """What a missing field is, with an example."""
-    example = "..." if "`" in description else example_of(cls, name)
+def example_line(reader: Any, cls: type[BaseModel], name: str, info: Any) -> str:
+    """What a missing field is, with an example, where it can be of the script's own parts."""
+    description, own = info.description or "", own_example(reader.names, info)
+    example = own or ("..." if "`" in description else example_of(cls, name))
     more = "" if example in ("...", "{}") else f" For example `{name}: {example}`."
     return f"{name}: {description}{more}"
 

@@ -16,7 +16,7 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler import values
 from sceneql.compiler.annotations import marks_of, quantities
-from sceneql.compiler.likely import NAME, TRUE, quantities_fitting
+from sceneql.compiler.meant.likely import NAME, TRUE, quantities_fitting
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics
