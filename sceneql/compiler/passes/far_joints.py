@@ -21,6 +21,8 @@ STILL = 1e-6
 """Torque of a weight, relative to the largest for the length of its arm, up to which it turns nothing."""
 AXES = ((0, 0, 1), (1, 0, 0))
 """Axes across the default weight, that towards the usual camera first."""
+TURNING = ("motor", "stiffness")
+"""Fields of a hinge that turn its body."""
 BOB = 2.0
 """Largest ratio of the sides of a bob's box."""
 
@@ -72,9 +74,10 @@ def warn_of_unturned(tasks: Mapping[str, Task], groups: Sequence[Island], found:
         if len(ties) != 1 or len(island.models) != 1 or island.contacts or pull is None:
             continue
         tie, model = tasks[ties[0]], tasks[island.models[0]]
-        axis, at, spins = (getattr(tie.kind, field, None) for field in ("axis", "at", "motor"))
-        known = all(isinstance(one, Value) and one.constant for one in (axis, at))
-        if not known or spins is not None or starts_moving(model.kind) or getattr(tie.kind, "stiffness", None):
+        axis, at = getattr(tie.kind, "axis", None), getattr(tie.kind, "at", None)
+        if not isinstance(axis, Value) or not isinstance(at, Value) or not axis.constant or not at.constant:
+            continue
+        if any(getattr(tie.kind, field, None) is not None for field in TURNING) or starts_moving(model.kind):
             continue
         places = [place for place, _, _ in starts_of(cast(Model, model.kind), tasks, start)]
         if len(places) != 1:
@@ -86,9 +89,8 @@ def warn_of_unturned(tasks: Mapping[str, Task], groups: Sequence[Island], found:
         better = next((way for way in AXES if _turning(arm, pull, way) >= STILL), None)
         help = "hold it beside its center of mass, by another `at`"
         if better is not None:
-            help = f"write `axis: {' '.join(map(str, better))}`" + (
-                ", for a swing in the picture" * (better == AXES[0])
-            )
+            seen = ", for a swing in the picture" if better == AXES[0] else ""
+            help = f"write `axis: {' '.join(map(str, better))}`{seen}"
         found.warning("nothing-moves", text, axis.span or tie.span, help=help)
 
 
