@@ -127,6 +127,7 @@ def render(
                 sinks[name] = kind.open(tools[name])
         wanted = {name: set(at) for name, at in times.items()}
         from sceneql.run.blind import warnings as blind
+        from sceneql.run.covered import warnings as covered
         from sceneql.run.never_drawn import decided_by_rounding, missing
         from sceneql.run.run import Run
         from sceneql.run.watch import Watch
@@ -171,7 +172,8 @@ def render(
         gc.unfreeze()
         ending.close()
     report.warnings = (*missing(report.present, graph.tasks), *decided_by_rounding(report.rounded, graph.tasks))
-    report.warnings += (*watch.warnings(), *run.warnings(), *_diverged(runs), *blind(report.within, graph.tasks))
+    report.warnings += (*watch.warnings(), *run.warnings(), *_diverged(runs))
+    report.warnings += (*blind(report.within, graph.tasks), *covered(report.covered, graph.tasks))
     report.conserved = watch.account()
     seconds, count = _compiled()
     report.compile_seconds, report.compilations = seconds - compiled[0], count - compiled[1]

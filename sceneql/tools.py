@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from sceneql.pictures.arrangement import Arrangement
     from sceneql.pictures.layout import Panel
     from sceneql.quantities.diagnostic import Diagnostic
+    from sceneql.run.covered import Sights
     from sceneql.run.framed import Framed
     from sceneql.run.instant import Instant
 
@@ -46,6 +47,8 @@ class Report:
     """Implicit objects in pictures with undecided pixels: in which share of their bounds rounding decides."""
     within: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     """By camera and part the first and the last instant [s] at which the one stood inside the other (run.blind)."""
+    covered: dict[tuple[str, str], Sights] = field(default_factory=dict)
+    """By camera and part that it is aimed at, in which frames the one hardly saw the other (run.covered)."""
     warnings: tuple[Diagnostic, ...] = ()
     conserved: list[str] = field(default_factory=list)
     """For each island that tells an energy, how far it drifted; momentum where it is conserved."""
@@ -126,7 +129,7 @@ class Tools:
         """The scene from a camera, by default the output's own; None before the last part of an exposure."""
         from renderers.develop import develop
         from renderers.drafts import coarser, enlarged
-        from sceneql.run import blind
+        from sceneql.run import blind, covered
         from sceneql.run.never_drawn import look, look_at_rounding, solids
 
         renderer = self._renderer(output)
@@ -141,6 +144,7 @@ class Tools:
         asked = solids(self.graph.drawn[self.name], self.graph.tasks)
         look(frame.shapes, asked, self.graph.tasks, self.report.present)
         blind.look(frame, eye, self.report.within)
+        covered.look(frame, eye, self.graph.tasks, self.report.covered)
         if picture.undecided:
             look_at_rounding(frame.shapes, self.report.rounded)
             counts = self.report.undecided.setdefault(self.name, {})

@@ -84,6 +84,9 @@ class FakeMoment:
     def standing(self) -> Any:
         return self.outline()
 
+    def left_out(self) -> Any:
+        return np.zeros((0, 4))
+
     def moving(self, window: float | None) -> Any:
         return np.zeros((0, 4))
 

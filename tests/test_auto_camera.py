@@ -91,3 +91,17 @@ def test_a_few_points_are_seen_from_somewhere(count):
     points = np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0], [0.5, 1.0, -1.0]])[:count]
     view = Auto().view(SIZE, Outlined(points))
     assert np.isfinite(view.origin).all()
+
+
+@pytest.mark.parametrize("room", [(0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.4), (0.0, 0.3, 0.0, 0.0)])
+def test_the_ground_under_what_is_flat_is_seen_from_above_whatever_overlays_leave(room):
+    """Else shadows on it are seen along the ground, which fades there into the background."""
+    points = np.array([[x, y, z] for x in (-9.0, 9.0) for y in (0.0, 2.0) for z in (-0.1, 0.1)])
+    moment = Outlined(points)
+    moment.room = room
+    view = Auto().view(SIZE, moment)
+    away = np.array(view.origin)
+    assert away[1] / np.linalg.norm(away) > 0.09
+    places = (points - view.origin) @ view.axes.T
+    high = 0.5 - 0.5 * places[:, 1] / -places[:, 2] / view.half_height
+    assert room[1] < high.min() < high.max() < 1.0 - room[3]

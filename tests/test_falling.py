@@ -21,5 +21,6 @@ outputs: {still: {image: {size: 8 8}}}
 def test_objects_without_an_inside_are_passed_over(tmp_path, other, told):
     """A group of an arrow, which is seen through, and a box has no field: it ended the run."""
     (tmp_path / "scene.yaml").write_text(SCENE.replace("OTHER", other))
-    report = pipeline.render(pipeline.load(tmp_path / "scene.yaml"), output=tmp_path / "still.png")
-    assert [warning.code for warning in report.warnings] == told
+    graph = pipeline.load(tmp_path / "scene.yaml")
+    report = pipeline.render(graph, output=tmp_path / "still.png")
+    assert [warning.code for warning in (*graph.warnings, *report.warnings)] == told

@@ -42,6 +42,20 @@ def test_every_solver_of_the_pressure_finds_the_same_flow(tmp_path, place):
             assert len(left) == 128 or left[-1] < 1e-10 * left[0]
 
 
+@pytest.mark.parametrize("cells", [(64, 48), (7, 16), (34, 22), (128, 9), (15, 32)])
+@pytest.mark.parametrize("boundary", ["{rest: {wall: {}}}", "{left: {periodic: yes}}", "{right: {outflow: {}}}"])
+def test_transforms_of_any_length_find_what_factors_do(tmp_path, cells, boundary):
+    """By sixteen, four, two, other primes and these together, with waves and cosines, rows in whole lanes and not."""
+    size = {"size": f"{cells[0]} {cells[1]} m", "cell": "1 m", "boundary": boundary, "viscosity": "2 Pa*s"}
+    start = {"initial": '{velocity: "[sin(0.7*x)*cos(y), sin(x*y)]"}'}
+    found = [
+        Air(tmp_path, "{sbdf2: {step: 0.2 s}}", 0.4, pressure=name, **size, **start) for name in ("auto", "direct")
+    ]
+    known = found[1].at(0.4).read("velocity")
+    assert found[0].at(0.4).read("velocity") == pytest.approx(known, abs=1e-11)
+    assert found[0].read("divergence") < 1e-12
+
+
 @pytest.mark.parametrize("place", ["past a stone", "within and around a ring"])
 def test_iterations_on_cells_near_solids_come_to_what_factors_do(tmp_path, place):
     """There are few of these among 32 by 32; a third and more of all are iterated on as all are."""

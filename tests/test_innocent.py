@@ -42,7 +42,15 @@ models:
 forces: {carried: {immersion: {on: [drop], in: water}}}
 clock: {end: 1 ms}
 """
+RESTING = f"""
+objects: {{floor: plane, {BALL}, mark: {{box: {{size: 1 0.02 1 m, position: 0 0.01 0 m}}}}}}
+models: {{fall: {{rigid: {{of: ball, mass: 1 kg}}}}}}
+forces: [gravity]
+contacts: {{hit: {{collision: {{between: [fall, floor]}}}}}}
+clock: {{end: 0.1 s}}
+"""
 SCENES = {
+    "a ball that rests on the floor before it is in a mark on it": RESTING,
     "a camera under a table of glass": f"objects: {{table: {{plane: {{material: glass}}}}, {BALL}}}\n"
     f"cameras: {{eye: {EYE % 0.3}}}\nlights: {{lamp: {{point: {{position: 1 -1 1 m}}}}}}\n",
     "a camera that sees what is underground": "objects: {floor: plane, root: {sphere: {position: 0 -1 0 m}}}\n"

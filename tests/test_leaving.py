@@ -48,8 +48,8 @@ def test_the_default_camera_lets_go_what_falls_off_the_table(tmp_path):
     ("balls", "camera"),
     [
         (STAYING, ""),
-        ("lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}", ""),
-        ("a: {position: 0 1 0 m}, lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}", ""),
+        ("lost: {position: 0.8 1 0 m, velocity: 9 60 0 m/s}", ""),
+        ("a: {position: 0 1 0 m}, lost: {position: 0.8 1 0 m, velocity: 9 60 0 m/s}", ""),
         (
             STAYING + ", lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}",
             "cameras: {c: {perspective: {position: 0 1 5 m, look_at: 0 0 0 m}}}\n",
@@ -67,8 +67,25 @@ def test_what_the_film_is_about_is_not_let_go(tmp_path, balls, camera):
     if not camera:
         (moment,) = simulate(graph, [4.0])
         places = moment.read("balls", "positions")
-        low, _ = moment.bounds(())
+        low, high = moment.bounds(())
         assert low[1] <= places[:, 1].min() + 1e-9
+        assert high[1] >= places[:, 1].max() - 1e-9
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ("", "'balls' leaves"),
+        ("a: {position: 0 1 0 m}, ", "1 of the 2 masses of 'balls' leaves"),
+        ("b: {position: 3 1 0 m}, c: {position: -3 1 0 m}, ", "3 of the 3 masses of 'balls' leave"),
+    ],
+)
+def test_what_falls_below_all_that_stands_is_let_go_however_many_they_are(tmp_path, more, told):
+    graph = graph_of(tmp_path, more + "lost: {position: 0.8 1 0 m, velocity: 1.5 0 0 m/s}")
+    (warning,) = render(graph, folder=tmp_path).warnings
+    assert warning.message.startswith(f"{told} for good, from ")
+    (moment,) = simulate(graph, [4.0])
+    assert moment.bounds(())[0][1] > -10
 
 
 def test_what_flies_far_and_comes_back_is_not_let_go(tmp_path):

@@ -11,6 +11,7 @@ import yaml
 
 import sceneql
 from sceneql import pipeline
+from sceneql.bodies.bodies import BODY_OUTPUTS
 from sceneql.bodies.nets import SIDES
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.quantities.curves import CURVES
@@ -66,7 +67,16 @@ def test_words_of_other_programs_lead_to_names_of_the_language():
     field = Catalogue().load("models", "diffusion")
     outputs = {name for of in ("temperature", "concentration") for name in field.outputs({"of": of})}
     known = {*FUNCTIONS, *CONSTANTS, *outputs, "time", *names_in(schema(Catalogue()))}
-    known |= {*CURVES, *SIDES, "720p", "1080p", "4k", "rest", "fields"}  # choices, sides, a section of templates
+    known |= {
+        *BODY_OUTPUTS,
+        *CURVES,
+        *SIDES,
+        "720p",
+        "1080p",
+        "4k",
+        "rest",
+        "fields",
+    }  # choices, sides, a section of templates
     assert {name for ours in OURS.values() for name in ours} <= known
     assert all(len(set(ours)) == len(ours) for ours in OURS.values())
 

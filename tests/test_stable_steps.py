@@ -120,6 +120,25 @@ def test_masses_that_swing_alike_are_looked_at_once(tmp_path, monkeypatch):
     assert len(searched) == 2
 
 
+@pytest.mark.parametrize(
+    "shape",
+    [
+        "of: shape, spacing: 0.5 m, element: p1",
+        "of: shape",
+        "block: {size: 1 0.2 0.2 m}, element: p1, retardation: 1 ms",
+    ],
+)
+def test_the_bound_of_elements_is_told_by_law_and_size_alone(tmp_path, shape):
+    """It is never below what is stable, so that no step is blamed that holds."""
+    law = "law: {neo_hookean: {modulus: 10 MPa, poisson: 0.3}}"
+    script = f"objects: {{shape: {{sphere: {{radius: 0.5 m}}}}}}\nmodels: {{net: {{elastic: {{{shape}, {law}}}}}}}\n"
+    graph = loaded(tmp_path, script + TAIL)
+    (island,) = Run(graph).islands
+    told = re.search(r"exceeds (\S+) (ms|us), set by the elements of 'net'", warnings(graph)[0])
+    sharp = stability(island.march, island.solver).step
+    assert sharp < float(told[1]) * {"ms": 1e-3, "us": 1e-6}[told[2]] < 2.2 * sharp
+
+
 @pytest.mark.parametrize("shape", ["{cells: 12 9, size: 1.2 0.8 m, stretch: 4e5 N/m, damping: 0.1}", "{bend: 300 N/m}"])
 def test_the_bound_of_a_cloth_is_told_by_the_script_alone(tmp_path, shape):
     script = f"models: {{net: {{cloth: {shape}}}}}\n" + TAIL

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from sceneql.compiler.css_colors import NAMED
+from sceneql.compiler.css_colors import NAMED, css_color
+from sceneql.compiler.meant.output_help import output_meant
 from sceneql.kinds import Gives
 from sceneql.language.scope import Broken, Entry, Given, Scope
 from sceneql.language.tree import Node, Scalar, Sequence
@@ -26,7 +27,6 @@ from sceneql.quantities.units import continues_unit, in_words, unit_hint
 
 WORDS = re.compile(WORD)
 PICTURES = ("jpg", "jpeg", "png", "hdr", "exr", "tif", "tiff", "webp", "gif")
-SPEEDS = ("speed", "vel", "v", "absolute_velocity")
 DEEPEST = 40
 """Largest depth of defines that are read within one another; what a define needs is read before it."""
 
@@ -237,10 +237,15 @@ class Names:
         if self.unsure(task):
             return None
         wanted = ".".join(parts[first:])
-        help = self._of_mover(task, parts[first:]) or _place(task, wanted, outputs) or suggestion(wanted, outputs)
+        help = self._of_mover(task, parts[first:]) or output_meant(task, wanted, outputs, self._giving)
+        help = help or suggestion(wanted, outputs)
         help = help or f"it gives {', '.join(sorted(outputs)) or 'nothing'}"
         self.found.error("unknown-output", f"'{'.'.join(parts[:first])}' gives no '{wanted}'", span, help=help)
         return None
+
+    def _giving(self, output: str) -> list[str]:
+        """The parts with an output of this name."""
+        return [part for part in self.parts if output in (self.outputs_of(part) or ())]
 
     def _of_mover(self, task: str, wanted: tuple[str, ...]) -> str | None:
         """The help for an output that an object lacks and the model that moves it gives."""
@@ -286,10 +291,11 @@ class Names:
             if hint is None and len(parts) > 1:
                 hint = self._meant(parts, parts_known)
             if hint is None and wanted in NAMED:
-                hint = f"a color by its name stands alone, `color: {wanted}`; in a formula it is `[1, 0.5, 0]`"
+                numbers = ", ".join(f"{one:.3g}" for one in css_color(wanted) or ())
+                hint = f"a color by its name stands alone, `color: {wanted}`; in a formula it is `[{numbers}]`"
             if hint is None and wanted in UNITS:
                 hint = f"a unit stands behind a number: write `(1 {wanted})`"
-            giving = next((part for part in parts_known if wanted in (self.outputs_of(part) or ())), None)
+            giving = next(iter(self._giving(wanted)), None)
             if hint is None and giving is not None:
                 hint = f"a value is named with its part: write `{giving}.{wanted}`"
             if hint is None and len(parts) == 1:
@@ -323,20 +329,6 @@ class Names:
         fields = [name for name, gives in outputs.items() if gives.type.shape == (None,)]
         places = [name for name in ("position", "positions") if name in outputs]
         return f"{task}.{next(iter([*places, *fields, *outputs]), 'position')}"
-
-
-def _place(part: str, wanted: str, outputs: Collection[str]) -> str | None:
-    """The help for a coordinate, or for the one place of a part with several bodies: `ball.y`, `fall.position`."""
-    if wanted in ("x", "y", "z") and "position" in outputs:
-        return f"write `{part}.position.{wanted}`"
-    if wanted == "velocity" and "position" in outputs:
-        return "only what a model moves has one: write what it is by the formula, as `[1 m/s, 0 m/s, 0 m/s]`"
-    *of, last = wanted.split(".")
-    if last in SPEEDS and (velocity := ".".join((*of, "velocity"))) in outputs:
-        return f"write `length({part}.{velocity})`, or a component, `{part}.{velocity}.x`"
-    one = next((name for name in outputs if name.endswith(f".{wanted}")), None)
-    many = f", or all of them, `{part}.{wanted}s`" if f"{wanted}s" in outputs else ""
-    return None if one is None else f"it has bodies by name: write `{part}.{one}`{many}"
 
 
 def _words(node: Node) -> list[str]:

@@ -23,6 +23,8 @@ from sceneql.quantities.expression import Call, Expr, Number, Type, Vector
 RGB = Type((3,), PLAIN)
 QUATERNION = Type((4,), PLAIN)
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+ROUNDED, TURN = 0.03, 24
+"""Difference from a part of a turn up to which it is one written with few digits, and parts of a turn, 15 deg each."""
 _HEX = re.compile(r"0[xX]([0-9a-fA-F]{6})")
 _DIGITS = re.compile(r"\d+\.?\d*|\.\d+")
 DARK = 16
@@ -30,6 +32,8 @@ DARK = 16
 BRIGHTER = "1 1 1 is white; a light is made brighter by its `power`, a material by `glow`"
 OPAQUE = "it has three numbers; what one sees through is `material: glass`: `sceneql words glass`"
 RED = 'write a CSS name, `orange`, "#ff8800", or three numbers from 0 to 1, `1 0.5 0`'
+_CHOSEN = re.compile(r"\[([\w\s,]+)\]\s*\[([^\[\]]+)\]")
+"""A list of colors by name, and the number behind it: ``[red, green][i]``."""
 _ABOUT = re.compile(r"([-+]?[\d.]+)\s*(?:deg)?\s*\*?\s*([xyz])")
 EULER = ("euler", "angles", "degrees", "euler_angles")
 """Fields of other programs for angles about x, y and z."""
@@ -56,6 +60,9 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
                 found.error("unknown-color", f"'{text}' is no color", node.span, help=_meant(text))
                 return None
             return Value(Vector(tuple(Number(c) for c in components), RGB), node.span)
+    if (several := _several(node, names)) is not None:
+        found.error("wrong-shape", "color is one color, not several", node.span, help=several)
+        return None
     before = len(found.found)
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
     if [one.code for one in found.found[before:] if one.help is None] == ["wrong-shape"]:
@@ -68,6 +75,24 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
         found.error("out-of-range", "the numbers of a color are from 0 to 1", node.span, help=help)
         return None
     return value
+
+
+def _several(node: Node, names: Names) -> str | None:
+    """The help for colors by name in brackets, of which a number behind them, or that of the copy, chooses one."""
+    chosen = _CHOSEN.fullmatch(node.text.strip()) if isinstance(node, Scalar) else None
+    given = [] if chosen is None else [one.strip() for one in chosen[1].split(",")]
+    if isinstance(node, SequenceNode):
+        given = [item.text for item in node.items if isinstance(item, Scalar)]
+        given = given if len(given) == len(node.items) else []
+    if not given or not all(one in NAMED and one not in names.defines for one in given):
+        return None
+    scope = names.scope
+    copy = next(iter(scope.fields), "") if scope is not None else ""
+    number = chosen[2] if chosen is not None else copy
+    if not number:
+        return f"write one of them, `{given[0]}`; one for each of several objects stands at each of them"
+    listed = ", ".join(f"[{', '.join(f'{c:.3g}' for c in css_color(one) or ())}]" for one in given)
+    return f"of the colors by their numbers one is `item([{listed}], {number})`"
 
 
 def _is_name(text: str) -> bool:
@@ -190,7 +215,8 @@ def _turned(node: Node, expr: Expr | None) -> str:
     literal = () if expr is None else expr.items if isinstance(expr, Vector) else (expr,)
     if isinstance(node, Scalar) and all(isinstance(one, Number) for one in literal) and len(literal) in (1, 3):
         written = node.text.strip()
-        angle = f"{written} deg" if all(isinstance(one, Number) and one.bare for one in literal) else written
+        unit = "rad" if any(isinstance(one, Number) and _in_radians(float(one.value)) for one in literal) else "deg"
+        angle = f"{written} {unit}" if all(isinstance(one, Number) and one.bare for one in literal) else written
         return f"write `{{xyz: {angle}}}`" if len(literal) == 3 else f"write `{{about: y, angle: {angle}}}`"
     if isinstance(node, Scalar) and expr is not None and not expr.type.shape:
         return f"write `{{about: y, angle: {node.text.strip()}}}`, or about another axis"
@@ -205,6 +231,12 @@ def _turned(node: Node, expr: Expr | None) -> str:
         if given.keys() <= AXES.keys():
             return f"write `{{xyz: [{', '.join(given.get(axis, '0 deg') for axis in AXES)}]}}`"
     return "write `{about: z, angle: 30 deg}`, `{xyz: 10 20 30 deg}` or a quaternion `[w, x, y, z]`"
+
+
+def _in_radians(number: float) -> bool:
+    """Whether a number without a unit is most likely an angle in radians: a fraction, near a part of a turn."""
+    part = number / (pi / 12)
+    return number != round(number) and abs(part - round(part)) < ROUNDED and 0 < abs(part) <= TURN
 
 
 def _expr(value: Value | None) -> Expr | None:

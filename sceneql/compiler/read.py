@@ -16,17 +16,19 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql import kinds
-from sceneql.compiler import likely, limits, paint, values
-from sceneql.compiler import quantity_help as helped
-from sceneql.compiler.annotations import could_be, is_fixed, quantities, unwrap
+from sceneql.compiler import limits, paint, values
+from sceneql.compiler.annotations import could_be, is_fixed, unwrap
 from sceneql.compiler.formulas import Wanted, read_formula
-from sceneql.compiler.likely import TRUE
+from sceneql.compiler.meant import likely
+from sceneql.compiler.meant import quantity_help as helped
+from sceneql.compiler.meant.chained import improve
+from sceneql.compiler.meant.quantity_help import TRUE
+from sceneql.compiler.meant.unknown import report_unknown
 from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
 from sceneql.compiler.paths import read_path
 from sceneql.compiler.problems import Unreadable, validated
 from sceneql.compiler.texts import read_text, unescaped
-from sceneql.compiler.unknown import meant_field, report_unknown
 from sceneql.kinds.values import Verbatim
 from sceneql.language.repeat import numbered
 from sceneql.language.scope import Scope
@@ -37,10 +39,6 @@ from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import Dimension
 from sceneql.quantities.span import Span
 
-PLANAR = "is a vector of 3, not a vector of 2"
-"""What is told of a vector without one of its components."""
-SINGLE = " is a single value, not a vector"
-"""What is told of several numbers where one stands."""
 FALSE = ("false", "no", "off")
 
 
@@ -93,14 +91,15 @@ class Reader:
                 self.names.broken.add(number.text)
             ok = report_unknown(node, known, title, self.found, **likely.asked(self, cls))
             ok = ok and not node.partial
-            mistaken = {meant_field(name, known) for name in node.entries if name not in known}
+            unknown = [name for name in node.entries if name not in known]
+            mistaken = {one for name in unknown for one in likely.meant(self, cls, name, node.entries[name], known)}
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:
                 if info.is_required():
                     ok = False
                 if info.is_required() and name not in mistaken and not (node is not None and unsure(node)):
-                    help = likely.example_line(cls, name, info.description or "")
+                    help = likely.example_line(self, cls, name, info)
                     self.found.error("missing-field", f"{title} needs '{name}'", span, help=help)
                 continue
             owner = f"{self.owner}.{name}" if self.owner else ""
@@ -112,36 +111,7 @@ class Reader:
                 got[python_name] = reader.field(written[name], info, name)
             except Unreadable:
                 ok = False
-                helped.by_own_density(self, written, before)
-                told = [(one.code, one.help) for one in self.found.found[before:]]
-                if [one[0] for one in told] == ["unknown-name"] and helped.is_part(self, written[name]):
-                    suiting = helped.other_output(self, written[name], info, name) or told[0][1]
-                    self.found.found[before] = replace(self.found.found[before], help=suiting)
-                elif len(told) == 1 and told[0][0] in ("unknown-name", "unknown-unit"):
-                    number_alone = helped.number_meant(written[name], info, name, *told[0]) or told[0][1]
-                    self.found.found[before] = replace(self.found.found[before], help=number_alone)
-                pointing = any(mark.direction for mark in quantities(info))
-                if told in ([("wrong-shape", None)], [("dimension-mismatch", None)]):
-                    rest = {
-                        key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
-                    }
-                    ours = told[0][0] == "wrong-shape" or pointing
-                    better = likely.elsewhere(self, written[name], info, rest) if ours else None
-                    if better is None and told[0][0] == "wrong-shape":
-                        better = helped.other_output(self, written[name], info, name)
-                    if better is None:
-                        better = helped.for_each(self, written[name], cls, name, title)
-                    if better is None and self.found.found[before].message.endswith(PLANAR):
-                        better = "a number is missing: it has one for each of x, y and z"
-                    if better is None and self.found.found[before].message.startswith(f"{name}{SINGLE}"):
-                        better = likely.first_of(name, written[name])
-                    if better is None and pointing and told[0][0] == "dimension-mismatch":
-                        better = helped.direction_alone(written[name])
-                    if better is None and told[0][0] == "dimension-mismatch":
-                        better = helped.plain_define(self, written[name]) or helped.in_other_unit(
-                            self, written[name], info, rest, name
-                        )
-                    self.found.found[before] = replace(self.found.found[before], help=better)
+                improve(self, written, cls, name, title, before)
         if not ok:
             raise Unreadable
         return self._some(validated(cls, got, node, span, self.found))

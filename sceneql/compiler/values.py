@@ -10,7 +10,7 @@ from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
-from sceneql.compiler.vector_fields import timed, vector_meant_by
+from sceneql.compiler.vector_fields import pair_meant, timed, vector_meant_by
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
@@ -106,7 +106,8 @@ def read_expr(
                 return _by_component(node, dimension, what, names, found)
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
-            help = timed(node) or (f"write `[{', '.join(texts)}]`" if listed else None)
+            help = timed(node) or (pair_meant(node, dimension) if shape == (2,) else None)
+            help = help or (f"write `[{', '.join(texts)}]`" if listed else None)
             help = f"a name has one value: write `{node.span.text[1:-1]}`, each by itself" if what == "define" else help
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None

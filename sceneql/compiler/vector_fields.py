@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from sceneql.language.tree import Mapping
+from sceneql.quantities.dimension import ANGLE, Dimension
+from sceneql.quantities.literal import vector_meant
+from sceneql.quantities.units import unit_of
 
 SIDES = (("width", "w", "breadth"), ("height", "h"), ("depth", "d", "length", "l"))
 """Names of the sides of a box along x, y and z."""
 
 
+TURN = 6.3
+"""[rad] A whole turn, rounded up."""
 PLACES = ("position", "pos", "at", "center", "place", "location", "coordinates")
 """Names of a place."""
 
@@ -41,6 +46,26 @@ def _from_to(node: Mapping) -> str | None:
     """The help where a value goes from one to another."""
     ends = [node.entries[key].span.text for key in ("from", "to") if key in node.entries]
     return f"write `{{keys: {{0 s: {ends[0]}, 2 s: {ends[1]}}}}}`: `sceneql words keys`" if len(ends) == 2 else None
+
+
+ENDS = (("lower", "min", "low", "minimum", "least", "from", "start"), ("upper", "max", "high", "maximum", "to", "end"))
+"""Names of the two ends of a range."""
+
+
+def pair_meant(node: Mapping, dimension: Dimension | None) -> str | None:
+    """The help where the two ends of a range have names; numbers without a unit get that of the dimension."""
+    ends = [next((key for key in node.entries if key.lower() in names), None) for names in ENDS]
+    texts = [node.entries[key].span.text for key in ends if key is not None]
+    if len(texts) != len(ENDS):
+        return None
+    try:
+        bare = [abs(float(text)) for text in texts]
+    except ValueError:
+        return f"write `{vector_meant(', '.join(texts)) or f'[{chr(44).join(texts)}]'}`, the least and the greatest"
+    unit = "" if dimension is None or dimension.plain else f" {unit_of(dimension)}"
+    if dimension is not None and dimension.kind == ANGLE.kind:
+        unit = " rad" if max(bare) <= TURN else " deg"
+    return f"write `{' '.join(texts)}{unit}`, the least and the greatest"
 
 
 def timed(node: Mapping) -> str | None:

@@ -64,5 +64,7 @@ CHANGE, VELOCITY, RATE = range(3)
 rates."""
 LANES = 8
 """Pairs of rows that are transformed side by side: as many as numbers in a lane, and in a line of memory."""
+BOTH = 2 * LANES
+"""The rows of all pairs: real and imaginary parts of complex numbers."""
 PAD = 24
 """Numbers between arrays that are read side by side: three lines of memory."""

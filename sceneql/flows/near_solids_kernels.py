@@ -13,7 +13,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.flows.fourier_kernels import transform_of_rows
+from sceneql.flows.box_modes_kernels import transform_of_rows
 from sceneql.flows.layout import (
     CELLS,
     CONDUCTANCES,

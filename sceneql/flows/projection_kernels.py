@@ -10,7 +10,7 @@ import math
 from numba import types
 
 from sceneql.compiled.kernels import lean, lean_inlined
-from sceneql.flows.fourier_kernels import transform
+from sceneql.flows.box_modes_kernels import through_modes
 from sceneql.flows.layout import (
     AREAS,
     AT,
@@ -56,13 +56,8 @@ MOST = 400
 def by_transform(x, floats, ints):
     """Solve the equation of the box, in place."""
     nx, ny, nz = ints[CELLS], ints[CELLS + 1], ints[CELLS + 2]
-    n = nx * ny * nz
-    scratch, plans = floats[ints[WORK] :], ints[PLANS:]
-    transform(x, nx, ny, nz, True, floats, scratch, plans)
-    spectrum = floats[ints[SPECTRUM] : ints[SPECTRUM] + n]
-    for c in range(n):
-        x[c] *= spectrum[c]
-    transform(x, nx, ny, nz, False, floats, scratch, plans)
+    spectrum, none = floats[ints[SPECTRUM] : ints[SPECTRUM] + nx * ny * nz], floats[:0]
+    through_modes(x, nx, ny, nz, floats, floats[ints[WORK] :], ints[PLANS:], spectrum, none, none, none, 0.0, 0.0)
 
 
 @lean_inlined

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sceneql.flows.layout import (
+    BOTH,
     COSINES,
     FREE_FREE,
     FREE_NODES,
-    LANES,
     NODES,
     NODES_FREE,
     PAD,
@@ -83,7 +83,7 @@ def plans(
     spectrum = total.ravel()
     least = spectrum[spectrum > 1e-12 * spectrum.max(initial=1e-300)].min(initial=np.inf)
     inverse = 1.0 / (np.where(spectrum >= least, spectrum, least) * prod(lengths))
-    room = LANES * (16 * max(shape) + 2 * (max(shape) + 1)) + 3 * PAD
+    room = BOTH * (8 * max(shape) + (max(shape) + 1) + 16) + 2 * PAD
     return ints, np.where(np.isfinite(inverse), inverse, 0.0), room
 
 

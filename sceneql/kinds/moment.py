@@ -160,3 +160,9 @@ class Moment(Protocol):
         Their hull at each instant encloses all that moves and stays. Without rows nothing moves. ``window``: for how
         long at once a camera shows it [s], with all that stands; None: a camera shows it alone.
         """
+
+    def left_out(self) -> Floats:
+        """Instants [s] and points [m], rows (n, 1 + 3), of what moves where panels' common framing leaves this one out.
+
+        It is a variant that diverges by its solver alone; without rows the framing shows it.
+        """

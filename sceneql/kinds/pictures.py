@@ -29,6 +29,10 @@ class Camera(Kind):
         """Whether it frames all that is drawn over the whole film: the physics then runs once before the pictures."""
         return True
 
+    def aims(self) -> Iterable[str]:
+        """Names of the parts that it is aimed at: what the picture is about, where the script says so."""
+        return ()
+
     def remembers(self) -> Iterable[tuple[Remembered, float, float]]:
         """Past values that it needs (`Moment.past`): each with how far back [s] and at which interval [s]."""
         return ()

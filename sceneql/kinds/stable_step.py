@@ -50,6 +50,8 @@ class StaticScene(NamedTuple):
     """Its objects, by name."""
     end: float
     """End of the run [s]."""
+    box: Callable[[Any], tuple[Any, Any] | None] = lambda _: None
+    """The low and high corners (3,) [m] of the box of an object (Ref) at the start; None where only a run knows it."""
 
 
 class StaticMass(NamedTuple):

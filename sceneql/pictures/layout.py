@@ -150,9 +150,7 @@ class Panel:
         if self.failure is not None:
             return f"failed at {self.failure.time:.3g} s: {self.failure.message}"
         gone = [one for one in moment.run.diverged if one.graph is self.graph and moment.now >= one.time]
-        return "".join(
-            f"leaves the picture from {one.time:.3g} s on: {one.ratio:.2g} times as large" for one in gone[:1]
-        )
+        return "".join(one.said() for one in gone[:1])
 
     def at(self, time: float) -> Instant:
         """Moment at ``time`` [s], or the last before a failure. Raises RunFailure unless the script allows failures."""

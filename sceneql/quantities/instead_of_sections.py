@@ -223,6 +223,15 @@ OF_SECTIONS = (
         "axes axis grid ruler scale_bar scalebar compass gizmo",
         "there is none: arrows and tubes among the `objects` show axes, `{arrow: {vector: 1 0 0 m}}`",
     ),
+    ("field.joints", "parent base link relative_to", "write `{of: <parent|shoulder>}`"),
+    ("field.images field.image", "format type extension ext", "pictures are PNG files: leave it out"),
+    ("field.video", "format type extension ext", "films are MP4 files: leave it out"),
+    (
+        "field.images field.image field.video field.record",
+        "name filename prefix basename output out",
+        "a file has the entry's name, as `film.mp4` or `frames.0000.png`; `sceneql render SCENE -o FILE` gives another",
+    ),
+    ("field.glass", "transmission transparency opacity alpha transmissive", "glass is clear by itself: leave it out"),
     # sections
     ("section", "seed", "write `clock: {seed: 5}`"),
     (

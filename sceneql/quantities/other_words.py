@@ -70,7 +70,7 @@ _LISTS = (
     ("time", "t seconds elapsed elapsed_time now millis itime at instant when moment"),
     # fields
     ("place", "position corner align anchor where"),
-    ("at", "position anchor pivot location time when instant from origin start"),
+    ("at", "position pos anchor pivot location time when instant from origin start"),
     ("position", "pos location loc center centre translate translation origin xyz offset move place"),
     ("rotation", "rotate rot orientation orient euler euler_angles angles quat quaternion rotation_euler rpy"),
     ("look_at", "target lookat look aim focus point_at center centre to"),
@@ -161,6 +161,11 @@ _LISTS = (
     ("children", "of parts objects members items"),
     ("of", "members operands children body object objects target source model particles solid shape mesh columns"),
     ("of", "values quantities field"),
+    # outputs
+    ("kinetic", "kinetic_energy ke ekin e_kin e_kinetic"),
+    ("potential", "potential_energy pe epot e_pot e_potential"),
+    ("energy", "total_energy e_total etot e_tot mechanical_energy"),
+    ("dissipated", "heat lost loss losses"),
     # words
     ("sphere", "ball orb circle ellipse uv_sphere icosphere"),
     ("outline", "polygon disk disc"),

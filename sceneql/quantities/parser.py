@@ -20,12 +20,21 @@ from sceneql.quantities.literal import (
     whole_value,
 )
 from sceneql.quantities.operations import FUNCTIONS, MANY, OPERATIONS
-from sceneql.quantities.spaced import bracketed, by_frame, meant_by_equals, other_signs, two_ends, without_dots
+from sceneql.quantities.spaced import (
+    bracketed,
+    by_frame,
+    indexed,
+    meant_by_equals,
+    other_signs,
+    two_ends,
+    without_dots,
+)
 from sceneql.quantities.span import Span
 from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import parse_unit
 
+COORDINATES = ("x", "y", "z")
 LONGEST, DEEPEST = 10_000, 100
 """Limits on the number of characters of one expression (each node takes at least one), and on the depth of its tree."""
 
@@ -41,8 +50,6 @@ TOKEN = re.compile(
 
 _UNIT_IN_BRACKETS = re.compile(r"\[\s*([^\W\d][^\[\],]*?)\s*\]")
 _CROSSED = re.compile(rf"{NUMBER}\s*[a-zµ]*(?:\s*[x×]\s*{NUMBER}\s*[a-zµ]*)+")
-_INDEX = re.compile(r"\[\s*(\d)\s*\](?!\.)")
-_COPY = re.compile(r"\[\s*([^\[\]{}\"']+?)\s*\](\.[\w.]+)?")
 
 
 def parse_value(text: str, span: Span) -> Expr:
@@ -147,6 +154,8 @@ class _Parser:
                 return self._call(token, start)
             return Name(tuple(token.split(".")), self._from(start))
         if token in ("-", "+") and kind == "sign":
+            if self.before == "+" and token == "-" and start == self.previous:
+                raise self._fail("syntax", "'+-' cannot stand here", start - 1, start + 1, help=instead("sign", "±"))
             self._advance()
             return self._signed(token, start)
         if token == "(":
@@ -163,6 +172,8 @@ class _Parser:
             self._no_unit(start, items)
             return Vector(items, span=self._from(start))
         message = "something is missing at the end" if kind == "end" else f"'{token}' cannot stand here"
+        if token == "/" and self.before == "+" and self.text[self.end : self.end + 1] == "-":
+            raise self._fail("syntax", "'+/-' cannot stand here", start - 1, start + 2, help=instead("sign", "±"))
         angled = in_brackets(self.text, start) if token == "<" else None
         raise self._fail("syntax", message, help=None if angled is None else f"write `{angled}`")
 
@@ -313,17 +324,8 @@ class _Parser:
             help = other
         elif isinstance(expr, Name) and self.kind == "name" and self.token in UNITS:
             help = f"a unit stands directly after a number: write `{self.before}*(1 {self.token})`"
-        elif isinstance(expr, Name) and (index := _INDEX.match(self.text, self.start)) is not None:
-            help = (
-                f"write `{self.before}.{'xyz'[min(int(index[1]), 2)]}`, or of a list `item({self.before}, {index[1]})`"
-            )
-        elif isinstance(expr, Name) and (copy := _COPY.match(self.text, self.start)) is not None:
-            number, rest = copy[1], copy[2] or ""
-            of_copies = f'a copy\'s number stands in braces: write `"{self.before}.{{{number}}}{rest}"`'
-            if number.isdecimal():
-                of_copies = f"a copy's number stands behind a dot: write `{self.before}.{number}{rest}`"
-            of_list, take = ("an item of a list", "item") if "." in self.before else ("of a vector it", "component")
-            help = of_copies if rest else f"{of_list} is `{take}({self.before}, {number})`; {of_copies}"
+        elif self.token == "[" and (taken := indexed(expr, self.before, self.text, self.start)) is not None:
+            help = taken
         elif isinstance(expr, Number) and (of := _UNIT_IN_BRACKETS.match(self.text, self.start)) is not None:
             help = f"a unit stands behind its number, without brackets: write `{self.before} {of[1]}`"
         elif self.kind == "name" and self.token in UNITS and expr.span is not None and expr.span.text[-1:] == ")":
@@ -332,7 +334,11 @@ class _Parser:
             help = f"a unit stands directly after a number: write `{expr.span.text[:60]}*(1 {unit})`"
         elif self.before in FUNCTIONS and self.kind != "sign":
             help = f"write `{self.before}({self.token[:40]})`"
-        elif (other := instead("name", self.token) or instead("name", self.before)) is not None:
+        elif (plain := from_latex(self.text)) is not None:
+            help = f"write `{plain}`"
+        elif (other := instead("name", self.token) or instead("name", self.before)) is not None and not (
+            isinstance(expr, Name | Number) and {self.token, self.before} & {*COORDINATES}
+        ):
             help = other
         else:
             help = f"write `{self.before[-40:]}*{self.token[:40]}` for a product"

@@ -103,7 +103,7 @@ def _plain(args: Args, indices: tuple[int, ...], name: str) -> None:
             help = "divide it by a quantity of its kind first"
             match args[index]:
                 case Call("mul", (Number(bare=True) as number, _)) if name in TURNS and dimension == TIME:
-                    help = f"a speed times the time is an angle: `{number.value:g} rad/s*time`, in degrees"
+                    help = f"a speed times the time is an angle: write `{number.value:g} rad/s*time`, in degrees"
                     help += f" `{number.value:g} deg/s*time`"
                     raise MismatchError("dimension-mismatch", message, index, None, help)
             raise MismatchError(
@@ -226,7 +226,8 @@ def picked(args: Args) -> Type:
     value, index = args
     shape = value.type.shape
     if not shape or (len(shape) == 1 and shape[0] is not None):
-        raise MismatchError("shape-mismatch", f"{shape_text(shape)} has no items", 0)
+        help = "an item of a list of points; the numbers of a vector are `component(v, 0)`, `component(v, 1)`, ..."
+        raise MismatchError("shape-mismatch", f"{shape_text(shape)} has no items", 0, help=help if shape else None)
     if not isinstance(index, Number) or index.value != int(index.value) or index.value < 0:
         raise MismatchError("shape-mismatch", "the number of an item is whole, from 0, written as a number", 1)
     return Type(shape[1:], value.type.dimension)

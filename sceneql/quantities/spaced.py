@@ -1,4 +1,4 @@
-"""Vectors written with spaces whose components are formulas: for messages alone, since `0 1.2 0 m` takes numbers."""
+"""Vectors with spaces between formulas, and numbers in brackets behind a list, as others write: for messages alone."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from itertools import pairwise
 
 from sceneql.quantities.diagnostic import ScriptError
+from sceneql.quantities.expression import Expr, Name, Vector
 from sceneql.quantities.operations import CONSTANTS, FUNCTIONS
 from sceneql.quantities.span import Span
 from sceneql.quantities.unit_table import UNITS
@@ -17,6 +18,9 @@ _EQUATED = re.compile(r"(\w+)\s*=\s*([^={},:]+)$")
 _GLUED = re.compile(r"([^\W\d]\w*):([^\s,{}:]+)\s*$")
 _FORMULA = re.compile(r"[-+]?[\w.(]")
 _JOINS = tuple("+*/^<>=,")
+_INDEX = re.compile(r"\[\s*(\d+)\s*\](?!\.)")
+_COPY = re.compile(r"\[\s*([^\[\]{}\"']+?)\s*\](\.[\w.]+)?")
+AXES = "xyz"
 _RATE = re.compile(r"\bfps\s*:\s*(\d+(?:\.\d+)?)(?![\w.])")
 TIMES, FRAMES = ("t", "T"), ("F", "FF")
 """Variables of other programs, behind a `$`: the time, and the frame's number."""
@@ -157,3 +161,34 @@ def parted_meant(line: str) -> str | None:
     if written is not None:
         return f"a name has a colon behind it: write `{written[1]}: {written[2].strip()}`"
     return None if glued is None else f"write `{glued[1]}: {glued[2]}`, with a space behind the colon"
+
+
+def indexed(expr: Expr, before: str, text: str, at: int) -> str | None:
+    """The help for brackets at ``at`` in a text behind an expression, whose last token is ``before``; else None."""
+    if isinstance(expr, Vector):
+        found = _COPY.match(text, at)
+        if found is None or found[2] or expr.span is None or not expr.items:
+            return None
+        take = "item" if isinstance(expr.items[0], Vector) else "component"
+        return f"write `{take}({expr.span.text}, {found[1]})`"
+    if not isinstance(expr, Name):
+        return None
+    if (index := _INDEX.match(text, at)) is not None:
+        whole = f"item({before}, {index[1]})"
+        if int(index[1]) >= len(AXES) or before.endswith("s"):  # positions, radii of a list
+            return f"write `{whole}`"
+        return f"write `{before}.{AXES[int(index[1])]}`, or of a list `{whole}`"
+    if (copy := _COPY.match(text, at)) is None:
+        return None
+    number, rest = copy[1], copy[2] or ""
+    if number == "-1" and not rest:
+        return f"at the end of the run it is `final({before})`"
+    of_copies = f'a copy\'s number stands in braces: write `"{before}.{{{number}}}{rest}"`'
+    if number.isdecimal():
+        of_copies = f"a copy's number stands behind a dot: write `{before}.{number}{rest}`"
+    if rest:
+        return of_copies
+    if "." in before:
+        return f"an item of a list is `item({before}, {number})`; {of_copies}"
+    inner = f"({before}, {number})"
+    return f"of a list of numbers it is `component{inner}`, of vectors `item{inner}`; {of_copies}"

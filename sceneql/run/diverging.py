@@ -37,11 +37,22 @@ class Diverged:
     time: float
     """Instant from which on it is outside of the framing [s]."""
 
+    @property
+    def burst(self) -> bool:
+        """Whether it leaves its panel; else the panel's camera goes back, so that it stays in the picture."""
+        return self.ratio > BURST
+
+    def said(self) -> str:
+        """What is written on its panel from then on."""
+        does = "it leaves the picture" if self.burst else "seen from farther away"
+        return f"from {self.time:.3g} s on {does}: {self.ratio:.2g} times as large"
+
     def warning(self) -> Diagnostic:
         """What is told of it."""
         solvers = [task for task in self.graph.tasks.values() if task.family == "solvers" and task.span is not None]
         name, other = (graph.variants.this or graph.name for graph in (self.graph, self.beside))
-        text = f"'{name}' leaves its panel, from {self.time:.3g} s on: it grows {self.ratio:.2g} times as large as"
+        does = "leaves its panel" if self.burst else "is seen from farther away"
+        text = f"'{name}' {does}, from {self.time:.3g} s on: it grows {self.ratio:.2g} times as large as"
         text += f" '{other}', which differs in its solver alone"
         help = "take shorter steps or a stable solver, end the `clock` before, or write a camera that shows all"
         return Diagnostic("diverges", text, solvers[0].span if solvers else None, help, severity="warning")
@@ -59,8 +70,7 @@ def together(runs: Sequence[Framed]) -> tuple[list[Framed], list[Diverged]]:
     graph = boxes[smallest][0].graph
     ratios = [size / sizes[smallest] for size in sizes]
     alone = [
-        DIVERGED < ratio <= BURST and solved_otherwise(run.graph, graph)
-        for (run, _), ratio in zip(boxes, ratios, strict=True)
+        ratio > DIVERGED and solved_otherwise(run.graph, graph) for (run, _), ratio in zip(boxes, ratios, strict=True)
     ]
     kept = [box for box, ratio, out in zip(boxes, ratios, alone, strict=True) if ratio <= BURST and not out]
     low, high = np.min([box[0] for _, box in kept], axis=0), np.max([box[1] for _, box in kept], axis=0)

@@ -82,12 +82,14 @@ def falling(island: IslandRun) -> list[Falling]:
     tasks = island.graph.tasks
     weighed = [model for force, model in island.island.forces if cast(Interaction, tasks[force].kind).weighs]
     hit = {model for _, model, _ in island.island.contacts}
+    told = [one.span for one in island.graph.warnings if one.code == "falls-through"]
     alone = [model for model in dict.fromkeys(weighed) if model not in hit and island.bodies.get(model) is not None]
-    others = _standing(tasks) if alone else []
+    alone = [model for model in alone if tasks[model].span not in told]
+    others = standing(tasks) if alone else []
     return [Falling(model, island, [*others]) for model in alone] if 0 < len(others) <= MOST_OBJECTS else []
 
 
-def _standing(tasks: Mapping[str, Task]) -> list[str]:
+def standing(tasks: Mapping[str, Task]) -> list[str]:
     """The visible objects with an inside that are no parts of others and that no model moves or is made of."""
     objects = {name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}
     aside = {ref.name for kind in objects.values() for ref in kind.members()}

@@ -216,6 +216,11 @@ class Instant:
         """
         return self._of_panels(lambda run: run.moving(window))
 
+    def left_out(self) -> Floats:
+        """Instants [s] and points [m], rows (n, 1 + 3), of what moves where panels' common framing leaves this out."""
+        out = any(one.graph is self.run.graph and not one.burst for one in self._together[1])
+        return self.run.moving(self.end) if out else np.zeros((0, 4))
+
     @property
     def _together(self) -> tuple[list[Framed], list[Diverged]]:
         """This run and those beside it that share one framing, and the variants left out (diverging.together)."""

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 MOST = 4096
 """Largest number of moving things that are followed; where there are more, none is let go."""
 FEW = 0.25
-"""Largest fraction of the moving things that is let go: where more leave, they are what the film is about."""
+"""Largest fraction of the moving things that is let go: where more leave, they are what the film is about, except what
+falls below all that stands, as balls that miss a bowl: it would make that a dot."""
 NEAR = 1.0
 """Width of the margin around the scene, relative to the scene's diagonal, outside which a thing has left it."""
 LAST = 0.25
@@ -95,7 +96,11 @@ def let_go(paths: Paths, still: Iterable[tuple[Floats, Floats]]) -> tuple[list[L
     far = np.linalg.norm((lows + highs) / 2 - (low + high) / 2, axis=2)
     last = max(2, int(LAST * len(paths.times)))
     leaves = outside[:, -1] & (np.diff(far[:, -last:], axis=1) > 0).all(axis=1)
-    if not 0 < leaves.sum() <= FEW * len(leaves):
+    if leaves.sum() > FEW * len(leaves):
+        under = highs[:, -1, 1] < min((float(one[1]) for one, _ in unmoved), default=-np.inf) - margin
+        if not under[leaves].all():
+            return [], None
+    if not leaves.any():
         return [], None
     # A thing has left from the instant on after which it is outside up to the end.
     since = outside.shape[1] - np.argmin(outside[:, ::-1], axis=1)

@@ -76,7 +76,7 @@ def steps() -> None:
         (False, False, (256, 1024)), (False, True, (256, 1024)), (True, False, (64, 128)), (True, True, (64, 128)),
     ):  # fmt: skip
         for cells in sizes:
-            found = step_time(cells, deep, cut, 20 if cells == 256 else 3)
+            found = step_time(cells, deep, cut, 20 if cells == 256 else 10)
             count = cells ** (3 if deep else 2)
             name = f"{'cut cells' if cut else 'box'} {cells}^{3 if deep else 2}"
             print(f"  {name:18s} {1e3 * found:9.1f} {1e9 * found / count:7.0f}")

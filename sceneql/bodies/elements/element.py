@@ -23,6 +23,9 @@ class Element:
     """Whether each edge has a node."""
     mean: ClassVar[bool] = False
     """Whether the dilatation is replaced by its mean over the element."""
+    fastest: ClassVar[tuple[float, float]]
+    """Least fastest angular frequency, over speed of pressure waves by spacing, in objects and in blocks: measured, for
+    Poisson ratios from -0.5 to 0.49, in objects of 24 elements on and cells to 10:1; fine ones swing twice as fast."""
     rule: ClassVar[Rule]
     """The integration points, at which strain and stress are evaluated, and their weights."""
 

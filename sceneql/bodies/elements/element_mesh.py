@@ -171,26 +171,62 @@ def onto_object(straight: ElementMesh, onto: Onto) -> tuple[Floats, Creases]:
 
 
 def curved(straight: ElementMesh, onto: Onto) -> tuple[ElementMesh, int]:
-    """The mesh with nodes on outer edges moved onto the surface, and the number of nodes that had to be moved back.
+    """The mesh with nodes on outer edges moved onto the surface, and the number of these that had to be moved back.
 
-    Moved back are nodes of elements bent beyond LEAST_BENT; nodes on creases only where the others do not suffice.
+    Where elements are bent beyond LEAST_BENT their inner edges are bent along; where that does not suffice, nodes are
+    moved back, those on creases only where the others do not suffice.
     """
     points, left = straight.points, 0
     moved, creases = onto_object(straight, onto)
     kept = np.isin(np.arange(len(points)), creases.nodes)
+    outer = np.isin(np.arange(len(points)), straight.faces[:, 3:])
     places = np.concatenate([fine_rule()[0], np.eye(4), np.asarray(straight.element.rule[0])])
     least = LEAST_BENT * straight.sizes(places[:1])
-    for _ in range(len(points)):
+    for attempt in range(len(points) + 1):
         mesh = ElementMesh(straight.element, moved, straight.cells, straight.corners)
         bad = (mesh.sizes(places) < least).any(axis=1)
         if not bad.any():
             return mesh, left
+        if attempt == 0:
+            moved = _bent_along(straight, moved, bad)
+            continue
         back = np.unique(straight.cells[bad, 4:])
         bent = (moved[back] != points[back]).any(axis=1)
         back = back[bent & ~kept[back]] if (bent & ~kept[back]).any() else back
-        left += int(np.count_nonzero((moved[back] != points[back]).any(axis=1)))
+        left += int(np.count_nonzero((moved[back] != points[back]).any(axis=1) & outer[back]))
         moved[back] = points[back]
     return straight, left
+
+
+def _bent_along(straight: ElementMesh, moved: Floats, bad: Any) -> Floats:
+    """Nodes (n, 3) [m] with inner edges of bad elements (e,) and of their neighbors bent along: moved harmonically.
+
+    Corners and outer nodes stay where ``moved`` has them.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.linalg import splu
+
+    count = len(straight.points)
+    touched = np.isin(np.arange(count), straight.cells[bad])
+    region = touched[straight.cells].any(axis=1)
+    own = straight.cells[region]
+    free = np.setdiff1d(own, np.concatenate([straight.faces.ravel(), straight.cells[~region].ravel()]))
+    free = free[free >= straight.corners]
+    if not len(free):
+        return moved
+    part = ElementMesh(straight.element, straight.points, own, straight.corners)
+    places, weights = fine_rule()
+    slopes = part.gradients(places)
+    entries = np.einsum("eqni,eqmi,eq->enm", slopes, slopes, part.sizes(places) * weights, optimize=True)
+    each = own.shape[1]
+    at = np.repeat(own, each, axis=1).ravel(), np.tile(own, each).ravel()
+    stiffness = coo_array((entries.ravel(), at), shape=(count, count)).tocsr()[free]
+    moves = moved - straight.points
+    moves[free] = 0.0
+    moves[free] = splu(stiffness[:, free].tocsc()).solve(-(stiffness @ moves))
+    found = moved.copy()
+    found[free] += moves[free]
+    return found
 
 
 def across_faces(points: Floats, faces: Any) -> Floats:

@@ -203,11 +203,16 @@ def filled(
 
 
 def spacing_of(ref: Ref, spacing: float | None, element: type[Element], assembly: Assembly) -> float:
-    """Side [m] of the lattice's cubes in an object: the given one, or such that PARTS nodes fit along its box."""
+    """Side [m] of the lattice's cubes in an object: the given one, or the default one of its box."""
     if spacing is not None:
         return spacing
     box = Inside(ref, assembly)
-    return float((box.high - box.low).max()) * (2 if element.edges else 1) / PARTS
+    return default_spacing(box.low, box.high, element)
+
+
+def default_spacing(low: Floats, high: Floats, element: type[Element]) -> float:
+    """Side [m] of the lattice's cubes by which PARTS nodes fit along a box between two corners (3,) [m]."""
+    return float((high - low).max()) * (2 if element.edges else 1) / PARTS
 
 
 def _filled(

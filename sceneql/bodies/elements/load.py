@@ -22,9 +22,7 @@ if TYPE_CHECKING:
 HOW = ("traction", "pressure", "force", "torque")
 FOUND_AND_SCRATCH = 33
 """Working memory [numbers] after the weights of a torque's nodes (load_kernels.turning, load_slopes_kernels.torque)."""
-LEAST_SHARE = 1e-9
-"""Share of area, relative to the largest of a node, below which a node's share is rounding."""
-MOST_TURNED = 500
+MOST_TURNED = 700
 """Most nodes that a torque acts on, since its Jacobian couples each node with all others."""
 
 
@@ -101,7 +99,7 @@ class Load(Part):
         shares = areas if self.force is None else areas / areas.sum()
         weights = np.bincount(faces[where.faces].ravel(), (shares[:, None] * shapes).ravel(), len(mesh.points))
         if self.torque is not None:
-            _add_torque(self.torque, weights, held, head, assembly, f"'{name}'")
+            _add_torque(self.torque, faces[where.faces], areas, shapes, held, head, assembly, f"'{name}'")
             return
         nodes = np.flatnonzero(weights)
         value = self.traction if self.force is None else self.force
@@ -136,23 +134,39 @@ def _add_pressure(
 
 
 def _add_torque(
-    torque: Value, weights: Any, held: Any, head: tuple[int, int, int], assembly: Assembly, name: str
+    torque: Value,
+    faces: Any,
+    areas: Any,
+    shapes: Any,
+    held: Any,
+    head: tuple[int, int, int],
+    assembly: Assembly,
+    name: str,
 ) -> None:
-    """Add the term of a torque on nodes; ``weights`` (n,): shares of area. Raises LimitRefused for too many nodes."""
+    """Add the term of a torque on the nodes (k, each) of faces, by areas (k,) and functions (k, each) of places there.
+
+    Raises LimitRefused for too many nodes.
+    """
     import numpy as np
 
     from sceneql.failure import LimitRefused
     from sceneql.system import Slopes
 
-    nodes = np.flatnonzero(weights > LEAST_SHARE * weights.max())
-    if len(nodes) > MOST_TURNED:
-        message = f"the torque {name} acts on {len(nodes)} nodes; at most {MOST_TURNED}, for it couples each with all"
+    nodes, own = np.unique(faces, return_inverse=True)
+    count = len(nodes)
+    if count > MOST_TURNED:
+        message = f"the torque {name} acts on {count} nodes; at most {MOST_TURNED}, for it couples each with all"
         raise LimitRefused(message, torque.span, "let it act on a smaller part, or make the elements larger")
-    numbers = assembly.floats(np.concatenate([weights[nodes], np.zeros(FOUND_AND_SCRATCH)]))
-    ints = (*head, assembly.value(torque), numbers, len(nodes), *nodes.tolist())
+    own = own.reshape(faces.shape)
+    products = areas[:, None, None] * shapes[:, :, None] * shapes[:, None, :]
+    at = count * own[:, :, None] + own[:, None, :]
+    between = np.bincount(at.ravel(), products.ravel(), count * count).reshape(count, count)
+    working = np.zeros(FOUND_AND_SCRATCH + 3 * count)
+    numbers = assembly.floats(np.concatenate([between.sum(axis=1), working, between.ravel()]))
+    ints = (*head, assembly.value(torque), numbers, count, *nodes.tolist())
 
     def derivatives() -> Slopes:
-        at, count = 3 * nodes, len(nodes)
+        at = 3 * nodes
         rows, columns = np.repeat(at, count) + head[1], np.tile(at, count) + head[0]
         own = (*ints, *(int(k) for k in np.ravel(held[nodes])))
         return Slopes("sceneql.bodies.elements.load_slopes_kernels:torque", rows, columns, own, blocks=True)

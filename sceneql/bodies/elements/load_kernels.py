@@ -50,18 +50,18 @@ def pressure(t, y, rate, floats, ints):
             rate[ints[WORK_AT]] -= share * (x * y[at] + y_ * y[at + 1] + z * y[at + 2])
 
 
-MEAN, TURNING, INVERSE, FOUND = 0, 3, 6, 15
+MEAN, TURNING, INVERSE, SCRATCH, SHARED = 0, 3, 6, 15, 33
 """Of a torque, whose integers are those of dead loads, what is found of its nodes, behind their weights: their mean
-place (3,), a (3,), J^-1 (9,)."""
+place (3,), a (3,), J^-1 (9,), working memory of slopes (18,), the sums s (count, 3); behind these G (count, count)."""
 
 
 @lean_inlined
 def turning(y, floats, ints):
-    """Find the mean place of the nodes, a and J^-1; returns where they are."""
+    """Find the mean place of the nodes, a, J^-1 and the sums s of G by places from there; returns where they are."""
     weights, count, first = ints[WEIGHTS_AT], ints[COUNT], ints[POSITION_AT]
     to = weights + count
     total = 0.0
-    for k in range(FOUND):
+    for k in range(SCRATCH):
         floats[to + k] = 0.0
     for k in range(count):
         total += floats[weights + k]
@@ -69,19 +69,27 @@ def turning(y, floats, ints):
             floats[to + MEAN + c] += floats[weights + k] * y[first + 3 * ints[NODES + k] + c]
     for c in range(3):
         floats[to + MEAN + c] /= total
+    shared, between = to + SHARED, to + SHARED + 3 * count
     xx = yy = zz = xy = xz = yz = 0.0
     for k in range(count):
-        w, at = floats[weights + k], first + 3 * ints[NODES + k]
+        u = v = w = 0.0
+        for n in range(count):
+            g, at = floats[between + count * k + n], first + 3 * ints[NODES + n]
+            u += g * (y[at] - floats[to])
+            v += g * (y[at + 1] - floats[to + 1])
+            w += g * (y[at + 2] - floats[to + 2])
+        floats[shared + 3 * k], floats[shared + 3 * k + 1], floats[shared + 3 * k + 2] = u, v, w
+        at = first + 3 * ints[NODES + k]
         x, y_, z = y[at] - floats[to], y[at + 1] - floats[to + 1], y[at + 2] - floats[to + 2]
-        xx += w * (y_ * y_ + z * z)
-        yy += w * (x * x + z * z)
-        zz += w * (x * x + y_ * y_)
-        xy -= w * x * y_
-        xz -= w * x * z
-        yz -= w * y_ * z
+        xx += y_ * v + z * w
+        yy += x * u + z * w
+        zz += x * u + y_ * v
+        xy -= x * v
+        xz -= x * w
+        yz -= y_ * w
     a, b, c = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
     size = xx * a + xy * b + xz * c
-    found = floats[to + INVERSE : to + FOUND]
+    found = floats[to + INVERSE : to + SCRATCH]
     found[0], found[1], found[2] = a / size, b / size, c / size
     found[3], found[4], found[5] = found[1], (xx * zz - xz * xz) / size, (xy * xz - xx * yz) / size
     found[6], found[7], found[8] = found[2], found[5], (xx * yy - xy * xy) / size
@@ -93,19 +101,19 @@ def turning(y, floats, ints):
 
 @lean(TERM, inner=True)
 def torque(t, y, rate, floats, ints):
-    """Adds forces w (a x r) of no sum, r from the mean place of the nodes, and takes their power from the work.
+    """Adds the traction a x r, r from the mean place, by each node's function, and takes its power from the work.
 
-    a = J^-1 M, with J = sum of w (r^2 1 - r r), is such that their torque is M wherever the nodes are: a pair of
-    pressures on two halves of a face has a sum as soon as these differ, whose torque over the length of a strip
-    outweighs their own.
+    Its forces a x s, s_k = sum of G_kn r_n with the integrals G of products of functions at rest, have no sum. a =
+    J^-1 M, with J = sum of (r.s 1 - s r), is such that their torque is M wherever the nodes are: a pair of pressures on
+    two halves of a face has a sum as soon as these differ, whose torque over the length of a strip outweighs their own.
+    A traction, not nodes' shares: that of a bent strip, which strains its end as its middle.
     """
     to = turning(y, floats, ints)
     a, b, c = floats[to + TURNING], floats[to + TURNING + 1], floats[to + TURNING + 2]
     for k in range(ints[COUNT]):
-        w, node = floats[ints[WEIGHTS_AT] + k], 3 * ints[NODES + k]
-        here, at = ints[POSITION_AT] + node, ints[VELOCITY_AT] + node
-        x, y_, z = y[here] - floats[to], y[here + 1] - floats[to + 1], y[here + 2] - floats[to + 2]
-        one, two, three = w * (b * z - c * y_), w * (c * x - a * z), w * (a * y_ - b * x)
+        s, at = to + SHARED + 3 * k, ints[VELOCITY_AT] + 3 * ints[NODES + k]
+        x, y_, z = floats[s], floats[s + 1], floats[s + 2]
+        one, two, three = b * z - c * y_, c * x - a * z, a * y_ - b * x
         rate[at] += one
         rate[at + 1] += two
         rate[at + 2] += three

@@ -5,13 +5,13 @@
 from sceneql.bodies.elements.load_kernels import (
     COUNT,
     EACH,
-    FOUND,
     INVERSE,
     NODES,
     OF_PLACES,
     PLACES,
-    POSITION_AT,
+    SCRATCH,
     SHAPES_AT,
+    SHARED,
     SHARES_AT,
     SLOPES_AT,
     TURNING,
@@ -67,44 +67,39 @@ def add_cross(v, factor, out):
 
 @lean(TERM, inner=True)
 def torque(t, y, entries, floats, ints):
-    """Blocks of pairs of nodes (node, node, 3, 3): w_k ([r_k x] J^-1 B_l + [a x] (d_kl - w_l / W)), where B_l is the
-    derivative of J a by the place of l, w_l (2 a r_l - (r_l . a) 1 - r_l a)."""
+    """Blocks of pairs of nodes (node, node, 3, 3): [s_k x] J^-1 B_l + [a x] (G_kl - w_k w_l / W), where B_l is the
+    derivative of J a by the place of l, 2 a s_l - (s_l . a) 1 - s_l a."""
     to, count = turning(y, floats, ints), ints[COUNT]
-    held, weights = NODES + count, ints[WEIGHTS_AT]
-    a, inverse = floats[to + TURNING : to + INVERSE], floats[to + INVERSE : to + FOUND]
-    scratch = floats[to + FOUND : to + FOUND + 18]
+    held, weights, shared = NODES + count, ints[WEIGHTS_AT], to + SHARED
+    between = shared + 3 * count
+    a, inverse = floats[to + TURNING : to + INVERSE], floats[to + INVERSE : to + SCRATCH]
+    scratch = floats[to + SCRATCH : to + SHARED]
     turned, own = scratch[:9], scratch[9:]
     total = 0.0
     for k in range(count):
         total += floats[weights + k]
     for n in range(count):
-        w, here = floats[weights + n], ints[POSITION_AT] + 3 * ints[NODES + n]
-        x, y_, z = y[here] - floats[to], y[here + 1] - floats[to + 1], y[here + 2] - floats[to + 2]
-        along = x * a[0] + y_ * a[1] + z * a[2]
+        s = floats[shared + 3 * n : shared + 3 * n + 3]
+        along = s[0] * a[0] + s[1] * a[1] + s[2] * a[2]
         for i in range(3):
-            own[3 * i] = w * (2.0 * a[i] * x - (x, y_, z)[i] * a[0])
-            own[3 * i + 1] = w * (2.0 * a[i] * y_ - (x, y_, z)[i] * a[1])
-            own[3 * i + 2] = w * (2.0 * a[i] * z - (x, y_, z)[i] * a[2])
-            own[4 * i] -= w * along
+            for j in range(3):
+                own[3 * i + j] = 2.0 * a[i] * s[j] - s[i] * a[j]
+            own[4 * i] -= along
         for i in range(3):
             for j in range(3):
                 turned[3 * i + j] = (
                     inverse[3 * i] * own[j] + inverse[3 * i + 1] * own[3 + j] + inverse[3 * i + 2] * own[6 + j]
                 )
         for m in range(count):
-            at, mine = 9 * (count * m + n), ints[POSITION_AT] + 3 * ints[NODES + m]
-            share, u, v, q = (
-                floats[weights + m],
-                y[mine] - floats[to],
-                y[mine + 1] - floats[to + 1],
-                y[mine + 2] - floats[to + 2],
-            )
+            at, mine = 9 * (count * m + n), shared + 3 * m
+            u, v, q = floats[mine], floats[mine + 1], floats[mine + 2]
             out = entries[at : at + 9]
             for j in range(3):
-                out[j] = share * (v * turned[6 + j] - q * turned[3 + j])
-                out[3 + j] = share * (q * turned[j] - u * turned[6 + j])
-                out[6 + j] = share * (u * turned[3 + j] - v * turned[j])
-            add_cross(a, share * ((1.0 if m == n else 0.0) - w / total), out)
+                out[j] = v * turned[6 + j] - q * turned[3 + j]
+                out[3 + j] = q * turned[j] - u * turned[6 + j]
+                out[6 + j] = u * turned[3 + j] - v * turned[j]
+            pair = floats[between + count * m + n] - floats[weights + m] * floats[weights + n] / total
+            add_cross(a, pair, out)
             for k in range(9):
                 if ints[held + 3 * m + k // 3] == 1:
                     out[k] = 0.0

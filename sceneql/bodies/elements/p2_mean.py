@@ -11,6 +11,7 @@ class P2Mean(Element):
 
     edges = True
     mean = True
+    fastest = (8.4, 6.9)
     rule = P2.rule
     functions = P2.functions
     slopes = P2.slopes

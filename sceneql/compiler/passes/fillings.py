@@ -55,16 +55,24 @@ def check_fillings(tasks: Mapping[str, Task], found: Diagnostics) -> None:
     start: Any = Beginning(tasks)
     for task in tasks.values():
         for ref, bounds in task.kind.fillings() if isinstance(task.kind, Model) else ():
+            box = box_of(ref, start)
+            if box is None:
+                continue  # the run reports it
             try:
-                low, high = start.object(ref).extent(_place(), start)
-                if _finite(low, high):
-                    bounds(low, high)
+                bounds(*box)
             except Exceeds as error:
                 found.error("limit-refused", f"{task.name}: at least {error}", ref.span, help="use a larger spacing")
             except TooCoarse as error:
                 found.error("not-filled", f"'{ref.name}' cannot be filled: {error}", ref.span)
-            except (TypeError, ValueError, RunFailure, ScriptError):
-                continue  # the run reports it
+
+
+def box_of(ref: Ref, start: Any) -> tuple[Any, Any] | None:
+    """The low and high corners (3,) [m] of an object's box at the start (Beginning); None where only a run knows it."""
+    try:
+        low, high = start.object(ref).extent(_place(), start)
+    except (TypeError, ValueError, RunFailure, ScriptError, Exceeds):
+        return None
+    return (low, high) if _finite(low, high) else None
 
 
 def _finite(low: Any, high: Any) -> bool:

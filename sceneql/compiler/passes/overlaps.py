@@ -89,11 +89,11 @@ def _overlap(body: str, other: str, whole: bool, tasks: Mapping[str, Task], star
     least = DEEP * min(size for size in [*sizes, 1.0] if np.isfinite(size))
     axes = [np.linspace(a, b, SIDE) for a, b in zip(low, high, strict=True)]
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    depths = -np.maximum(*(_field(shape, places, start) for shape in shapes))
+    depths = -np.maximum(*(field_at(shape, places, start) for shape in shapes))
     return float(depths[depths > least].max(initial=0.0))
 
 
-def _field(shape: Object, places: Floats, start: Any) -> Floats:
+def field_at(shape: Object, places: Floats, start: Any) -> Floats:
     """(n,) implicit field of an object at places (n, 3); where it is negative, -field is at most the depth."""
     import numpy as np
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, partial
 from typing import cast
 
+from sceneql.compiler.passes.fillings import Beginning, box_of
 from sceneql.graph import Island, Task
 from sceneql.kinds import Interaction, Model, Object, Solver
 from sceneql.kinds.stable_step import Oscillation, StaticScene, stable_step
@@ -81,7 +82,9 @@ def later_bound(island: Island, tasks: Mapping[str, Task], end: float) -> tuple[
 def _modes(island: Island, tasks: Mapping[str, Task], end: float) -> Iterator[tuple[str, tuple[Oscillation, ...]]]:
     """Bounds on the fastest oscillations of each model and force, by name."""
     models = {name: cast(Model, tasks[name].kind) for name in island.models}
-    scene = StaticScene({name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}, end)
+    objects = {name: task.kind for name, task in tasks.items() if isinstance(task.kind, Object)}
+    start = Beginning(tasks)
+    scene = StaticScene(objects, end, lambda ref: box_of(ref, start))
     carrying = {force: cast(Interaction, tasks[force].kind).carrier() for force, _ in island.forces}
     carried = {model for force, model in island.forces if carrying[force] is not None}
     for name, model in models.items():

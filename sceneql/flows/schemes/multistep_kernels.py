@@ -22,7 +22,7 @@ from numba import types
 import sceneql.system.channels as channels
 from sceneql.compiled.kernels import lean, lean_inlined
 from sceneql.compiled.pointers_kernels import AT_RATE, rate_at
-from sceneql.flows.fourier_kernels import transform
+from sceneql.flows.box_modes_kernels import through_modes
 from sceneql.flows.layout import (
     AT,
     CELLS,
@@ -88,16 +88,12 @@ def more_at_end(place, count, kind):
 
 
 @lean_inlined
-def by_decay(op, a, z, tables):
-    """Divide modes by 1 + a times their decay rates, and by what the transforms there and back make them larger."""
+def by_decay(op, a, z, tables, scratch):
+    """Divide the eigenmodes of a box by 1 + a times their decay rates, in place."""
     nx, ny, nz = op[1], op[2], op[3]
-    size, along = tables[op[SIZES_AT]], tables[op[DECAYS] : op[DECAYS] + nx]
-    for k in range(nz):
-        deep = tables[op[DECAYS + 2] + k] if nz > 1 else 0.0
-        for j in range(ny):
-            row, both = z[nx * (j + ny * k) :], size * (1.0 + a * (deep + tables[op[DECAYS + 1] + j]))
-            for i in range(nx):
-                row[i] /= both + size * a * along[i]
+    x, y, z_rates = tables[op[DECAYS] :][:nx], tables[op[DECAYS + 1] :][:ny], tables[op[DECAYS + 2] :][:nz]
+    size = tables[op[SIZES_AT]]
+    through_modes(z, nx, ny, nz, tables, scratch, op[PLANS_AT:], tables[:0], x, y, z_rates, a, size)
 
 
 @lean(types.void(A, A, A, F, A, A, I), inner=True)
@@ -114,9 +110,7 @@ def precondition(r, z, volume, a, tables, scratch, op):
                 z[c] = both * r[c] if volume[c] > 0.0 else 0.0
             z[row] *= more_at_end(0, nx, plans[KIND])
             z[row + nx - 1] *= more_at_end(nx - 1, nx, plans[KIND])
-    transform(z, nx, ny, nz, True, tables, scratch, plans)
-    by_decay(op, a, z, tables)
-    transform(z, nx, ny, nz, False, tables, scratch, plans)
+    by_decay(op, a, z, tables, scratch)
     for c in range(z.size):
         z[c] = z[c] if volume[c] > 0.0 else 0.0
 
@@ -155,7 +149,7 @@ def by_modes(op, a, x, floats, tables, scratch, ends):
 
     That is at the ends of an axis. ``ends``: scratch, twice as long as such an end.
     """
-    nx, ny, nz, plans, counts = op[1], op[2], op[3], op[PLANS_AT:], op[1:4]
+    nz, plans, counts = op[3], op[PLANS_AT:], op[1:4]
     volume, kept = floats[op[4] : op[4] + x.size], 0
     for back in range(2):
         kept = 0
@@ -180,9 +174,7 @@ def by_modes(op, a, x, floats, tables, scratch, ends):
                         ends[kept], x[end] = x[end], 0.0
                     kept += 1
         if back == 0:
-            transform(x, nx, ny, nz, True, tables, scratch, plans)
-            by_decay(op, a, x, tables)
-            transform(x, nx, ny, nz, False, tables, scratch, plans)
+            by_decay(op, a, x, tables, scratch)
 
 
 @lean(types.boolean(I, F, A, A, F, A, A, A, A), inner=True)

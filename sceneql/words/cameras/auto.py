@@ -46,8 +46,8 @@ class Auto(Camera):
 
     A scene that is flat along an axis is seen along it, one that is flat and tilted, or has a large map, from
     nearer to the normal of that, one that is long and lies across. The few of many things that leave for good are
-    let go, and variants that grow three times as large as another by their solver alone. Panels of variants share
-    one view, and overlays are left room.
+    let go, and all that falls below what stands. Panels of variants share one view; from one that grows three times as
+    large as another by its solver alone the camera goes back. Overlays are left room.
 
     It holds still, so that what moves in the picture moves in the scene, as fast and as far. Where most of the picture
     would be empty for long, as around a ball that has come to rest, it goes along slowly, within a quarter of the film,
@@ -71,8 +71,17 @@ class Auto(Camera):
         half = math.tan(0.5 * float(moment.at(self.field_of_view)))
         points = moment.outline()
         slopes, middle = framing.inner(half, size, self.margin, moment.room, HEADROOM)
-        axes = framing.axes_towards(_towards(points, slopes, moment.boxes()))
+        axes = framing.axes_towards(_raised(_towards(points, slopes, moment.boxes()), middle[1]))
         origin, distance = framing.fitted(points, axes, slopes, middle=middle)
+        fit = partial(framing.fitted, axes=axes, slopes=slopes, middle=middle)
+        lost = moment.left_out()
+        if len(lost) > 0:  # it goes back as far as it must, and shows what the others show
+            back = moment.kept(
+                "a camera that goes back",
+                (size, moment.room, points.tobytes(), lost.tobytes()),
+                lambda: Follower(lost, points, fit, axes[2], WINDOW * moment.end),
+            )
+            return framing.view(back.at(moment.time), axes, size, half)
         alone, window = self.window is not None, WINDOW * moment.end if self.window is None else self.window
         rows = moment.moving(None if alone else window) if window > 0.0 else points[:0]
         if len(rows) == 0:
@@ -119,6 +128,20 @@ def _towards(points: Floats, slopes: tuple[float, float], boxes: Floats) -> Towa
         return NEARLY[upright]
     long = int(sides.argmax())
     return ACROSS.get(long, THREE_QUARTER) if min(others) < LONG * sides[long] else _onto_tilted(points, slopes)
+
+
+def _raised(toward: Toward, middle: float) -> Toward:
+    """A direction so high that what stands above the picture's middle is seen from above as that along ALONG is.
+
+    Else the ground under it, with its shadow, is seen along itself and fades. ``middle``: how far above, at distance 1.
+    What is looked at along an axis stays so.
+    """
+    x, y, z = toward
+    far = math.hypot(x, z)
+    if 0.0 in (y, far):
+        return toward
+    least = math.tan(math.atan(ALONG[0][1]) + math.atan(max(0.0, middle)))
+    return x, max(y, least * far), z
 
 
 def _largest_map(boxes: Floats, sides: Floats, most: Floats) -> int | None:

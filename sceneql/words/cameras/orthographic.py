@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from sceneql.kinds import Camera, Direction, DrawnRef, FixedScalar, Length, Moment, Position, Problem, field
@@ -39,6 +39,11 @@ class Orthographic(Camera):
         """Two middles of the picture."""
         if self.follow is not None and self.look_at is not None:
             yield Problem("the middle of the picture is either `look_at` or what it follows", ("look_at",), at_key=True)
+
+    def aims(self) -> Iterable[str]:
+        """What it follows or looks at."""
+        yield from () if self.follow is None else (self.follow.name,)
+        yield from () if self.look_at is None else {link.task: None for link in self.look_at.links}
 
     def _back(self, moment: Moment) -> Any:
         import numpy as np

@@ -53,6 +53,11 @@ class Perspective(Camera):
         """Whether its place or its aim is left to what is drawn."""
         return self.follow is None and (self.fit is not None or self.position is None or self.look_at is None)
 
+    def aims(self) -> Iterable[str]:
+        """What it follows or looks at."""
+        yield from () if self.follow is None else (self.follow.name,)
+        yield from () if self.look_at is None else {link.task: None for link in self.look_at.links}
+
     @cached_property
     def _followed(self) -> framing.Whereabouts:
         """Part whose past places the camera needs."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from sceneql.kinds import Angle, Camera, DrawnRef, FixedScalar, FixedTime, Length, Moment, Position, Problem, field
@@ -52,6 +52,10 @@ class Turntable(Camera):
     def looks_ahead(self) -> bool:
         """Whether its distance or its middle is left to what is drawn."""
         return self.distance is None or (self.follow is None and self.look_at is None)
+
+    def aims(self) -> Iterable[str]:
+        """What it goes around."""
+        return (ref.name for ref in (self.around, self.follow) if ref is not None)
 
     def view(self, size: tuple[int, int], moment: Moment) -> View:
         """The view of this instant."""

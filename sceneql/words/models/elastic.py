@@ -15,7 +15,7 @@ from sceneql.bodies import solid_modes
 from sceneql.bodies.elements import strain_outputs
 from sceneql.bodies.elements.element import elements
 from sceneql.bodies.elements.hold import Hold
-from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws
+from sceneql.bodies.elements.laws.law import AXES, MATERIAL, Laws, number
 from sceneql.bodies.elements.load import Load
 from sceneql.bodies.elements.strain_outputs import OF_HOLD, OF_PROBE, OUTPUTS
 from sceneql.bodies.filling.block import Block
@@ -23,6 +23,7 @@ from sceneql.bodies.filling.finer import Finer
 from sceneql.bodies.solid_modes import Bent
 from sceneql.kinds import Clock, Doubt, Formula, Gives, Model, Moment, Problem, Quantity, Ref, Symbols, TooCoarse, field
 from sceneql.kinds.probed import HeldPart, Probed
+from sceneql.kinds.stable_step import Oscillation, StaticScene
 from sceneql.quantities import dimension as dim
 from sceneql.quantities.diagnostic import suggestion
 
@@ -228,6 +229,20 @@ class Elastic(Model):
         told = [part.object for part in (*self.hold.values(), *self.loads.values())]
         return [ref for ref in (self.of, *told) if ref is not None]
 
+    def fastest(self, name: str, scene: StaticScene) -> Iterable[Oscillation]:
+        """What its elements surpass in the small, where law and size are the same everywhere."""
+        from sceneql.bodies.elements.filled import default_spacing
+
+        element, spacing = self.chosen_element(), self.spacing
+        if self.of is not None and spacing is None and (box := scene.box(self.of)) is not None:
+            spacing = default_spacing(*box, element)
+        size = spacing if self.block is None else self.block.finest
+        wave, density = self.law.law.wave_modulus(), WATER if self.density is None else number(self.density)
+        if wave and density and size:
+            found = element.fastest[self.block is not None] * (wave / density) ** 0.5 / size
+            decay, at = self.retardation * found**2 + self.mass_damping, ("spacing" if self.block is None else "block",)
+            yield Oscillation(found, decay, f"the elements of '{name}', {size:.3g} m across", at)
+
     @property
     def solid(self) -> Strain:
         """Its elements in the run; there are none before the island is assembled."""
@@ -349,7 +364,6 @@ class Elastic(Model):
 
     def read(self, output: str, state: ModelState) -> Any:
         """Any output of the manual, those of probes and of holds."""
-
         assert self._made is not None
         assert state.bodies is not None
         if output in strain_outputs.BY_INERTIA:

@@ -84,6 +84,14 @@ class Law(Record):
             return POISSON
         return 0.5 if _varies(self.poisson) else float(evaluate(self.poisson.expr, {}))
 
+    def wave_modulus(self) -> float | None:
+        """Stress over strain [Pa] of pressure waves; None where it varies."""
+        modulus = number(self.modulus)
+        poisson = POISSON if self.poisson is None else number(self.poisson)
+        if modulus is None or poisson is None:
+            return None
+        return modulus * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
+
     def varies(self, name: str) -> bool:
         """Whether a field depends on the position."""
         formula = getattr(self, name)
@@ -106,6 +114,11 @@ class Law(Record):
         import numpy as np
 
         return np.column_stack(self.moduli(places))
+
+
+def number(formula: Formula) -> float | None:
+    """The value of a formula that is the same everywhere; None for another."""
+    return None if _varies(formula) else float(evaluate(formula.expr, {}))
 
 
 def _varies(formula: Formula) -> bool:

@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.css_colors import NAMED
+from sceneql.compiler.meant.together import together
 from sceneql.compiler.names import Names, Vocabulary
 from sceneql.kinds import Refers, written_name
 from sceneql.language.repeat import copy_meant
@@ -23,7 +24,6 @@ from sceneql.language.tree import Mapping, Node, Scalar, Sequence
 from sceneql.quantities.diagnostic import STRONG, Diagnostics, ScriptError, all_same_as, nearest, same_as, suggestion
 from sceneql.quantities.expression import Number, Vector
 from sceneql.quantities.instead import instead
-from sceneql.quantities.literal import vector_meant
 from sceneql.quantities.parser import parse_value
 
 DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere", "contacts": "collision"}
@@ -32,7 +32,6 @@ MANY = 6
 """Largest number of words of which all that have a field are listed."""
 THINGS, SHORT = ("objects", "models", "cameras", "lights"), 2
 """Families whose fields are looked for among their own words alone, and the longest name that tells too little."""
-SIZES = ("width", "height", "depth", "length")
 OFF = ("0", "0.0", "no", "false")
 """Texts of a field that says that something is not."""
 FEW = 4
@@ -57,7 +56,7 @@ def report_unknown(
     renamed: Renamed | None = None,
     catalogue: Vocabulary | None = None,
     table: str = "",
-    inside: Callable[[str, str], str | None] = lambda name, text: None,
+    inside: Callable[[str, Node], str | None] = lambda name, value: None,
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; returns whether there are none.
 
@@ -70,7 +69,7 @@ def report_unknown(
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
         help = (said_by or {}).get(name) or instead(f"field.{title.partition('.')[0]}", name)
-        help = (help and filled(help, node.entries[name])) or _together(name, unknown, node, known)
+        help = (help and filled(help, node.entries[name])) or together(name, unknown, node, known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
             help = f"write `{written[1]}: {written[3].strip()}`{space}"
@@ -78,7 +77,7 @@ def report_unknown(
         help = help or next((text for fits, text in offers if fits), None)
         help = help or instead(f"field.{family}", name) or instead("field", name)
         help = help or (offers[0][1] if offers else None)
-        help = help or inside(name, node.entries[name].span.text)
+        help = help or inside(name, node.entries[name])
         help = help or _like(name, node.entries[name], known, offer, family, catalogue)
         if help is None and len(known) == 1:
             help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
@@ -134,38 +133,6 @@ def meant_field(name: str, known: Collection[str]) -> str | None:
     """The field most likely meant by an unknown name: its first word, if a colon or space is missing; the nearest."""
     written = _UNPARTED.fullmatch(name)
     return written[1] if written is not None and written[1] in known else nearest(name, known)
-
-
-def _together(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
-    """The help for fields that are one here: ``from: a, to: b``, and items of a list without brackets."""
-    ours = same_as(name, known)
-    same = [other for other in unknown if same_as(other, known) == ours]
-    if ours == "between" and len(same) == 2 and ours not in node.entries:
-        return f"write `{ours}: [{', '.join(node.entries[other].span.text for other in same)}]`"
-    sides = [other for other in SIZES if other in unknown]
-    flat = "rotation" not in known or "cells" in known  # of a box there are three
-    if name in sides and len(sides) > (1 if flat else 2) and "size" in known and "size" not in node.entries:
-        texts = [node.entries[other].span.text for other in sides]
-        if (size := vector_meant(", ".join(texts))) is not None:
-            return f"write `size: {size}`"
-    whole, _, part = name.rpartition(".")
-    parts = [other for other in unknown if other.rpartition(".")[0] == whole and other[-1:] in "xyz"]
-    if (whole or "position") in known and part in ("x", "y", "z"):
-        values = (f"{each[-1]}: {node.entries[each].span.text}" for each in parts)
-        return f"write `{whole or 'position'}: {{{', '.join(values)}}}`"
-    names = list(node.entries)
-    first = names.index(name)
-    while first and names[first] not in known and _empty(node.entries[names[first]]):
-        first -= 1
-    items = [node.entries[names[first]].span.text, *names[first + 1 : names.index(name) + 1]]
-    field = names[first] if names[first] in known else same_as(names[first], known)
-    if len(items) > 1 and field is not None and isinstance(node.entries[names[first]], Scalar):
-        return f"a list stands in brackets: write `{field}: [{', '.join(items)}]`"
-    return None
-
-
-def _empty(node: Node) -> bool:
-    return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
 
 
 def word_meant(

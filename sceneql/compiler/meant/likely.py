@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from collections.abc import Sequence as Sequenced
 from contextlib import suppress
 from dataclasses import replace
@@ -16,16 +16,19 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql import kinds
-from sceneql.compiler import paint, values
+from sceneql.compiler import paint
 from sceneql.compiler.annotations import example_of, first_field, is_fixed, marks_of, quantities, unwrap
+from sceneql.compiler.meant.chained import mended
+from sceneql.compiler.meant.own_examples import own_example
+from sceneql.compiler.meant.quantity_help import NAME, TRUE
+from sceneql.compiler.meant.unknown import meant_field
+from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
 from sceneql.quantities.instead import instead
 
-TRUE = ("true", "yes", "on")
-NAME = r"[^\W\d][\w.]*"
 _NAMES = re.compile(rf"{NAME}(?:\s*[-+&|*/,]\s*{NAME})+")
 _MEASURED = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*[^\W\d].*")
 OF_FORM = (
@@ -57,6 +60,8 @@ def renamed(reader: Any, cls: type[BaseModel], name: str, node: Node) -> tuple[b
     if fits and "\n" not in text and len(text) <= SHOWN:
         return True, f"did you mean `{name}: {text}`?"
     helps = [one.help for one in wrong or () if one.help is not None and _of_its_kind(one)]
+    if helps and (found := mended(reader, node, cls, name)) is not None:
+        return False, f"did you mean `{name}: {found[0]}`?"
     if len(helps) == 1:
         return False, f"did you mean '{name}'? For its value {helps[0]}"
     example = "..." if fits else example_of(cls, name)
@@ -85,29 +90,70 @@ def _wrong(reader: Any, node: Node, info: Any, name: str) -> tuple[Diagnostic, .
 
 
 def asked(reader: Any, cls: type[BaseModel]) -> dict[str, Any]:
-    """What `sceneql.compiler.unknown.report_unknown` asks of a record whose fields a reader reads."""
+    """What `sceneql.compiler.meant.unknown.report_unknown` asks of a record whose fields a reader reads."""
     return {
         "said_by": cls.said_by if issubclass(cls, kinds.Record) else {},
         "family": cls.family if issubclass(cls, kinds.Kind) else "",
         "renamed": partial(renamed, reader, cls),
         "catalogue": reader.names.catalogue,
         "table": table_of(cls),
-        "inside": partial(inside, reader.outer, cls),
+        "inside": partial(inside, reader, cls),
     }
 
 
-def inside(outer: type[BaseModel] | None, cls: type[BaseModel], name: str, text: str) -> str | None:
-    """The help for a field that the record ``outer`` around a record has, or one of those in its fields."""
-    text = text if "\n" not in text and len(text) <= SHOWN else "..."
-    if outer is not None and name in map(kinds.written_name, outer.model_fields):
-        return f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
+def taking_word(reader: Any, cls: type[BaseModel], name: str) -> str | None:
+    """The only field of a record that takes a part made in place by a word, ``sphere``; None for other names."""
+    families = [] if reader.names.catalogue is None else reader.names.catalogue.families_of(name)
+    fields = [
+        kinds.written_name(key)
+        for key, info in cls.model_fields.items()
+        if any(isinstance(mark, kinds.Refers) and mark.family in families for mark in marks_of(info))
+    ]
+    return fields[0] if len(fields) == 1 else None
+
+
+def meant(
+    reader: Any, cls: type[BaseModel], name: str, node: Node, known: Sequenced[str]
+) -> tuple[str | None, str | None]:
+    """The fields of a record that an unknown name most likely stands for, by its letters and as a word."""
+    if issubclass(cls, kinds.Record) and cls.meant_by(node.span.text) is not None:
+        return known[0], None
+    return meant_field(name, known), taking_word(reader, cls, name)
+
+
+def inside(reader: Any, cls: type[BaseModel], name: str, node: Node) -> str | None:
+    """The help for a field of a record in one of a record's fields, or of the record around it, or a part in place.
+
+    That is meant first which takes the value.
+    """
+    plain = node.text if isinstance(node, Scalar) else ""
+    if issubclass(cls, kinds.Record) and (told := cls.meant_by(plain)) is not None:
+        return told
+    text = node.span.text if "\n" not in node.span.text and len(node.span.text) <= SHOWN else "..."
+    if (field := taking_word(reader, cls, name)) is not None:
+        return f"write `{field}: {{{name}: {text or '{}'}}}`"
+    found: list[tuple[bool, str]] = []
     for key, info in cls.model_fields.items():
         inner = [one for one in (info.annotation, *get_args(info.annotation)) if isinstance(one, type)]
-        records = [one for one in inner if issubclass(one, BaseModel) and not issubclass(one, kinds.Kind)]
-        if any(name in map(kinds.written_name, one.model_fields) for one in records):
-            field = kinds.written_name(key)
-            return f"it stands inside `{field}`: write `{field}: {{{name}: {text}}}`"
-    return None
+        for one in inner:
+            if (
+                issubclass(one, BaseModel)
+                and not issubclass(one, kinds.Kind)
+                and (own := _known(one, name)) is not None
+            ):
+                field = kinds.written_name(key)
+                told = f"it stands inside `{field}`: write `{field}: {{{name}: {text}}}`"
+                found.append((_wrong(reader, node, own, name) is not None, told))
+    outer: type[BaseModel] | None = reader.outer
+    if outer is not None and (own := _known(outer, name)) is not None:
+        told = f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
+        found.append((_wrong(reader, node, own, name) is not None, told))
+    return min(found, key=lambda one: one[0])[1] if found else None
+
+
+def _known(cls: type[BaseModel], name: str) -> Any:
+    """The field of a record by its name in scripts; None where it has none."""
+    return next((info for key, info in cls.model_fields.items() if kinds.written_name(key) == name), None)
 
 
 def table_of(cls: type[BaseModel]) -> str:
@@ -117,23 +163,12 @@ def table_of(cls: type[BaseModel]) -> str:
     return kinds.written_name(only) if only and get_origin(cls.model_fields[only].annotation) is dict else ""
 
 
-def example_line(cls: type[BaseModel], name: str, description: str) -> str:
-    """What a missing field is, with an example."""
-    example = "..." if "`" in description else example_of(cls, name)
+def example_line(reader: Any, cls: type[BaseModel], name: str, info: Any) -> str:
+    """What a missing field is, with an example, where it can be of the script's own parts."""
+    description, own = info.description or "", own_example(reader.names, info)
+    example = own or ("..." if "`" in description else example_of(cls, name))
     more = "" if example in ("...", "{}") else f" For example `{name}: {example}`."
     return f"{name}: {description}{more}"
-
-
-def first_of(name: str, node: Node) -> str | None:
-    """The help for several values of a field that has one: the first, with its unit."""
-    if isinstance(node, Sequence):
-        first = node.items[0].span.text if node.items else ""
-    else:
-        first, *more = node.span.text.replace(",", " ").split() or ("",)
-        first += f" {more[-1]}" if more and (more[-1][:1].isalpha() or more[-1] == "%") else ""
-    several = isinstance(node, Sequence) and len(node.items) > 1
-    others = ", and a part of its own for each of the others" if several else ""
-    return f"it is one number: write `{name}: {first}`{others}" if first else None
 
 
 def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
@@ -223,17 +258,6 @@ def _listing(cls: type[BaseModel], name: str) -> bool:
     return any(isinstance(mark, kinds.Refers) for arm in lists for mark in unwrap(get_args(arm)[0])[1])
 
 
-def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
-    """The help for a wrong count of numbers: the one other field that takes them."""
-    found = {name: mark for name, mark in quantities_fitting(reader, node, others).items() if mark.shape}
-    if len(found) > 1:
-        own = [mark.dimension for mark in quantities(info)]
-        found = {name: mark for name, mark in found.items() if mark.dimension in own}
-    if len(found) != 1:
-        return None
-    return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
-
-
 def choice_meant(text: str, choices: Sequenced[str]) -> str | None:
     """The help for a choice that is written otherwise: its words in another order, or joined, `upper left`."""
     pieces = re.sub(r"[^a-z]+", " ", text.lower()).replace("upper", "top").replace("lower", "bottom").split()
@@ -319,14 +343,6 @@ def _paints(reader: Any, node: Node, cls: type[BaseModel]) -> list[str]:
     nothing = Diagnostics()
     fits = paint.read_color(node, replace(reader.names, found=nothing), nothing) is not None
     return ["color"] if fits and "color" in cls.model_fields else []
-
-
-def quantities_fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
-    """The fields of quantities that accept a value."""
-    nothing = Diagnostics()
-    names = replace(reader.names, found=nothing)
-    marked = [(name, mark) for name, info in fields.items() for mark in quantities(info)]
-    return {name: mark for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None}
 
 
 def _formulas(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:

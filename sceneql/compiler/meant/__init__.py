@@ -1,0 +1,1 @@
+"""Messages say what was meant: the field, word, value or output."""

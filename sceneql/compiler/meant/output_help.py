@@ -1,0 +1,57 @@
+"""Help for values that a part does not give under the name written: a height, a speed, an angle, an energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+
+from sceneql.quantities.diagnostic import same_as
+
+AXES = ("x", "y", "z")
+COORDINATES = {
+    "height": "y",
+    "altitude": "y",
+    "elevation": "y",
+    "h": "y",
+    "depth": "y",
+    **dict(zip(AXES, AXES, strict=True)),
+}
+"""Names of a coordinate of a place, and its axis."""
+SPEEDS = ("speed", "vel", "v", "absolute_velocity")
+TURNS = ("angle", "theta", "phi", "rotation", "turn", "angles")
+"""Names of the angle by which something is turned."""
+
+
+def output_meant(
+    part: str, wanted: str, outputs: Collection[str], giving: Callable[[str], Collection[str]]
+) -> str | None:
+    """The help for ``wanted``, which is none of a part's outputs; ``giving``: the parts that give an output."""
+    *of, last = wanted.split(".")
+
+    def known(name: str) -> str | None:
+        whole = ".".join((*of, name))
+        return f"{part}.{whole}" if whole in outputs else None
+
+    position, velocity = known("position"), known("velocity")
+    if last in COORDINATES and position is not None:
+        return f"write `{position}.{COORDINATES[last]}`"
+    if last in COORDINATES and not of and "center" in outputs:
+        bodies = [one for one in outputs if one.endswith(".position")]
+        first = f"of one mass it is `{part}.{bodies[0]}.{COORDINATES[last]}`, " if bodies else ""
+        return f"{first}of all together `{part}.center.{COORDINATES[last]}`"
+    if last == "velocity" and not of and position is not None:
+        return "only what a model moves has one: write what it is by the formula, as `[1 m/s, 0 m/s, 0 m/s]`"
+    if last in SPEEDS and velocity is not None:
+        return f"write `length({velocity})`, or a component, `{velocity}.x`"
+    if last[:1] in ("v", "a") and last[1:] in AXES:
+        whole = velocity if last[:1] == "v" else known("acceleration")
+        if whole is not None:
+            return f"write `{whole}.{last[1:]}`"
+    if last in TURNS and (ties := giving("angle")):
+        return f"a hinge tells how far it has turned: write `{next(iter(ties))}.angle`"
+    if last in TURNS and position is not None:
+        return f"an angle is told by places: `atan2({position}.x, -{position}.y)` is that of a pendulum at the origin"
+    if of and (one := same_as(last, outputs) or (last if last in outputs else None)) is not None:
+        return f"it is told of all of '{part}' together: write `{part}.{one}`"
+    one = next((name for name in outputs if name.endswith(f".{wanted}")), None)
+    many = f", or all of them, `{part}.{wanted}s`" if f"{wanted}s" in outputs else ""
+    return None if one is None else f"it has bodies by name: write `{part}.{one}`{many}"

@@ -1,0 +1,131 @@
+"""Warning of masses that only their weight moves, and that certainly fall into a solid without a contact."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+from sceneql.compiler.passes.fillings import Beginning
+from sceneql.compiler.passes.overlaps import UNKNOWN, field_at
+from sceneql.graph import Island, Task
+from sceneql.kinds import Contact, Interaction, Model, Object, Value
+from sceneql.quantities.diagnostic import Diagnostics
+from sceneql.run.falling import HELP, MOST_OBJECTS, standing
+
+if TYPE_CHECKING:
+    from sceneql.frame import Floats
+
+    Start = tuple[tuple[float, ...], tuple[float, ...], float]
+
+INSTANTS = 64
+"""Number of instants at which a mass is looked for in a solid."""
+MOST = 32
+"""Largest number of masses of a model that are looked at, the first ones."""
+RADIUS = 0.05
+"""Radius [m] of a mass that says none."""
+HOLDING = ("pins", "hold", "emit", "bent")
+"""Fields of a model with which its middle does not fall as a stone does."""
+
+
+def warn_of_falling_through(
+    tasks: Mapping[str, Task], groups: Sequence[Island], end: float, found: Diagnostics
+) -> None:
+    """Warn of each model that falls into a solid of the script before the ``end`` [s], without a contact."""
+    solids = {name: tasks[name].kind for name in standing(tasks) if tasks[name].span is not None}
+    start: Any = Beginning(tasks)
+    for island in groups if 0 < len(solids) <= MOST_OBJECTS else ():
+        for name in island.models:
+            forces = [cast(Interaction, tasks[force].kind) for force, model in island.forces if model == name]
+            pull = pull_of(forces)
+            if pull is None or tasks[name].span is None:
+                continue
+            touched = {one: others for one, model, others in island.contacts if model == name}
+            known = {other for others in touched.values() for other in others}
+            if set(solids) <= known:
+                continue
+            starts = starts_of(cast(Model, tasks[name].kind), tasks, start)[:MOST]
+            hit = _first_hit(starts, pull, end, solids, known, start)
+            if hit is not None and hit[0] not in known:
+                contact = next(iter(touched), None)
+                of_it = "no contact acts on it" if contact is None else f"'{contact}' is not of both"
+                text = f"'{name}' falls into '{hit[0]}' at {hit[1]:.2g} s, and through it: {of_it}"
+                between = [ref.name for ref in cast(Contact, tasks[contact].kind).ties()] if contact else []
+                help = f"name it there, `between: [{', '.join([*between, hit[0]])}]`" if contact else HELP
+                found.warning("falls-through", text, tasks[name].span, help=help)
+
+
+def pull_of(forces: Sequence[Interaction]) -> tuple[float, ...] | None:
+    """The constant acceleration [m/s^2] by weights, where nothing else acts; else None."""
+    total = (0.0, 0.0, 0.0)
+    for force in forces:
+        whole, size, way = (getattr(force, field, None) for field in ("acceleration", "strength", "direction"))
+        given = (whole,) if whole is not None else (size, way)
+        if not force.weighs or not all(isinstance(one, Value) and one.constant for one in given):
+            return None
+        vector = cast(Value, given[-1]).number()
+        length = sum(c * c for c in vector) ** 0.5 or 1.0
+        scale = 1.0 if whole is not None else float(cast(Value, size).number()) / length
+        total = cast(Any, tuple(a + scale * float(c) for a, c in zip(total, vector, strict=True)))
+    return total if any(total) else None
+
+
+def starts_of(kind: Model, tasks: Mapping[str, Task], start: Any) -> list[Start]:
+    """Places [m], velocities [m/s] and reaches [m] of what falls as stones do; none where something holds it."""
+    known = kind.static_masses()
+    if any(getattr(kind, field, None) for field in HOLDING) or any(mass.fixed for mass in known.values()):
+        return []
+    return [*_started(kind, tasks, start)]
+
+
+def _started(kind: Any, tasks: Mapping[str, Task], start: Any) -> Iterator[Start]:
+    import numpy as np
+
+    still = (0.0, 0.0, 0.0)
+    bodies = getattr(kind, "bodies", None) or {"": kind}
+    driven = {body.of.name: body for body in bodies.values() if getattr(body, "of", None) is not None}
+    for name, body in driven.items():
+        at, velocity = getattr(body, "position", None), body.velocity or getattr(kind, "velocity", None) or still
+        shape = tasks[name].original or tasks[name].kind
+        try:
+            low, high = cast(Object, shape).extent(np.eye(3, 4), start)
+        except UNKNOWN:
+            continue
+        if np.isfinite(high - low).all() and not getattr(body, "fixed", False):
+            yield (at or tuple(((low + high) / 2).tolist())), velocity, float((high - low).max()) / 2
+    each = getattr(kind, "list", None) or {}
+    for name, mass in kind.static_masses().items() if not driven else ():
+        if mass.position is not None:
+            own = getattr(each.get(name), "radius", None) or getattr(kind, "radius", None)
+            yield mass.position, mass.velocity or still, RADIUS if own is None else own
+    for part in (kind, *(getattr(kind, field, None) for field in ("cloth", "lattice"))):
+        center = getattr(part, "center", None)
+        if isinstance(center, tuple) and not driven:
+            yield center, kind.velocity, max(getattr(part, "size", (0.0,))) / 2
+
+
+def _first_hit(
+    starts: Sequence[Start],
+    pull: tuple[float, ...],
+    end: float,
+    solids: Mapping[str, Any],
+    touched: Collection[str],
+    start: Any,
+) -> tuple[str, float] | None:
+    """The solid that is first on the parabolas of masses that start outside of it, and the instant [s].
+
+    Those that they touch are met as soon as they are in reach.
+    """
+    import numpy as np
+
+    times = np.linspace(0.0, end, INSTANTS)
+    hits = []
+    for place, velocity, reach in starts:
+        way: Floats = np.array(place) + np.multiply.outer(times, velocity) + np.multiply.outer(0.5 * times**2, pull)
+        for name, solid in solids.items():
+            try:
+                inside = field_at(solid, way, start) <= (reach if name in touched else 0.0)
+            except UNKNOWN:
+                continue
+            if inside.any() and (name in touched or not inside[0]):
+                hits.append((float(times[inside.argmax()]), name))
+    return None if not hits else (min(hits)[1], min(hits)[0])
