@@ -23,7 +23,7 @@ LANES = 8
 
 @lean(FACTOR, inner=True)
 def factor(a, n, stride, least):
-    """Factor in place; the least part of its diagonal that a pivot is: 0 if it is not above ``least``, or not finite."""
+    """Factor in place; the least part of its diagonal that a pivot is, 0 if not above ``least`` or not finite."""
     widest()
     worst = 1.0
     for k in range(n):

@@ -52,7 +52,6 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     ROW,
     ROW_INTS,
     SCRATCH,
-    SECOND,
     VELOCITY,
     press,
     see,

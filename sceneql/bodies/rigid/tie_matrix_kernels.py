@@ -27,13 +27,13 @@ MOVED_AT, VALUES_AT, VALUES, FACTORS_AT, FACTORS, WORK_AT, WORK, RIGHT_AT, KEPT_
     10, 22
 )
 TIES_AT, HEAD = 22, 23
-"""Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where each
-begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes of
-what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels); of EASE; of T of
-a tie; the number of ties and where their SIDES begin: how many rows, offsets of the floats of these and of both movers.
-Few rows have a matrix that is whole, its factors in place, and no plan. A mover that ties share: their number n
-and its own; of each tie OF_TIE: its first row, how many it has, their floats at its side; then n x n places in a row of the
-first where the rows of the second begin, counted from that row's first value (-1: what stands there is not
+"""Integers of an island's ties: numbers of movers, rows, movers that ties share, of the plan's integers, and where
+each begins; the first values of the matrix's rows, and the places of its diagonal's; offsets into the floats and sizes
+of what movers, matrix, factors, scratch and right hand side take, and what drifts keep (rattle_kernels); of EASE; of T
+of a tie; the number of ties and where their SIDES begin: how many rows, offsets of the floats of these and of both
+movers. Few rows have a matrix that is whole, its factors in place, and no plan. A mover that ties share: their number
+n and its own; of each tie OF_TIE: its first row, how many it has, their floats at its side; then n x n places in a row
+of the first where the rows of the second begin, counted from that row's first value (-1: what stands there is not
 read)."""
 OF_TIE = 3
 ROWS_OF, ROWS_FROM, ONE, OTHER, SIDES = range(5)

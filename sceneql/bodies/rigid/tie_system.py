@@ -119,10 +119,22 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     kept = assembly.floats(np.zeros(matrix.KEPT * len(rows) if free else 0))
     most = max((len(some) for some in of_mover.values()), default=0)
     ease, of_tie = assembly.floats([matrix.EASE]), assembly.floats(np.zeros(most * matrix.T_OF))
-    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept, ease, of_tie, len(sides), begins[6]]
-    lists.append(
-        [k for pair, _, n, at in sides for k in (n, at, moved + MOVED * pair[0], moved + MOVED * pair[1])]
-    )
+    head += [
+        moved,
+        values,
+        sizes[1],
+        factors,
+        sizes[2],
+        work,
+        sizes[3],
+        right,
+        kept,
+        ease,
+        of_tie,
+        len(sides),
+        begins[6],
+    ]
+    lists.append([k for pair, _, n, at in sides for k in (n, at, moved + MOVED * pair[0], moved + MOVED * pair[1])])
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     _add_pivots(assembly, ties)
     numbers = assembly.numbers()
