@@ -64,6 +64,11 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
         found.error("wrong-shape", "color is one color, not several", node.span, help=several)
         return None
     before = len(found.found)
+    if isinstance(node, MappingNode) and not set(node.entries) <= {*AXES}:
+        texts = re.findall(r"[a-z]+", node.span.text)
+        first = next((one for one in texts if one in NAMED), "skyblue")
+        found.error("wrong-shape", "color is one color, not a group of fields", node.span, help=f"write `{first}`")
+        return None
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
     if [one.code for one in found.found[before:] if one.help is None] == ["wrong-shape"]:
         meant = OPAQUE if found.found[-1].message.endswith("not a vector of 4") else RED

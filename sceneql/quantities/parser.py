@@ -26,7 +26,9 @@ from sceneql.quantities.spaced import (
     indexed,
     meant_by_equals,
     other_signs,
+    per_unit,
     two_ends,
+    vector_called,
     without_dots,
 )
 from sceneql.quantities.span import Span
@@ -212,6 +214,8 @@ class _Parser:
         args = self._items(")", opening)
         if name not in FUNCTIONS:
             hint = instead("function", name) or instead("function", of_library(name)) or suggestion(name, FUNCTIONS)
+            if (vector := vector_called(self.text)) is not None:
+                hint = f"write `{vector}`"
             every = "`sceneql words functions` lists all"
             help = every if hint is None else f"{hint}{' ' if hint.endswith('?') else '; '}{every}"
             raise self._fail("unknown-function", f"there is no function '{name}'", start, start + len(name), help=help)
@@ -301,6 +305,8 @@ class _Parser:
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
         if (sides := _crossed(self.text)) is not None:
             help = sides
+        elif (vector := vector_called(self.text) or per_unit(self.text)) is not None:
+            help = f"write `{vector}`"
         elif isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
             help = formula
         elif isinstance(expr, Number) and self.kind == "number" and self.before.endswith("%"):

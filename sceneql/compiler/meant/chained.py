@@ -22,8 +22,9 @@ from sceneql.compiler.names import Names
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.compose import compose_node
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, same_as
 from sceneql.quantities.span import Source
+from sceneql.quantities.units import format_quantity
 
 LONGEST = 160
 """Largest length of a value that is mended."""
@@ -67,8 +68,12 @@ def better_alone(
     code, help = told[0]
     if code == "unknown-name" and helped.is_part(reader, node):
         found[before] = replace(found[before], help=helped.other_output(reader, node, info, name) or help)
+    elif code == "unknown-name" and (plain := _one_for_all(node, info, name, title)) is not None:
+        found[before] = replace(found[before], help=plain)
     elif code in ("unknown-name", "unknown-unit"):
         found[before] = replace(found[before], help=helped.number_meant(node, info, name, code, help) or help)
+    if name == "sweep" and code == "wrong-shape" and isinstance(node, Scalar):
+        found[before] = replace(found[before], help=_swept(reader, written, node.text) or help)
     single = [mark.shape == () for mark in quantities(info)]
     if (help or "").startswith("two ends stand") and single and all(single):
         fields = [kinds.written_name(key) for key in cls.model_fields]
@@ -92,6 +97,25 @@ def better_alone(
     if better is None and not shaped:
         better = helped.plain_define(reader, node) or helped.in_other_unit(reader, node, info, rest, name)
     found[before] = replace(found[before], help=better)
+
+
+def _one_for_all(node: Node, info: Any, name: str, title: str) -> str | None:
+    """The help for a formula of x, y and z where a field is one quantity; None for others."""
+    marks = [mark for mark in quantities(info) if mark.shape == () and mark.dimension is not None]
+    if not marks or not isinstance(node, Scalar) or not re.search(r"(?<![\w.])[xyz](?![\w.(])", node.text):
+        return None
+    more = f"; `sceneql words {title}` tells what goes by place" if title.isidentifier() else ""
+    return f"it is one value, the same at all places, as `{name}: {format_quantity(1.0, marks[0].dimension)}`{more}"
+
+
+def _swept(reader: Any, written: Naming[str, Node], what: str) -> str | None:
+    """The help for a study's sweep that names what is varied, without its path: a define, or a solver's step."""
+    values = next((one.span.text for key, one in written.items() if key in ("values", "range", "over")), "[..., ...]")
+    parts = reader.names.parts.items()
+    steps = [part for part, entry in parts if isinstance(entry.fields, Mapping) and "step" in entry.fields.entries]
+    path = f"define.{what}" if what in reader.names.defines else what if "." in what else ""
+    path = path or (f"{steps[0]}.step" if steps and same_as(what, ["step"]) is not None else "")
+    return f"what is varied stands by its path: write `sweep: {{{path}: {values}}}`" if path else None
 
 
 def field_of(cls: type[BaseModel], name: str) -> Any:
