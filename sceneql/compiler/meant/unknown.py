@@ -164,9 +164,9 @@ def word_meant(
     """The help for an entry with a word that is not in its family; ``family_of``: the families of all parts."""
     templates = script.root.entries.get("templates")
     if isinstance(templates, Mapping) and entry.word in templates.entries:
-        same = [one for one in script.sections.get(family, {}).values() if one.word in templates.entries]
-        inner = ", ".join(map(_instance, same))
-        inner = inner if len(inner) <= SHOWN else f"{_instance(entry)}, ..." if len(same) > 1 else _instance(entry)
+        every = [one for one in script.sections.get(family, {}).values() if one.word in templates.entries]
+        inner = ", ".join(map(_instance, every))
+        inner = inner if len(inner) <= SHOWN else f"{_instance(entry)}, ..." if len(every) > 1 else _instance(entry)
         return f"it is a template, of which parts are made: write `parts: {{{inner}}}`"
     if (replaced := _field_of_replaced(entry, family, script, catalogue)) is not None:
         return replaced
