@@ -67,6 +67,12 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
     at = place(source, error)
     since = min(_index(error, "context_mark", at), at)
     if "quoted scalar" in context and "escape" not in problem:
+        ended = re.compile(r'"[^"\n]*\\[^"\n]*"').match(source.text, since)
+        if ended is not None and "\\" in ended[0]:
+            plain = ended[0][1:-1].replace("\\\\", "\\")
+            better = plain.replace("\\", "/") if re.match(r"[A-Za-z]:|\.", plain) else plain
+            text = "in double quotes a backslash begins a sign of YAML's"
+            return _syntax(text, source, since, f"write single quotes: `'{better}'`")
         return _syntax("this quote is never closed", source, since, "end the text with the same quote")
     if "escape" in problem and source.text[at - 1 : at] == "\\":
         at -= 1

@@ -177,8 +177,9 @@ def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, lookup: L
     time = time_meant(written)
     if time is not None and node.span is not None and isinstance(lookup(("t",), node.span), Symbol):
         time = SECONDS
+    message = "`t` behind a unit is a tonne" if time is not None and time != SECONDS else error.message
     help = time or "; ".join(filter(None, (error.help, _better(node, parts, error) or _by_time(parts, error))))
-    found.error(error.code, error.message, parts[error.first].span or node.span, help=help or None, notes=notes)
+    found.error(error.code, message, parts[error.first].span or node.span, help=help or None, notes=notes)
 
 
 def _by_time(parts: tuple[Expr, ...], error: MismatchError) -> str | None:

@@ -129,7 +129,7 @@ OF_SECTIONS = (
         "of a solid only its diffusivity counts, the conductivity over density and heat capacity: `coefficient: 400"
         " W/(m*K)/(8960 kg/m^3*385 J/(kg*K))`",
     ),
-    ("field.studies", "dt step k n h m", _VARIED),
+    ("field.studies", "dt step k n h m values range points", _VARIED),
     (
         "field.emit",
         "direction angle dir toward towards",
@@ -223,6 +223,17 @@ OF_SECTIONS = (
         "axes axis grid ruler scale_bar scalebar compass gizmo",
         "there is none: arrows and tubes among the `objects` show axes, `{arrow: {vector: 1 0 0 m}}`",
     ),
+    ("field.implicit", "box", "write `bounds: {box: [-1 -1 -1, 1 1 1]}`, the low and the high corner"),
+    ("field.implicit", "ball sphere", "write `bounds: {ball: 1.5}`, the radius about the origin"),
+    ("field.joints", "parent base link relative_to", "write `{of: <parent|shoulder>}`"),
+    ("field.images field.image", "format type extension ext", "pictures are PNG files: leave it out"),
+    ("field.video", "format type extension ext", "films are MP4 files: leave it out"),
+    (
+        "field.images field.image field.video field.record",
+        "name filename prefix basename output out",
+        "a file has the entry's name, as `film.mp4` or `frames.0000.png`; `sceneql render SCENE -o FILE` gives another",
+    ),
+    ("field.glass", "transmission transparency opacity alpha transmissive", "glass is clear by itself: leave it out"),
     # sections
     ("section", "seed", "write `clock: {seed: 5}`"),
     (

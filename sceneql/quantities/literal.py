@@ -62,6 +62,9 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
         if instead("unit", word.group()) is not None:
             raise
         hint = f"for a product write `*{word.group()[:40]}`"
+        if word.group() in ("x", "y", "z"):
+            number = re.search(r"[\d.]*$", text[:at]) or word
+            raise ScriptError([replace(found, help=f"write `{number.group()}*{word.group()}` for a product")]) from None
         raise ScriptError([replace(found, help=hint if found.help is None else f"{found.help}; {hint}")]) from None
 
 

@@ -103,7 +103,7 @@ def _plain(args: Args, indices: tuple[int, ...], name: str) -> None:
             help = "divide it by a quantity of its kind first"
             match args[index]:
                 case Call("mul", (Number(bare=True) as number, _)) if name in TURNS and dimension == TIME:
-                    help = f"a speed times the time is an angle: `{number.value:g} rad/s*time`, in degrees"
+                    help = f"a speed times the time is an angle: write `{number.value:g} rad/s*time`, in degrees"
                     help += f" `{number.value:g} deg/s*time`"
                     raise MismatchError("dimension-mismatch", message, index, None, help)
             raise MismatchError(

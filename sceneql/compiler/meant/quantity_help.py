@@ -16,7 +16,7 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler import values
 from sceneql.compiler.annotations import marks_of, quantities
-from sceneql.compiler.meant.likely import NAME, TRUE, quantities_fitting
+from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics
@@ -24,6 +24,8 @@ from sceneql.quantities.dimension import ANGLE, DENSITY, MASS, PLAIN, Dimension
 from sceneql.quantities.expression import Expr, Number, Vector
 from sceneql.quantities.units import format_quantity, unit_of
 
+NAME = r"[^\W\d][\w.]*"
+TRUE = ("true", "yes", "on")
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 MOST = 200
 """Largest length of a value in which numbers are looked for."""
