@@ -132,6 +132,11 @@ OF_FORMULAS = (
         "deltatime delta_time dt",
         "a formula says what is at the `time`, and no step: `1 m/s*time`, in place of what is added in each frame",
     ),
+    (
+        "name",
+        "constant conserved const unchanged",
+        "what keeps its value is compared with its start: `of: final(fall.energy), value: at(fall.energy, 0 s)`",
+    ),
     ("name", "about", "an axis is a field: `rotation: {about: z, angle: 30 deg}`"),
     ("name", "water", "water has a density of `1000 kg/m^3`, and a viscosity of `1e-3 Pa*s`"),
     ("name", "air", "air has a density of `1.2 kg/m^3`, and a viscosity of `1.8e-5 Pa*s`"),

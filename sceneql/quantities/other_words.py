@@ -167,6 +167,11 @@ _LISTS = (
     ("gray", "grey grayscale greyscale greys bone"),
     ("weight", "strength"),
     ("acceleration", "vector g"),
+    ("index_of_refraction", "n ior refractive_index"),
+    ("every", "dt interval period sampling step"),
+    ("field", "b e b_field e_field bfield efield magnetic_field electric_field"),
+    ("charge", "q charges"),
+    ("at", "value"),
     ("of", "approx actual measured measure result quantity"),
     ("center", "position pos location place origin middle"),
     # outputs

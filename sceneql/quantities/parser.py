@@ -27,6 +27,7 @@ from sceneql.quantities.spaced import (
     meant_by_equals,
     other_signs,
     per_unit,
+    ternary,
     two_ends,
     vector_called,
     without_dots,
@@ -253,6 +254,8 @@ class _Parser:
                 plain := from_latex(self.text)
             ):
                 help = f"write `{plain}`"
+            if self.token == "?" and (chosen := ternary(self.text)) is not None:
+                help = f"write `{chosen}`"
             if self.token in "|%@":
                 help = other_signs(self.text) or help
             if self.token in "=.":
@@ -305,7 +308,7 @@ class _Parser:
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
         if (sides := _crossed(self.text)) is not None:
             help = sides
-        elif (vector := vector_called(self.text) or per_unit(self.text)) is not None:
+        elif (vector := vector_called(self.text) or per_unit(self.text) or ternary(self.text)) is not None:
             help = f"write `{vector}`"
         elif isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
             help = formula

@@ -23,7 +23,7 @@ from sceneql.compiler.meant.own_examples import own_example
 from sceneql.compiler.meant.quantity_help import NAME, TRUE
 from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import meant_field
-from sceneql.compiler.meant.values_elsewhere import quantities_fitting
+from sceneql.compiler.meant.values_elsewhere import along_default, quantities_fitting
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
@@ -247,6 +247,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         plain = list(quantities_fitting(reader, bare, cls.model_fields))
         if len(plain) == 1:
             return f"it has no unit: write `{{{kinds.written_name(plain[0])}: {number[1]}}}`"
+    if not fitting and (along := _along(reader, node, cls)) is not None:
+        return along
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
     if len(likely) != 1:
         return None
@@ -257,6 +259,14 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if text.startswith("-") and above and (why := instead("negative", likely[0])) is not None:
         return f"write `{{{likely[0]}: {text[1:].strip()}}}`: {why}"
     return f"write `{{{likely[0]}: {text}}}`"
+
+
+def _along(reader: Any, node: Scalar, cls: type[BaseModel]) -> str | None:
+    """The help for one number in place of a record whose one vector of its dimension points along an axis: a wind."""
+    found = [(key, text) for key, info in cls.model_fields.items() if (text := along_default(node, info)) is not None]
+    if len(found) != 1:
+        return None
+    return f"write `{{{kinds.written_name(found[0][0])}: {found[0][1].split('`')[1]}}}`"
 
 
 def _dealt(reader: Any, node: Sequence, cls: type[BaseModel], required: Sequenced[str]) -> str | None:
