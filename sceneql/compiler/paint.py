@@ -64,7 +64,13 @@ def read_color(node: Node, names: Names, found: Diagnostics) -> Value | None:
         found.error("wrong-shape", "color is one color, not several", node.span, help=several)
         return None
     before = len(found.found)
+    if isinstance(node, MappingNode) and not set(node.entries) <= {*AXES}:
+        texts = re.findall(r"[a-z]+", node.span.text)
+        first = next((one for one in texts if one in NAMED), "skyblue")
+        found.error("wrong-shape", "color is one color, not a group of fields", node.span, help=f"write `{first}`")
+        return None
     value = read_value(node, Quantity(PLAIN, (3,)), "color", names, found)
+    _of_names(found, before)
     if [one.code for one in found.found[before:] if one.help is None] == ["wrong-shape"]:
         meant = OPAQUE if found.found[-1].message.endswith("not a vector of 4") else RED
         found.found[-1] = replace(found.found[-1], help=meant)
@@ -134,12 +140,28 @@ def _of_bytes(numbers: Sequence[float]) -> str:
     return f'write `{" ".join(f"{number:.3g}" for number in share)}`, or `"#{digits}"`'
 
 
+def _of_names(found: Diagnostics, first: int) -> None:
+    """Let the colors by name in helps from number ``first`` on be their numbers, as formulas take them."""
+    for k, one in enumerate(found.found[first:], first):
+        if one.help is not None and "`where(" in one.help:
+            help = re.sub(r"(?<=, )([a-z]+)(?=[,)])", lambda name: _numbers(name[0]), one.help)
+            found.found[k] = replace(one, help=help)
+
+
+def _numbers(name: str) -> str:
+    return f"[{', '.join(f'{c:.3g}' for c in css_color(name) or ())}]" if name in NAMED else name
+
+
 def read_rotation(node: Node, names: Names, found: Diagnostics) -> Value | None:
     """A rotation as a unit quaternion [w, x, y, z] (4,)."""
     if unsure(node):
         return None
     if isinstance(node, MappingNode):
         given = node.entries
+        if "keys" in given and "about" in given:
+            help = f"write `{{about: {given['about'].span.text}, angle: {{keys: {given['keys'].span.text}}}}}`"
+            found.error("rotation-shape", "a rotation about an axis has keys for its angle", node.span, help=help)
+            return None
         if "keys" in given:
 
             def key(item: Node) -> Expr | None:

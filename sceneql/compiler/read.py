@@ -37,6 +37,7 @@ from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import Dimension
+from sceneql.quantities.instead import instead
 from sceneql.quantities.span import Span
 
 FALSE = ("false", "no", "off")
@@ -80,7 +81,7 @@ class Reader:
         if isinstance(node, MappingNode) and issubclass(cls, kinds.Kind):
             symbols = cls.formula_symbols(plainly(node))
             solved = None if node.partial else cls.formula_dimension(plainly(node))
-        ok = True
+        ok, other = True, False
         got: dict[str, Any] = {}
         mistaken: set[str | None] = set()
         if isinstance(node, MappingNode):
@@ -92,13 +93,20 @@ class Reader:
             ok = report_unknown(node, known, title, self.found, **likely.asked(self, cls))
             ok = ok and not node.partial
             unknown = [name for name in node.entries if name not in known]
-            mistaken = {one for name in unknown for one in likely.meant(self, cls, name, node.entries[name], known)}
+            alone = len(unknown) > 1 or len(written) == 1  # another thing may well be meant
+            other = alone and all(instead(f"field.{title}", one) for one in unknown) and bool(unknown)
+            mistaken = likely.meant(self, cls, node)
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:
                 if info.is_required():
                     ok = False
-                if info.is_required() and name not in mistaken and not (node is not None and unsure(node)):
+                if (
+                    info.is_required()
+                    and name not in mistaken
+                    and not other
+                    and not (node is not None and unsure(node))
+                ):
                     help = likely.example_line(self, cls, name, info)
                     self.found.error("missing-field", f"{title} needs '{name}'", span, help=help)
                 continue
@@ -258,7 +266,8 @@ class Reader:
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
         hint = likely.choice_meant(text, [str(c) for c in choices]) or f"one of {every}"
         hint = f"it is always `{what}: {every}`" if len(choices) == 1 else hint
-        raise self._fail("unknown-choice", f"{what} cannot be '{text}'", node.span, hint)
+        hint = hint if text else f"it is one of {every}, by its name"
+        raise self._fail("unknown-choice", f"{what} cannot be '{text or node.span.text}'", node.span, hint)
 
     def _list(self, node: Node, origin: Any, arms: tuple[Any, ...], what: str) -> Any:
         fixed = origin is tuple and arms[-1] is not Ellipsis

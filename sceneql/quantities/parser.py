@@ -26,7 +26,10 @@ from sceneql.quantities.spaced import (
     indexed,
     meant_by_equals,
     other_signs,
+    per_unit,
+    ternary,
     two_ends,
+    vector_called,
     without_dots,
 )
 from sceneql.quantities.span import Span
@@ -212,6 +215,8 @@ class _Parser:
         args = self._items(")", opening)
         if name not in FUNCTIONS:
             hint = instead("function", name) or instead("function", of_library(name)) or suggestion(name, FUNCTIONS)
+            if (vector := vector_called(self.text)) is not None:
+                hint = f"write `{vector}`"
             every = "`sceneql words functions` lists all"
             help = every if hint is None else f"{hint}{' ' if hint.endswith('?') else '; '}{every}"
             raise self._fail("unknown-function", f"there is no function '{name}'", start, start + len(name), help=help)
@@ -249,6 +254,8 @@ class _Parser:
                 plain := from_latex(self.text)
             ):
                 help = f"write `{plain}`"
+            if self.token == "?" and (chosen := ternary(self.text)) is not None:
+                help = f"write `{chosen}`"
             if self.token in "|%@":
                 help = other_signs(self.text) or help
             if self.token in "=.":
@@ -301,6 +308,8 @@ class _Parser:
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
         if (sides := _crossed(self.text)) is not None:
             help = sides
+        elif (vector := vector_called(self.text) or per_unit(self.text) or ternary(self.text)) is not None:
+            help = f"write `{vector}`"
         elif isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
             help = formula
         elif isinstance(expr, Number) and self.kind == "number" and self.before.endswith("%"):

@@ -15,15 +15,16 @@ from typing import Any
 from pydantic import BaseModel
 
 from sceneql import kinds
-from sceneql.compiler.annotations import quantities
+from sceneql.compiler.annotations import marks_of, quantities
 from sceneql.compiler.meant import quantity_help as helped
 from sceneql.compiler.meant.values_elsewhere import along_default, elsewhere, first_of, middle_of_ends
 from sceneql.compiler.names import Names
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.compose import compose_node
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence
-from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError
+from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, same_as
 from sceneql.quantities.span import Source
+from sceneql.quantities.units import format_quantity
 
 LONGEST = 160
 """Largest length of a value that is mended."""
@@ -34,6 +35,12 @@ _NUMBER = re.compile(r"(?<![\w.])\d+\.?\d*(?:[eE][-+]?\d+)?")
 _WRITTEN = re.compile(r"(?:write|is written|did you mean|as) [`']([^`]+?)[`'](?:\?|;|,|:|$| )")
 
 
+AXES = {
+    f"{sign}{axis}": " ".join(f"{sign}1" if one == axis else "0" for one in "xyz")
+    for sign in ("", "-")
+    for axis in "xyz"
+}
+"""Directions by the names of axes."""
 PLANAR = "is a vector of 3, not a vector of 2"
 """What is told of a vector without one of its components."""
 SINGLE = " is a single value, not a vector"
@@ -47,7 +54,8 @@ def improve(reader: Any, written: Naming[str, Node], cls: type[BaseModel], name:
     """
     better_alone(reader, written, cls, name, title, before)
     found = reader.found.found
-    if isinstance(written[name], Mapping) or len(found) == before:
+    turns = any(isinstance(mark, kinds.Turn) for mark in marks_of(field_of(cls, name)))
+    if (isinstance(written[name], Mapping) and not turns) or len(found) == before:
         return
     if (final := mended(reader, written[name], cls, name)) is not None and final[1] > 1:
         help = found[before].help
@@ -67,8 +75,14 @@ def better_alone(
     code, help = told[0]
     if code == "unknown-name" and helped.is_part(reader, node):
         found[before] = replace(found[before], help=helped.other_output(reader, node, info, name) or help)
+    elif code == "unknown-name" and any(mark.direction for mark in quantities(info)) and node.span.text in AXES:
+        found[before] = replace(found[before], help=f"write `{name}: {AXES[node.span.text]}`")
+    elif code == "unknown-name" and (plain := _one_for_all(node, info, name, title)) is not None:
+        found[before] = replace(found[before], help=plain)
     elif code in ("unknown-name", "unknown-unit"):
         found[before] = replace(found[before], help=helped.number_meant(node, info, name, code, help) or help)
+    if name == "sweep" and code == "wrong-shape" and isinstance(node, Scalar):
+        found[before] = replace(found[before], help=_swept(reader, written, node.text) or help)
     single = [mark.shape == () for mark in quantities(info)]
     if (help or "").startswith("two ends stand") and single and all(single):
         fields = [kinds.written_name(key) for key in cls.model_fields]
@@ -92,6 +106,25 @@ def better_alone(
     if better is None and not shaped:
         better = helped.plain_define(reader, node) or helped.in_other_unit(reader, node, info, rest, name)
     found[before] = replace(found[before], help=better)
+
+
+def _one_for_all(node: Node, info: Any, name: str, title: str) -> str | None:
+    """The help for a formula of x, y and z where a field is one quantity; None for others."""
+    marks = [mark for mark in quantities(info) if mark.shape == () and mark.dimension is not None]
+    if not marks or not isinstance(node, Scalar) or not re.search(r"(?<![\w.])[xyz](?![\w.(])", node.text):
+        return None
+    more = f"; `sceneql words {title}` tells what goes by place" if title.isidentifier() else ""
+    return f"it is one value, the same at all places, as `{name}: {format_quantity(1.0, marks[0].dimension)}`{more}"
+
+
+def _swept(reader: Any, written: Naming[str, Node], what: str) -> str | None:
+    """The help for a study's sweep that names what is varied, without its path: a define, or a solver's step."""
+    values = next((one.span.text for key, one in written.items() if key in ("values", "range", "over")), "[..., ...]")
+    parts = reader.names.parts.items()
+    steps = [part for part, entry in parts if isinstance(entry.fields, Mapping) and "step" in entry.fields.entries]
+    path = f"define.{what}" if what in reader.names.defines else what if "." in what else ""
+    path = path or (f"{steps[0]}.step" if steps and same_as(what, ["step"]) is not None else "")
+    return f"what is varied stands by its path: write `sweep: {{{path}: {values}}}`" if path else None
 
 
 def field_of(cls: type[BaseModel], name: str) -> Any:
@@ -159,9 +192,20 @@ def _candidates(text: str, errors: list[Diagnostic], name: str) -> Iterator[str]
 
 
 def _replaced(text: str, told: Collection[tuple[int, int, str]]) -> str:
-    """A text with pieces of it, from a start to an end, replaced."""
+    """A text with pieces of it, from a start to an end, replaced.
+
+    What stands for a piece may have what is around it, too, as ``sin(time/(1 s))`` for ``time`` in ``sin(time)``: it
+    stands for as much of the text as it repeats.
+    """
     for start, end, meant in sorted(told, reverse=True):
-        text = text[:start] + meant + text[end:]
+        found = meant.find(text[start:end])
+        at = max((k for k in range(found + 1) if text[:start].endswith(meant[:k])), default=0)
+        if at > 0:
+            rest = meant[found + end - start :]
+            again = next(rest[k:] for k in range(len(rest) + 1) if text[end:].startswith(rest[k:]))
+            text = text[: start - at] + meant + text[end + len(again) :]
+        else:
+            text = text[:start] + meant + text[end:]
     return text
 
 
@@ -180,7 +224,10 @@ def _keeps(text: str, better: str, names: Names) -> bool:
     left = iter(own := _NUMBER.findall(better))
     before = _NUMBER.findall(text)
     words = [one for one in re.findall(r"[^\W\d]\w*", text) if one in names.defines or one in names.parts]
-    known = all(re.search(rf"\b{re.escape(one)}\b", better) for one in words)
+    spare = {one: own.count(one) for one in own if one not in ("0", "1")}
+    known = all(spare[one] <= before.count(one) for one in spare) and all(
+        re.search(rf"\b{re.escape(one)}\b", better) for one in words
+    )
     return known and all(number in left for number in before) and {*own} <= {*before, "0", "1"}
 
 

@@ -21,8 +21,9 @@ from sceneql.compiler.annotations import example_of, first_field, is_fixed, mark
 from sceneql.compiler.meant.chained import mended
 from sceneql.compiler.meant.own_examples import own_example
 from sceneql.compiler.meant.quantity_help import NAME, TRUE
+from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import meant_field
-from sceneql.compiler.meant.values_elsewhere import quantities_fitting
+from sceneql.compiler.meant.values_elsewhere import along_default, quantities_fitting
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
@@ -48,6 +49,8 @@ OF_FORM = (
 """Codes of errors of a value that may be meant for a field though it does not take it so."""
 SHOWN = 60
 """Longest value that a message repeats behind the field that is meant."""
+USUAL_FORCE = "electrostatic"
+"""The word of forces between charges."""
 NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
 
@@ -55,6 +58,7 @@ NAMES = ("name", "id")
 def renamed(reader: Any, cls: type[BaseModel], name: str, node: Node) -> tuple[bool, str]:
     """Whether a field of a record takes a value, and the help that offers the field in place of the one written."""
     info = next(info for key, info in cls.model_fields.items() if kinds.written_name(key) == name)
+    node = node.items[0] if isinstance(node, Sequence) and list(map(type, node.items)) == [Sequence] else node
     wrong, text = _wrong(reader, node, info, name), node.span.text
     fits = wrong is None
     if fits and "\n" not in text and len(text) <= SHOWN:
@@ -112,13 +116,18 @@ def taking_word(reader: Any, cls: type[BaseModel], name: str) -> str | None:
     return fields[0] if len(fields) == 1 else None
 
 
-def meant(
-    reader: Any, cls: type[BaseModel], name: str, node: Node, known: Sequenced[str]
-) -> tuple[str | None, str | None]:
-    """The fields of a record that an unknown name most likely stands for, by its letters and as a word."""
-    if issubclass(cls, kinds.Record) and cls.meant_by(node.span.text) is not None:
-        return known[0], None
-    return meant_field(name, known), taking_word(reader, cls, name)
+def meant(reader: Any, cls: type[BaseModel], node: MappingNode) -> set[str | None]:
+    """The fields of a record that its unknown names most likely stand for, by their letters or as words."""
+    known = [kinds.written_name(name) for name in cls.model_fields]
+    unknown = [name for name in node.entries if name not in known]
+    found: set[str | None] = set()
+    for name in unknown:
+        told = together(name, unknown, node, known) or ""
+        found |= {meant_field(name, known), taking_word(reader, cls, name)}
+        found |= {one for one in known if f"`{one}: " in told}
+        if issubclass(cls, kinds.Record) and cls.meant_by(node.entries[name].span.text) is not None:
+            found.add(known[0])
+    return found
 
 
 def inside(reader: Any, cls: type[BaseModel], name: str, node: Node) -> str | None:
@@ -132,6 +141,8 @@ def inside(reader: Any, cls: type[BaseModel], name: str, node: Node) -> str | No
     text = node.span.text if "\n" not in node.span.text and len(node.span.text) <= SHOWN else "..."
     if (field := taking_word(reader, cls, name)) is not None:
         return f"write `{field}: {{{name}: {text or '{}'}}}`"
+    if (each := _for_each(reader, name)) is not None:
+        return each
     found: list[tuple[bool, str]] = []
     for key, info in cls.model_fields.items():
         inner = [one for one in (info.annotation, *get_args(info.annotation)) if isinstance(one, type)]
@@ -149,6 +160,23 @@ def inside(reader: Any, cls: type[BaseModel], name: str, node: Node) -> str | No
         told = f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
         found.append((_wrong(reader, node, own, name) is not None, told))
     return min(found, key=lambda one: one[0])[1] if found else None
+
+
+def _for_each(reader: Any, name: str) -> str | None:
+    """The help for a field of listed masses that is a force's, which has one for each: ``charge``."""
+    part, _, path = reader.owner.partition(".")
+    node: Any = reader.names.parts[part].fields if part in reader.names.parts else None
+    for step in path.split(".")[:-1]:
+        node = node.entries.get(step) if isinstance(node, MappingNode) else None
+    items = list(node.entries.values()) if isinstance(node, MappingNode) and path.count(".") else []
+    each = [one.entries[name].span.text for one in items if isinstance(one, MappingNode) and name in one.entries]
+    words = [word for family, word in reader.names.catalogue.having(name) if family == "forces"] if each else []
+    if not words or len(each) < len(items):
+        return None
+    used = [entry.word for entry in reader.names.parts.values() if entry.word in words]
+    word = (used or [one for one in words if one == USUAL_FORCE] or words)[0]
+    told = f"{{{word}: {{{name}: [{', '.join(each)}]}}}}"
+    return f"it is a force's, one for each in their order: write `forces: {{all: {told}}}`"
 
 
 def _known(cls: type[BaseModel], name: str) -> Any:
@@ -219,6 +247,8 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         plain = list(quantities_fitting(reader, bare, cls.model_fields))
         if len(plain) == 1:
             return f"it has no unit: write `{{{kinds.written_name(plain[0])}: {number[1]}}}`"
+    if not fitting and (along := _along(reader, node, cls)) is not None:
+        return along
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
     if len(likely) != 1:
         return None
@@ -229,6 +259,14 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if text.startswith("-") and above and (why := instead("negative", likely[0])) is not None:
         return f"write `{{{likely[0]}: {text[1:].strip()}}}`: {why}"
     return f"write `{{{likely[0]}: {text}}}`"
+
+
+def _along(reader: Any, node: Scalar, cls: type[BaseModel]) -> str | None:
+    """The help for one number in place of a record whose one vector of its dimension points along an axis: a wind."""
+    found = [(key, text) for key, info in cls.model_fields.items() if (text := along_default(node, info)) is not None]
+    if len(found) != 1:
+        return None
+    return f"write `{{{kinds.written_name(found[0][0])}: {found[0][1].split('`')[1]}}}`"
 
 
 def _dealt(reader: Any, node: Sequence, cls: type[BaseModel], required: Sequenced[str]) -> str | None:

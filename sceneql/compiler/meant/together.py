@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from collections.abc import Sequence as Sequenced
 
@@ -9,6 +10,20 @@ from sceneql.language.tree import Mapping, Node, Scalar
 from sceneql.quantities.diagnostic import same_as
 from sceneql.quantities.literal import vector_meant
 
+_FIRST = re.compile(r"\{(\w+): [<\[]")
+_BLANK = re.compile(r"<(\w+)\|([^>]*)>")
+_NUMBER = re.compile(r"(?<![\w.])\d+\.?\d*(?:[eE][-+]?\d+)?")
+CELLS = ("cells", "resolution", "grid", "n", "divisions", "nodes", "points")
+"""Fields of other programs for a number of cells."""
+_SIGNED = re.compile(r"(?<![\w.])-?\d+\.?\d*(?:[eE][-+]?\d+)?")
+_RATE = re.compile(r"d\(?(\w+)\)?\s*/\s*dt")
+CORNERS = (
+    ("corner1", "corner2"), ("min", "max"), ("low", "high"), ("from", "to"), ("p1", "p2"), ("start", "end"),
+    ("lower", "upper"), ("corner_1", "corner_2"), ("a", "b"),
+)  # fmt: skip
+"""Fields of other programs for the corners of a box."""
+FEWEST = 2
+"""Least number of members of what is made of several."""
 SIZES = ("width", "height", "depth", "length")
 TURNS = ("rotation", "turn")
 """Fields that turn a part."""
@@ -23,7 +38,10 @@ USUAL = 30.0
 
 def together(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
     """The help for fields that are one here: ``from: a, to: b``, and items of a list without brackets."""
-    if (told := _turned(name, unknown, node, known) or _by_frames(name, node, known)) is not None:
+    told = _turned(name, unknown, node, known) or _by_frames(name, node, known) or _by_cells(name, node, known)
+    told = told or _corners(name, unknown, node, known) or _members(name, unknown, node, known)
+    told = told or _states(name, unknown, node, known)
+    if told is not None:
         return told
     ours = same_as(name, known)
     same = [other for other in unknown if same_as(other, known) == ours]
@@ -55,6 +73,27 @@ def _empty(node: Node) -> bool:
     return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
 
 
+def filled(help: str, value: Node, known: Collection[str]) -> str:
+    """A help text in which `<position|0 1 0 m>` is the text of the value's field `position`, or what stands behind.
+
+    Its other fields that are among the ``known`` ones, by another name too, stand behind those of the text.
+    """
+    fields = dict(value.entries) if isinstance(value, Mapping) else {}
+    if "<" in help and value.span.text and not isinstance(value, Mapping) and (own := _FIRST.search(help)) is not None:
+        return f"write `{own[1]}: {value.span.text}`"
+    if "<" not in help:
+        return help
+
+    def fill(blank: re.Match[str]) -> str:
+        key = next((one for one in fields if one == blank[1] or same_as(one, [blank[1]]) is not None), None)
+        return blank[2] if key is None else fields.pop(key).span.text
+
+    text = _BLANK.sub(fill, help)
+    more = {one if one in known else same_as(one, known): node.span.text for one, node in fields.items()}
+    told = "".join(f", {one}: {own}" for one, own in more.items() if one is not None and f"{one}:" not in text)
+    return text.replace("}`", f"{told}}}`", 1) if told else text
+
+
 def _turned(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
     """The help for an axis and an angle beside the other fields of what has a field for both."""
     field = next((one for one in TURNS if one in known), None)
@@ -77,3 +116,50 @@ def _by_frames(name: str, node: Mapping, known: Collection[str]) -> str | None:
     except ValueError:
         return None
     return f"`end` is a time: for {frames:g} frames, {rate:g} of them a second, write `end: {frames / rate:.6g} s`"
+
+
+def _by_cells(name: str, node: Mapping, known: Collection[str]) -> str | None:
+    """The help for the number of cells along the sides of a box that has the size of a cell."""
+    size = node.entries.get("size")
+    if "cell" not in known or "cell" in node.entries or name not in CELLS or size is None:
+        return None
+    counts = [float(one) for one in _NUMBER.findall(node.entries[name].span.text)]
+    sides = [float(one) for one in _NUMBER.findall(size.span.text)]
+    unit = re.search(r"[^\W\d]\w*(?=\W*$)", size.span.text)
+    if not counts or not sides or counts[0] <= 0.0 or unit is None:
+        return None
+    return f"it has the size of a cell: write `cell: {sides[0] / counts[0]:.6g} {unit[0]}`"
+
+
+def _corners(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for two corners of a box, which has a size and a middle."""
+    pair = next((pair for pair in CORNERS if name in pair and {*pair} <= {*unknown}), None)
+    if pair is None or not {"size", "position"} <= {*known} or "size" in node.entries:
+        return None
+    low, high = ([float(one) for one in _SIGNED.findall(node.entries[one].span.text)] for one in pair)
+    if len(low) != len(high) or len(low) not in (2, 3):
+        return None
+    found = re.search(r"[\d.]\s*([^\W\d]\w*)", node.entries[pair[0]].span.text)
+    unit = "m" if found is None else found[1]
+    size = " ".join(f"{abs(b - a):.6g}" for a, b in zip(low, high, strict=True))
+    middle = " ".join(f"{0.0 + (a + b) / 2:.6g}" for a, b in zip(low, high, strict=True))
+    return f"write `size: {size} {unit}`, and of its middle `position: {middle} {unit}`"
+
+
+def _members(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for parts under names of their own where a list holds them."""
+    texts = [node.entries[one].span.text for one in unknown]
+    if "of" not in known or "of" in node.entries or "blend" not in known or len(texts) < FEWEST:
+        return None
+    return f"write `of: [{', '.join(texts)}]`" if all(one.isidentifier() for one in texts) else None
+
+
+def _states(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
+    """The help for states and their rates without the fields around them: ``theta: 1, d(theta)/dt: omega``."""
+    both = ("start", "rate")
+    if not {*both} <= {*known} or {*both} & node.entries.keys() or any(same_as(one, both) for one in unknown):
+        return None
+    rates = {one: (_RATE.fullmatch(one) or [one, ""])[1] for one in unknown if _RATE.fullmatch(one)}
+    start = ", ".join(f"{one}: {node.entries[one].span.text}" for one in unknown if one not in rates)
+    rate = ", ".join(f"{of}: {node.entries[one].span.text}" for one, of in rates.items())
+    return f"write `start: {{{start or '...'}}}` and `rate: {{{rate or '...'}}}`"
