@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sceneql.system import Place
 
@@ -37,7 +37,7 @@ def follow(assembly: Assembly, ties: Sequence[Tied], floats: Floats, moved: Mapp
         return False
     y = assembly.start()
     columns: dict[tuple[int, int], int] = {}
-    weights: list[Floats] = []
+    weights: list[Any] = []
     momenta = {one.ints[1]: one.ints[5] for tie in ties for one in tie.movers if isinstance(one, Place)}
     for velocity, at in moved.items():
         momentum = momenta[velocity]
@@ -51,8 +51,8 @@ def follow(assembly: Assembly, ties: Sequence[Tied], floats: Floats, moved: Mapp
     for tie in ties:
         for _ in tie.rows:
             for side, mover in enumerate(tie.movers):
-                for turns in (0, 1) if isinstance(mover, Place) else ():
-                    column = columns.get((mover.ints[1], turns))
+                for turns in (0, 1):
+                    column = columns.get((mover.ints[1], turns)) if isinstance(mover, Place) else None
                     if column is not None:
                         first = rows[row] + AT_J + 6 * side + 3 * turns
                         whole[row, column : column + 3] += floats[first : first + 3] @ weights[column // 3]
