@@ -57,14 +57,16 @@ def relax_all(nx, ny, nz, gx, gy, gz, parts, r, d, kept):
         for j in range(ny):
             row = nx * j + plane * k
             low, high = ((j - 1) % ny - j) * nx, ((j + 1) % ny - j) * nx
+            own, known, part, x_ties = d[row:], r[row:], parts[row:], gx[row:]
+            low_ties, below, high_ties, above = gy[row:], d[row + low :], gy[row + high :], d[row + high :]
+            before = own[nx - 1]
             for i in range(nx):
-                c = row + i
-                left = c - 1 if i > 0 else row + nx - 1
-                right = c + 1 if i < nx - 1 else row
-                total = r[c] + gx[right] * d[right] + gy[c] * d[c + low] + gy[c + high] * d[c + high]
+                right = i + 1 if i < nx - 1 else 0
+                total = known[i] + x_ties[right] * own[right] + low_ties[i] * below[i] + high_ties[i] * above[i]
                 if nz > 1:
-                    total += gz[c] * d[c + down] + gz[c + up] * d[c + up]
-                d[c] = (kept * d[c] + parts[c] * total) + (parts[c] * gx[c]) * d[left]
+                    total += gz[row + i] * d[row + i + down] + gz[row + i + up] * d[row + i + up]
+                before = (kept * own[i] + part[i] * total) + (part[i] * x_ties[i]) * before
+                own[i] = before
 
 
 @lean_inlined
