@@ -7,9 +7,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import pi
 
+from sceneql.compiler.meant.factors import remedy
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
-from sceneql.compiler.values import origin, parsed_text, read_value, remedy
+from sceneql.compiler.values import origin, parsed_text, read_value
 from sceneql.compiler.vector_fields import PLACES
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping, Node, Scalar, Sequence, unsure
