@@ -140,39 +140,34 @@ def inside(
     That is meant first which takes the value. ``written``: the fields that are looked at, as they are written, where
     these are not all.
     """
-    for key, one in (written or {}).items():
+    text = node.span.text if "\n" not in node.span.text and len(node.span.text) <= SHOWN else "..."
+    for key, value in (written or {}).items():
         info = _known(cls, key)
         held = [] if info is None else [arm for arm in (info.annotation, *get_args(info.annotation)) if _is_record(arm)]
         if any(_known(arm, name) is not None for arm in held):
             own = [kinds.written_name(each) for each, field in held[0].model_fields.items() if field.is_required()]
-            before = f"{own[0]}: {one.span.text}, " if isinstance(one, Scalar) and len(own) == 1 else ""
-            return f"it stands inside `{key}`: write `{key}: {{{before}{name}: {node.span.text}}}`"
+            before = f"{own[0]}: {value.span.text}, " if isinstance(value, Scalar) and len(own) == 1 else "..., "
+            return f"it stands inside `{key}`: write `{key}: {{{before}{name}: {text}}}`"
     if written is not None:
         return None
     plain = node.text if isinstance(node, Scalar) else ""
     if issubclass(cls, kinds.Record) and (told := cls.meant_by(plain)) is not None:
         return told
-    text = node.span.text if "\n" not in node.span.text and len(node.span.text) <= SHOWN else "..."
     if (field := taking_word(reader, cls, name)) is not None:
         return f"write `{field}: {{{name}: {text or '{}'}}}`"
     if (each := _for_each(reader, name)) is not None:
         return each
     found: list[tuple[bool, str]] = []
     for key, info in cls.model_fields.items():
-        inner = [one for one in (info.annotation, *get_args(info.annotation)) if isinstance(one, type)]
-        for one in inner:
-            if (
-                issubclass(one, BaseModel)
-                and not issubclass(one, kinds.Kind)
-                and (own := _known(one, name)) is not None
-            ):
+        for arm in (info.annotation, *get_args(info.annotation)):
+            if _is_record(arm) and (taken := _known(arm, name)) is not None:
                 field = kinds.written_name(key)
                 told = f"it stands inside `{field}`: write `{field}: {{{name}: {text}}}`"
-                found.append((_wrong(reader, node, own, name) is not None, told))
+                found.append((_wrong(reader, node, taken, name) is not None, told))
     outer: type[BaseModel] | None = reader.outer
-    if outer is not None and (own := _known(outer, name)) is not None:
+    if outer is not None and (taken := _known(outer, name)) is not None:
         told = f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
-        found.append((_wrong(reader, node, own, name) is not None, told))
+        found.append((_wrong(reader, node, taken, name) is not None, told))
     return min(found, key=lambda one: one[0])[1] if found else None
 
 
