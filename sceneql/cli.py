@@ -127,13 +127,18 @@ def render(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path 
 def check(scene: Path, variant: str | None, sets: tuple[str, ...], words: Path | None) -> None:
     """Find what is wrong in a script, its variants and its studies, as far as that is seen without running it."""
     from sceneql import pipeline
-    from sceneql.compiler.variants import check_variants
-    from sceneql.quantities.diagnostic import Diagnostics
+    from sceneql.compiler.variants import check_variants, errors_in_variants
+    from sceneql.quantities.diagnostic import Diagnostics, ScriptError
     from sceneql.report.progress import bar
 
     with bar(scene.stem):
-        graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
         found = Diagnostics()
+        try:
+            graph = pipeline.load(scene, variant=variant, sets=sets, words=words)
+        except ScriptError as error:
+            found.extend(error.diagnostics)
+            found.extend(errors_in_variants(scene, sets, words, error.diagnostics) if variant is None else ())
+            raise ScriptError(found.found) from None
         found.extend(check_variants(graph, scene, variant, sets, words))
     found.raise_errors()
     _warn(graph)

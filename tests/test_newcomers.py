@@ -14,6 +14,7 @@ from sceneql import pipeline
 from sceneql.bodies.bodies import BODY_OUTPUTS
 from sceneql.bodies.nets import SIDES
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.grids.maps.map_names import CONTROLS
 from sceneql.quantities.curves import CURVES
 from sceneql.quantities.diagnostic import ScriptError
 from sceneql.quantities.operations import CONSTANTS, FUNCTIONS
@@ -69,6 +70,7 @@ def test_words_of_other_programs_lead_to_names_of_the_language():
     known = {*FUNCTIONS, *CONSTANTS, *outputs, "time", *names_in(schema(Catalogue()))}
     known |= {
         *BODY_OUTPUTS,
+        *CONTROLS,
         *CURVES,
         *SIDES,
         "720p",

@@ -129,3 +129,15 @@ def test_a_formula_is_printed_and_one_that_is_none_is_refused(tmp_path):
     assert (plain != told).any(axis=2)[:60, :120].sum() > 60
     with pytest.raises(ScriptError, match="expected '}'"):
         loaded(tmp_path, r"{law: {formula: {tex: '\frak{'}}}")
+
+
+def test_a_label_stands_over_the_surface_of_an_implicit_object_and_not_over_its_bounds(tmp_path):
+    blob = "implicit: {{field: x^2 + y^2 + z^2 - 0.04, bounds: {{ball: 0.8}}}}"
+    (tmp_path / "scene.yaml").write_text(
+        SCENE.replace(
+            "sphere: {{position: 0.5 0.25 0 m, radius: 0.2 m, material: {{glow: {{color: red}}}}}}", blob
+        ).format(overlays="{names: {labels: {of: {ball: a ball}, panel: 1, show: time > 1 s}}}", arrow="")
+    )
+    plain, told = (picture(load(tmp_path / "scene.yaml"), tmp_path, time) for time in (1.0, 2.0))
+    rows, _ = np.nonzero((plain != told).any(axis=2))
+    assert 90 - 0.5 * 90 < rows.max() < 90 - 0.2 * 90

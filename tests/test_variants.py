@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from click.testing import CliRunner
 
+from sceneql.cli import cli
 from sceneql.language.compose import compose
 from sceneql.language.patch import apply_patch, parse_set
 from sceneql.language.script import FAMILIES
@@ -111,3 +113,18 @@ def test_the_hash_is_of_texts_and_patches() -> None:
     assert script(SPRING).hash == script(SPRING).hash
     assert script(SPRING).hash != script(SPRING + "# more").hash
     assert len(script(SPRING).hash) == 64
+
+
+def test_errors_of_variants_are_told_beside_those_of_the_script(tmp_path) -> None:
+    """The variants were looked at where the script itself was right alone."""
+    script = tmp_path / "scene.yaml"
+    script.write_text(
+        "objects: {ball: {sphere: {radius: 0.2 m, positon: 0 2 0 m}}}\nforces: {g: gravity}\n"
+        "variants: {moon: {g: 1.62 m/s^2}, big: {ball.radius: 2 kg}}\n"
+    )
+    run = CliRunner().invoke(cli, ["check", str(script)])
+    assert [line for line in str(run.exception).splitlines() if line.startswith("error")] == [
+        "error[unknown-field]: sphere has no field 'positon'",
+        "error[unknown-word]: '1.62 m/s^2' is no word of forces",
+        "error[dimension-mismatch]: radius is a length (m), but this is a mass (kg)",
+    ]

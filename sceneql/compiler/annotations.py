@@ -68,6 +68,8 @@ def example_of(cls: type[BaseModel], name: str) -> str:
     (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
     extra: Any = info.json_schema_extra or {}
     default = extra.get("default")
+    if any(isinstance(mark, kinds.Turn) for mark in marks_of(info)):
+        return "{about: y, angle: 30 deg}"
     if isinstance(default, str) and default and any(character.isdigit() and character != "0" for character in default):
         return default
     if info.annotation is bool:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from sceneql.compiler.catalogue import Catalogue
+from sceneql.compiler.meant.entries import improve_entries, typed_meant
 from sceneql.compiler.meant.unknown import (
     beside_world,
     mover_of,
@@ -69,6 +70,7 @@ def check(script: Script, catalogue: Catalogue, found: Diagnostics, parsed: Pars
     ``parsed``: cache of texts parsed for other variants.
     """
     checker = _Checker(script, catalogue, found, parsed or Parsed())
+    improve_entries(script, catalogue, found)
     for family, entries in script.sections.items():
         for name in entries:
             checker.task(family, name)
@@ -218,13 +220,11 @@ class _Checker:
         cls = self.catalogue.load(family, entry.word)
         if cls is None:
             words = self.catalogue.choices(family)
-            hint = word_meant(entry, family, self.catalogue, self.family_of, self.script)
-            self.found.error(
-                "unknown-word",
-                f"'{entry.word}' is no word of {family}",
-                entry.word_span,
-                help=hint or "the words are " + ", ".join(words),
+            hint = typed_meant(entry.fields, family, self.catalogue) or word_meant(
+                entry, family, self.catalogue, self.family_of, self.script
             )
+            help = hint or "the words are " + ", ".join(words)
+            self.found.error("unknown-word", f"'{entry.word}' is no word of {family}", entry.word_span, help=help)
         return cls
 
     def family(self, name: str) -> str:

@@ -18,7 +18,7 @@ from sceneql.compiler.passes.doubts import warn_of_constants, warn_of_doubts
 from sceneql.compiler.passes.empty_holds import report_empty_holds
 from sceneql.compiler.passes.expand import expand
 from sceneql.compiler.passes.fall_through import warn_of_falling_through
-from sceneql.compiler.passes.far_joints import warn_of_far_joints
+from sceneql.compiler.passes.far_joints import warn_of_far_joints, warn_of_unturned
 from sceneql.compiler.passes.fillings import check_fillings
 from sceneql.compiler.passes.insides import report_hollow, warn_of_open_meshes
 from sceneql.compiler.passes.islands import islands
@@ -78,22 +78,24 @@ def compile_script(
     drawn = _drawn(tasks)
     cameras = _cameras(tasks)
     clock = script.settings.get("clock")
-    known = not unsure(script.root.entries.get("variants", script.root))
+    written = script.root.entries.get("variants", script.root)
+    known = not unsure(written) and (bool(script.variants) or written is script.root)
     check_layouts(tasks, script.variants if known else None, found)
     if checked.timed:
         check_latest(script, tasks, checked.settings.clock.end, found)
         _check_outputs(tasks, drawn, checked.settings.clock, None if clock is None else clock.span, found)
-    found.raise_errors()
     check_fillings(tasks, found)
     report_probes(script, tasks, found)
     report_boundary_names(script, tasks, found)
     report_empty_holds(tasks, found)
     report_overlaps(tasks, groups, found)
     report_outside_flows(tasks, found)
+    found.raise_errors()
     warn_of_sections(tasks, found)
     warn_of_open_meshes(tasks, groups, found)
     warn_of_bounds(tasks, found)
     warn_of_far_joints(tasks, found)
+    warn_of_unturned(tasks, groups, found)
     warn_of_doubts(tasks, checked.settings.clock, found)
     warn_of_constants(tasks, found)
     warn_of_keys(tasks, checked.settings.clock, found)

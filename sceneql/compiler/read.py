@@ -17,11 +17,12 @@ from pydantic import BaseModel
 
 from sceneql import kinds
 from sceneql.compiler import limits, paint, values
-from sceneql.compiler.annotations import could_be, is_fixed, quantities, unwrap
+from sceneql.compiler.annotations import could_be, is_fixed, unwrap
 from sceneql.compiler.formulas import Wanted, read_formula
 from sceneql.compiler.meant import likely
 from sceneql.compiler.meant import quantity_help as helped
-from sceneql.compiler.meant.likely import TRUE
+from sceneql.compiler.meant.chained import improve
+from sceneql.compiler.meant.quantity_help import TRUE
 from sceneql.compiler.meant.unknown import report_unknown
 from sceneql.compiler.names import Names
 from sceneql.compiler.number_files import names_a_file, read_numbers
@@ -36,12 +37,9 @@ from sceneql.language.tree import Node, Scalar, Sequence, broken, unsure, whole
 from sceneql.language.tree import written as plainly
 from sceneql.quantities.diagnostic import Diagnostics
 from sceneql.quantities.dimension import Dimension
+from sceneql.quantities.instead import instead
 from sceneql.quantities.span import Span
 
-PLANAR = "is a vector of 3, not a vector of 2"
-"""What is told of a vector without one of its components."""
-SINGLE = " is a single value, not a vector"
-"""What is told of several numbers where one stands."""
 FALSE = ("false", "no", "off")
 
 
@@ -83,7 +81,7 @@ class Reader:
         if isinstance(node, MappingNode) and issubclass(cls, kinds.Kind):
             symbols = cls.formula_symbols(plainly(node))
             solved = None if node.partial else cls.formula_dimension(plainly(node))
-        ok = True
+        ok, other = True, False
         got: dict[str, Any] = {}
         mistaken: set[str | None] = set()
         if isinstance(node, MappingNode):
@@ -95,13 +93,20 @@ class Reader:
             ok = report_unknown(node, known, title, self.found, **likely.asked(self, cls))
             ok = ok and not node.partial
             unknown = [name for name in node.entries if name not in known]
-            mistaken = {one for name in unknown for one in likely.meant(self, cls, name, known)}
+            alone = len(unknown) > 1 or len(written) == 1  # another thing may well be meant
+            other = alone and all(instead(f"field.{title}", one) for one in unknown) and bool(unknown)
+            mistaken = likely.meant(self, cls, node)
         for python_name, info in cls.model_fields.items():
             name = kinds.written_name(python_name)
             if name not in written:
                 if info.is_required():
                     ok = False
-                if info.is_required() and name not in mistaken and not (node is not None and unsure(node)):
+                if (
+                    info.is_required()
+                    and name not in mistaken
+                    and not other
+                    and not (node is not None and unsure(node))
+                ):
                     help = likely.example_line(self, cls, name, info)
                     self.found.error("missing-field", f"{title} needs '{name}'", span, help=help)
                 continue
@@ -114,36 +119,7 @@ class Reader:
                 got[python_name] = reader.field(written[name], info, name)
             except Unreadable:
                 ok = False
-                helped.by_own_density(self, written, before)
-                told = [(one.code, one.help) for one in self.found.found[before:]]
-                if [one[0] for one in told] == ["unknown-name"] and helped.is_part(self, written[name]):
-                    suiting = helped.other_output(self, written[name], info, name) or told[0][1]
-                    self.found.found[before] = replace(self.found.found[before], help=suiting)
-                elif len(told) == 1 and told[0][0] in ("unknown-name", "unknown-unit"):
-                    number_alone = helped.number_meant(written[name], info, name, *told[0]) or told[0][1]
-                    self.found.found[before] = replace(self.found.found[before], help=number_alone)
-                pointing = any(mark.direction for mark in quantities(info))
-                if told in ([("wrong-shape", None)], [("dimension-mismatch", None)]):
-                    rest = {
-                        key: more for key, more in cls.model_fields.items() if kinds.written_name(key) not in written
-                    }
-                    ours = told[0][0] == "wrong-shape" or pointing
-                    better = likely.elsewhere(self, written[name], info, rest) if ours else None
-                    if better is None and told[0][0] == "wrong-shape":
-                        better = helped.other_output(self, written[name], info, name)
-                    if better is None:
-                        better = helped.for_each(self, written[name], cls, name, title)
-                    if better is None and self.found.found[before].message.endswith(PLANAR):
-                        better = "a number is missing: it has one for each of x, y and z"
-                    if better is None and self.found.found[before].message.startswith(f"{name}{SINGLE}"):
-                        better = likely.first_of(name, written[name])
-                    if better is None and pointing and told[0][0] == "dimension-mismatch":
-                        better = helped.direction_alone(written[name])
-                    if better is None and told[0][0] == "dimension-mismatch":
-                        better = helped.plain_define(self, written[name]) or helped.in_other_unit(
-                            self, written[name], info, rest, name
-                        )
-                    self.found.found[before] = replace(self.found.found[before], help=better)
+                improve(self, written, cls, name, title, before)
         if not ok:
             raise Unreadable
         return self._some(validated(cls, got, node, span, self.found))
@@ -290,7 +266,8 @@ class Reader:
             raise self._fail("unknown-choice", f"{what} is {other} or one of {every}, not '{text}'", node.span, hint)
         hint = likely.choice_meant(text, [str(c) for c in choices]) or f"one of {every}"
         hint = f"it is always `{what}: {every}`" if len(choices) == 1 else hint
-        raise self._fail("unknown-choice", f"{what} cannot be '{text}'", node.span, hint)
+        hint = hint if text else f"it is one of {every}, by its name"
+        raise self._fail("unknown-choice", f"{what} cannot be '{text or node.span.text}'", node.span, hint)
 
     def _list(self, node: Node, origin: Any, arms: tuple[Any, ...], what: str) -> Any:
         fixed = origin is tuple and arms[-1] is not Ellipsis

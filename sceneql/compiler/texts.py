@@ -19,6 +19,8 @@ from sceneql.quantities.units import Unit, describe, parse_unit, unit_of
 _WORD = re.compile(r"\s?([^\W\d]\w*(?:[/*^]\w+)*)")
 _NUMBERED = r"(?<!\\)\\(?:x[\da-fA-F]{2}|u[\da-fA-F]{4}|U[\da-fA-F]{8})"
 _PRINTED = re.compile(r"%(\.\d+[efg])")
+_TEX = re.compile(r"\$([^${}]*[\\^_=][^$]*)\$")
+"""A formula of TeX between dollar signs."""
 _SIGN = re.compile(r"\$(\{[^{}]*\})")
 _LINK = re.compile(r"[^\W\d]\w*(?:\.\w+)+")
 PIECE = re.compile(r"\{\{|\}\}|\{(?P<inside>[^{}]*)\}|(?P<odd>[{}])")
@@ -38,6 +40,9 @@ def read_text(node: Node, mark: Interpolated, what: str, names: Names, found: Di
         found.error("limit-refused", said, node.span)
         return None
     text, start = parsed_text(node), node.content.start
+    if (tex := _TEX.search(text)) is not None:
+        help = f"TeX stands in a formula, `{{formula: {{tex: '{tex[1].strip()}'}}}}`: `sceneql words formula`"
+        found.warning("tex-in-text", "this is drawn as it stands, with its dollar signs", node.span, help=help)
     same = text == node.content.text
     if _LINK.fullmatch(text.strip()) is not None and names.gives(text.strip()):
         help = f'a text has its values in braces: write `{what}: "{{{text.strip()}:.2f}}"`'

@@ -8,24 +8,21 @@ from dataclasses import replace
 
 from sceneql.compiler.keyframes import ReadTime, read_keys
 from sceneql.compiler.limits import numbers
+from sceneql.compiler.meant.factors import is_zero, remedy
 from sceneql.compiler.names import Names
 from sceneql.compiler.over_time import momentary
-from sceneql.compiler.vector_fields import timed, vector_meant_by
+from sceneql.compiler.vector_fields import TURN, keys_meant, pair_meant, timed, vector_meant_by
 from sceneql.kinds import Quantity, Value
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, unsure
 from sceneql.quantities.diagnostic import Diagnostics, Note, ScriptError, suggestion
 from sceneql.quantities.dimension import (
     ANGLE,
-    DENSITY,
-    ENERGY,
     FORCE,
     FREQUENCY,
     LENGTH,
-    MASS,
     PERCENTAGE,
     PLAIN,
-    TEMPERATURE,
     TIME,
     Dimension,
     common,
@@ -33,23 +30,14 @@ from sceneql.quantities.dimension import (
 )
 from sceneql.quantities.evaluate import evaluate
 from sceneql.quantities.expression import Expr, Keys, Link, Number, Shape, Symbol, Type, Vector, walk
-from sceneql.quantities.instead import of_unit, power_of_ten, unit_meant
+from sceneql.quantities.instead import power_of_ten
 from sceneql.quantities.literal import vector_meant
-from sceneql.quantities.parser import parse_value
-from sceneql.quantities.spaced import apart, parted_meant
+from sceneql.quantities.spaced import parted_meant
 from sceneql.quantities.span import Span
-from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import describe, in_words, unit_of
 
 PLAIN_NUMBER = Quantity(PLAIN)
 COMPONENTS = ("x", "y", "z")
-_MISSING = (
-    (DENSITY, "(1000 kg/m^3)", "a density"),
-    (LENGTH**3 / MASS / TIME**2, "(6.674e-11 m^3/(kg*s^2))", "the constant of gravity"),
-    (DENSITY * ENERGY / MASS / TEMPERATURE, "(4.2e6 J/(K*m^3))", "what a volume takes to be a kelvin warmer"),
-)
-"""(dimension, an example of it, its name) of what turns a quantity to one that goes by a similar name: kinematic
-viscosity to dynamic, conductivity to diffusivity."""
 _AXES: dict[Dimension | None, int] = {LENGTH / TIME: 0, FREQUENCY: 1, FORCE: 1}
 SHORTEST, LONGEST = 1e-100, 1e100
 """Range of a direction's length in which products of a few such lengths neither vanish nor overflow."""
@@ -92,6 +80,9 @@ def read_expr(
         case Scalar():
             return scalar_expr(node, names, found)
         case Sequence():
+            if (help := keys_meant(node)) is not None:
+                found.error("wrong-shape", f"{what} is no list of times and values", node.span, help=help)
+                return None
             inner = () if shape is None else shape[1:]
             items = [read_expr(item, inner, dimension, what, names, found) for item in node.items]
             if any(item is None for item in items):
@@ -106,7 +97,8 @@ def read_expr(
                 return _by_component(node, dimension, what, names, found)
             texts = [item.span.text for item in node.entries.values() if isinstance(item, Scalar)]
             listed = (shape is None or shape[:1] == (None,)) and len(texts) == len(node.entries)
-            help = timed(node) or (f"write `[{', '.join(texts)}]`" if listed else None)
+            help = timed(node) or (pair_meant(node, dimension) if shape == (2,) else None)
+            help = help or (f"write `[{', '.join(texts)}]`" if listed else None)
             help = f"a name has one value: write `{node.span.text[1:-1]}`, each by itself" if what == "define" else help
             found.error("wrong-shape", f"{what} is a value, not a group of fields", node.span, help=help)
     return None
@@ -140,14 +132,14 @@ def _vector(
     items: list[Expr], what: str, span: Span, found: Diagnostics, wanted: Dimension | None = None
 ) -> Expr | None:
     inner = items[0].type.shape
-    given = [i.type.dimension for i in items if not _zero(i)]
+    given = [i.type.dimension for i in items if not is_zero(i)]
     dimension = (wanted if wanted is not None and not wanted.plain and wanted in given else common(given)) or PLAIN
     for item in items:
         other = item.type.dimension
         if item.type.shape != inner:
             found.error("wrong-shape", f"the items of {what} differ in their number of components", item.span or span)
             return None
-        if other is not None and other != dimension and not _zero(item):
+        if other is not None and other != dimension and not is_zero(item):
             texts = ", ".join("" if one.span is None else one.span.text for one in items)
             vector, rate = vector_meant(texts), dimension / other in (TIME, FREQUENCY)
             help = remedy(item, dimension) or (vector and f"write `{vector}`")
@@ -243,7 +235,9 @@ def fits(expr: Expr, quantity: Quantity, what: str, span: Span, found: Diagnosti
     for one in bare:
         place = span if one is expr or one.span is None else one.span
         text = vector_meant(place.text.strip("[]")) or place.text  # no unit stands behind a bracket
-        found.error("unit-needed", f"{what} needs a unit", place, help=f"write `{text} deg` or `{text} rad`")
+        large = Value(one).constant and max(map(abs, numbers(evaluate(one, {})))) > TURN
+        help = f"write `{text} deg`" if large else f"write `{text} deg` or `{text} rad`"
+        found.error("unit-needed", f"{what} needs a unit", place, help=help)
     return not bare
 
 
@@ -306,66 +300,11 @@ def _counted(expr: Expr, wanted: Dimension | None) -> str | None:
     return None if wanted.plain else f"write what it is a part of, such as `{share}*(1 {unit_of(wanted)})`"
 
 
-def remedy(expr: Expr, wanted: Dimension | None) -> str | None:
-    """The help where a quantity lacks a factor, or has a unit with a prefix where two units were meant."""
-    here = "" if expr.span is None else expr.span.text
-    if (other := unit_meant(here, expr.type.dimension, wanted)) is not None:
-        return other
-    text = None if expr.span is None or isinstance(expr, Link) else apart(expr.span.text)
-    if text is not None and expr.span is not None:
-        try:
-            meant = parse_value(text, expr.span)
-        except ScriptError:
-            return _factor(expr, wanted)
-        one = meant.items[0] if isinstance(meant, Vector) else meant
-        if isinstance(one, Number) and suits(one.type.dimension, wanted):
-            return f"two units have a sign between them: write `{text}`"
-    return _product(expr, wanted) or _factor(expr, wanted) or of_unit(here)
-
-
-def _product(expr: Expr, wanted: Dimension | None) -> str | None:
-    """The help for a product of a named value and a number whose unit is one too many: for a length, `r * 2 m`."""
-    has = expr.type.dimension
-    if expr.span is None or has is None or wanted is None:
-        return None
-    text = expr.span.text
-    for found in re.finditer(r"(?<![\w.])(\d[\d.]*)\s*([a-zA-Z]+)(?![\w^/*])", text):
-        unit = UNITS.get(found[2])
-        if unit is not None and "*" in text and wanted * unit[1] == has:
-            rest = text[: found.end(1)] + text[found.end() :]
-            return f"the names in it have units already, and the product has one too many: write `{rest}`"
-    return None
-
-
-def _factor(expr: Expr, wanted: Dimension | None) -> str | None:
-    """The help where a formula of names lacks a factor of time or length: for the length `1 m*time`, 1/(1 s)."""
-    has = expr.type.dimension
-    if has is not None and wanted is not None and expr.span is not None:
-        for kind, factor, word in _MISSING:
-            if has * kind == wanted:
-                return f"multiply it by {word}: write `{expr.span.text}*{factor}`"
-            if has / kind == wanted:
-                return f"divide it by {word}: write `{expr.span.text}/{factor}`"
-    if has is None or wanted is None or expr.span is None or not any(isinstance(n, Symbol | Link) for n in walk(expr)):
-        return None
-    text = f"({expr.span.text})" if re.search(r"[-+<>=]", expr.span.text) else expr.span.text
-    for dimension, sign in ((has / wanted, "/"), (wanted / has, "*")):
-        if dimension in (TIME, LENGTH):
-            word = "divide it by" if sign == "/" else "multiply it by"
-            return f"{word} {describe(dimension)}: write `{text}{sign}(1 {unit_of(dimension)})`"
-    unit = unit_of(wanted / has)
-    one = next((item for item in expr.items if not _zero(item)), expr) if isinstance(expr, Vector) else expr
-    text = text if one.span is None else one.span.text
-    if unit != "1" and any(isinstance(node, Number) and node.bare and node.value != 0 for node in walk(expr)):
-        return f"a number in it has no unit: write `{text}*(1 {unit})`, or `{unit}` behind that number"
-    return None
-
-
 def origin(expr: Expr, span: Span) -> list[Note]:
     """A note on where a value is defined, if elsewhere than used; for a vector, its first nonzero item."""
     one = expr
     if isinstance(expr, Vector):
-        one = next((item for item in expr.items if not _zero(item)), expr)
+        one = next((item for item in expr.items if not is_zero(item)), expr)
     place = one.span
     if place is None or (place.source is span.source and span.start <= place.start <= place.end <= span.end):
         return []
@@ -376,10 +315,6 @@ def _bare(expr: Expr) -> bool:
     numbers = [node for node in walk(expr) if isinstance(node, Number)]
     names = any(isinstance(node, Symbol | Link) for node in walk(expr))
     return not names and all(n.bare for n in numbers) and any(n.value != 0 for n in numbers)
-
-
-def _zero(expr: Expr) -> bool:
-    return isinstance(expr, Number) and expr.value == 0 and expr.bare
 
 
 def _shape_fits(has: Shape, wanted: Shape) -> bool:

@@ -15,6 +15,10 @@ from sceneql.kinds import FAMILIES
 from sceneql.language.patch import Patch
 from sceneql.language.script import compose_script
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, ScriptError, told_once
+from sceneql.quantities.span import Span
+
+MOST = 20
+"""Largest number of variants that are looked at where the script has errors itself."""
 
 
 def check_variants(
@@ -36,3 +40,33 @@ def check_variants(
         except ScriptError as error:
             wrong.append(error.diagnostics)
     return told_once(wrong)
+
+
+def errors_in_variants(
+    path: Path, sets: Sequence[str], words: Path | None, known: Sequence[Diagnostic]
+) -> list[Diagnostic]:
+    """The errors in what the variants of a script give, where the script as it stands has the ``known`` errors.
+
+    Errors elsewhere may well be those of the script again, and are left out.
+    """
+    found = Diagnostics()
+    try:
+        composed = compose_script(path, tuple(kind.family for kind in FAMILIES), KEYS, None, found)
+    except ScriptError:
+        return []
+    section = composed.root.entries.get("variants")
+    catalogue, parsed = Catalogue(words), Parsed()
+    wrong: list[Sequence[Diagnostic]] = []
+    for name in composed.variants if section is not None and len(composed.variants) <= MOST else ():
+        found = Diagnostics()
+        try:
+            compile_script(composed.script(name, sets, found), catalogue, found, parsed=parsed)
+        except ScriptError as error:
+            wrong.append([one for one in error.diagnostics if section is not None and _within(one, section.span)])
+    told = {(one.code, None if one.span is None else one.span.start) for one in known}
+    return [one for one in told_once(wrong) if (one.code, None if one.span is None else one.span.start) not in told]
+
+
+def _within(one: Diagnostic, place: Span) -> bool:
+    """Whether an error stands in a part of the script."""
+    return one.span is not None and one.span.source is place.source and place.start <= one.span.start <= place.end

@@ -33,6 +33,15 @@ MOST_FACTORED = {2: 40_000, 3: 4_000}
 """Most cells of a 2D or 3D flow whose pressure equation is factored: its numbers are repeated in each of its terms."""
 
 
+def _single(velocity: Formula | None) -> Iterable[Problem]:
+    """The problem of a velocity that is one number."""
+    if velocity is not None and not velocity.expr.type.shape:
+        text = "this velocity needs components, one for each side of the box"
+        written = "1" if velocity.span is None else velocity.span.text.strip("\"'")
+        help = f"write `[{written}, 0]`, of a deep flow with one more 0"
+        yield Problem(text, ("velocity",), code="wrong-shape", help=help)
+
+
 class Wall(Record):
     """A wall, which fluid sticks to or slips along."""
 
@@ -43,11 +52,19 @@ class Wall(Record):
         at_least=0,
     )
 
+    def problems(self) -> Iterable[Problem]:
+        """A velocity that is one number."""
+        yield from _single(self.velocity)
+
 
 class Inflow(Record):
     """Where the velocity is given."""
 
     velocity: MOVING = field("The velocity there, by place and time: `[0.3*y*(0.4 - y), 0]`.")
+
+    def problems(self) -> Iterable[Problem]:
+        """A velocity that is one number."""
+        yield from _single(self.velocity)
 
 
 class Outflow(Record):

@@ -135,12 +135,12 @@ class Object(Kind):
         """
         return ()
 
-    def cut_by_default(self) -> str:
-        """The default bounds, as text, that cut an unbounded object where the script gives none.
+    def cut_by_default(self) -> tuple[str, str]:
+        """The default bounds, as text, that cut an unbounded object where the script gives none, and larger ones.
 
-        Empty where nothing is cut.
+        Empty where nothing is cut; the second also where none are known that hold all of it.
         """
-        return ""
+        return "", ""
 
     def members(self) -> tuple[Ref, ...]:
         """The objects that this one draws, so that they are not drawn by themselves."""

@@ -54,6 +54,8 @@ class Gallery(Record):
     time: FixedTime = field("The instant of the poster.", "1 s", at_least=0)
 
 
+_LAST = re.compile(r"([^\W\d][\w.]*)\[-1\]")
+"""The last of a series, as in NumPy."""
 _COMPARED = re.compile(r"([^<>=!]+)(<=?|>=?|={1,2}|≈|~=)([^<>=]+)")
 
 
@@ -81,6 +83,7 @@ class Expect(Record):
             return None
         of, sign, value = (found[k].strip() for k in (1, 2, 3))
         of, value = (value, of) if ">" in sign else (of, value)
+        of = _LAST.sub(r"final(\1)", of)
         field = "value" if "=" in sign and sign[0] not in "<>" else "below"
         return f"write `{{of: {of}, {field}: {value}, because: WHY}}`"
 

@@ -9,6 +9,7 @@ import yaml
 
 from sceneql.language.behind_quotes import told_behind
 from sceneql.quantities.diagnostic import Diagnostic, Note
+from sceneql.quantities.spaced import ternary
 from sceneql.quantities.span import Source, Span
 
 _UNPRINTABLE = re.compile("[^\t\n\r -~\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -67,6 +68,12 @@ def explain(source: Source, error: yaml.YAMLError, flow: int | None) -> Diagnost
     at = place(source, error)
     since = min(_index(error, "context_mark", at), at)
     if "quoted scalar" in context and "escape" not in problem:
+        ended = re.compile(r'"[^"\n]*\\[^"\n]*"').match(source.text, since)
+        if ended is not None and "\\" in ended[0]:
+            plain = ended[0][1:-1].replace("\\\\", "\\")
+            better = plain.replace("\\", "/") if re.match(r"[A-Za-z]:|\.", plain) else plain
+            text = "in double quotes a backslash begins a sign of YAML's"
+            return _syntax(text, source, since, f"write single quotes: `'{better}'`")
         return _syntax("this quote is never closed", source, since, "end the text with the same quote")
     if "escape" in problem and source.text[at - 1 : at] == "\\":
         at -= 1
@@ -122,6 +129,10 @@ def _in_flow(source: Source, at: int, opening: int) -> Diagnostic:
             return _syntax("fields stand in braces, not in parentheses", source, at, braces)
         if source.text[at : at + 1] == ":":
             help = "a text that holds a colon goes in quotes; items are separated by commas"
+            value = source.text[opening:at].rpartition(": ")[2]
+            rest = re.split(r"[,}\n]", source.text[at + 1 :], maxsplit=1)[0]
+            if (chosen := ternary(f"{value}:{rest}")) is not None:
+                return _syntax("a choice is written otherwise", source, at, f'write `"{chosen}"`')
             if (parted := _PARTED.search(source.text[opening:at])) is not None:
                 help = f"fields are separated by commas: write `{parted[1].strip()}, {parted[2]}: ...`"
             return _syntax("a second colon in this value, where no key can stand", source, at, help)

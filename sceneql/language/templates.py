@@ -119,8 +119,11 @@ class _Expander:
         self.done.broken.any = True
         if broken(node):
             return {}
-        equals = _EQUALS.fullmatch(node.text) if isinstance(node, Scalar) else None
-        help = f"write `{key}: {{name: ...}}`" if equals is None else f"write `{equals[1]}: {equals[2]}`"
+        pieces = [one.strip() for one in re.split(r"[;\n]", node.span.text)] if isinstance(node, Scalar) else []
+        equals = [_EQUALS.fullmatch(one) for one in pieces if one]
+        told = " and ".join(f"`{one[1]}: {one[2]}`" for one in equals if one is not None)
+        each = ", each on a line of its own" if len(equals) > 1 else ""
+        help = f"write {told}{each}" if equals and all(equals) else f"write `{key}: {{name: ...}}`"
         self.found.error("section-shape", f"'{key}' holds values by name", node.span, help=help)
         return {}
 

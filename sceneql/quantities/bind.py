@@ -30,6 +30,7 @@ _TIMED = re.compile(r"([-+]?\d[\d.]*(?:[eE][-+]?\d+)?\s*)([^\W\d]\w*)\s*\*\s*tim
 """A number with a unit times the time."""
 FEWEST_DEGREES = 15.0
 """A bare number that is a multiple of it is most likely meant in degrees."""
+ENDS = ("low", "high")
 COMPONENTS = {3: "xyz", 2: "xy", 4: "wxyz"}
 """Names of a vector's components, by the number of components."""
 
@@ -177,8 +178,14 @@ def _report(node: Expr, parts: tuple[Expr, ...], error: MismatchError, lookup: L
     time = time_meant(written)
     if time is not None and node.span is not None and isinstance(lookup(("t",), node.span), Symbol):
         time = SECONDS
+    message = "`t` behind a unit is a tonne" if time is not None and time != SECONDS else error.message
+    if isinstance(node, Call) and node.op == "random" and len(parts) == len(ENDS) and all(one.span for one in parts):
+        low, high = ("" if one.span is None else one.span.text for one in parts)
+        help = f"write `mix({low}, {high}, random(1))`, of copies with their number, `random(i)`"
+        found.error(error.code, error.message, parts[error.first].span or node.span, help=help)
+        return
     help = time or "; ".join(filter(None, (error.help, _better(node, parts, error) or _by_time(parts, error))))
-    found.error(error.code, error.message, parts[error.first].span or node.span, help=help or None, notes=notes)
+    found.error(error.code, message, parts[error.first].span or node.span, help=help or None, notes=notes)
 
 
 def _by_time(parts: tuple[Expr, ...], error: MismatchError) -> str | None:

@@ -132,6 +132,11 @@ OF_FORMULAS = (
         "deltatime delta_time dt",
         "a formula says what is at the `time`, and no step: `1 m/s*time`, in place of what is added in each frame",
     ),
+    (
+        "name",
+        "constant conserved const unchanged",
+        "what keeps its value is compared with its start: `of: final(fall.energy), value: at(fall.energy, 0 s)`",
+    ),
     ("name", "about", "an axis is a field: `rotation: {about: z, angle: 30 deg}`"),
     ("name", "water", "water has a density of `1000 kg/m^3`, and a viscosity of `1e-3 Pa*s`"),
     ("name", "air", "air has a density of `1.2 kg/m^3`, and a viscosity of `1.8e-5 Pa*s`"),
@@ -141,8 +146,11 @@ OF_FORMULAS = (
         "a lamp has its power in W, as a bulb does: one of 800 lm is `60 W`, one of 1600 lm `100 W`",
     ),
     ("unit", "e electron electrons elementary_charge", "the charge of a proton is `1.602e-19 C`"),
+    ("unit name", "micron microns micrometer micrometers", "a micron is `1 um`"),
+    ("unit name", "cc ccm", "a cc is a cubic centimeter: write `g/cm^3`"),
     ("unit name", "cp cps centipoise poise", "a poise is `0.1 Pa*s`, a hundredth of it `1e-3 Pa*s`"),
     ("name", "G", "write `6.6743e-11 m^3/(kg*s^2)`, or define it so: `define: {G: 6.6743e-11 m^3/(kg*s^2)}`"),
+    ("sign", "'", "a foot is `ft`, an inch `inch`: `2 3 1 ft`"),
     ("sign", '"', "an inch is `inch`, a foot `ft`: `4 2 1 inch`"),
     (
         "unit name",

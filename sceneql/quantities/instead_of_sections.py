@@ -19,7 +19,7 @@ OF_SECTIONS = (
         "its steps are its own; those that are given are taken by `{rk4: {step: 1 ms}}`, and others of fixed steps",
     ),
     (
-        "field.trail field.tube field.coil field.streamlines field.arrow",
+        "field.trail field.tube field.streamlines field.arrow",
         "width thickness line_width linewidth stroke",
         "half of how thick it is is its `radius: 1 cm`",
     ),
@@ -129,7 +129,7 @@ OF_SECTIONS = (
         "of a solid only its diffusivity counts, the conductivity over density and heat capacity: `coefficient: 400"
         " W/(m*K)/(8960 kg/m^3*385 J/(kg*K))`",
     ),
-    ("field.studies", "dt step k n h m", _VARIED),
+    ("field.studies", "dt step k n h m values range points", _VARIED),
     (
         "field.emit",
         "direction angle dir toward towards",
@@ -223,6 +223,77 @@ OF_SECTIONS = (
         "axes axis grid ruler scale_bar scalebar compass gizmo",
         "there is none: arrows and tubes among the `objects` show axes, `{arrow: {vector: 1 0 0 m}}`",
     ),
+    ("field.implicit", "box", "write `bounds: {box: [-1 -1 -1, 1 1 1]}`, the low and the high corner"),
+    ("field.implicit", "ball sphere", "write `bounds: {ball: 1.5}`, the radius about the origin"),
+    ("field.coil", "thickness width wire_radius line_width", "half of how thick the wire is is `wire: 1 cm`"),
+    (
+        "field.coil",
+        "pitch height length",
+        "it reaches from end to end, and has so many turns: `from: 0 0 0 m, to: 0 1 0 m, turns: 5`",
+    ),
+    (
+        "field.surface",
+        "z y x height function formula f field",
+        "a height above x and z is a formula, `{implicit: {field: y - 0.3*sin(x)*cos(z), bounds: {box: [-3 -1 -3, 3 1"
+        " 3]}}}`",
+    ),
+    (
+        "field.mesh",
+        "vertices points faces triangles indices",
+        "a file has them, `{mesh: {file: cow.obj}}`; a cage of a few is the `points` of a `blobby`",
+    ),
+    ("field.mirror", "roughness smoothness", "a mirror is wholly smooth: leave it out; `metal` has a `roughness`"),
+    ("field.turntable", "elevation pitch height_angle", "how far it looks down is its `tilt: 20 deg`"),
+    (
+        "field.particles",
+        "region box bounds volume domain area",
+        "masses fill an object: `fill: {object: NAME, count: 1000}`",
+    ),
+    (
+        "field.spring",
+        "x0 center origin anchor point equilibrium",
+        "it pulls two places together: `from: 0 0 0 m`, and the mass's, `to: fall.position`",
+    ),
+    (
+        "field.reaction_diffusion",
+        "du dv f k d_u d_v da db",
+        "each field has its spread and its rate: `species: {u: {coefficient: 2e-5, initial: 1, rate: -u*v^2 + 0.04*(1 -"
+        " u)}, v: {coefficient: 1e-5, initial: 0, rate: u*v^2 - 0.1*v}}`",
+    ),
+    (
+        "field.outline",
+        "depth height extrude thickness_z",
+        "it is flat; a body comes in a file, `{mesh: {file: part.stl}}`, or is made by `union` and `intersection`",
+    ),
+    (
+        "materials",
+        "image texture bitmap photo picture map",
+        "no picture is read here: write a color, or `checker`, or a color that is a formula of x, y, z",
+    ),
+    (
+        "field.objects",
+        "emission emissive emit luminance",
+        "what shines is a material: `material: {glow: {color: orange, strength: 5}}`",
+    ),
+    (
+        "field.diffusion",
+        "velocity flow advection wind carried_by",
+        "what carries it is its drift, by the flow's name: `drift: {by: air}`",
+    ),
+    (
+        "field.collision",
+        "stiffness damping k kn kp kd c penalty spring erp cfm solref solimp",
+        "contacts are hard: `restitution: 0.5` says how much of the speed comes back, and nothing gives way",
+    ),
+    ("field.joints", "parent base link relative_to", "write `{of: <parent|shoulder>}`"),
+    ("field.images field.image", "format type extension ext", "pictures are PNG files: leave it out"),
+    ("field.video", "format type extension ext", "films are MP4 files: leave it out"),
+    (
+        "field.images field.image field.video field.record",
+        "name filename prefix basename output out",
+        "a file has the entry's name, as `film.mp4` or `frames.0000.png`; `sceneql render SCENE -o FILE` gives another",
+    ),
+    ("field.glass", "transmission transparency opacity alpha transmissive", "glass is clear by itself: leave it out"),
     # sections
     ("section", "seed", "write `clock: {seed: 5}`"),
     (

@@ -18,6 +18,8 @@ _CALLED = re.compile(r"\\(sin|cos|tan|exp|log|ln|sqrt)(?![a-zA-Z])\s*(?:\(|([\w.
 _FACTOR_CALLED = re.compile(r"(?<=[\w)])\s*\\(?=(?:sin|cos|tan|exp|log|ln|sqrt)(?![a-zA-Z]))")
 _NAME = re.compile(r"([\w)]?)(\s*)\\([a-zA-Z]+)")
 _FACTOR = re.compile(r"(\s*)(?=[a-zA-Z0-9(]|\\(?!cdot|times|ast))([a-zA-Z]*)")
+_SIDE = re.compile(r"(?<=[a-zA-Z])[ ](?=[a-zA-Z])(?<!\d [a-z])")
+"""A space between two names, which stands for a product."""
 _TOKEN = re.compile(r"[\w.]+")
 
 
@@ -37,6 +39,7 @@ def from_latex(text: str) -> str | None:
         result = _NAME.sub(_name, result)
     result = re.sub(r"(?<![\w.])ln\(", "log(", " ".join(result.split()))
     result = re.sub(r"(?<=[\w)])\* (?=[\w(])", "*", result)
+    result = _SIDE.sub("*", result) if _SIDE.search(result) is not None and result != text else result
     return None if result == text or re.search(r"[\\{}]", result) else result
 
 

@@ -25,8 +25,12 @@ from sceneql.quantities.spaced import (
     by_frame,
     indexed,
     meant_by_equals,
+    modulo,
     other_signs,
+    per_unit,
+    ternary,
     two_ends,
+    vector_called,
     without_dots,
 )
 from sceneql.quantities.span import Span
@@ -34,6 +38,7 @@ from sceneql.quantities.temperatures import Temperatures
 from sceneql.quantities.unit_table import UNITS
 from sceneql.quantities.units import parse_unit
 
+COORDINATES = ("x", "y", "z")
 LONGEST, DEEPEST = 10_000, 100
 """Limits on the number of characters of one expression (each node takes at least one), and on the depth of its tree."""
 
@@ -211,6 +216,8 @@ class _Parser:
         args = self._items(")", opening)
         if name not in FUNCTIONS:
             hint = instead("function", name) or instead("function", of_library(name)) or suggestion(name, FUNCTIONS)
+            if (vector := vector_called(self.text)) is not None:
+                hint = f"write `{vector}`"
             every = "`sceneql words functions` lists all"
             help = every if hint is None else f"{hint}{' ' if hint.endswith('?') else '; '}{every}"
             raise self._fail("unknown-function", f"there is no function '{name}'", start, start + len(name), help=help)
@@ -248,8 +255,11 @@ class _Parser:
                 plain := from_latex(self.text)
             ):
                 help = f"write `{plain}`"
+            if self.token == "?" and (chosen := ternary(self.text)) is not None:
+                help = f"write `{chosen}`"
             if self.token in "|%@":
-                help = other_signs(self.text) or help
+                plain = modulo(self.text)
+                help = other_signs(self.text) or (plain and f"write `{plain}`") or help
             if self.token in "=.":
                 help = meant_by_equals(self.text) or without_dots(self.text) or help
             name = re.match(WORD, self.text[self.end :])
@@ -292,6 +302,7 @@ class _Parser:
     def _leftover(self, expr: Expr) -> ScriptError:
         if self.kind == "sign" and self.token not in "([":
             help = comma_meant(self.text) if self.token == "," else instead("sign", self.token)
+            help = f"write `{plain}`" if (plain := modulo(self.text)) is not None else help
             return self._fail("syntax", f"'{self.token}' cannot stand here", help=help)
         odd = next((c for c in self.text if not c.isascii() and instead("sign", c)), None)
         if odd is not None:
@@ -300,6 +311,8 @@ class _Parser:
             return self._fail("syntax", f"'{odd}' cannot stand in an expression", at, at + 1, help=help)
         if (sides := _crossed(self.text)) is not None:
             help = sides
+        elif (vector := vector_called(self.text) or per_unit(self.text) or ternary(self.text)) is not None:
+            help = f"write `{vector}`"
         elif isinstance(expr, Name) and (formula := instead("before", self.before)) is not None:
             help = formula
         elif isinstance(expr, Number) and self.kind == "number" and self.before.endswith("%"):
@@ -333,7 +346,11 @@ class _Parser:
             help = f"a unit stands directly after a number: write `{expr.span.text[:60]}*(1 {unit})`"
         elif self.before in FUNCTIONS and self.kind != "sign":
             help = f"write `{self.before}({self.token[:40]})`"
-        elif (other := instead("name", self.token) or instead("name", self.before)) is not None:
+        elif (plain := from_latex(self.text)) is not None:
+            help = f"write `{plain}`"
+        elif (other := instead("name", self.token) or instead("name", self.before)) is not None and not (
+            isinstance(expr, Name | Number) and {self.token, self.before} & {*COORDINATES}
+        ):
             help = other
         else:
             help = f"write `{self.before[-40:]}*{self.token[:40]}` for a product"

@@ -102,13 +102,20 @@ def _plain(args: Args, indices: tuple[int, ...], name: str) -> None:
             message = f"{name} needs a plain number, not {describe(dimension)}"
             help = "divide it by a quantity of its kind first"
             match args[index]:
-                case Call("mul", (Number(bare=True) as number, _)) if name in TURNS and dimension == TIME:
-                    help = f"a speed times the time is an angle: `{number.value:g} rad/s*time`, in degrees"
+                case Call("mul", (Number(bare=True) as number, _)) if (
+                    name in TURNS and dimension == TIME and number.span is not None and _literal(number.span.text)
+                ):
+                    help = f"a speed times the time is an angle: write `{number.value:g} rad/s*time`, in degrees"
                     help += f" `{number.value:g} deg/s*time`"
                     raise MismatchError("dimension-mismatch", message, index, None, help)
             raise MismatchError(
                 "dimension-mismatch", message, index, None, help, (index, f"{{}}/(1 {unit_of(dimension)})")
             )
+
+
+def _literal(text: str) -> bool:
+    """Whether a text is a number alone, and no product that was folded to one."""
+    return text.replace(".", "", 1).isdecimal()
 
 
 def alike(sentence: str, *, result_plain: bool = False) -> Rule:

@@ -21,6 +21,16 @@ _JOINS = tuple("+*/^<>=,")
 _INDEX = re.compile(r"\[\s*(\d+)\s*\](?!\.)")
 _COPY = re.compile(r"\[\s*([^\[\]{}\"']+?)\s*\](\.[\w.]+)?")
 AXES = "xyz"
+_CALLED = re.compile(
+    r"(?:new\s+)?(?:\w+\.)*\w*?(?:vec|vector|point|array|float3|tuple)\w*\(\s*[\[(]?([^()\[\],]+(?:,[^()\[\],]+){1,2})[\])]?\s*\)",
+    re.IGNORECASE,
+)
+_CHOICE = re.compile(r"([^?:]+)\?([^?:]+):([^?:]+)")
+_IF_ELSE = re.compile(r"(.+?)\s+if\s+(.+?)\s+else\s+(.+)")
+_TERM = r"(\d[\d.]*\s+[a-zA-Z]+(?![\w(])|[\w.]+|\([^()]*\))"
+_REST, _QUOTIENT = re.compile(rf"{_TERM}\s*%\s*{_TERM}"), re.compile(rf"{_TERM}\s*//\s*{_TERM}")
+_PER = re.compile(r"\s+per\s+(sec(?:ond)?s?|s|min(?:ute)?s?|hours?|h|m|meters?|metres?)\b")
+_UNITS_BELOW = {"sec": "s", "min": "min", "hou": "h", "met": "m"}
 _RATE = re.compile(r"\bfps\s*:\s*(\d+(?:\.\d+)?)(?![\w.])")
 TIMES, FRAMES = ("t", "T"), ("F", "FF")
 """Variables of other programs, behind a `$`: the time, and the frame's number."""
@@ -155,6 +165,34 @@ def other_signs(text: str) -> str | None:
     return None if whole is None else f"write `mod({whole[1]}, {whole[2]})`"
 
 
+def ternary(text: str) -> str | None:
+    """A choice of other languages, ``c ? a : b`` or ``a if c else b``, as ``where(c, a, b)``; None of other texts."""
+    found = _CHOICE.fullmatch(text.strip())
+    if found is not None:
+        return f"where({found[1].strip()}, {found[2].strip()}, {found[3].strip()})"
+    found = _IF_ELSE.fullmatch(text.strip())
+    return None if found is None else f"where({found[2].strip()}, {found[1].strip()}, {found[3].strip()})"
+
+
+def modulo(text: str) -> str | None:
+    """A formula with the signs of other languages for rests and whole quotients as functions; None without any."""
+    plain = _REST.sub(r"mod(\1, \2)", _QUOTIENT.sub(r"floor(\1/\2)", text.strip()))
+    return None if plain == text.strip() or re.search(r"%|//", plain) else plain
+
+
+def per_unit(text: str) -> str | None:
+    """A text with a bar for each ``per``, ``90 deg/s`` for ``90 deg per second``; None where there is none."""
+    plain = _PER.sub(lambda one: f"/{_UNITS_BELOW.get(one[1][:3], one[1])}", text.strip())
+    return None if plain == text.strip() else plain
+
+
+def vector_called(text: str) -> str | None:
+    """The vector that a call of other programs makes, as ``new THREE.Vector3(0, 1, 0)``, in brackets; else None."""
+    found = _CALLED.fullmatch(text.strip())
+    numbers = [] if found is None else [one.strip() for one in found[1].split(",")]
+    return f"[{', '.join([*numbers, '0'][:SIZE])}]" if numbers else None
+
+
 def parted_meant(line: str) -> str | None:
     """The help for a line that ends in a name without a value: by an equals sign, or by a colon without a space."""
     glued, written = _GLUED.search(line), _EQUATED.search(line)
@@ -181,6 +219,8 @@ def indexed(expr: Expr, before: str, text: str, at: int) -> str | None:
     if (copy := _COPY.match(text, at)) is None:
         return None
     number, rest = copy[1], copy[2] or ""
+    if number == "-1" and not rest:
+        return f"at the end of the run it is `final({before})`"
     of_copies = f'a copy\'s number stands in braces: write `"{before}.{{{number}}}{rest}"`'
     if number.isdecimal():
         of_copies = f"a copy's number stands behind a dot: write `{before}.{number}{rest}`"

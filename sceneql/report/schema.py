@@ -10,7 +10,7 @@ from pydantic import BaseModel
 
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.check import NONE, OPTIONAL
-from sceneql.compiler.meant.likely import TRUE
+from sceneql.compiler.meant.quantity_help import TRUE
 from sceneql.compiler.read import FALSE
 from sceneql.kinds import Formula, Interpolated, Kind, Refers, SceneFile, Settings, written_name
 from sceneql.report.manual import type_text

@@ -45,7 +45,7 @@ MOST_ROUNDS = 50
 def end_tied(functions, h, y0, kicked, y1, floats, all_ints, ints):
     """Impulses along the rows at y0, in `kicked`, and drifts from there to y1, until the ties hold in y1."""
     survey(0.0, y0, floats, ints)
-    if not factor(floats, ints):
+    if factor(floats, ints) == 0.0:
         return
     for k in range(ints[ROWS]):
         to = ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH]

@@ -15,9 +15,16 @@ from sceneql.bodies.rigid.tie_matrix_kernels import (
     MOVED_AT,
     MOVERS,
     MOVERS_AT,
+    ONE,
+    OTHER,
     RIGHT_AT,
     ROWS,
     ROWS_AT,
+    ROWS_FROM,
+    ROWS_OF,
+    SIDES,
+    TIES,
+    TIES_AT,
     factor,
     solve,
 )
@@ -45,7 +52,6 @@ from sceneql.bodies.rigid.tie_rows_kernels import (
     ROW,
     ROW_INTS,
     SCRATCH,
-    SECOND,
     VELOCITY,
     press,
     see,
@@ -61,6 +67,9 @@ COARSE = 1e-10
 LEFT, LONG = 1e-13, 1000
 """What may be left of an equation, against the numbers that it is a sum of; rows beyond which it is in proportion to
 their number, as the rounding of the factors is."""
+WELL, SHORT = 1e-7, 500
+"""Part of its diagonal above which the least pivot of the factors leaves next to nothing to correct; rows of a chain up
+to which that holds. The least pivot of a chain of n links is of the order of 1/n^3, however well it is solved."""
 SHARE = 1e-2
 """Part of LEFT that may be left of the numbers that a gap is the difference of."""
 FEW, MOST_CORRECTIONS = 6, 50
@@ -73,24 +82,122 @@ OPENED = 1e-6
 """Such a gap from which a tie counts as one that cannot be held."""
 
 
+@lean_inlined
+def write_tie(floats, ints, tie, row):
+    """Write the rows of a tie, the first of which is ``row``; how many they are."""
+    which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+    for k in range(row, row + which[ROWS_OF]):
+        write_row(floats, ints, ints[ROWS_AT] + ROW_INTS * k, which[ONE], which[OTHER])
+    return which[ROWS_OF]
+
+
 @lean(types.void(F, A, A, I))
 def survey(t, y, floats, ints):
     """Write the movers and the rows for a state."""
     for m in range(ints[MOVERS]):
         see(y, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
-    for k in range(ints[ROWS]):
-        row = ints[ROWS_AT] + ROW_INTS * k
-        a, b = ints[MOVED_AT] + MOVED * ints[row + FIRST], ints[MOVED_AT] + MOVED * ints[row + SECOND]
-        write_row(floats, ints, row, a, b)
+    row = 0
+    for tie in range(ints[TIES]):
+        row += write_tie(floats, ints, tie, row)
 
 
-@lean_inlined
-def movers_of(ints, k):
-    """Where the floats of row k begin, and those of its two movers."""
-    row = ints[ROWS_AT] + ROW_INTS * k
-    which = ints[row : row + ROW_INTS]
-    at = ints[MOVED_AT]
-    return which[SCRATCH], at + MOVED * which[FIRST], at + MOVED * which[SECOND]
+@lean(F(A, I, N, N, N, N, A))
+def left_of(floats, ints, tie, row, target, size_at, right):
+    """Write -(J x + floats[target]) of a tie's rows; the largest, against the numbers that it is a sum of."""
+    worst = 0.0
+    which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+    one = floats[which[ONE] + AT_A : which[ONE] + AT_A + 6]
+    two = floats[which[OTHER] + AT_A : which[OTHER] + AT_A + 6]
+    a, b, c, d, e, f = one[0], one[1], one[2], one[3], one[4], one[5]
+    u, v, w, x, y, z = two[0], two[1], two[2], two[3], two[4], two[5]
+    to = which[ROWS_FROM]
+    for k in range(row, row + which[ROWS_OF]):
+        own = floats[to : to + ROW]
+        wanted = own[target]
+        size = max(abs(wanted), SHARE * own[size_at])
+        a1, b1, c1, d1, e1, f1 = own[0] * a, own[1] * b, own[2] * c, own[3] * d, own[4] * e, own[5] * f
+        u1, v1, w1, x1, y1, z1 = own[6] * u, own[7] * v, own[8] * w, own[9] * x, own[10] * y, own[11] * z
+        left = wanted + ((a1 + b1 + c1) + (d1 + e1 + f1)) + ((u1 + v1 + w1) + (x1 + y1 + z1))
+        size += (abs(a1) + abs(b1) + abs(c1)) + (abs(d1) + abs(e1) + abs(f1))
+        size += (abs(u1) + abs(v1) + abs(w1)) + (abs(x1) + abs(y1) + abs(z1))
+        right[k] = -left
+        if abs(left) > worst * size:
+            worst = abs(left) / size
+        to += ROW
+    return worst
+
+
+@lean(F(A, I, N, N))
+def remaining(floats, ints, target, size_at):
+    """`left_of` all ties, to the right hand side."""
+    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
+    worst, row = 0.0, 0
+    for tie in range(ints[TIES]):
+        worst = max(worst, left_of(floats, ints, tie, row, target, size_at, right))
+        row += ints[ints[TIES_AT] + SIDES * tie + ROWS_OF]
+    return worst
+
+
+@lean(types.void(A, I, A, types.boolean), inner=True)
+def push(floats, ints, right, further):
+    """Add the rows' forces ``right`` to AT_FORCE (else write them), what they push to the movers, and to their AT_A."""
+    for m in range(ints[MOVERS]):
+        mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
+        for c in range(6):
+            mover[AT_IMPULSE + c] = 0.0
+    row = 0
+    for tie in range(ints[TIES]):
+        which = ints[ints[TIES_AT] + SIDES * tie : ints[TIES_AT] + SIDES * (tie + 1)]
+        a = b = c = d = e = f = u = v = w = x = y = z = 0.0
+        to = which[ROWS_FROM]
+        for _ in range(which[ROWS_OF]):
+            own, force = floats[to : to + ROW], right[row]
+            own[AT_FORCE] = own[AT_FORCE] + force if further else force
+            a, b, c = a + own[0] * force, b + own[1] * force, c + own[2] * force
+            d, e, f = d + own[3] * force, e + own[4] * force, f + own[5] * force
+            u, v, w = u + own[6] * force, v + own[7] * force, w + own[8] * force
+            x, y, z = x + own[9] * force, y + own[10] * force, z + own[11] * force
+            row += 1
+            to += ROW
+        one = floats[which[ONE] + AT_IMPULSE : which[ONE] + AT_IMPULSE + 6]
+        one[0], one[1], one[2] = one[0] + a, one[1] + b, one[2] + c
+        one[3], one[4], one[5] = one[3] + d, one[4] + e, one[5] + f
+        two = floats[which[OTHER] + AT_IMPULSE : which[OTHER] + AT_IMPULSE + 6]
+        two[0], two[1], two[2] = two[0] + u, two[1] + v, two[2] + w
+        two[3], two[4], two[5] = two[3] + x, two[4] + y, two[5] + z
+    for m in range(ints[MOVERS]):
+        mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
+        change = weighed_by(mover, mover[AT_IMPULSE:])
+        for c in range(6):
+            mover[AT_A + c] += change[c]
+            mover[AT_PUSHED + c] += mover[AT_IMPULSE + c]
+
+
+@lean(types.void(A, I, N, N, F))
+def correct(floats, ints, target, size_at, worst):
+    """`balance` where what remains, ``worst`` at most, stands on the right hand side already."""
+    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
+    last, found = math.inf, False
+    little = LEFT * max(1.0, ints[ROWS] / LONG)
+    for m in range(ints[MOVERS]):
+        mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
+        for c in range(6):
+            mover[AT_PUSHED + c] = 0.0
+    least = factor(floats, ints)
+    sure = size_at != AT_SIZE and least * max(1.0, ints[ROWS] / SHORT) ** 3 > WELL
+    most = 0 if least == 0.0 else 1 if sure else MOST_CORRECTIONS
+    for corrections in range(most):
+        if corrections > 0:
+            worst = remaining(floats, ints, target, size_at)
+        if worst <= little or (corrections >= FEW and worst > GAIN * last):
+            break
+        last = worst
+        solve(floats, ints)
+        push(floats, ints, right, found)
+        found = True
+    if not found:
+        for k in range(ints[ROWS]):
+            floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
 
 
 @lean(types.void(A, I, N, N))
@@ -99,55 +206,7 @@ def balance(floats, ints, target, size_at):
 
     floats[size_at] is the size of the numbers that the target is a sum of, if it is to be 0 but for their rounding.
     """
-    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
-    last, found = math.inf, False
-    little = LEFT * max(1.0, ints[ROWS] / LONG)
-    for m in range(ints[MOVERS]):
-        mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
-        for c in range(6):
-            mover[AT_PUSHED + c] = 0.0
-    for corrections in range(MOST_CORRECTIONS if factor(floats, ints) else 0):
-        worst = 0.0
-        for k in range(ints[ROWS]):
-            to, first, second = movers_of(ints, k)
-            own = floats[to : to + ROW]
-            one, two = floats[first + AT_A : first + AT_A + 6], floats[second + AT_A : second + AT_A + 6]
-            left, size = floats[to + target], max(abs(floats[to + target]), SHARE * floats[to + size_at])
-            other, sizes = 0.0, 0.0
-            for c in range(6):
-                part, parts = own[AT_J + c] * one[c], own[AT_J + 6 + c] * two[c]
-                left, other = left + part, other + parts
-                size, sizes = size + abs(part), sizes + abs(parts)
-            left, size = left + other, size + sizes
-            right[k] = -left
-            if abs(left) > worst * size:
-                worst = abs(left) / size
-        if worst <= little or (corrections >= FEW and worst > GAIN * last):
-            break
-        last = worst
-        solve(floats, ints)
-        for m in range(ints[MOVERS]):
-            mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
-            for c in range(6):
-                mover[AT_IMPULSE + c] = 0.0
-        for k in range(ints[ROWS]):
-            to, first, second = movers_of(ints, k)
-            own, force = floats[to : to + ROW], right[k]
-            one, two = floats[first + AT_IMPULSE : first + AT_PUSHED], floats[second + AT_IMPULSE : second + AT_PUSHED]
-            own[AT_FORCE] = own[AT_FORCE] + force if found else force
-            for c in range(6):
-                one[c] += own[AT_J + c] * force
-                two[c] += own[AT_J + 6 + c] * force
-        for m in range(ints[MOVERS]):
-            mover = floats[ints[MOVED_AT] + MOVED * m : ints[MOVED_AT] + MOVED * (m + 1)]
-            push = weighed_by(mover, mover[AT_IMPULSE:])
-            for c in range(6):
-                mover[AT_A + c] += push[c]
-                mover[AT_PUSHED + c] += mover[AT_IMPULSE + c]
-        found = True
-    if not found:
-        for k in range(ints[ROWS]):
-            floats[ints[ints[ROWS_AT] + ROW_INTS * k + SCRATCH] + AT_FORCE] = 0.0
+    correct(floats, ints, target, size_at, remaining(floats, ints, target, size_at))
 
 
 @lean(types.void(A, A, I))
@@ -191,10 +250,18 @@ def sharpen(y, rate, floats, ints):
 @lean(TERM, inner=True)
 def hold(t, y, rate, floats, ints):
     """Adds the forces [N] and torques [N m] of all ties."""
-    survey(t, y, floats, ints)
+    # As `survey` and `balance`, but with each mover and each row looked at once while it is in the cache.
     for m in range(ints[MOVERS]):
-        press(y, rate, floats, ints[MOVED_AT] + MOVED * m, ints, ints[MOVERS_AT] + MOVER * m)
-    balance(floats, ints, AT_BIAS, AT_BIAS)
+        to, at = ints[MOVED_AT] + MOVED * m, ints[MOVERS_AT] + MOVER * m
+        see(y, floats, to, ints, at)
+        press(y, rate, floats, to, ints, at)
+    right = floats[ints[RIGHT_AT] : ints[RIGHT_AT] + ints[ROWS]]
+    worst, row = 0.0, 0
+    for tie in range(ints[TIES]):
+        count = write_tie(floats, ints, tie, row)
+        worst = max(worst, left_of(floats, ints, tie, row, AT_BIAS, AT_BIAS, right))
+        row += count
+    correct(floats, ints, AT_BIAS, AT_BIAS, worst)
     add(rate, floats, ints)
     sharpen(y, rate, floats, ints)
 

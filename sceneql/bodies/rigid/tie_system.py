@@ -44,6 +44,7 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     from sceneql.bodies.rigid import tie_matrix_kernels as matrix
     from sceneql.bodies.rigid.tie_kernels import survey
     from sceneql.bodies.rigid.tie_rows_kernels import MOVED, ROW
+    from sceneql.bodies.rigid.tie_start import follow
     from sceneql.linear.multifrontal.planning import plan
 
     movers: dict[tuple[int, ...], int] = {}
@@ -51,18 +52,18 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     sides = []
     for tie in ties:
         pair = tuple(movers.setdefault(integers(mover), len(movers)) for mover in tie.movers)
-        sides.append((pair, len(rows), len(tie.rows), tie.scratch_at, _units(tie)))
+        sides.append((pair, len(rows), len(tie.rows), tie.scratch_at))
         for k, row in enumerate(tie.rows):
             numbers = [*chain(*row.vectors), *row.constants]
             numbers_at = assembly.floats([*numbers, *(0.0 for _ in range(len(numbers), LEAST))])
             kind = KINDS.index(row.kind)
             rows.append((kind, *pair, numbers_at, tie.scratch_at + ROW * k, tie.holds_at))
     solved = [which[0] >= 0 for which in movers]
-    of_mover: dict[int, list[tuple[int, int, int, int]]] = {}
-    for pair, first, count, scratch, units in sides:
+    of_mover: dict[int, list[tuple[int, int, int]]] = {}
+    for pair, first, count, scratch in sides:
         for side, mover in enumerate(pair):
             if solved[mover]:
-                of_mover.setdefault(mover, []).append((first, count, scratch + 6 * side, units))
+                of_mover.setdefault(mover, []).append((first, count, scratch + 6 * side))
     # If all ties have equally many rows, the matrix is stored in blocks, whose plan takes far fewer integers.
     counts, few = {len(tie.rows) for tie in ties}, len(rows) <= WHOLE
     unit = counts.pop() if len(counts) == 1 and not few else 1
@@ -79,6 +80,10 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     pattern.sort_indices()
     columns = pattern.indices
     starts = [unit * (unit * int(pattern.indptr[k // unit]) + k % unit) for k in range(len(rows))]
+    size = unit * unit * len(columns)
+    if few:
+        stride = matrix.LANES * -(-len(rows) // matrix.LANES)
+        starts, size = [k * stride for k in range(len(rows))], stride * len(rows)
 
     def along(row: int, column: int) -> int:
         """Offset of the value at a column from the first value of the row."""
@@ -108,17 +113,35 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     ]
     begins = np.cumsum([matrix.HEAD, *(len(some) for some in lists)]).tolist()
     spent = (0, 0) if planned is None else (planned.factors, planned.work + len(rows))
-    sizes = (MOVED * len(movers), unit * unit * len(columns), *spent, len(rows))
+    sizes = (MOVED * len(movers), size + matrix.LANES, *spent, len(rows))
     moved, values, factors, work, right = (assembly.floats(np.zeros(size)) for size in sizes)
     head = [len(movers), len(rows), begins[0], begins[1], len(shared), *begins[2:6], len(lists[5])]
     free = not any(isinstance(mover, Led) for tie in ties for mover in tie.movers)
     kept = assembly.floats(np.zeros(matrix.KEPT * len(rows) if free else 0))
-    ease, of_tie = assembly.floats([matrix.EASE]), assembly.floats(np.zeros(6 * matrix.MOST_ROWS))
-    head += [moved, values, sizes[1], factors, sizes[2], work, sizes[3], right, kept, ease, of_tie]
+    most = max((len(some) for some in of_mover.values()), default=0)
+    ease, of_tie = assembly.floats([matrix.EASE]), assembly.floats(np.zeros(most * matrix.T_OF))
+    head += [
+        moved,
+        values,
+        sizes[1],
+        factors,
+        sizes[2],
+        work,
+        sizes[3],
+        right,
+        kept,
+        ease,
+        of_tie,
+        len(sides),
+        begins[6],
+    ]
+    lists.append([k for pair, _, n, at in sides for k in (n, at, moved + MOVED * pair[0], moved + MOVED * pair[1])])
     ints = tuple(int(number) for number in np.concatenate([head, *lists]))
     _add_pivots(assembly, ties)
     numbers = assembly.numbers()
     survey(0.0, assembly.start(), numbers, np.array(ints))
+    if follow(assembly, ties, numbers, {one[1]: moved + MOVED * k for one, k in movers.items() if one[0] >= 0}):
+        survey(0.0, assembly.start(), numbers, np.array(ints))
     if redundant(ties, numbers)[1] == 0:
         assembly.write(ease, [0.0])
     _must_agree(ties, numbers)
@@ -134,13 +157,6 @@ def add_ties(assembly: Assembly, ties: Sequence[Tied]) -> None:
     assembly.after_step(f"{KERNELS}:settle", ints, samples=True)
     if free:  # a prescribed motion is known at the end of a step only
         assembly.tied_drift("sceneql.bodies.rigid.rattle_kernels:end_tied", ints)
-
-
-def _units(tie: Tied) -> int:
-    """How many rows at a tie's beginning are those of a `ball`, where all others are of angles; else -1."""
-    kinds = [row.kind for row in tie.rows]
-    units = 3 if kinds[0] == "ball" else 0
-    return units if all(kind in ("angle", "gear") for kind in kinds[units:]) else -1
 
 
 def _unread(planned: NDArray[int64]) -> set[int]:

@@ -6,7 +6,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
+from collections.abc import Mapping as Naming
 from collections.abc import Sequence as Sequenced
 from contextlib import suppress
 from dataclasses import replace
@@ -16,18 +17,20 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel
 
 from sceneql import kinds
-from sceneql.compiler import paint, values
+from sceneql.compiler import paint
 from sceneql.compiler.annotations import example_of, first_field, is_fixed, marks_of, quantities, unwrap
+from sceneql.compiler.meant.chained import mended
 from sceneql.compiler.meant.own_examples import own_example
+from sceneql.compiler.meant.quantity_help import NAME, TRUE, other_output
+from sceneql.compiler.meant.together import together
 from sceneql.compiler.meant.unknown import meant_field
+from sceneql.compiler.meant.values_elsewhere import along_default, quantities_fitting
 from sceneql.compiler.problems import Unreadable
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar, Sequence, whole
 from sceneql.quantities.diagnostic import Diagnostic, Diagnostics, suggestion
 from sceneql.quantities.instead import instead
 
-TRUE = ("true", "yes", "on")
-NAME = r"[^\W\d][\w.]*"
 _NAMES = re.compile(rf"{NAME}(?:\s*[-+&|*/,]\s*{NAME})+")
 _MEASURED = re.compile(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*[^\W\d].*")
 OF_FORM = (
@@ -45,8 +48,11 @@ OF_FORM = (
     "wrong-shape",
 )
 """Codes of errors of a value that may be meant for a field though it does not take it so."""
+LETTERS = "abcdefghijklmnopqrstuvwxyz"
 SHOWN = 60
 """Longest value that a message repeats behind the field that is meant."""
+USUAL_FORCE = "electrostatic"
+"""The word of forces between charges."""
 NAMES = ("name", "id")
 """Fields by which other programs name the items of a list."""
 
@@ -54,11 +60,14 @@ NAMES = ("name", "id")
 def renamed(reader: Any, cls: type[BaseModel], name: str, node: Node) -> tuple[bool, str]:
     """Whether a field of a record takes a value, and the help that offers the field in place of the one written."""
     info = next(info for key, info in cls.model_fields.items() if kinds.written_name(key) == name)
+    node = node.items[0] if isinstance(node, Sequence) and list(map(type, node.items)) == [Sequence] else node
     wrong, text = _wrong(reader, node, info, name), node.span.text
     fits = wrong is None
     if fits and "\n" not in text and len(text) <= SHOWN:
         return True, f"did you mean `{name}: {text}`?"
     helps = [one.help for one in wrong or () if one.help is not None and _of_its_kind(one)]
+    if helps and (found := mended(reader, node, cls, name)) is not None:
+        return False, f"did you mean `{name}: {found[0]}`?"
     if len(helps) == 1:
         return False, f"did you mean '{name}'? For its value {helps[0]}"
     example = "..." if fits else example_of(cls, name)
@@ -109,26 +118,84 @@ def taking_word(reader: Any, cls: type[BaseModel], name: str) -> str | None:
     return fields[0] if len(fields) == 1 else None
 
 
-def meant(reader: Any, cls: type[BaseModel], name: str, known: Collection[str]) -> tuple[str | None, str | None]:
-    """The fields of a record that an unknown name most likely stands for, by its letters and as a word."""
-    return meant_field(name, known), taking_word(reader, cls, name)
+def meant(reader: Any, cls: type[BaseModel], node: MappingNode) -> set[str | None]:
+    """The fields of a record that its unknown names most likely stand for, by their letters or as words."""
+    known = [kinds.written_name(name) for name in cls.model_fields]
+    unknown = [name for name in node.entries if name not in known]
+    found: set[str | None] = set()
+    for name in unknown:
+        told = together(name, unknown, node, known) or ""
+        found |= {meant_field(name, known), taking_word(reader, cls, name)}
+        found |= {one for one in known if f"`{one}: " in told}
+        if issubclass(cls, kinds.Record) and cls.meant_by(node.entries[name].span.text) is not None:
+            found.add(known[0])
+    return found
 
 
-def inside(reader: Any, cls: type[BaseModel], name: str, text: str) -> str | None:
-    """The help for a field that the record around a record has, or one of those in its fields, or a part in place."""
-    outer: type[BaseModel] | None = reader.outer
-    text = text if "\n" not in text and len(text) <= SHOWN else "..."
+def inside(
+    reader: Any, cls: type[BaseModel], name: str, node: Node, written: Naming[str, Node] | None = None
+) -> str | None:
+    """The help for a field of a record in one of a record's fields, or of the record around it, or a part in place.
+
+    That is meant first which takes the value. ``written``: the fields that are looked at, as they are written, where
+    these are not all.
+    """
+    text = node.span.text if "\n" not in node.span.text and len(node.span.text) <= SHOWN else "..."
+    for key, value in (written or {}).items():
+        info = _known(cls, key)
+        held = [] if info is None else [arm for arm in (info.annotation, *get_args(info.annotation)) if _is_record(arm)]
+        if any(_known(arm, name) is not None for arm in held):
+            own = [kinds.written_name(each) for each, field in held[0].model_fields.items() if field.is_required()]
+            before = f"{own[0]}: {value.span.text}, " if isinstance(value, Scalar) and len(own) == 1 else "..., "
+            return f"it stands inside `{key}`: write `{key}: {{{before}{name}: {text}}}`"
+    if written is not None:
+        return None
+    plain = node.text if isinstance(node, Scalar) else ""
+    if issubclass(cls, kinds.Record) and (told := cls.meant_by(plain)) is not None:
+        return told
     if (field := taking_word(reader, cls, name)) is not None:
         return f"write `{field}: {{{name}: {text or '{}'}}}`"
-    if outer is not None and name in map(kinds.written_name, outer.model_fields):
-        return f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
+    if (each := _for_each(reader, name)) is not None:
+        return each
+    found: list[tuple[bool, str]] = []
     for key, info in cls.model_fields.items():
-        inner = [one for one in (info.annotation, *get_args(info.annotation)) if isinstance(one, type)]
-        records = [one for one in inner if issubclass(one, BaseModel) and not issubclass(one, kinds.Kind)]
-        if any(name in map(kinds.written_name, one.model_fields) for one in records):
-            field = kinds.written_name(key)
-            return f"it stands inside `{field}`: write `{field}: {{{name}: {text}}}`"
-    return None
+        for arm in (info.annotation, *get_args(info.annotation)):
+            if _is_record(arm) and (taken := _known(arm, name)) is not None:
+                field = kinds.written_name(key)
+                told = f"it stands inside `{field}`: write `{field}: {{{name}: {text}}}`"
+                found.append((_wrong(reader, node, taken, name) is not None, told))
+    outer: type[BaseModel] | None = reader.outer
+    if outer is not None and (taken := _known(outer, name)) is not None:
+        told = f"it stands outside of these braces: write `{{..., {name}: {text}}}` around them"
+        found.append((_wrong(reader, node, taken, name) is not None, told))
+    return min(found, key=lambda one: one[0])[1] if found else None
+
+
+def _for_each(reader: Any, name: str) -> str | None:
+    """The help for a field of listed masses that is a force's, which has one for each: ``charge``."""
+    part, _, path = reader.owner.partition(".")
+    node: Any = reader.names.parts[part].fields if part in reader.names.parts else None
+    for step in path.split(".")[:-1]:
+        node = node.entries.get(step) if isinstance(node, MappingNode) else None
+    items = list(node.entries.values()) if isinstance(node, MappingNode) and path.count(".") else []
+    each = [one.entries[name].span.text for one in items if isinstance(one, MappingNode) and name in one.entries]
+    words = [word for family, word in reader.names.catalogue.having(name) if family == "forces"] if each else []
+    if not words or len(each) < len(items):
+        return None
+    used = [entry.word for entry in reader.names.parts.values() if entry.word in words]
+    word = (used or [one for one in words if one == USUAL_FORCE] or words)[0]
+    told = f"{{{word}: {{{name}: [{', '.join(each)}]}}}}"
+    return f"it is a force's, one for each in their order: write `forces: {{all: {told}}}`"
+
+
+def _is_record(arm: Any) -> bool:
+    """Whether an annotation is a record that is no word."""
+    return isinstance(arm, type) and issubclass(arm, BaseModel) and not issubclass(arm, kinds.Kind)
+
+
+def _known(cls: type[BaseModel], name: str) -> Any:
+    """The field of a record by its name in scripts; None where it has none."""
+    return next((info for key, info in cls.model_fields.items() if kinds.written_name(key) == name), None)
 
 
 def table_of(cls: type[BaseModel]) -> str:
@@ -144,18 +211,6 @@ def example_line(reader: Any, cls: type[BaseModel], name: str, info: Any) -> str
     example = own or ("..." if "`" in description else example_of(cls, name))
     more = "" if example in ("...", "{}") else f" For example `{name}: {example}`."
     return f"{name}: {description}{more}"
-
-
-def first_of(name: str, node: Node) -> str | None:
-    """The help for several values of a field that has one: the first, with its unit."""
-    if isinstance(node, Sequence):
-        first = node.items[0].span.text if node.items else ""
-    else:
-        first, *more = node.span.text.replace(",", " ").split() or ("",)
-        first += f" {more[-1]}" if more and (more[-1][:1].isalpha() or more[-1] == "%") else ""
-    several = isinstance(node, Sequence) and len(node.items) > 1
-    others = ", and a part of its own for each of the others" if several else ""
-    return f"it is one number: write `{name}: {first}`{others}" if first else None
 
 
 def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
@@ -206,6 +261,10 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
         plain = list(quantities_fitting(reader, bare, cls.model_fields))
         if len(plain) == 1:
             return f"it has no unit: write `{{{kinds.written_name(plain[0])}: {number[1]}}}`"
+    if not fitting and not alone and (named := _named(reader, node, cls)) is not None:
+        return named
+    if not fitting and (along := _along(reader, node, cls)) is not None:
+        return along
     likely = alone or [kinds.written_name(name) for name in fitting] or _paints(reader, node, cls)
     if len(likely) != 1:
         return None
@@ -216,6 +275,30 @@ def field_meant(reader: Any, node: Node, cls: type[BaseModel]) -> str | None:
     if text.startswith("-") and above and (why := instead("negative", likely[0])) is not None:
         return f"write `{{{likely[0]}: {text[1:].strip()}}}`: {why}"
     return f"write `{{{likely[0]}: {text}}}`"
+
+
+def _named(reader: Any, node: Scalar, cls: type[BaseModel]) -> str | None:
+    """The help for a part's name in place of a record that refers to a part, or reads one, in one field: a drift."""
+    if node.text not in reader.names.parts:
+        return None
+    families = reader.names.catalogue.families_of(reader.names.parts[node.text].word)
+    told = []
+    for key, info in cls.model_fields.items():
+        name = kinds.written_name(key)
+        if any(isinstance(mark, kinds.Refers) and mark.family in families for mark in marks_of(info)):
+            told.append(f"{{{name}: {node.text}}}")
+        elif any(mark.dimension is None for mark in quantities(info)):
+            other = other_output(reader, node, info, name)
+            told += [] if other is None else [f"{{{name}: {other.split('`')[1]}}}"]
+    return f"write `{told[0]}`" if len(told) == 1 else None
+
+
+def _along(reader: Any, node: Scalar, cls: type[BaseModel]) -> str | None:
+    """The help for one number in place of a record whose one vector of its dimension points along an axis: a wind."""
+    found = [(key, text) for key, info in cls.model_fields.items() if (text := along_default(node, info)) is not None]
+    if len(found) != 1:
+        return None
+    return f"write `{{{kinds.written_name(found[0][0])}: {found[0][1].split('`')[1]}}}`"
 
 
 def _dealt(reader: Any, node: Sequence, cls: type[BaseModel], required: Sequenced[str]) -> str | None:
@@ -243,17 +326,6 @@ def _listing(cls: type[BaseModel], name: str) -> bool:
     (info,) = [info for key, info in cls.model_fields.items() if kinds.written_name(key) == name]
     lists = [arm for arm in (info.annotation, *get_args(info.annotation)) if get_origin(arm) in (list, tuple)]
     return any(isinstance(mark, kinds.Refers) for arm in lists for mark in unwrap(get_args(arm)[0])[1])
-
-
-def elsewhere(reader: Any, node: Node, info: Any, others: Mapping[str, Any]) -> str | None:
-    """The help for a wrong count of numbers: the one other field that takes them."""
-    found = {name: mark for name, mark in quantities_fitting(reader, node, others).items() if mark.shape}
-    if len(found) > 1:
-        own = [mark.dimension for mark in quantities(info)]
-        found = {name: mark for name, mark in found.items() if mark.dimension in own}
-    if len(found) != 1:
-        return None
-    return f"that is what `{(name := kinds.written_name(*found))}` takes: write `{name}: {node.span.text}`"
 
 
 def choice_meant(text: str, choices: Sequenced[str]) -> str | None:
@@ -295,8 +367,10 @@ def by_name(node: Node, item: Any, parts: bool) -> str:
     if record and items and len(texts) == len(items):
         return f"write `{{{', '.join(texts)}}}`, the name of each before its fields"
     if not record and len(items) > 1 and all(isinstance(one, Scalar) for one in items):
-        pairs = zip("abcdefghijklmnopqrstuvwxyz", items, strict=False)
-        return f"each has a name of its own: write `{{{', '.join(f'{name}: {one.span.text}' for name, one in pairs)}}}`"
+        names = [one.span.text.rpartition(".")[2] for one in items]
+        own = names if len({*names}) == len(items) and all(map(str.isidentifier, names)) else [*LETTERS]
+        told = ", ".join(f"{name}: {one.span.text}" for name, one in zip(own, items, strict=False))
+        return f"each has a name of its own: write `{{{told}}}`"
     first = items[0].span.text if items else "name"
     first = first if first.isidentifier() else "name"
     example = first_field(item) if record else "..."
@@ -341,14 +415,6 @@ def _paints(reader: Any, node: Node, cls: type[BaseModel]) -> list[str]:
     nothing = Diagnostics()
     fits = paint.read_color(node, replace(reader.names, found=nothing), nothing) is not None
     return ["color"] if fits and "color" in cls.model_fields else []
-
-
-def quantities_fitting(reader: Any, node: Node, fields: Mapping[str, Any]) -> dict[str, kinds.Quantity]:
-    """The fields of quantities that accept a value."""
-    nothing = Diagnostics()
-    names = replace(reader.names, found=nothing)
-    marked = [(name, mark) for name, info in fields.items() for mark in quantities(info)]
-    return {name: mark for name, mark in marked if values.read_value(node, mark, name, names, nothing) is not None}
 
 
 def _formulas(reader: Any, node: Node, cls: type[BaseModel]) -> Iterator[str]:

@@ -16,7 +16,7 @@ from pydantic import BaseModel
 from sceneql import kinds
 from sceneql.compiler import values
 from sceneql.compiler.annotations import marks_of, quantities
-from sceneql.compiler.meant.likely import NAME, TRUE, quantities_fitting
+from sceneql.compiler.meant.values_elsewhere import quantities_fitting
 from sceneql.language.tree import Mapping as MappingNode
 from sceneql.language.tree import Node, Scalar
 from sceneql.quantities.diagnostic import Diagnostics
@@ -24,6 +24,8 @@ from sceneql.quantities.dimension import ANGLE, DENSITY, MASS, PLAIN, Dimension
 from sceneql.quantities.expression import Expr, Number, Vector
 from sceneql.quantities.units import format_quantity, unit_of
 
+NAME = r"[^\W\d][\w.]*"
+TRUE = ("true", "yes", "on")
 NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 MOST = 200
 """Largest length of a value in which numbers are looked for."""
@@ -67,6 +69,10 @@ def other_output(reader: Any, node: Node, info: Any, name: str) -> str | None:
         if any(values.read_value(one, mark, name, names, nothing) is not None for mark in marks):
             found.append(one.text)
     found = [one for one in found if one != node.text]
+    fields = reader.names.parts[part].fields
+    of = fields.entries.get("of") if isinstance(fields, MappingNode) else None
+    if of is not None and f"{part}.{of.span.text}" in found:  # a field has the name of what it is of, too
+        found = [f"{part}.{of.span.text}"]
     places = [one for one in found if one.endswith(("position", "positions"))]
     told = (places or found)[:OUTPUTS]
     return f"write {' or '.join(f'`{one}`' for one in told)}" if told else None

@@ -13,7 +13,9 @@ from pydantic import BaseModel
 from sceneql.compiler.annotations import quantities
 from sceneql.compiler.catalogue import Catalogue
 from sceneql.compiler.css_colors import NAMED
+from sceneql.compiler.meant.together import filled, together
 from sceneql.compiler.names import Names, Vocabulary
+from sceneql.compiler.vector_fields import ENDS
 from sceneql.kinds import Refers, written_name
 from sceneql.language.repeat import copy_meant
 from sceneql.language.replaced import word_of
@@ -25,6 +27,7 @@ from sceneql.quantities.expression import Number, Vector
 from sceneql.quantities.instead import instead
 from sceneql.quantities.literal import vector_meant
 from sceneql.quantities.parser import parse_value
+from sceneql.quantities.span import Source
 
 DEFAULT = {"cameras": "perspective", "outputs": "video", "objects": "sphere", "contacts": "collision"}
 """The word of a family that is shown where several have a field."""
@@ -32,14 +35,13 @@ MANY = 6
 """Largest number of words of which all that have a field are listed."""
 THINGS, SHORT = ("objects", "models", "cameras", "lights"), 2
 """Families whose fields are looked for among their own words alone, and the longest name that tells too little."""
-SIZES = ("width", "height", "depth", "length")
 OFF = ("0", "0.0", "no", "false")
 """Texts of a field that says that something is not."""
+SHOWN = 160
+"""Longest list of instances that a message repeats."""
 FEW = 4
 """Largest number of words with a field by which it is told what has that field."""
 
-_FIRST = re.compile(r"\{(\w+): [<\[]")
-_BLANK = re.compile(r"<(\w+)\|([^>]*)>")
 _UNPARTED = re.compile(r"(\w+)(?:(:)|\s*=| )(.*)")
 
 
@@ -57,7 +59,7 @@ def report_unknown(
     renamed: Renamed | None = None,
     catalogue: Vocabulary | None = None,
     table: str = "",
-    inside: Callable[[str, str], str | None] = lambda name, text: None,
+    inside: Callable[..., str | None] = lambda name, value, written=None: None,
 ) -> bool:
     """Report the fields of a mapping that are not among the known ones; returns whether there are none.
 
@@ -69,17 +71,25 @@ def report_unknown(
     offer = renamed or (lambda field, value: (True, f"did you mean '{field}'?"))
     unknown = [name for name in node.entries if name not in known]
     for name in unknown:
-        help = (said_by or {}).get(name) or instead(f"field.{title.partition('.')[0]}", name)
-        help = (help and filled(help, node.entries[name])) or _together(name, unknown, node, known)
+        help = together(name, unknown, node, known)
+        help = help or (said_by or {}).get(name) or instead(f"field.{title.partition('.')[0]}", name)
+        help = help and filled(help, node.entries[name], known)
         if (written := _UNPARTED.fullmatch(name)) is not None and written[1] in known:
             space = ", with a space behind the colon" if written[2] else ""
             help = f"write `{written[1]}: {written[3].strip()}`{space}"
-        offers = [] if help else [offer(one, node.entries[name]) for one in all_same_as(name, known)]
+        beside = {one: each for one, each in node.entries.items() if one in known}
+        help = help or inside(name, node.entries[name], beside)
+        same = [] if help else [one for one in all_same_as(name, known) if one not in node.entries]
+        offers = [offer(one, node.entries[name]) for one in same]
         help = help or next((text for fits, text in offers if fits), None)
+        help = help or _ends(name, unknown, node, known, offer) or _flat(name, node.entries[name], known)
         help = help or instead(f"field.{family}", name) or instead("field", name)
         help = help or (offers[0][1] if offers else None)
-        help = help or inside(name, node.entries[name].span.text)
+        help = help or inside(name, node.entries[name])
         help = help or _like(name, node.entries[name], known, offer, family, catalogue)
+        help = help or _of_inner(node.entries[name])
+        if help is None and len(known) == 1 and (only := offer(next(iter(known)), node.entries[name]))[0]:
+            help = only[1]
         if help is None and len(known) == 1:
             help = f"it stands inside: `{{{next(iter(known))}: {{{name}: ...}}}}`"
         if help is None and table and table not in node.entries:
@@ -90,12 +100,29 @@ def report_unknown(
     return not unknown
 
 
-def filled(help: str, value: Node) -> str:
-    """A help text in which `<position|0 1 0 m>` is the text of the value's field `position`, or what stands behind."""
-    fields = value.entries if isinstance(value, Mapping) else {}
-    if "<" in help and value.span.text and not isinstance(value, Mapping) and (own := _FIRST.search(help)) is not None:
-        return f"write `{own[1]}: {value.span.text}`"
-    return _BLANK.sub(lambda blank: fields[blank[1]].span.text if blank[1] in fields else blank[2], help)
+def _ends(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str], offer: Renamed) -> str | None:
+    """The help for the two ends of a range beside the other fields of what has a field for both: ``min``, ``max``."""
+    field = next((one for one in ("limits", "range") if one in known and one not in node.entries), None)
+    both = next((pair for pair in zip(*ENDS, strict=False) if name in pair and {*pair} <= {*unknown}), None)
+    if field is None or both is None:
+        return None
+    low, high = (node.entries[one].span.text for one in both)
+    text = vector_meant(f"{low}, {high}") or f"[{low}, {high}]"
+    return offer(field, Scalar(text, "text", False, Source("value", text), 0, len(text)))[1]
+
+
+def _flat(name: str, value: Node, known: Collection[str]) -> str | None:
+    """The help for a group of fields that stand among the others here."""
+    if not isinstance(value, Mapping) or not value.entries or not all(inner in known for inner in value.entries):
+        return None
+    told = ", ".join(f"{inner}: {node.span.text}" for inner, node in value.entries.items())
+    return f"they stand among the other fields, without `{name}`: write `{told}`"
+
+
+def _of_inner(value: Node) -> str | None:
+    """The help for a group of fields that stand in another part here."""
+    inner = value.entries if isinstance(value, Mapping) else ()
+    return next((help for one in inner if (help := instead("field", one)) is not None), None)
 
 
 def _like(
@@ -136,47 +163,16 @@ def meant_field(name: str, known: Collection[str]) -> str | None:
     return written[1] if written is not None and written[1] in known else nearest(name, known)
 
 
-def _together(name: str, unknown: Sequenced[str], node: Mapping, known: Collection[str]) -> str | None:
-    """The help for fields that are one here: ``from: a, to: b``, and items of a list without brackets."""
-    ours = same_as(name, known)
-    same = [other for other in unknown if same_as(other, known) == ours]
-    if ours == "between" and len(same) == 2 and ours not in node.entries:
-        return f"write `{ours}: [{', '.join(node.entries[other].span.text for other in same)}]`"
-    sides = [other for other in SIZES if other in unknown]
-    flat = "rotation" not in known or "cells" in known  # of a box there are three
-    if name in sides and len(sides) > (1 if flat else 2) and "size" in known and "size" not in node.entries:
-        texts = [node.entries[other].span.text for other in sides]
-        if (size := vector_meant(", ".join(texts))) is not None:
-            return f"write `size: {size}`"
-    whole, _, part = name.rpartition(".")
-    parts = [other for other in unknown if other.rpartition(".")[0] == whole and other[-1:] in "xyz"]
-    if (whole or "position") in known and part in ("x", "y", "z"):
-        values = (f"{each[-1]}: {node.entries[each].span.text}" for each in parts)
-        return f"write `{whole or 'position'}: {{{', '.join(values)}}}`"
-    names = list(node.entries)
-    first = names.index(name)
-    while first and names[first] not in known and _empty(node.entries[names[first]]):
-        first -= 1
-    items = [node.entries[names[first]].span.text, *names[first + 1 : names.index(name) + 1]]
-    field = names[first] if names[first] in known else same_as(names[first], known)
-    if len(items) > 1 and field is not None and isinstance(node.entries[names[first]], Scalar):
-        return f"a list stands in brackets: write `{field}: [{', '.join(items)}]`"
-    return None
-
-
-def _empty(node: Node) -> bool:
-    return isinstance(node, Scalar) and node.kind == "null" and not node.quoted
-
-
 def word_meant(
     entry: Entry, family: str, catalogue: Catalogue, family_of: Naming[str, str], script: Script
 ) -> str | None:
     """The help for an entry with a word that is not in its family; ``family_of``: the families of all parts."""
     templates = script.root.entries.get("templates")
     if isinstance(templates, Mapping) and entry.word in templates.entries:
-        text = "" if entry.fields is None else entry.fields.span.text
-        inner = f"{{{entry.word}: {text}}}" if text and "\n" not in text else entry.word
-        return f"it is a template, of which parts are made: write `parts: {{{entry.name}: {inner}}}`"
+        every = [one for one in script.sections.get(family, {}).values() if one.word in templates.entries]
+        inner = ", ".join(map(_instance, every))
+        inner = inner if len(inner) <= SHOWN else f"{_instance(entry)}, ..." if len(every) > 1 else _instance(entry)
+        return f"it is a template, of which parts are made: write `parts: {{{inner}}}`"
     if (replaced := _field_of_replaced(entry, family, script, catalogue)) is not None:
         return replaced
     words, fields = catalogue.choices(family), entry.fields
@@ -190,8 +186,12 @@ def word_meant(
         word = DEFAULT.get(family) if DEFAULT.get(family) in pairs else next(iter(pairs), None)
         if word is not None:
             return f"a part is named within a word, `{{{word}: {{between: [{entry.word}, ...]}}}}`"
+    if (joined := _joined(entry.word, family_of)) is not None:
+        return joined
     if (same := same_as(entry.word, words)) is not None:
         return f"did you mean '{same}'?"
+    if family == "materials" and (other := instead(family, entry.word)) is not None:
+        return other
     if others := catalogue.families_of(entry.word):
         return f"it belongs under '{others[0]}:'"
     if fields is None and not entry.word.isidentifier() and (having := _having([entry.name], family, catalogue)):
@@ -218,6 +218,21 @@ def word_meant(
     return f"words with such fields are {', '.join(having[:MANY])}" if having else None
 
 
+def _joined(text: str, family_of: Collection[str]) -> str | None:
+    """The help for names of objects with a sign between them, as other programs join solids: ``a | b``."""
+    found = re.fullmatch(r"(\w+)\s*([|+&*-])\s*(\w+)", text)
+    if found is None or not {found[1], found[3]} <= {*family_of}:
+        return None
+    word = {"|": "union", "+": "union", "-": "difference"}.get(found[2], "intersection")
+    return f"write `{{{word}: {{of: [{found[1]}, {found[3]}]}}}}`"
+
+
+def _instance(entry: Entry) -> str:
+    """An entry as a script writes it, in a line."""
+    text = "" if entry.fields is None else entry.fields.span.text
+    return f"{entry.name}: {{{entry.word}: {text}}}" if text and "\n" not in text else f"{entry.name}: {entry.word}"
+
+
 def _fields_of(entry: Entry, cls: type[BaseModel]) -> str:
     """The fields of a word that stands in place of a name: those written, or the one that takes a number; else dots."""
     given = entry.fields
@@ -242,7 +257,13 @@ def _field_of_replaced(entry: Entry, family: str, script: Script, catalogue: Cat
     table = script.base.entries.get(family)
     own = word_of(table.entries.get(entry.name)) if isinstance(table, Mapping) and script.variant else ""
     cls = catalogue.load(family, own) if own else None
-    if cls is None or entry.fields is None or entry.word not in map(written_name, cls.model_fields):
+    if cls is None:
+        return None
+    if entry.fields is None and (taken := _fields_of(entry, cls)) != "...":
+        field, _, value = taken.strip("{}").partition(": ")
+        by_path = f"write `{script.variant}: {{{entry.name}.{field}: {value}}}`, which changes this field alone"
+        return f"'{entry.name}' is a {own}, and not a value: {by_path}"
+    if entry.fields is None or entry.word not in map(written_name, cls.model_fields):
         return None
     field = f"{entry.word}: {entry.fields.span.text}"
     by_path = f"write `{script.variant}: {{{entry.name}.{field}}}`, which changes this field alone"
@@ -286,6 +307,9 @@ def word_having(node: Mapping, family: str, catalogue: Catalogue) -> str | None:
 
 def other_family(name: str, mark: Refers, names: Names, catalogue: Catalogue, family_of: Callable[[str], str]) -> str:
     """The help for a part of a wrong family: the model that moves it, a word by that name, or parts of the right."""
+    body = _held_by(names.parts[name].fields) if mark.bodies and family_of(name) == "ties" else None
+    if body is not None:
+        return f"a tie is between bodies, not between their ties: write `{body}`"
     mover = names.mover(name)
     if mover and mark.family == "models":
         return f"'{mover}' moves it: write `{mover}`"
@@ -293,6 +317,13 @@ def other_family(name: str, mark: Refers, names: Names, catalogue: Catalogue, fa
         return f"write `{word}`, a word, or the name of one of {mark.family}"
     others = [part for part in names.parts if family_of(part) == mark.family]
     return f"those of {mark.family} are {', '.join(others[:8])}" if others else f"write one under `{mark.family}:`"
+
+
+def _held_by(fields: Node | None) -> str | None:
+    """The first body that a tie holds, but the world."""
+    between = fields.entries.get("between") if isinstance(fields, Mapping) else None
+    bodies = [item.span.text for item in between.items] if isinstance(between, Sequence) else []
+    return next((one for one in bodies if one != "world"), None)
 
 
 def _told(node: Mapping, words: Collection[str], family: str, catalogue: Catalogue) -> str | None:
@@ -373,6 +404,10 @@ def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, c
     words = catalogue.words(mark.family)
     if names.gives(name) and (readers := names.readers(name, choices)):
         return f"a part stands here, and none of its outputs: write `{readers[0]}`, which shows it"
+    model = names.part_of(name)[0]
+    shown = [one for one in choices if model != name and _names(names.parts[one].fields, model)]
+    if names.gives(name) and shown:
+        return f"a part stands here, and none of its outputs: write `{shown[0]}`, which shows it"
     row = re.findall(r"[^\W\d]\w*", name)
     if mark.panel and len(row) > 1 and all(one in choices for one in row):
         return f"a row is a list: write `[[{', '.join(row)}]]`"
@@ -383,6 +418,11 @@ def part_meant(name: str, mark: Refers, choices: Sequenced[str], names: Names, c
     if hint is None and words:
         hint = f"write the name of one, or a word, `{{{words[0]}: {{...}}}}`; the words are {', '.join(words)}"
     return hint
+
+
+def _names(fields: Node | None, part: str) -> bool:
+    """Whether the text of an entry's fields has the name of a part."""
+    return fields is not None and re.search(rf"\b{re.escape(part)}\b", fields.span.text) is not None
 
 
 def _having(fields: Collection[str], family: str, catalogue: Catalogue) -> list[str]:

@@ -36,14 +36,14 @@ def warn_of_falling_through(
     for island in groups if 0 < len(solids) <= MOST_OBJECTS else ():
         for name in island.models:
             forces = [cast(Interaction, tasks[force].kind) for force, model in island.forces if model == name]
-            pull = _pull(forces)
+            pull = pull_of(forces)
             if pull is None or tasks[name].span is None:
                 continue
             touched = {one: others for one, model, others in island.contacts if model == name}
             known = {other for others in touched.values() for other in others}
             if set(solids) <= known:
                 continue
-            starts = _starts(cast(Model, tasks[name].kind), tasks, start)[:MOST]
+            starts = starts_of(cast(Model, tasks[name].kind), tasks, start)[:MOST]
             hit = _first_hit(starts, pull, end, solids, known, start)
             if hit is not None and hit[0] not in known:
                 contact = next(iter(touched), None)
@@ -54,7 +54,7 @@ def warn_of_falling_through(
                 found.warning("falls-through", text, tasks[name].span, help=help)
 
 
-def _pull(forces: Sequence[Interaction]) -> tuple[float, ...] | None:
+def pull_of(forces: Sequence[Interaction]) -> tuple[float, ...] | None:
     """The constant acceleration [m/s^2] by weights, where nothing else acts; else None."""
     total = (0.0, 0.0, 0.0)
     for force in forces:
@@ -69,7 +69,7 @@ def _pull(forces: Sequence[Interaction]) -> tuple[float, ...] | None:
     return total if any(total) else None
 
 
-def _starts(kind: Model, tasks: Mapping[str, Task], start: Any) -> list[Start]:
+def starts_of(kind: Model, tasks: Mapping[str, Task], start: Any) -> list[Start]:
     """Places [m], velocities [m/s] and reaches [m] of what falls as stones do; none where something holds it."""
     known = kind.static_masses()
     if any(getattr(kind, field, None) for field in HOLDING) or any(mass.fixed for mass in known.values()):

@@ -1,19 +1,28 @@
-"""Warnings of ties that hold a body at a point far outside of it, as in wrong coordinates."""
+"""Warnings of ties that hold a body far outside of it, as in wrong coordinates, and of hinges that nothing turns."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from math import hypot
+from typing import Any, cast
 
+from sceneql.compiler.passes.fall_through import pull_of, starts_of
 from sceneql.compiler.passes.fillings import Beginning
+from sceneql.compiler.passes.unforced import starts_moving
 from sceneql.failure import LimitRefused, RunFailure
-from sceneql.graph import Task
-from sceneql.kinds import Model, Ref, Tie
+from sceneql.graph import Island, Task
+from sceneql.kinds import Interaction, Model, Ref, Tie, Value
 from sceneql.quantities.diagnostic import Diagnostics, ScriptError
 
 FAR, FAR_OF_BOB = 1.0, 20.0
 """Distance from the body's box, relative to its diagonal, from which on a point is far; a compact bob may hang on a
 long arm."""
+STILL = 1e-6
+"""Torque of a weight, relative to the largest for the length of its arm, up to which it turns nothing."""
+AXES = ((0, 0, 1), (1, 0, 0))
+"""Axes across the default weight, that towards the usual camera first."""
+TURNING = ("motor", "stiffness")
+"""Fields of a hinge that turn its body."""
 BOB = 2.0
 """Largest ratio of the sides of a bob's box."""
 
@@ -53,3 +62,40 @@ def _outside(place: Any, ref: Ref, tasks: Mapping[str, Task], start: Any) -> Ite
         far = FAR_OF_BOB if (high - low).max() <= BOB * (high - low).min() else FAR
         if distance > far * float(np.linalg.norm(high - low)):
             yield distance, " to ".join(", ".join(f"{x:.4g}" for x in corner) for corner in (low, high))
+
+
+def warn_of_unturned(tasks: Mapping[str, Task], groups: Sequence[Island], found: Diagnostics) -> None:
+    """Warn of each hinge to the world whose body starts at rest, where its weight alone acts and does not turn it."""
+    start: Any = Beginning(tasks)
+    for island in groups:
+        ties = list(dict.fromkeys(name for name, _ in island.forces if isinstance(tasks[name].kind, Tie)))
+        forces = [cast(Interaction, tasks[name].kind) for name, _ in island.forces if name not in ties]
+        pull = pull_of(forces)
+        if len(ties) != 1 or len(island.models) != 1 or island.contacts or pull is None:
+            continue
+        tie, model = tasks[ties[0]], tasks[island.models[0]]
+        axis, at = getattr(tie.kind, "axis", None), getattr(tie.kind, "at", None)
+        if not isinstance(axis, Value) or not isinstance(at, Value) or not axis.constant or not at.constant:
+            continue
+        if any(getattr(tie.kind, field, None) is not None for field in TURNING) or starts_moving(model.kind):
+            continue
+        places = [place for place, _, _ in starts_of(cast(Model, model.kind), tasks, start)]
+        if len(places) != 1:
+            continue
+        arm = tuple(c - float(p) for c, p in zip(places[0], at.number(), strict=True))
+        if _turning(arm, pull, axis.number()) >= STILL:
+            continue
+        text = f"its weight does not turn '{model.name}' about this axis: nothing moves"
+        better = next((way for way in AXES if _turning(arm, pull, way) >= STILL), None)
+        help = "hold it beside its center of mass, by another `at`"
+        if better is not None:
+            seen = ", for a swing in the picture" if better == AXES[0] else ""
+            help = f"write `axis: {' '.join(map(str, better))}`{seen}"
+        found.warning("nothing-moves", text, axis.span or tie.span, help=help)
+
+
+def _turning(arm: Sequence[float], pull: Sequence[float], axis: Sequence[float]) -> float:
+    """The torque of a pull about an axis through the end of an arm, relative to the largest possible for its length."""
+    (a, b, c), (u, v, w), (x, y, z) = arm, pull, axis
+    torque = x * (b * w - c * v) + y * (c * u - a * w) + z * (a * v - b * u)
+    return abs(torque) / (max(hypot(*arm), 1e-12) * max(hypot(*pull), 1e-12) * max(hypot(*axis), 1e-12))

@@ -51,7 +51,7 @@ def warn_of_unforced(tasks: Mapping[str, Task], groups: Sequence[Island], found:
         elif (
             all(isinstance(task.kind, Model) and task.kind.inert for task in models)
             and not (island.forces or (led and island.contacts))
-            and not any(_starts(task.kind) for task in models)
+            and not any(starts_moving(task.kind) for task in models)
         ):
             text = f"no force acts on '{models[0].name}', and it starts at rest: it stays where it is"
             help = "write `forces: [gravity]`, or give it a `velocity`"
@@ -126,7 +126,7 @@ def _held(task: Task) -> bool:
     return bool(named) and all(getattr(one, "fixed", False) for one in named)
 
 
-def _starts(part: Any) -> bool:
+def starts_moving(part: Any) -> bool:
     """Whether a velocity or spin at the start, in a kind or a record at any depth, is not zero."""
     return any(_nonzero(value) for value in _velocities(part))
 

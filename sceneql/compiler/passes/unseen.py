@@ -51,14 +51,14 @@ def warn_of_buried(tasks: Mapping[str, Task], found: Diagnostics) -> None:
         at = _place(getattr(task.kind, "position", None)) if isinstance(task.kind, Light) else None
         if at is not None and at[1] < level:
             text = f"'{task.name}' stands under the ground, so that none of its light is seen"
-            higher = f"{at[0]:g} {level + 2.0:g} {at[2]:g} m"
+            higher = _turned_up(at, level, 2.0)
             found.warning("buried-light", text, task.span, help=f"y is up: write `position: {higher}`")
         eye = _place(getattr(task.kind, "position", None)) if isinstance(task.kind, Camera) else None
         aim = _place(getattr(task.kind, "look_at", None))
         down = aim is not None and aim[1] < level  # what is below is meant
         if eye is not None and eye[1] < level and not down:
             text = f"'{task.name}' stands under the ground, which hides all above it"
-            higher = f"{eye[0]:g} {level + 1.0:g} {eye[2]:g} m"
+            higher = _turned_up(eye, level, 1.0)
             found.warning("buried-camera", text, task.span, help=f"y is up: write `position: {higher}`")
 
 
@@ -97,6 +97,13 @@ def _places(task: Task) -> list[tuple[float, ...]]:
         return [] if None in known else [place for place in known if place is not None]
     at = _place(getattr(task.original or task.kind, "position", None))
     return [] if at is None else [at]
+
+
+def _turned_up(place: tuple[float, ...], level: float, above: float) -> str:
+    """A place [m] under a ground as it is where z was taken for upwards, else so far [m] above the ground."""
+    x, y, z = place
+    meant = (x, z, -y) if level < z < -y else (x, level + above, z)
+    return _text(meant)
 
 
 def _text(place: tuple[float, ...]) -> str:

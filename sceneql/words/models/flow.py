@@ -235,7 +235,7 @@ class Flow(Model):
     def _balanced(self, sides: int) -> Iterable[Problem]:
         """Problems: velocities with a wrong number of components; fluid that enters and cannot leave."""
         given: dict[str, Formula | None] = {name: part.velocity for name, part in self.boundary.items()}
-        wrong = [name for name, one in given.items() if one is not None and one.expr.type.shape != (sides,)]
+        wrong = [name for name, one in given.items() if one is not None and one.expr.type.shape not in ((), (sides,))]
         for name in wrong:
             path = ("boundary", name, "wall" if self.boundary[name].inflow is None else "inflow", "velocity")
             example = ", ".join(["1", *["0"] * (sides - 1)])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import cos, inf, isfinite, pi, sin, sqrt
+from math import ceil, cos, inf, isfinite, pi, sin, sqrt
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import field_validator
@@ -39,6 +39,12 @@ if TYPE_CHECKING:
 Corner = tuple[float, float, float]
 PLACES = 200
 """Number of points on the default bounds at which a formula is sampled."""
+AXES = tuple(tuple(side * (j == k) for j in range(3)) for k in range(3) for side in (1.0, -1.0))
+"""Directions along which solids that do not end often go on."""
+SMALLEST, LARGEST, WIDER = 0.25, 60.0, 1.06
+"""Radii of the spheres on which a solid outside of its bounds is looked for: the ends, and the ratio of the next."""
+BEYOND = 1.3
+"""Ratio of two such radii between which nothing is found for the solid to end there."""
 ROUNDING = 1e-9
 """Tolerance of a formula's values on the bounds, relative to those half way to them."""
 
@@ -173,12 +179,59 @@ class Implicit(Solid):
                 f"it is empty: within its bounds the formula is {found}, and its surface is where it is {self.level:g}"
             )
             help = "inside the formula is below the level: turn its sign round, subtract more, or set `level`"
+            first, reach = self._found_at()
+            if reach is not None:
+                help = f"its surface lies outside of its bounds: write `bounds: {{ball: {reach:.3g}}}`"
+            elif first is not None:
+                help = f"its surface lies outside of its bounds: write larger `bounds`, as `{{ball: {4 * first:.2g}}}`"
             yield Doubt("empty-surface", text, self.field.span, help)
+        elif "bounds" not in self.model_fields_set:
+            first, reach = self._found_at(stop=1.0)
+            if first is not None:
+                text = "its surface lies outside of its bounds, which are the ball of radius 1 by default"
+                help = "inside the formula is below the level: turn its sign round, or write larger `bounds`"
+                help = help if reach is None else f"write `bounds: {{ball: {reach:.3g}}}`"
+                yield Doubt("empty-surface", text, self.field.span, help)
 
-    def cut_by_default(self) -> str:
+    def _found_at(self, stop: float = 0.0) -> tuple[float | None, float | None]:
+        """The least radius of a sphere about the origin that the solid comes to at the start, and of one around it.
+
+        None where it comes to none, does not end, or the formula reads values known only in a run; both None, too,
+        where it comes to one up to the radius ``stop``.
+        """
+        first, last, radius = None, 0.0, SMALLEST
+        while radius < LARGEST:
+            try:
+                within = self._least_on(radius) < self.level
+            except (AttributeError, KeyError, ArithmeticError):
+                return None, None
+            if within and radius <= stop:
+                return None, None
+            if within:
+                first, last = first or radius, radius
+            elif first is not None and radius > BEYOND * last:
+                return first, ceil(100 * WIDER * last) / 100
+            radius *= WIDER
+        return first, None
+
+    def _least_on(self, radius: float) -> float:
+        """The least value of the formula at places on a sphere about the origin, at the start."""
+        known: dict[str, float] = {"t": 0.0}
+
+        def look_up(node: Symbol) -> float:
+            return known[node.name]
+
+        least = inf
+        for place in (*AXES, *_on_a_ball(PLACES)):
+            known |= zip("xyz", (radius * c for c in place), strict=True)
+            value = evaluate(self.field.expr, look_up)
+            least = min(least, value if isfinite(value) else inf)
+        return least
+
+    def cut_by_default(self) -> tuple[str, str]:
         """The ball about the origin, where no bounds are given and the solid or surface goes on there at the start."""
         if "bounds" in self.model_fields_set:
-            return ""
+            return "", ""
         low, high, size = inf, -inf, 0.0
         known: dict[str, float] = {}
 
@@ -192,12 +245,15 @@ class Implicit(Solid):
                 known |= zip("xyzt", (*place, 0.0), strict=True)
                 value = evaluate(self.field.expr, look_up)
             except (AttributeError, KeyError):  # the formula reads values known only in a run
-                return ""
+                return "", ""
             low, high = min(low, value), max(high, value)
             size = max(size, abs(within - self.level) if isfinite(within) else 0.0)
         # A formula of the same ball is below the level on the bounds by rounding alone.
         goes_on = low < self.level - ROUNDING * size and (self.mode == "solid" or high > self.level + ROUNDING * size)
-        return "the ball x^2 + y^2 + z^2 = 1" if goes_on else ""
+        if not goes_on:
+            return "", ""
+        _, reach = self._found_at()
+        return "the ball x^2 + y^2 + z^2 = 1", "" if reach is None else f"bounds: {{ball: {reach:.3g}}}"
 
     def inside(self, build: FieldBuilder, x: int, y: int, z: int, moment: Moment) -> int:
         """The formula and its bounds, in meters."""

@@ -66,13 +66,24 @@ class Labels(Overlay):
 
 
 def _around(ref: Ref, moment: Moment) -> Any:
-    """Corners (8, 3) [m] of a part's box now; its place (1, 3) if the box is infinite or missing."""
+    """Corners (8, 3) [m] of a part's box now; its place (1, 3) if the box is infinite or missing.
+
+    The box is that of its surface: the `bounds` of an implicit object may be far larger.
+    """
     import numpy as np
+
+    from sceneql.frame import Implicit
+    from sceneql.shapes.world_boxes import surface_box
 
     part: Any = moment.object(ref)
     if isinstance(part, Object):
+        place = moment.place(ref.name)
         try:
-            low, high = part.extent(moment.place(ref.name), moment)
+            low, high = part.extent(place, moment)
+            solids = [shape for shape in part.lower(ref.name, place, moment) if isinstance(shape, Implicit)]
+            if solids:
+                lows, highs = zip(*map(surface_box, solids), strict=True)
+                low, high = np.maximum(low, np.min(lows, axis=0)), np.minimum(high, np.max(highs, axis=0))
         except TypeError:
             low = high = np.full(3, np.inf)
         if np.isfinite([low, high]).all():
