@@ -66,8 +66,8 @@ def read_unit(text: str, at: int, span: Span, *, below: bool = False) -> tuple[U
             number = re.search(r"[\d.]*$", text[:at]) or word
             raise ScriptError([replace(found, help=f"write `{number.group()}*{word.group()}` for a product")]) from None
         sure = (found.help or "").startswith("did you mean") and len(word.group()) > 1
-        help = found.help if sure else hint if found.help is None else f"{found.help}; {hint}"
-        raise ScriptError([replace(found, help=help)]) from None
+        both = hint if found.help is None else f"{found.help}; {hint}"
+        raise ScriptError([found if sure else replace(found, help=both)]) from None
 
 
 def quantity(number: str, unit: Unit | None, span: Span, divisor: str | None = None) -> Number:
