@@ -212,6 +212,10 @@ def _by_axis(node: Node, numbers: Sequence[float], found: Diagnostics) -> bool:
     if tuple(axis) == (0.0, 0.0, 0.0) and angle == 1.0:
         text = "as a quaternion `w x y z` this turns by 180 deg about z"
         found.warning("quaternion-order", text, node.span, help="w stands first: `1 0 0 0` turns nothing")
+    elif axis[0] == 0.0 and angle != 0.0 and any(axis):
+        text = f"as a quaternion `w x y z` this turns by 180 deg about {axis[1]:g} {axis[2]:g} {angle:g}"
+        help = f"w stands first: write `{angle:g} {axis[0]:g} {axis[1]:g} {axis[2]:g}` if it is the last here"
+        found.warning("quaternion-order", text, node.span, help=help)
     square = sum(c * c for c in axis)
     if abs(square - 1.0) > 1e-3 or abs(square + angle * angle - 1.0) < 2e-3 or angle in (1.0, -1.0):
         return False

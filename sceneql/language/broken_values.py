@@ -30,6 +30,7 @@ _CALLED = re.compile(r"(\w+)\(")
 _UNIT = re.compile(r"[^\W\d_]|[%°]")
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _ITEM = r"(?:[^(),]|\([^(),]*\))+"
+_LOOP = re.compile(r"\bfor\s+\w+\s+in\b")
 _COPY = re.compile(r"([^\W\d]\w*)\[(\w+)\]((?:\.\w+)+)")
 """A value of a copy as other languages name it, ``ball[0].position``."""
 _PARENTHESES = re.compile(rf"\(({_ITEM}(?:,{_ITEM})+)\)[ \t]*([^\W\d_][^()\[\]{{}},\s]*)?")
@@ -115,6 +116,10 @@ def report(source: Source, faults: list[Fault], found: Diagnostics) -> None:
             called = _CALLED.match(written)
             if called is not None and called[1] not in FUNCTIONS and instead("function", called[1]) is not None:
                 continue  # it is reported where the value is read
+            if _LOOP.search(source.line(source.position(fault.caret)[0])) is not None:
+                help = f"values have no loops; of parts {instead('entry', 'for')}"
+                found.error("syntax", "'for' cannot stand in a value", Span(source, fault.caret, fault.end), help=help)
+                continue
             if (named := _NAMED.fullmatch(written)) is not None:
                 help = f"a name stands by itself: write `{named[1]}`"
                 found.error(

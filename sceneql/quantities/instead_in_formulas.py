@@ -146,9 +146,11 @@ OF_FORMULAS = (
         "a lamp has its power in W, as a bulb does: one of 800 lm is `60 W`, one of 1600 lm `100 W`",
     ),
     ("unit", "e electron electrons elementary_charge", "the charge of a proton is `1.602e-19 C`"),
+    ("unit name", "micron microns micrometer micrometers", "a micron is `1 um`"),
     ("unit name", "cc ccm", "a cc is a cubic centimeter: write `g/cm^3`"),
     ("unit name", "cp cps centipoise poise", "a poise is `0.1 Pa*s`, a hundredth of it `1e-3 Pa*s`"),
     ("name", "G", "write `6.6743e-11 m^3/(kg*s^2)`, or define it so: `define: {G: 6.6743e-11 m^3/(kg*s^2)}`"),
+    ("sign", "'", "a foot is `ft`, an inch `inch`: `2 3 1 ft`"),
     ("sign", '"', "an inch is `inch`, a foot `ft`: `4 2 1 inch`"),
     (
         "unit name",

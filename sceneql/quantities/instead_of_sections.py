@@ -265,6 +265,26 @@ OF_SECTIONS = (
         "depth height extrude thickness_z",
         "it is flat; a body comes in a file, `{mesh: {file: part.stl}}`, or is made by `union` and `intersection`",
     ),
+    (
+        "materials",
+        "image texture bitmap photo picture map",
+        "no picture is read here: write a color, or `checker`, or a color that is a formula of x, y, z",
+    ),
+    (
+        "field.objects",
+        "emission emissive emit luminance",
+        "what shines is a material: `material: {glow: {color: orange, strength: 5}}`",
+    ),
+    (
+        "field.diffusion",
+        "velocity flow advection wind carried_by",
+        "what carries it is its drift, by the flow's name: `drift: {by: air}`",
+    ),
+    (
+        "field.collision",
+        "stiffness damping k kn kp kd c penalty spring erp cfm solref solimp",
+        "contacts are hard: `restitution: 0.5` says how much of the speed comes back, and nothing gives way",
+    ),
     ("field.joints", "parent base link relative_to", "write `{of: <parent|shoulder>}`"),
     ("field.images field.image", "format type extension ext", "pictures are PNG files: leave it out"),
     ("field.video", "format type extension ext", "films are MP4 files: leave it out"),

@@ -25,6 +25,7 @@ from sceneql.quantities.spaced import (
     by_frame,
     indexed,
     meant_by_equals,
+    modulo,
     other_signs,
     per_unit,
     ternary,
@@ -257,7 +258,8 @@ class _Parser:
             if self.token == "?" and (chosen := ternary(self.text)) is not None:
                 help = f"write `{chosen}`"
             if self.token in "|%@":
-                help = other_signs(self.text) or help
+                plain = modulo(self.text)
+                help = other_signs(self.text) or (plain and f"write `{plain}`") or help
             if self.token in "=.":
                 help = meant_by_equals(self.text) or without_dots(self.text) or help
             name = re.match(WORD, self.text[self.end :])
@@ -300,6 +302,7 @@ class _Parser:
     def _leftover(self, expr: Expr) -> ScriptError:
         if self.kind == "sign" and self.token not in "([":
             help = comma_meant(self.text) if self.token == "," else instead("sign", self.token)
+            help = f"write `{plain}`" if (plain := modulo(self.text)) is not None else help
             return self._fail("syntax", f"'{self.token}' cannot stand here", help=help)
         odd = next((c for c in self.text if not c.isascii() and instead("sign", c)), None)
         if odd is not None:

@@ -27,6 +27,8 @@ _CALLED = re.compile(
 )
 _CHOICE = re.compile(r"([^?:]+)\?([^?:]+):([^?:]+)")
 _IF_ELSE = re.compile(r"(.+?)\s+if\s+(.+?)\s+else\s+(.+)")
+_TERM = r"(\d[\d.]*\s+[a-zA-Z]+(?![\w(])|[\w.]+|\([^()]*\))"
+_REST, _QUOTIENT = re.compile(rf"{_TERM}\s*%\s*{_TERM}"), re.compile(rf"{_TERM}\s*//\s*{_TERM}")
 _PER = re.compile(r"\s+per\s+(sec(?:ond)?s?|s|min(?:ute)?s?|hours?|h|m|meters?|metres?)\b")
 _UNITS_BELOW = {"sec": "s", "min": "min", "hou": "h", "met": "m"}
 _RATE = re.compile(r"\bfps\s*:\s*(\d+(?:\.\d+)?)(?![\w.])")
@@ -170,6 +172,12 @@ def ternary(text: str) -> str | None:
         return f"where({found[1].strip()}, {found[2].strip()}, {found[3].strip()})"
     found = _IF_ELSE.fullmatch(text.strip())
     return None if found is None else f"where({found[2].strip()}, {found[1].strip()}, {found[3].strip()})"
+
+
+def modulo(text: str) -> str | None:
+    """A formula with the signs of other languages for rests and whole quotients as functions; None without any."""
+    plain = _REST.sub(r"mod(\1, \2)", _QUOTIENT.sub(r"floor(\1/\2)", text.strip()))
+    return None if plain == text.strip() or re.search(r"%|//", plain) else plain
 
 
 def per_unit(text: str) -> str | None:

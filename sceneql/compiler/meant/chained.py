@@ -30,9 +30,10 @@ LONGEST = 160
 """Largest length of a value that is mended."""
 STEPS, TRIES = 6, 24
 """Largest numbers of mistakes in a row, and of texts that are read, until a value is mended."""
+_FRAMES = re.compile(r"(\d+(?:\.\d+)?)\s*(?:frames?|f)")
 _SHOWN = re.compile(r"`([^`]+)`")
 _NUMBER = re.compile(r"(?<![\w.])\d+\.?\d*(?:[eE][-+]?\d+)?")
-_WRITTEN = re.compile(r"(?:write|is written|did you mean|as) [`']([^`]+?)[`'](?:\?|;|,|:|$| )")
+_WRITTEN = re.compile(r"(?:write|is written|did you mean) [`']([^`]+?)[`'](?:\?|;|,|:|$| )")
 
 
 AXES = {
@@ -83,6 +84,13 @@ def better_alone(
         found[before] = replace(found[before], help=helped.number_meant(node, info, name, code, help) or help)
     if name == "sweep" and code == "wrong-shape" and isinstance(node, Scalar):
         found[before] = replace(found[before], help=_swept(reader, written, node.text) or help)
+    if code == "unknown-unit" and (frames := _FRAMES.fullmatch(node.span.text.strip())) is not None:
+        rate = written["fps"].span.text if "fps" in written else str(helped.FRAMES)
+        if rate.replace(".", "", 1).isdecimal() and float(rate) > 0:
+            time = f"{float(frames[1]) / float(rate):.6g} s"
+            found[before] = replace(
+                found[before], help=f"it is a time: at {rate} frames a second write `{name}: {time}`"
+            )
     single = [mark.shape == () for mark in quantities(info)]
     if (help or "").startswith("two ends stand") and single and all(single):
         fields = [kinds.written_name(key) for key in cls.model_fields]
