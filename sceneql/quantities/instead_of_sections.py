@@ -1,4 +1,4 @@
-"""Sentences on sections, and on the fields of single words and groups: what to write instead of other programs'.
+"""Sentences on sections, models, and the fields of single words and groups: what to write instead of other programs'.
 
 For messages alone.
 """
@@ -293,6 +293,12 @@ OF_SECTIONS = (
         "joints hinges constraints constraint",
         "write `ties: {name: {hinge: {between: [model.a, model.b], at: 0 0 0 m}}}`: `sceneql words hinge`",
     ),
+    (
+        "section",
+        "keyframes keyframe keys animation animations animate tween fcurves actions",
+        "a value that changes has its keys where it stands, `position: {keys: {0 s: 0 0 0 m, 1 s: 0 1 0 m}}`:"
+        " `sceneql words keys`",
+    ),
     ("section", "gravity", "write `forces: [gravity]`, or `forces: [{gravity: {strength: 9.81 m/s^2}}]`"),
     ("section", "collision contact", "write `forces: [gravity, collision]`"),
     ("section", "duration end length stop time", "write `clock: {end: 5 s}`: `sceneql words clock`"),
@@ -319,5 +325,61 @@ OF_SECTIONS = (
     ("section", "scene root project", "the sections stand by themselves, with no key around them"),
     ("section", "floor", "write `objects: {floor: plane}`"),
     ("section", "sphere box plane", "write `objects: {name: {sphere: {radius: 1 m}}}`: `sceneql words sections`"),
+)
+"""(what the words were taken for, the words, the sentence)."""
+
+OF_MODELS = (
+    (
+        "models",
+        "skeleton bones bone armature rig ik inverse_kinematics kinematics chain_ik character puppet",
+        "limbs are joints that turn, and objects hang on them: write `{joints: {joints: {shoulder: {at: 0 1 0 m, turn:"
+        ' {about: z, angle: "40 deg*sin(2 rad/s*time)"}}, elbow: {of: shoulder, at: 0.5 0 0 m}}}}`; there is no inverse'
+        " kinematics: angles are told",
+    ),
+    (
+        "models",
+        "rope chain string cord thread wire cable",
+        "write `{mass_spring: {rope: {count: <count|20>, from: <from|0 2 0 m>, to: <to|1 2 0 m>}, mass: 10 g,"
+        " stiffness: <stiffness|1 kN/m>, pins: [start]}}`, or bodies on ties: `sceneql words rod`",
+    ),
+    (
+        "models",
+        "net trampoline sail flag curtain tablecloth towel blanket",
+        "write `{cloth: {size: <size|2 2 m>, pins: [top]}}`",
+    ),
+    (
+        "models",
+        "soft_body softbody soft jelly jello gel rubber_ball deformable_body",
+        "write `{elastic: {of: <of|ball>, law: {neo_hookean: {modulus: 10 kPa, poisson: 0.45}}}}`, of an object",
+    ),
+    (
+        "models",
+        "balloon bubble skin cell_membrane",
+        "write `{membrane: {of: <of|ball>, law: {tension: 1 N/m}}}`, a skin in a `flow`: `sceneql words membrane`",
+    ),
+    (
+        "models",
+        "dust sparks sparkles snow rain fireworks",
+        "write `{particles: {emit: {rate: 100 /s, velocity: 0 3 0 m/s, lifetime: 2 s}}}`",
+    ),
+    (
+        "models",
+        "spring oscillator harmonic_oscillator spring_mass",
+        "write `{mass_spring: {masses: {hook: {position: 0 2 0 m, fixed: yes}, bob: {position: 0 1 0 m, mass: 1 kg}},"
+        " springs: [{between: [hook, bob], rest: 0.8 m, stiffness: 40 N/m}]}}`",
+    ),
+    (
+        "models",
+        "pendulum simple_pendulum",
+        "write `{equations: {start: {theta: 1, omega: 0}, rate: {theta: omega, omega: -9.81*sin(theta)}}}`; or a body"
+        " hangs on a tie: `sceneql words hinge`",
+    ),
+    (
+        "models",
+        "double_pendulum",
+        "two bodies hang on two ties: `{hinge: {between: [upper, world], at: 0 2 0 m, axis: 0 0 1}}` and `{hinge:"
+        " {between: [upper, lower], at: 0 1 0 m, axis: 0 0 1}}`; or their equations are a model: `sceneql words"
+        " equations`",
+    ),
 )
 """(what the words were taken for, the words, the sentence)."""
